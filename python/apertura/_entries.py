@@ -8,7 +8,7 @@ import math
 import re
 import statistics
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, Mapping, Sequence
 
 from ._suites import SCENES, SEED, SUITES, VERSION
 
@@ -18,11 +18,14 @@ FIGURES = ("squared_error", "detection", "false_alarm", "detection_at_rate")
 #: Relative differences of figures below this one are the last bits of another machine.
 LAST_BITS = 1e-3
 
-#: Standard errors within which the mean of few numbers lies as often as that of many within two: Student's t for 95.45 %.
-_ERRORS_OF_FEW = {2: 13.97, 3: 4.53, 4: 3.31, 5: 2.87}
+#: How often a mean lies farther than two standard errors from the true one by chance, where it is that of many numbers.
+BEYOND_TWO_ERRORS = 0.0455
 
 #: Scores of one suite: its name, its number of scenes, and a list of numbers for each figure, or why the method refuses.
 Row = dict[str, Any]
+
+#: Rows of the draws "first" and "second".
+Draws = Mapping[str, Sequence[Row]]
 
 
 def mean_and_error(values: Sequence[float]) -> tuple[float, float]:
@@ -97,29 +100,52 @@ def _wrong_with(found: dict[str, Any]) -> str | None:
     return None
 
 
-def differences(told: Sequence[Row], found: Sequence[Row]) -> list[str]:
-    """Where the mean figures of a draw differ by more than two standard errors of their scenes' differences (of few scenes, Student's t).
+def _part_within(t: float, freedom: int) -> float:
+    """How often Student's t lies between -t and t (Abramowitz and Stegun, 26.7.3 and 26.7.4)."""
+    angle = math.atan2(t, math.sqrt(freedom))
+    term, total = math.cos(angle) ** (freedom % 2), 0.0
+    for power in range(freedom % 2, freedom - 1, 2):
+        total += term
+        term *= (power + 1) / (power + 2) * math.cos(angle) ** 2
+    total *= math.sin(angle)
+    return 2 / math.pi * (angle + total) if freedom % 2 else total
+
+
+def errors_allowed(scenes: int, comparisons: int) -> float:
+    """Standard errors of `scenes` differences that the mean of one comparison may be off: of all comparisons together one is farther off by chance no
+    more often than a single normal mean is off by two (Student's t, by Bonferroni)."""
+    low, high = 0.0, 1e6
+    while high - low > 1e-6 * high:
+        middle = (low + high) / 2
+        low, high = (low, middle) if _part_within(middle, scenes - 1) > 1 - BEYOND_TWO_ERRORS / max(comparisons, 1) else (middle, high)
+    return high
+
+
+def differences(told: Draws, found: Draws) -> list[str]:
+    """Where figures differ: the mean of a suite by more than last bits, and by more than the paired standard errors that chance explains.
 
     Args:
-        told: Rows of an entry.
-        found: Rows of the same suites and seed, of as many scenes or fewer: the entry's first ones are compared.
+        told: Rows of each draw of an entry.
+        found: Rows of the same suites and seeds, of as many scenes or fewer: the entry's first ones are compared.
     """
-    wrong = []
-    for a, b in zip(told, found, strict=True):
-        if "refused" in a or "refused" in b:
+    wrong, compared = [], []
+    for half, rows in found.items():
+        for a, b in zip(told[half], rows, strict=True):
+            where = f"{half} draw, {a['suite']}"
             if ("refused" in a) != ("refused" in b):
-                wrong.append(f"{a['suite']} is refused {'in the entry' if 'refused' in a else 'here'} alone: {a.get('refused') or b['refused']}")
-            continue
-        for name in FIGURES:
-            if (a[name] is None) != (b[name] is None):
-                wrong.append(f"{a['suite']}: {name} is there on one side alone")
-            elif a[name] is not None:
-                x, y = a[name][: b["scenes"]], b[name]
-                apart, error = mean_and_error([there - here for there, here in zip(x, y, strict=True)])
-                mean = statistics.fmean(x)
-                tolerance = max(_ERRORS_OF_FEW.get(len(y), 2.0) * error, LAST_BITS * abs(mean))
-                if abs(apart) > tolerance:
-                    wrong.append(f"{a['suite']}: {name} is {mean:.6g} in the entry and {mean - apart:.6g} here; expected within {tolerance:.2g}")
+                wrong.append(f"{where}: refused {'in the entry' if 'refused' in a else 'here'} alone: {a.get('refused') or b['refused']}")
+            for name in FIGURES if "refused" not in a and "refused" not in b else ():
+                if (a[name] is None) != (b[name] is None):
+                    wrong.append(f"{where}: {name} is there on one side alone")
+                elif a[name] is not None:
+                    compared.append((f"{where}: {name}", a[name][: b["scenes"]], b[name]))
+    differing = [(where, x, y) for where, x, y in compared if any(not math.isclose(*both, rel_tol=LAST_BITS) for both in zip(x, y, strict=True))]
+    for where, x, y in differing:
+        apart, error = mean_and_error([here - there for there, here in zip(x, y, strict=True)])
+        mean = statistics.fmean(x)
+        tolerance = max(errors_allowed(len(x), len(differing)) * error, LAST_BITS * abs(mean))
+        if abs(apart) > tolerance:
+            wrong.append(f"{where} is {mean:.6g} in the entry and {mean + apart:.6g} here; expected within {tolerance:.2g}")
     return wrong
 
 

@@ -86,7 +86,7 @@ def scenes_hash(suite: Suite, seed: int, count: int) -> str:
 
 
 def samples_hash(suite: Suite, seed: int, count: int) -> str:
-    """SHA-256 of the samples of both ends: the same on every machine with APERTURA_SIMD=portable."""
+    """SHA-256 of the samples of both ends: the same bits with APERTURA_SIMD=portable."""
     digest = hashlib.sha256()
     for scene in suite.scenes(seed, count):
         digest.update(np.ascontiguousarray(scene.simulate(floor=suite.floor).ends).tobytes())

@@ -116,7 +116,7 @@ def check(path: Path, method: _apertura.Method, weights: str, scenes: int = SCEN
         path: The entry.
         method: The method that it is of.
         weights: Those of the method; "" where nobody knows.
-        scenes: Scenes of each suite, at least 2. A third draw of fewer than all gives no verdict.
+        scenes: Scenes of each suite, at least 3. A third draw of fewer than all gives no verdict.
         seed: Seed of the third draw; a random one where none is given.
 
     Returns:
@@ -134,7 +134,7 @@ def check(path: Path, method: _apertura.Method, weights: str, scenes: int = SCEN
     halves = ("first", "second")
     rows = {half: told[half]["suites"] for half in halves}
     found = {half: draw(method, told[half]["seed"], scenes, SUITES)["suites"] for half in halves}
-    wrong = [f"{half} draw, {difference}" for half in halves for difference in differences(rows[half], found[half])]
+    wrong = differences(rows, found)
     entered, here_again = rows["first"] + rows["second"], found["first"] + found["second"]
     better = paired_z(entered, here_again)
     if scenes == SCENES and better > LIMIT:
@@ -153,7 +153,7 @@ def check(path: Path, method: _apertura.Method, weights: str, scenes: int = SCEN
 
 def _freeze() -> str:
     if os.environ.get("APERTURA_SIMD") != "portable":
-        raise ValueError("samples are the same on every machine with APERTURA_SIMD=portable alone: set it")
+        raise ValueError("the hashes are of the samples with APERTURA_SIMD=portable: set it")
     suites = {suite.name: suite.conditions | {"scenes_sha256": scenes_hash(suite, SEED, SCENES)} for suite in SUITES}
     for suite in SUITES:
         suites[suite.name]["samples_sha256"] = samples_hash(suite, SEED, SCENES)
@@ -173,7 +173,7 @@ def _run(given: argparse.Namespace) -> None:
     if given.table:
         print(markdown([read_entry(path) for path in given.table]))
         return
-    least = 2 if given.check else 1
+    least = 3 if given.check else 1
     if given.scenes < least or given.scenes > SCENES:
         raise ValueError(f"--scenes is {given.scenes}; expected {least} to {SCENES}")
     if given.all and (given.check or not (given.output and given.output.is_dir())):

@@ -49,6 +49,10 @@ def row(suite="set 1", **figures):
     return {"suite": suite, "scenes": len(values["squared_error"]), **values}
 
 
+def differences(told, found):
+    return benchmark.differences({"first": told}, {"first": found})
+
+
 def test_the_scenes_are_the_frozen_ones():
     assert benchmark.check_scenes() == []
     kept = _suites.frozen()
@@ -105,9 +109,9 @@ def test_a_refused_suite_stands_with_its_reason(entry):
     assert str(told.value) == refused["refused"]
     assert refused["refused"] in benchmark.table(entry)
     scored = row(refused["suite"], squared_error=[1.0], false_alarm=[0.0])
-    [told] = benchmark.differences([refused], [scored])
+    [told] = differences([refused], [scored])
     assert "refused in the entry alone" in told
-    assert benchmark.differences([refused], [refused]) == []
+    assert differences([refused], [refused]) == []
 
 
 def test_an_entry_is_read_as_it_was_written(small):
@@ -157,16 +161,29 @@ def test_only_another_score_has_another_second_draw(entry):
     assert benchmark.second_seed(nudged) == benchmark.second_seed(rows) != benchmark.second_seed(better)
 
 
-def test_figures_may_differ_by_two_paired_errors():
-    told = row(squared_error=[100.0, 120.0, 90.0, 130.0], false_alarm=[1e-5, 2e-5, 1e-5, 2e-5], detection=[1.0, 0.6, 0.6, 1.0])
-    times = lambda factor: row(**{name: [value * factor for value in told[name]] for name in ("squared_error", "false_alarm", "detection")})
-    assert benchmark.differences([told], [told]) == benchmark.differences([told], [times(1.0001)]) == []
+def test_figures_may_differ_by_paired_errors():
+    names = ("squared_error", "detection", "false_alarm")
+    told = row(squared_error=[100.0, 120.0, 90.0, 130.0], detection=[1.0, 0.6, 0.6, 1.0], false_alarm=[1e-5, 2e-5, 1.5e-5, 2e-5])
+    times = lambda factor: row(**{name: [value * factor for value in told[name]] for name in names})
+    assert differences([told], [told]) == differences([told], [times(1.0001)]) == []
     one = row(**{**told, "squared_error": [100.0, 900.0, 90.0, 130.0]})
-    assert benchmark.differences([told], [one]) == [], "one scene that goes another way is no other method"
-    names = [difference.split(": ")[1].split(" is ")[0] for difference in benchmark.differences([told], [times(1.2)])]
-    assert names == ["squared_error", "detection", "false_alarm"], "false alarms are few: the tolerance is relative"
-    first = row(**{name: told[name][:2] for name in ("squared_error", "false_alarm", "detection")})
-    assert benchmark.differences([told], [first]) == []
+    assert differences([told], [one]) == [], "one scene that goes another way is no other method"
+    found = [difference.split(": ")[1].split(" is ")[0] for difference in differences([told], [times(1.2)])]
+    assert found == [*names], "false alarms are few: the tolerance is relative"
+    assert differences([told], [row(**{name: told[name][:3] for name in names})]) == []
+
+
+def test_chance_alone_passes_the_whole_check(monkeypatch):
+    # Student's t at 0.0455, and at 0.05 and 0.001 as printed in tables.
+    for scenes, level, expected in ((20, 0.05, 2.093), (20, 0.001, 3.883), (3, 0.05, 4.303), (2, 0.05, 12.706), (10_001, 0.0455, 2.0002)):
+        monkeypatch.setattr(_entries, "BEYOND_TWO_ERRORS", 10 * level)
+        assert _entries.errors_allowed(scenes, 10) == pytest.approx(expected, abs=6e-4)
+    monkeypatch.undo()
+    spread = random.Random(2)
+    noise = lambda mean: [row(name, squared_error=[spread.gauss(mean, 9.0) for _ in range(20)], false_alarm=[0.0] * 20) for name in NAMED]
+    refused = sum(differences(noise(100.0), noise(100.0)) != [] for _ in range(400))
+    assert refused < 400 * 0.09, "one in twenty"
+    assert len(differences(noise(100.0), noise(130.0))) == len(NAMED)
 
 
 def test_figures_that_are_better_everywhere_are_noticed():
@@ -174,7 +191,7 @@ def test_figures_that_are_better_everywhere_are_noticed():
     told = json.loads(json.dumps(found))
     for each in told:
         each["squared_error"][3] /= 2
-    assert benchmark.differences(told, found) == [], "one scene of a suite is within its tolerance"
+    assert differences(told, found) == [], "one scene of a suite is within its tolerance"
     assert benchmark.changed_scenes(told, found) == len(NAMED)
     assert benchmark.paired_z(told, found) > benchmark.LIMIT > abs(benchmark.paired_z(found, found))
 
@@ -197,7 +214,8 @@ def test_a_check_draws_scenes_of_its_own(small, monkeypatch):
     assert "the figures are those of the entry" in told and "seed 77" in told
     drawn = [benchmark.check(small(), ap.method("live"), "", scenes=2).split("seed ")[1] for _ in range(2)]
     assert drawn[0] != drawn[1]
-    monkeypatch.setattr(benchmark, "LIMIT", -99.0)
+    monkeypatch.setattr(benchmark, "pooled_z", lambda *draws: 2.4)
+    monkeypatch.setattr(benchmark, "LIMIT", 2.33)
     with pytest.raises(ValueError, match="was tuned on the scenes of its draws"):
         benchmark.check(small(), ap.method("live"), "", scenes=2, seed=77)
 
@@ -215,8 +233,8 @@ def test_the_entries_are_those_of_this_package(path):
     method = ap.method(path.stem)
     assert found["method"]["name"] == method.name and found["method"]["eta"] == pytest.approx(method.eta, abs=1e-6)
     assert found["method"]["weights"] == benchmark.weights_of(method.name)
-    entered, again = found["first"]["suites"], benchmark.draw(method, benchmark.SEED, 2)["suites"]
-    assert benchmark.differences(entered, again) == []
+    entered, again = found["first"]["suites"], benchmark.draw(method, benchmark.SEED, 3)["suites"]
+    assert differences(entered, again) == []
     if found["machine"]["processor"] == benchmark.machine()["processor"]:
         assert benchmark.changed_scenes(entered, again) == 0, "the same processor computes the same bits: make the entries again"
 
@@ -234,7 +252,7 @@ def test_the_command_tells_what_is_wrong(tmp_path):
     for arguments, words in (
         (["--method", "magic"], 'unknown method "magic"'),
         (["--method", "baseline", "--scenes", "0"], "--scenes is 0"),
-        (["--method", "baseline", "--check", "entry.json", "--scenes", "1"], "--scenes is 1"),
+        (["--method", "baseline", "--check", "entry.json", "--scenes", "2"], "--scenes is 2; expected 3 to 20"),
         (["--method", "baseline", "--check", "entry.json"], "no entry"),
         (["--table", "nowhere.json"], "nowhere.json"),
         (["--all"], "expected -o FOLDER"),
