@@ -1,7 +1,7 @@
 //! Rows written and read as CSV, with faults that name the line and the column.
 
-use super::lines::{LongLine, MAX_LINE_BYTES, ShortLines};
-use super::{Column, FORMAT, Kind, MAX_ROWS, Row};
+use super::lines::{LongLine, MAX_LINE_BYTES, MAX_ROWS, ShortLines};
+use super::{Column, FORMAT, Kind, Row};
 use csv::StringRecord;
 use std::collections::HashSet;
 use std::io::{self, Read, Write};

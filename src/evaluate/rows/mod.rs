@@ -14,6 +14,7 @@ mod whole;
 pub use cell::{Kind, Text, Value};
 pub use file::{RowError, Table, header, read_rows, read_table, row_writer, write_rows};
 pub use lacks::{Lack, lacks};
+pub use lines::MAX_ROWS;
 pub use merge::{MergeError, merge};
 pub use order::{Histogram, estimate, sorted_by};
 pub use whole::{GivenTwice, Whole};
@@ -27,9 +28,6 @@ use crate::scene::generate::{self, Purpose, Reading};
 use crate::signal::Floor;
 use cell::{Cell, by_text, unless_file};
 use columns::columns;
-
-/// Most rows that a file may have: they take some 1 GB.
-pub const MAX_ROWS: usize = 2_000_000;
 
 /// Number of the format of rows, which stands in each. Before format 2 the floor "thesis" had another level ([`WHY_NO_OTHER_FORMAT`]). Tables
 /// from before the formats were counted have no such column, and don't say what made them.

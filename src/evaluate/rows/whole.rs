@@ -1,6 +1,6 @@
 //! All that a run was to find: its sets and methods, and how rows write them down.
 
-use super::MAX_ROWS;
+use super::lines::MAX_ROWS;
 
 /// Most pairs of set and method that one run may have.
 const MAX_PAIRS: usize = 10_000;
