@@ -27,7 +27,7 @@ def version() -> str:
 
 
 def name() -> str:
-    """What every archive is called, less its ending: apertura-0.1.0-linux-x86_64."""
+    """What every archive is called, less its ending: apertura-0.2.0-linux-x86_64."""
     return f"apertura-{version()}-{SYSTEM}-{MACHINE}"
 
 

@@ -33,6 +33,7 @@ _Purpose = Literal["training", "validation", "test"]
 _Reading = Literal["program", "text"]
 
 __all__ = [
+    "ROW_COLUMNS",
     "Examples",
     "LinkBudget",
     "Maps",
@@ -64,6 +65,8 @@ __all__ = [
     "write_rows",
 ]
 __version__: str
+#: The columns of rows, in the file's order: name, type (str, int or float), and whether it says what made a row.
+ROW_COLUMNS: list[tuple[str, type, bool]]
 
 @final
 class LinkBudget:

@@ -8,16 +8,13 @@ import os
 from pathlib import Path
 from typing import Any, Iterable, Iterator
 
-from ._apertura import write_rows
+from ._apertura import ROW_COLUMNS, write_rows
 
 #: Set, number of the scene, method.
 Key = tuple[str, int, str]
 
 #: What made a row: the same for all rows of a set and a method.
-PARTS = (
-    "version", "program", "floor", "normalisation", "purpose", "reading", "carrier", "radar", "scenes", "weights", "optimiser", "shard", "whole",
-    "methods",
-)  # fmt: skip
+PARTS = tuple(name for name, _, is_of_origin in ROW_COLUMNS if is_of_origin)
 
 #: The format of the journal.
 VERSION = 1
@@ -138,15 +135,9 @@ def _write_parquet(path: Path, rows: list[dict[str, Any]]) -> None:
     import pyarrow.parquet as pq
 
     names = list(dict.fromkeys(name for row in rows for name in row))
-    whole = {"index", "objects", "reflectors", "missed", "ghosts", "found", "merged", "wrong_tooth"}
-    text = {"set", "method", "error", "echoes", "echoes_found", *PARTS}
-
-    def type_of(name: str) -> pa.DataType:
-        if name == "seed":
-            return pa.uint64()
-        return pa.int64() if name in whole else pa.string() if name in text else pa.float64()
-
-    columns = {name: pa.array([row.get(name) for row in rows], type_of(name)) for name in [*names, *({"error"} - {*names})]}
+    types = {str: pa.string(), int: pa.int64(), float: pa.float64()}
+    type_of = {name: types[kind] for name, kind, _ in ROW_COLUMNS} | {"seed": pa.uint64(), "error": pa.string()}
+    columns = {name: pa.array([row.get(name) for row in rows], type_of[name]) for name in [*names, *({"error"} - {*names})]}
     part = path.with_name(path.name + ".part")
     pq.write_table(pa.table(columns), part)
     os.replace(part, path)

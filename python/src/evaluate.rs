@@ -7,7 +7,7 @@ use crate::radar::{Radar, or_default};
 use crate::scene::{purpose_of, reading_of, set_name};
 use crate::work::{self, Progress};
 use apertura::evaluate::campaign::{Campaign, CampaignError};
-use apertura::evaluate::rows::{self, Part, Row, read_rows as read, write_rows};
+use apertura::evaluate::rows::{self, Column, Row, read_rows as read, write_rows};
 use apertura::evaluate::sets::SceneSet;
 use apertura::evaluate::{Metrics, Roc};
 use apertura::files::{write_atomically, write_bytes};
@@ -18,13 +18,14 @@ use apertura::scene::generate::Kind;
 use ndarray::{Array1, Array2};
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyDict, PyFloat, PyInt, PyList, PyString, PyType};
+use serde_json::Value as Json;
 use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 /// One number a threshold, float64.
-type Column<'py> = Bound<'py, PyArray1<f64>>;
+type Numbers<'py> = Bound<'py, PyArray1<f64>>;
 
 const SHAPE: &str = "[range bins, columns]";
 
@@ -126,7 +127,7 @@ pub fn roc<'py>(
     py: Python<'py>,
     target: &Bound<'py, PyAny>,
     output: &Bound<'py, PyAny>,
-) -> PyResult<(Column<'py>, Column<'py>, Column<'py>)> {
+) -> PyResult<(Numbers<'py>, Numbers<'py>, Numbers<'py>)> {
     let [target, output] = both(target, output)?;
     let roc = work::run(py, None, |_| Roc::of(&target, &output))?;
     let column = |of: fn(apertura::evaluate::RocPoint) -> f64| owned(py, roc.points().map(of).collect::<Array1<f64>>());
@@ -147,7 +148,7 @@ pub fn roc<'py>(
 ///     radar: The radar; that of table 3.1 where none is given.
 ///     on_row: Called with each row as it is found.
 ///     progress: Called with the part that is done, 0 to 1.
-///     cfar: A detector as `cfar` takes it, which is tried on every output beside the threshold; rows then have `cfar_detection`,
+///     cfar: A detector as `cfar` takes it, which is tried on every output beside the threshold; rows say it in `cfar_detection`,
 ///         `cfar_false_alarm` and `cfar`.
 ///     path: A CSV file that all rows are written to in one step, in the program's format.
 ///     only: The rows to find, as (set, number of the scene, method), in place of all rows of the run.
@@ -206,7 +207,7 @@ pub fn evaluate<'py>(
     let only: Option<HashSet<_>> = only.map(|only| only.into_iter().collect());
     let all =
         only.as_ref().map_or(f64::from(count) * sets.len() as f64 * methods.len() as f64, |only| only.len() as f64);
-    let origins = campaign.origins(&sets, &methods).map_err(value)?;
+    let empty = campaign.empty_rows(&sets, &methods).map_err(value)?;
     check_only(only.as_ref(), &sets, &methods, count)?;
     // Most scenes of a long run are left out by their number alone.
     let numbers = only.iter().flatten().map(|(_, index, _)| *index);
@@ -222,7 +223,7 @@ pub fn evaluate<'py>(
         None,
         |task, finder| {
             let on_row = |row: &Row, _: &_, _: &_| finder.found(row.clone());
-            campaign.run_rest(&sets, &methods, &origins, &is_left_out, task, on_row)
+            campaign.run_rest(&sets, &methods, &empty, &is_left_out, task, on_row)
         },
         |row| {
             done += 1.0;
@@ -278,8 +279,7 @@ pub fn write_rows_to(py: Python<'_>, path: PathBuf, rows: Vec<Bound<'_, PyDict>>
 
 /// Rows of dicts, read as the program reads a file of them.
 pub fn rows_of(py: Python<'_>, rows: &[Bound<'_, PyDict>]) -> PyResult<Vec<Row>> {
-    let names: Vec<&str> =
-        rows::Column::ALL.map(rows::Column::name).into_iter().chain(Part::ALL.map(Part::name)).collect();
+    let names: Vec<&str> = Column::all().map(Column::name).collect();
     let mut text = names.join(",");
     for row in rows {
         text.push('\n');
@@ -299,7 +299,7 @@ pub fn rows_of(py: Python<'_>, rows: &[Bound<'_, PyDict>]) -> PyResult<Vec<Row>>
 /// Reads the rows of `apertura evaluate --rows`.
 ///
 /// Returns:
-///     One dict a row, as `evaluate` gives them; what an older table does not say is None.
+///     One dict a row, as `evaluate` gives them; figures that an older table does not say are None, and texts empty.
 ///
 /// Raises:
 ///     OSError: The file can't be read.
@@ -318,42 +318,26 @@ fn list_of<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py, PyList>> {
 
 fn dict_of<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    dict.set_item("set", &row.set)?;
-    dict.set_item("index", row.index)?;
-    dict.set_item("seed", row.seed)?;
-    dict.set_item("method", &row.method)?;
-    dict.set_item("eta", row.eta)?;
-    dict.set_item("squared_error", row.squared_error)?;
-    dict.set_item("detection", row.detection)?;
-    dict.set_item("false_alarm", row.false_alarm)?;
-    dict.set_item("detection_at_printed", row.detection_at_printed)?;
-    dict.set_item("milliseconds", row.milliseconds)?;
-    dict.set_item("objects", row.objects)?;
-    dict.set_item("reflectors", row.reflectors)?;
-    dict.set_item("missed", row.missed)?;
-    dict.set_item("ghosts", row.ghosts)?;
-    dict.set_item("nearest_pair_columns", row.nearest_pair_columns)?;
-    dict.set_item("nearest_pair_bins", row.nearest_pair_bins)?;
-    dict.set_item("min_range_metres", row.min_range_metres)?;
-    dict.set_item("strongest_over_weakest_db", row.strongest_over_weakest_db)?;
-    dict.set_item("found", row.found)?;
-    dict.set_item("merged", row.merged)?;
-    dict.set_item("wrong_tooth", row.wrong_tooth)?;
-    let [echoes, echoes_found] = match row.echoes {
-        Some(echoes) => echoes.texts().map(Some),
-        None => [None, None],
-    };
-    dict.set_item("echoes", echoes)?;
-    dict.set_item("echoes_found", echoes_found)?;
-    dict.set_item("doubt", row.doubt)?;
-    dict.set_item("within_doubt", row.within_doubt)?;
-    if row.cfar.is_some() {
-        dict.set_item("cfar_detection", row.cfar.and_then(|rates| rates.detection))?;
-        dict.set_item("cfar_false_alarm", row.cfar.map(|rates| rates.false_alarm))?;
-    }
-    let has_cfar = row.origin.as_ref().is_some_and(|origin| origin.cfar.is_some());
-    for part in Part::ALL.into_iter().filter(|part| has_cfar || *part != Part::Cfar) {
-        dict.set_item(part.name(), row.origin.as_ref().map(|origin| origin.text(part)))?;
+    let Json::Object(cells) = serde_json::to_value(row).map_err(runtime)? else { return Ok(dict) };
+    for name in Column::all().map(Column::name) {
+        match &cells[name] {
+            Json::String(text) => dict.set_item(name, text)?,
+            Json::Number(number) => match number.as_u64() {
+                Some(whole) if !number.is_f64() => dict.set_item(name, whole)?,
+                _ => dict.set_item(name, number.as_f64())?,
+            },
+            _ => dict.set_item(name, py.None())?,
+        }
     }
     Ok(dict)
+}
+
+/// The columns of rows, in the file's order: name, type (str, int or float), and whether it says what made a row.
+pub fn row_columns(py: Python<'_>) -> Vec<(&'static str, Bound<'_, PyType>, bool)> {
+    let python_type = |column: Column| match column.kind() {
+        rows::Kind::Text => py.get_type::<PyString>(),
+        rows::Kind::Whole => py.get_type::<PyInt>(),
+        rows::Kind::Real => py.get_type::<PyFloat>(),
+    };
+    Column::all().map(|column| (column.name(), python_type(column), Column::ORIGIN.contains(&column))).collect()
 }

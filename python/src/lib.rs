@@ -25,6 +25,7 @@ use pyo3::prelude::*;
 fn _apertura(module: &Bound<'_, PyModule>) -> PyResult<()> {
     pool::remember_process();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("ROW_COLUMNS", evaluate::row_columns(module.py()))?;
     module.add_class::<radar::Radar>()?;
     module.add_class::<budget::LinkBudget>()?;
     module.add_class::<scene::Scene>()?;

@@ -146,7 +146,7 @@ def test_a_detector_that_can_not_work_is_refused():
 
 def test_rows_tell_what_a_detector_makes_of_an_output():
     rows = [ap.evaluate(["baseline"], ["1"], count=1, cfar=cfar)[0] for cfar in (None, "ca")]
-    assert "cfar" not in rows[0] and rows[1]["cfar"] == "ca:guard=4x0:training=16x0:rate=0.0001"
+    assert rows[0]["cfar"] == "" and rows[1]["cfar"] == "ca:guard=4x0:training=16x0:rate=0.0001"
     assert 0 < rows[1]["cfar_detection"] <= 1 and 0 <= rows[1]["cfar_false_alarm"] < 1
     assert rows[0]["squared_error"] == rows[1]["squared_error"]
 

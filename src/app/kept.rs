@@ -209,4 +209,27 @@ mod tests {
             assert!(told.len() == 1 && told[0].contains("can't be kept"), "{told:?}");
         }
     }
+
+    /// Laid out as version 0.1.0 wrote it; never to be rewritten.
+    const OF_0_1_0: &str = include_str!("../../tests/data/program-0.1.0/settings.ron");
+
+    #[test]
+    fn settings_of_version_0_1_0_are_read() {
+        let mut storage = InMemory::default();
+        storage.0.insert(eframe::APP_KEY.to_owned(), OF_0_1_0.trim_end().to_owned());
+        let (kept, captions, problem) = read(Some(&storage), None);
+        assert_eq!((problem, captions), (None, false));
+        let settings = &kept.settings;
+        assert_eq!(
+            (settings.floor.to_string(), settings.normalisation.to_string()),
+            ("snr=17.5".into(), "db=60".into())
+        );
+        assert_eq!((settings.method.as_str(), settings.method_eta["live"]), ("hybrid", 0.75));
+        assert_eq!((settings.target_eta, settings.show_reflectors, settings.random_seed), (0.85, true, 41));
+        assert_eq!(settings.cfar.unwrap().to_string(), "os:guard=2x2:training=4x8:rate=0.001");
+        assert_eq!((kept.progress.learner(), kept.progress.score()), ("Ada", (1, 1)));
+        assert!(kept.progress.record("near-field", 2).challenge_met);
+        assert_eq!((kept.recent[0].to_str(), kept.zoom), (Some("/home/ada/scenes/post.toml"), Some(1.25)));
+        assert_eq!(kept.recent_commands, ["Save"]);
+    }
 }

@@ -2,17 +2,18 @@
 
 mod error;
 mod job;
+mod radar;
 
 pub use super::shard::Shard;
 pub use error::CampaignError;
 
-use super::rows::{Origin, Row, Scenes, Whole, radar_text};
-use super::sets::{Case, FolderError, SceneSet};
+use super::rows::{FORMAT, Row, Text, Whole};
+use super::sets::{Case, SceneSet};
 use super::trial::{Answer, Trial};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
 use crate::radar::Radar;
-use crate::reconstruct::{Reconstructor, Request, untrained_noise};
+use crate::reconstruct::{Reconstructor, Request, Weights, untrained_noise};
 use crate::scattering::Echoing;
 use crate::scene::generate::{Generator, Purpose, Reading};
 use crate::signal::Floor;
@@ -20,7 +21,6 @@ use crate::task::Task;
 use error::set_name;
 use job::Job;
 use rayon::prelude::*;
-use std::sync::Arc;
 
 /// Which scenes methods are tried on.
 #[derive(Debug, Clone)]
@@ -103,53 +103,57 @@ impl Campaign {
         task: &Task,
         on_row: impl FnMut(&Row, &Trial, &Answer),
     ) -> Result<Vec<Row>, CampaignError> {
-        let origins = self.origins(sets, methods)?;
-        self.run_rest(sets, methods, &origins, &|_, _, _| false, task, on_row)
+        let empty = self.empty_rows(sets, methods)?;
+        self.run_rest(sets, methods, &empty, &|_, _, _| false, task, on_row)
     }
 
-    /// What makes the rows of this campaign: for each set, one a method.
+    /// For each set, one row a method that says what makes the rows of this campaign and has no figures yet.
     ///
     /// # Errors
     /// [`CampaignError`] for a folder whose scenes can't be read, and for a set or method that is there twice.
-    pub fn origins(
+    pub fn empty_rows(
         &self,
         sets: &[SceneSet],
         methods: &[&dyn Reconstructor],
-    ) -> Result<Vec<Vec<Arc<Origin>>>, CampaignError> {
+    ) -> Result<Vec<Vec<Row>>, CampaignError> {
         let counted = |set: &SceneSet| (set.to_string(), set.len().unwrap_or(self.count));
         let names = methods.iter().map(|method| method.name().to_owned()).collect();
         let whole = Whole::new(sets.iter().map(counted).collect(), names)?;
-        let of_set = |set: &SceneSet| -> Result<Vec<Arc<Origin>>, CampaignError> {
-            let scenes = self.origin_of_scenes(set)?;
-            let origin = |method: &&dyn Reconstructor| Origin {
-                program: env!("CARGO_PKG_VERSION").to_owned(),
-                floor: set.floor(self.floor),
-                normalisation: self.normalisation,
-                scenes: scenes.clone(),
-                weights: method.weights(),
-                shard: self.shard,
-                whole: whole.clone(),
-                cfar: self.cfar,
+        let of_all = Row {
+            version: Some(FORMAT),
+            program: env!("CARGO_PKG_VERSION").into(),
+            normalisation: Some(self.normalisation),
+            shard: Some(self.shard),
+            whole: whole.sets_text().into(),
+            methods: whole.methods_text().into(),
+            cfar: self.cfar.map(Text::from).unwrap_or_default(),
+            ..Row::default()
+        };
+        let of_set = |set: &SceneSet| -> Result<Vec<Row>, CampaignError> {
+            let of_set = Row { set: set.to_string().into(), floor: Some(set.floor(self.floor)), ..of_all.clone() };
+            let of_set = match set {
+                SceneSet::Folder(folder) => Row { scenes: folder.fingerprint()?.into(), ..of_set },
+                SceneSet::Generated(_) => Row {
+                    seed: self.seed,
+                    purpose: Some(self.purpose),
+                    reading: Some(self.reading),
+                    carrier: Some(self.radar.carrier),
+                    radar: radar::text(&self.radar).into(),
+                    ..of_set
+                },
             };
-            Ok(methods.iter().map(|method| Arc::new(origin(method))).collect())
+            let of_method = |method: &&dyn Reconstructor| {
+                let Weights { sha256, optimiser } = method.weights().unwrap_or_default();
+                let method = method.name().into();
+                Row { method, weights: sha256.into(), optimiser: optimiser.into(), ..of_set.clone() }
+            };
+            Ok(methods.iter().map(of_method).collect())
         };
         sets.iter().map(of_set).collect()
     }
 
-    fn origin_of_scenes(&self, set: &SceneSet) -> Result<Scenes, FolderError> {
-        match set {
-            SceneSet::Folder(folder) => Ok(Scenes::Files { fingerprint: folder.fingerprint()? }),
-            SceneSet::Generated(_) => Ok(Scenes::Generated {
-                purpose: self.purpose,
-                reading: self.reading,
-                carrier: self.radar.carrier,
-                radar: radar_text(&self.radar),
-            }),
-        }
-    }
-
     /// [`Campaign::run_watched`] without the rows that are there already: `is_done` says of a set, a scene and a method whether one is.
-    /// `origins` are [`Campaign::origins`].
+    /// `empty` are [`Campaign::empty_rows`].
     ///
     /// # Errors
     /// As [`Campaign::run`].
@@ -157,7 +161,7 @@ impl Campaign {
         &self,
         sets: &[SceneSet],
         methods: &[&dyn Reconstructor],
-        origins: &[Vec<Arc<Origin>>],
+        empty: &[Vec<Row>],
         is_done: &dyn Fn(&str, u32, &str) -> bool,
         task: &Task,
         mut on_row: impl FnMut(&Row, &Trial, &Answer),
@@ -169,7 +173,7 @@ impl Campaign {
         };
         let mut rows = Vec::new();
         let mut warm = false;
-        for (set, origins) in sets.iter().zip(origins) {
+        for (set, empty) in sets.iter().zip(empty) {
             let (count, name) = (set.len().unwrap_or(self.count), set.to_string());
             let request = request(set.floor(self.floor));
             let rest = |index| -> Vec<usize> {
@@ -180,7 +184,7 @@ impl Campaign {
                 let trials: Result<Vec<Trial>, _> =
                     batch.par_iter().map(|&index| self.trial(set, &generator, index)).collect();
                 for (trial, &index) in trials?.iter().zip(batch) {
-                    let job = Job { cfar: self.cfar, seed: self.seed, set, index, trial, request: &request, origins };
+                    let job = Job { cfar: self.cfar, set, index, trial, request: &request, empty };
                     if !std::mem::replace(&mut warm, true) {
                         // A method that fails here fails again where its row is asked for, if that is one of the rows.
                         methods.iter().for_each(|&method| drop(job.answer(method)));
@@ -264,14 +268,14 @@ mod tests {
         };
         let whole = run("0/1");
         assert_eq!(
-            whole.iter().map(|r| (r.set.as_str(), r.index)).collect::<Vec<_>>()[2..6],
+            whole.iter().map(|r| (&*r.set, r.index)).collect::<Vec<_>>()[2..6],
             [("1", 1), ("1", 1), ("1", 2), ("1", 2)]
         );
         assert_eq!(whole.len(), 12);
         assert_ne!(whole[0].squared_error, whole[2].squared_error);
         let shards = vec![("a".into(), run("1/2")), ("b".into(), run("0/2"))];
         let merged = super::super::rows::merge(shards).unwrap();
-        let figures = |rows: &[Row]| rows.iter().map(|r| Row { origin: None, ..r.clone() }).collect::<Vec<_>>();
+        let figures = |rows: &[Row]| rows.iter().map(|r| Row { shard: None, ..r.clone() }).collect::<Vec<_>>();
         assert_eq!(figures(&merged), figures(&whole));
         assert_eq!(super::super::rows::lacks(&merged), []);
     }
@@ -290,8 +294,8 @@ mod tests {
         let campaign = Campaign { count: 3, ..Campaign::default() };
         let whole = campaign.run(&sets, &methods, &Task::default(), |_| ()).unwrap();
         let is_done = |_: &str, index: u32, method: &str| index == 0 || (index, method) == (1, "baseline");
-        let origins = campaign.origins(&sets, &methods).unwrap();
-        let rest = campaign.run_rest(&sets, &methods, &origins, &is_done, &Task::default(), |_, _, _| ()).unwrap();
+        let empty = campaign.empty_rows(&sets, &methods).unwrap();
+        let rest = campaign.run_rest(&sets, &methods, &empty, &is_done, &Task::default(), |_, _, _| ()).unwrap();
         assert_eq!(figures(&rest), figures(&whole[3..]));
     }
 
@@ -302,13 +306,18 @@ mod tests {
             Campaign { count: 1, cfar, ..Campaign::default() }.run(&sets, &[&Baseline], &Task::default(), |_| ())
         };
         let [without, with] = [None, Some(Cfar::default())].map(|cfar| figures(&run(cfar).unwrap()));
-        assert_eq!((without[0].cfar, with[0].origin.as_ref().unwrap().cfar), (None, Some(Cfar::default())));
-        assert_eq!(Row { cfar: None, origin: None, ..with[0].clone() }, Row { origin: None, ..without[0].clone() });
-        let few = Cfar { false_alarm: 1e-12, ..Cfar::default() };
-        let few = run(Some(few)).unwrap()[0].cfar.unwrap();
-        let usual = with[0].cfar.unwrap();
-        assert!(usual.detection > Some(0.0) && few.detection <= usual.detection, "{usual:?} {few:?}");
-        assert!(few.false_alarm < usual.false_alarm, "{usual:?} {few:?}");
+        let (detection, false_alarm) = (with[0].cfar_detection, with[0].cfar_false_alarm);
+        assert!(detection > Some(0.0) && with[0].cfar == Cfar::default().to_string().as_str());
+        let added = |row: &Row| Row {
+            cfar: with[0].cfar.clone(),
+            cfar_detection: detection,
+            cfar_false_alarm: false_alarm,
+            ..row.clone()
+        };
+        assert!(without[0].cfar.is_empty() && without[0].cfar_false_alarm.is_none());
+        assert_eq!(added(&without[0]), with[0]);
+        let few = run(Some(Cfar { false_alarm: 1e-12, ..Cfar::default() })).unwrap();
+        assert!(few[0].cfar_detection <= detection && few[0].cfar_false_alarm < false_alarm, "{few:?}");
         let wide = run(Some(Cfar { guard: [3, 600], ..Cfar::default() })).unwrap_err().to_string();
         assert!(wide.starts_with("the detector on scene 0 of set 1: guard and training cells span"), "{wide}");
     }
@@ -320,10 +329,7 @@ mod tests {
         let rows = campaign.run(&sets, &[&Baseline, &BARTLETT], &Task::default(), |_| ()).unwrap();
         assert_eq!(rows.len(), 4);
         for row in rows {
-            assert_eq!(
-                (row.set.as_str(), row.objects, row.detection, row.detection_at_printed),
-                ("noise", 0, None, None)
-            );
+            assert_eq!((&*row.set, row.objects, row.detection, row.detection_at_printed), ("noise", 0, None, None));
             assert_eq!((row.false_alarm, row.ghosts), (0.0, 0), "{}", row.method);
             assert!(row.squared_error > 1.0, "the target is noise");
         }

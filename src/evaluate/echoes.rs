@@ -7,6 +7,8 @@ use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{End, Pair, Radar};
 use crate::scattering::{EchoKind, Echoing, PathEcho, Sources};
 use crate::scene::Scene;
+use std::fmt;
+use std::str::FromStr;
 
 /// Classes of 10 dB below the strongest echo; the last one has all that is weaker.
 pub const CLASSES: usize = 6;
@@ -24,6 +26,27 @@ const HALF_COLUMNS: f64 = 1.5;
 /// How far beyond the cell its surroundings reach, in rows and columns.
 const AROUND: usize = 5;
 
+/// Echoes by their strength, one number a class; tables of rows have spaces between them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct EchoCounts(pub [usize; CLASSES]);
+
+impl fmt::Display for EchoCounts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.map(|count| count.to_string()).join(" "))
+    }
+}
+
+impl FromStr for EchoCounts {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let counts: Result<Vec<usize>, _> = text.split_whitespace().map(str::parse).collect();
+        let counts = counts.ok().and_then(|counts| <[usize; CLASSES]>::try_from(counts).ok());
+        let counts = counts.filter(|counts| counts.iter().all(|count| *count <= MOST_ECHOES));
+        counts.map(EchoCounts).ok_or_else(|| format!("\"{text}\" counts no echoes; expected six whole numbers from 0"))
+    }
+}
+
 /// Echoes that stand out in targets, by their strength, and how many of them an output shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EchoTally {
@@ -40,22 +63,6 @@ impl EchoTally {
             self.there[class] += other.there[class];
             self.found[class] += other.found[class];
         }
-    }
-
-    /// Both counts as tables of rows have them: a number a class, with spaces between.
-    pub fn texts(&self) -> [String; 2] {
-        [self.there, self.found].map(|counts| counts.map(|count| count.to_string()).join(" "))
-    }
-
-    /// Reads what [`EchoTally::texts`] wrote; `None` where it is anything else, and where more is found than there is.
-    pub fn read([there, found]: [&str; 2]) -> Option<EchoTally> {
-        let counts = |text: &str| -> Option<[usize; CLASSES]> {
-            let counts: Result<Vec<usize>, _> = text.split_whitespace().map(str::parse).collect();
-            let counts: [usize; CLASSES] = counts.ok()?.try_into().ok()?;
-            counts.iter().all(|count| *count <= MOST_ECHOES).then_some(counts)
-        };
-        let tally = EchoTally { there: counts(there)?, found: counts(found)? };
-        tally.found.iter().zip(&tally.there).all(|(found, there)| found <= there).then_some(tally)
     }
 
     /// Part of all echoes that were found; `None` where there are none.
@@ -167,12 +174,11 @@ mod tests {
 
     #[test]
     fn counts_are_read_as_they_were_written() {
-        let tally = EchoTally { there: [2, 0, 3, 0, 1, 12], found: [2, 0, 1, 0, 0, 12] };
-        let [there, found] = tally.texts();
-        assert_eq!((there.as_str(), found.as_str()), ("2 0 3 0 1 12", "2 0 1 0 0 12"));
-        assert_eq!(EchoTally::read([&there, &found]), Some(tally));
-        for wrong in [["1 2 3", "1 2 3"], ["1 0 0 0 0 0", "2 0 0 0 0 0"], ["-1 0 0 0 0 0", "0 0 0 0 0 0"], ["", ""]] {
-            assert_eq!(EchoTally::read(wrong), None, "{wrong:?}");
+        let counts = EchoCounts([2, 0, 3, 0, 1, 12]);
+        assert_eq!(counts.to_string(), "2 0 3 0 1 12");
+        assert_eq!(counts.to_string().parse(), Ok(counts));
+        for wrong in ["1 2 3", "-1 0 0 0 0 0", "0 0 0 0 0 99999999999", ""] {
+            assert!(wrong.parse::<EchoCounts>().is_err(), "{wrong:?}");
         }
     }
 

@@ -98,13 +98,12 @@ impl Tally {
 
     /// The optimisers that trained the method's weights, as its rows say; empty where they don't, and for methods that learn nothing.
     pub fn optimiser(&self) -> &str {
-        let weights = self.rows.first().and_then(|row| row.origin.as_ref()?.weights.as_ref());
-        weights.map_or("", |weights| &weights.optimiser)
+        self.rows.first().map_or("", |row| &row.optimiser)
     }
 
     /// What the method's weights are known by.
     pub fn weights(&self) -> Option<&str> {
-        Some(self.rows.first()?.origin.as_ref()?.weights.as_ref()?.sha256.as_str())
+        self.rows.first().map(|row| &*row.weights).filter(|weights| !weights.is_empty())
     }
 
     /// SE.
@@ -158,7 +157,7 @@ impl Tally {
             all.add(&one);
             all
         };
-        self.rows.iter().filter_map(|row| row.echoes).reduce(add)
+        self.rows.iter().filter_map(Row::echo_tally).reduce(add)
     }
 
     /// Median time of one reconstruction, milliseconds; NaN without scenes.
@@ -192,7 +191,11 @@ mod tests {
 
     #[test]
     fn echoes_of_all_scenes_are_added_class_by_class() {
-        let rows = [row("bodies", 0, "a"), Row { echoes: None, ..row("bodies", 1, "a") }, row("bodies", 2, "a")];
+        let rows = [
+            row("bodies", 0, "a"),
+            Row { echoes: None, echoes_found: None, ..row("bodies", 1, "a") },
+            row("bodies", 2, "a"),
+        ];
         let twice = EchoTally { there: [2, 0, 0, 4, 0, 8], found: [2, 0, 0, 2, 0, 0] };
         assert_eq!(Tally::of(&rows).echoes(), Some(twice));
         assert_eq!(Tally::of(&rows[1..2]).echoes(), None);

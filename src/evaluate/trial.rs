@@ -1,8 +1,8 @@
 //! One scene for all methods, and the measures of their answers.
 
-use super::echoes::{self, EchoTally};
+use super::echoes::{self, EchoCounts, EchoTally};
 use super::failure::{Failures, Fate, Footprints};
-use super::rows::{CfarRates, Origin, Row};
+use super::rows::Row;
 use super::{Metrics, Roc, part_within, squared_doubt};
 use crate::maps::cfar::{Cfar, CfarError};
 use crate::maps::{self, Aperture, LambdaScale, Normalisation, RangeAngleMap};
@@ -11,7 +11,7 @@ use crate::radar::Radar;
 use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::scene::{Reflector, Scene, SceneError};
 use crate::signal::{self, Floor, TwoEnds};
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 /// A simulated scene: what methods get, and what they are held against.
 #[derive(Debug, Clone)]
@@ -98,26 +98,25 @@ impl Trial {
         echoes::tally(&self.radar, &self.scene, &self.target, &answer.found.lambda, &self.scale)
     }
 
-    /// P_D and P_FA of an answer by `cfar` in the place of the method's threshold. Its Lambda is brought to power on the target's scale.
+    /// SE, P_D and P_FA of what `cfar` detects in an answer, in the place of the method's threshold. Its Lambda is brought to power on the
+    /// target's scale.
     ///
     /// # Errors
     /// [`CfarError`] where the detector can't work on the radar's maps.
-    pub fn cfar_rates(&self, answer: &Answer, cfar: &Cfar) -> Result<CfarRates, CfarError> {
+    pub fn cfar_metrics(&self, answer: &Answer, cfar: &Cfar) -> Result<Metrics, CfarError> {
         let detected = cfar.detect_lambda(&answer.found.lambda, self.scale)?.as_map();
-        let metrics = Metrics::of_echoes(!self.scene.is_silent(), &self.target, &detected, 0.5);
-        Ok(CfarRates { detection: metrics.detection, false_alarm: metrics.false_alarm })
+        Ok(Metrics::of_echoes(!self.scene.is_silent(), &self.target, &detected, 0.5))
     }
 
-    /// The row of an answer, without [`Row::cfar`]. `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
-    pub fn row(&self, place: &RowPlace<'_>, method: &str, answer: &Answer, false_alarm: f64) -> Row {
+    /// The row of an answer: `row`, which says what makes it, with all figures but those of a detector of constant false-alarm rate.
+    /// `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
+    pub fn filled(&self, row: Row, answer: &Answer, false_alarm: f64) -> Row {
         let roc = Roc::of_echoes(!self.scene.is_silent(), &self.target, &answer.found.lambda);
         let facts = Facts::of(&self.radar, &self.scene);
         let failures = self.failures(answer);
+        let has_bodies = self.scene.objects.iter().any(|object| object.body().is_some());
+        let echoes = has_bodies.then(|| self.echoes(answer));
         Row {
-            set: place.set.to_owned(),
-            index: place.index,
-            seed: place.seed,
-            method: method.to_owned(),
             eta: answer.eta,
             squared_error: answer.metrics.squared_error,
             detection: answer.metrics.detection,
@@ -137,24 +136,11 @@ impl Trial {
             wrong_tooth: Some(failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }))),
             doubt: answer.found.doubt.as_ref().map(squared_doubt),
             within_doubt: answer.found.doubt.as_ref().map(|d| part_within(d, &self.target, &answer.found.lambda)),
-            cfar: None,
-            echoes: self.scene.objects.iter().any(|object| object.body().is_some()).then(|| self.echoes(answer)),
-            origin: place.origin.cloned(),
+            echoes: echoes.map(|tally| EchoCounts(tally.there)),
+            echoes_found: echoes.map(|tally| EchoCounts(tally.found)),
+            ..row
         }
     }
-}
-
-/// Where a row's scene is from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RowPlace<'a> {
-    /// Name of the set.
-    pub set: &'a str,
-    /// Number of the scene.
-    pub index: u32,
-    /// Seed of the set.
-    pub seed: u64,
-    /// What made it, if that is to be kept.
-    pub origin: Option<&'a Arc<Origin>>,
 }
 
 /// Where a reflector shows: (column, range bin), neither rounded, and its object.

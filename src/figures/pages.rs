@@ -41,7 +41,7 @@ pub fn tables(methods: &[&dyn Reconstructor], scenes: u32) -> Result<String, Cam
         let scenes = scenes.to_string();
         let _ = writeln!(text, "**Set {}**\n\n| | SE | P_D % | P_FA % |\n|---|---|---|---|", set + 1);
         for name in methods.iter().map(|m| m.name()) {
-            let tally = Tally::of(rows.iter().filter(|row| row.method == name && row.set == scenes));
+            let tally = Tally::of(rows.iter().filter(|row| row.method == name && *row.set == *scenes));
             if let Some((_, Some(printed))) = TABLE_METHODS.iter().find(|(n, _)| *n == name) {
                 let Printed { squared_error, detection, false_alarm } = printed[set];
                 let (detection, false_alarm) = (100.0 * detection, 100.0 * false_alarm);

@@ -33,7 +33,7 @@ fn cells_and_rates_on_screen_are_those_of_the_library() {
         s.ask(ViewCommand::Detect(Some(statistic)));
         let cfar = Cfar { statistic, ..CELLS };
         assert_eq!(s.state().settings().cfar, Some(cfar), "the cells stay");
-        let expected = trial.cfar_rates(&answer, &cfar).unwrap();
+        let expected = trial.cfar_metrics(&answer, &cfar).unwrap();
         let shown = s.state().metrics().unwrap();
         assert_eq!((shown.detection, shown.false_alarm), (expected.detection, expected.false_alarm));
         assert_eq!(shown.squared_error, global.squared_error, "the squared error has no threshold");

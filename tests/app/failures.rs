@@ -212,7 +212,7 @@ fn keys_walk_through_ten_thousand_rows() {
     let mut s = tried();
     let row = s.state().rows()[0].clone();
     let path = s.folder.path().join("many.csv");
-    let rows: Vec<Row> = (0..10_000).map(|index| Row { index, origin: None, ..row.clone() }).collect();
+    let rows: Vec<Row> = (0..10_000).map(|index| Row { index, ..row.clone() }).collect();
     write_rows(&mut std::fs::File::create(&path).unwrap(), &rows).unwrap();
     s.ask(RowsCommand::OpenTable(path));
     assert_eq!(s.state().rows().len(), 10_000);

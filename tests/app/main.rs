@@ -13,6 +13,7 @@ mod monkey;
 mod motion;
 mod names;
 mod narrow;
+mod older_files;
 mod panels;
 mod pictures;
 mod presentation;

@@ -56,6 +56,7 @@ fn rows_of_something_else_are_not_written_over() {
     apertura(&folder, "evaluate --set 1 --count 1 --rows rows.csv").assert().success();
     older(&folder, "rows.csv", "old.csv");
     let text = std::fs::read_to_string(folder.path().join("rows.csv")).unwrap();
+    std::fs::write(folder.path().join("format-1.csv"), text.replace(",2,0.2.0,thesis,", ",1,0.1.0,thesis,")).unwrap();
     let wide: String = text.lines().enumerate().map(|(i, line)| format!("note{i},{line}\n")).collect();
     std::fs::write(folder.path().join("wide.csv"), wide).unwrap();
     std::fs::write(folder.path().join("notes.csv"), "day,what\n1,rain\n").unwrap();
@@ -65,6 +66,10 @@ fn rows_of_something_else_are_not_written_over() {
         ("--set 1 --count 2 --rows rows.csv", "whole is 1 x 1 there and 1 x 2 here"),
         ("--set 1 --count 1 --method bartlett --rows rows.csv", "rows of set 1 by baseline"),
         ("--set 1 --count 1 --rows old.csv", "an older program wrote them"),
+        (
+            "--set 1 --count 1 --rows format-1.csv",
+            "version is 1 there and 2 here: the floor \"thesis\" is 1.8 dB quieter",
+        ),
         ("--set 1 --count 1 --rows notes.csv", "there is no column"),
         ("--set 1 --count 1 --rows wide.csv", "its columns are not those"),
     ] {

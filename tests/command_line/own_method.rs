@@ -1,6 +1,6 @@
 //! `--method-command`: a program of one's own as a method.
 
-use apertura::evaluate::rows::{Part, read_rows};
+use apertura::evaluate::rows::read_rows;
 use assert_cmd::Command;
 use ndarray::{Array2, Array3};
 use ndarray_npy::{NpzReader, ReadNpyExt, WriteNpyExt};
@@ -56,9 +56,8 @@ fn rows_name_the_method_that_the_command_says() {
     let arguments = ["evaluate", "--set", "1", "--count", "2", "--rows", "rows.csv"];
     apertura(folder.path()).args(arguments).args(COMMAND).assert().success().stdout(contains("mine"));
     let rows = read_rows(File::open(folder.path().join("rows.csv")).unwrap()).unwrap();
-    assert_eq!(rows.iter().map(|row| (row.method.as_str(), row.eta)).collect::<Vec<_>>(), [("mine", 0.125); 2]);
-    let origin = rows[0].origin.as_ref().unwrap();
-    assert_eq!(origin.text(Part::Weights), "0f");
+    assert_eq!(rows.iter().map(|row| (&*row.method, row.eta)).collect::<Vec<_>>(), [("mine", 0.125); 2]);
+    assert_eq!(rows[0].weights, "0f");
 }
 
 #[test]

@@ -18,6 +18,7 @@ mod methods;
 #[cfg(feature = "network")]
 mod noise_alone;
 mod off_line;
+mod older_files;
 mod pairs;
 mod physical_captures;
 mod physical_convention;

@@ -76,14 +76,14 @@ fn open_row(state: &mut State, jobs: &Jobs, index: usize) {
     let before = state.setup();
     state.settings.floor = SceneSet::by_name(&row.set).map_or(conditions.floor, |set| set.floor(conditions.floor));
     state.settings.normalisation = conditions.normalisation;
-    match state.methods.all.iter().find(|m| m.name() == row.method) {
+    match state.methods.all.iter().find(|m| m.name() == &*row.method) {
         Some(method) => {
-            state.settings.method = row.method.clone();
+            state.settings.method = row.method.to_string();
             // Its own threshold, raised to where noise does not reach, or the one that the row was judged at.
             let eta = &mut state.settings.method_eta;
             match method.reads_eta() || method.eta() <= row.eta {
-                true => _ = eta.remove(&row.method),
-                false => _ = eta.insert(row.method.clone(), row.eta),
+                true => _ = eta.remove(&*row.method),
+                false => _ = eta.insert(row.method.to_string(), row.eta),
             }
         }
         None => state.notices.info(format!("There is no method \"{}\" here; the one in use stays.", row.method)),

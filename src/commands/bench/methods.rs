@@ -141,7 +141,7 @@ fn method_rows(count: u32, methods: &[&dyn Reconstructor], on_map: impl Fn()) ->
     let row = |method: &&dyn Reconstructor| {
         let tally = |set: &SceneSet| {
             let set = set.to_string();
-            Tally::of(rows.iter().filter(|row| row.method == method.name() && row.set == set))
+            Tally::of(rows.iter().filter(|row| row.method == method.name() && *row.set == *set))
         };
         let tallies = sets.each_ref().map(tally);
         MethodRow {

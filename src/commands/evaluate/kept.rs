@@ -1,13 +1,14 @@
 //! The file of rows that a run appends to and resumes from.
 
 use super::super::CommandError;
-use crate::evaluate::rows::{Column, Origin, Part, Row, RowWriter, Table, header, merge, read_table, write_rows};
+use crate::evaluate::rows::{
+    Column, Row, Table, Text, WHY_NO_OTHER_FORMAT, header, merge, read_table, row_writer, write_rows,
+};
 use crate::files::write_atomically;
 use std::collections::{HashMap, HashSet};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// What a user can do about a file that is not to be lost.
 const WAYS_OUT: &str = "name another file, or write over this one with --overwrite";
@@ -17,48 +18,48 @@ pub fn on_file(path: &Path) -> impl FnOnce(io::Error) -> CommandError {
     move |source| CommandError::File { path: path.to_owned(), source }
 }
 
-/// The rows that a run makes.
-pub struct Wanted {
-    /// What makes the rows of a set and a method.
-    pub origins: HashMap<(String, String), Arc<Origin>>,
-    /// Seed of generated scenes.
-    pub seed: u64,
-    /// Whether a detector of constant false-alarm rate is tried: its rows have more columns.
-    pub has_cfar: bool,
-}
-
 /// Scene and method of a row.
-pub type Key = (String, u32, String);
+pub type Key = (Text, u32, Text);
 
 /// What tells a row from the others of its run.
 pub fn key(row: &Row) -> Key {
     (row.set.clone(), row.index, row.method.clone())
 }
 
+/// The rows that a run makes.
+pub struct Wanted {
+    /// For each set and method, what makes its rows: one without figures.
+    empty: HashMap<(Text, Text), Row>,
+}
+
 impl Wanted {
+    /// The rows of a run whose [`Campaign::empty_rows`](crate::evaluate::campaign::Campaign::empty_rows) these are.
+    pub fn new(empty: &[Vec<Row>]) -> Wanted {
+        let named = |row: &Row| ((row.set.clone(), row.method.clone()), row.clone());
+        Wanted { empty: empty.iter().flatten().map(named).collect() }
+    }
+
     /// Why a row is not one of this run's.
     fn foreign(&self, row: &Row) -> Option<String> {
-        let Some(origin) = &row.origin else {
+        if row.version.is_none() {
             return Some("its rows don't say what made them: an older program wrote them".to_owned());
-        };
-        let Some(own) = self.origins.get(&(row.set.clone(), row.method.clone())) else {
+        }
+        let Some(own) = self.empty.get(&(row.set.clone(), row.method.clone())) else {
             return Some(format!("it holds rows of set {} by {}, which this run doesn't make", row.set, row.method));
         };
-        let differs = |what: &str, there: &str, here: &str| {
-            let named = |value: &str| if value.is_empty() { "nothing".to_owned() } else { value.to_owned() };
-            Some(format!("it holds rows of another run: {what} is {} there and {} here", named(there), named(here)))
-        };
-        if !Arc::ptr_eq(origin, own)
-            && let Some(part) = Part::ALL.into_iter().find(|part| origin.text(*part) != own.text(*part))
-        {
-            return differs(part.name(), &origin.text(part), &own.text(part));
+        let mut columns = Column::ORIGIN.iter().chain([&Column::Seed]);
+        if let Some(column) = columns.find(|column| !column.is_same(row, own)) {
+            let [there, here] = [row, own].map(|row| column.text(row)).map(|text| match text.is_empty() {
+                true => "nothing".to_owned(),
+                false => text,
+            });
+            let why = if *column == Column::Version { format!(": {WHY_NO_OTHER_FORMAT}") } else { String::new() };
+            let name = column.name();
+            return Some(format!("it holds rows of another run: {name} is {there} there and {here} here{why}"));
         }
-        let seed = if row.is_generated() { self.seed } else { 0 };
-        if row.seed != seed {
-            return differs(Column::Seed.name(), &row.seed.to_string(), &seed.to_string());
-        }
-        let count = own.whole.sets.iter().find(|(set, _)| *set == row.set).map_or(0, |(_, count)| *count);
-        let is_own = row.index < count && own.shard.contains(row.index);
+        let count = own.whole_run().and_then(|whole| whole.sets.into_iter().find(|(set, _)| row.set == set.as_str()));
+        let is_own = count.is_some_and(|(_, count)| row.index < count)
+            && own.shard.is_some_and(|shard| shard.contains(row.index));
         (!is_own).then(|| format!("it holds scene {} of set {}, which this run doesn't have", row.index, row.set))
     }
 }
@@ -66,7 +67,7 @@ impl Wanted {
 /// A file that rows are appended to, each a whole line as soon as it is found.
 pub struct RowFile {
     path: PathBuf,
-    out: RowWriter<File>,
+    out: csv::Writer<File>,
     /// The rows that were there already.
     pub present: Vec<Row>,
     /// In the order of the file.
@@ -93,19 +94,13 @@ impl RowFile {
         let table = if overwrite { Table::default() } else { present(path, &file, wanted)? };
         file.set_len(table.whole_bytes).map_err(on_file(path))?;
         file.seek(SeekFrom::End(0)).map_err(on_file(path))?;
-        let out = if table.whole_bytes == 0 {
-            let mut out = RowWriter::new(file, wanted.has_cfar).map_err(on_file(path))?;
-            out.flush().map_err(on_file(path))?;
-            out
-        } else {
-            RowWriter::beneath(file, wanted.has_cfar)
-        };
+        let out = row_writer(file, table.whole_bytes == 0).map_err(on_file(path))?;
         Ok(RowFile { path: path.to_owned(), out, present: table.rows, appended: Vec::new(), failed: None })
     }
 
     /// Appends a row. Whether that went well; [`RowFile::finish`] says why not.
     pub fn append(&mut self, row: &Row) -> bool {
-        let wrote = self.out.add(row).and_then(|()| self.out.flush());
+        let wrote = self.out.serialize(row).map_err(io::Error::from).and_then(|()| self.out.flush());
         self.appended.push(row.clone());
         self.failed = self.failed.take().or(wrote.err());
         self.failed.is_none()
@@ -135,7 +130,7 @@ fn refused(path: &Path, why: &str, ways_out: &str) -> CommandError {
 
 /// The rows of this run that a file holds.
 fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, CommandError> {
-    let header = header(wanted.has_cfar).join(",") + "\n";
+    let header = header();
     let mut start = Vec::new();
     file.take(header.len() as u64).read_to_end(&mut start).map_err(on_file(path))?;
     file.rewind().map_err(on_file(path))?;

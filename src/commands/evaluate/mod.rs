@@ -12,7 +12,7 @@ use super::arguments::{self, FloorArgs, real, seed, whole};
 use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::campaign::{Campaign, Shard};
-use crate::evaluate::rows::{Lack, Row, lacks, merge, read_table};
+use crate::evaluate::rows::{Lack, Row, WHY_NO_OTHER_FORMAT, lacks, merge, read_table};
 use crate::evaluate::sets::{Folder, SceneSet};
 use crate::maps::cfar::Cfar;
 use crate::radar::{Carrier, Radar};
@@ -37,8 +37,8 @@ use std::time::Duration;
 /// its name. For scenes with bodies a further table counts echoes: those that stand 10 dB out of the map of the whole array, and those of them
 /// that the method shows, by classes of 10 dB below the scene's strongest. The end of a wall lies 30 to 60 dB below its glint, where P_D doesn't see it.
 ///
-/// With --cfar a further table gives P_D and P_FA where each cell is held against the cells around it in place of the threshold; rows get the
-/// columns cfar_detection, cfar_false_alarm and cfar. The output is brought to power on the target's scale.
+/// With --cfar a further table gives P_D and P_FA where each cell is held against the cells around it in place of the threshold; rows have it
+/// in the columns cfar_detection, cfar_false_alarm and cfar. The output is brought to power on the target's scale.
 ///
 /// For a method that says its doubt a line tells whether doubt finds its failures: the rows of the worst tenth by squared error, or those from
 /// --failures-from on. The area under the ROC curve is the probability that a failure has more doubt than another row; 0.5 tells nothing. It is
@@ -174,7 +174,7 @@ impl Args {
         let methods = self.network.methods(&arguments::chosen(&self.method, &own, "baseline"))?;
         let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
         let (campaign, sets) = (self.campaign(), self.sets()?);
-        let origins = campaign.origins(&sets, &methods).map_err(CommandError::failed)?;
+        let empty = campaign.empty_rows(&sets, &methods).map_err(CommandError::failed)?;
         let scenes: u64 = sets.iter().map(|set| u64::from(campaign.scenes(set))).sum();
         if scenes == 0 {
             let message = format!("--shard {} has no scene; expected I below the number of scenes", self.shard);
@@ -183,23 +183,17 @@ impl Args {
         for said in campaign.untrained(&sets, &methods).map_err(CommandError::failed)? {
             eprintln!("apertura: {said}");
         }
-        let named = sets.iter().zip(&origins).flat_map(|(set, origins)| {
-            let pair = |(method, origin): (&&dyn Reconstructor, &_)| {
-                ((set.to_string(), method.name().to_owned()), std::sync::Arc::clone(origin))
-            };
-            methods.iter().zip(origins).map(pair).collect::<Vec<_>>()
-        });
-        let wanted = Wanted { origins: named.collect(), seed: self.seed, has_cfar: self.cfar.is_some() };
+        let wanted = Wanted::new(&empty);
         let open = |path: &PathBuf| RowFile::open(path, &wanted, self.overwrite);
         let mut file = self.rows.as_ref().map(open).transpose()?;
         let maps = scenes * methods.len() as u64;
         let done = self.done(file.as_ref(), maps);
         let mut progress = Progress::new(maps - done.len() as u64, Duration::from_secs(self.progress.into()));
         let is_done = |set: &str, index: u32, method: &str| {
-            !done.is_empty() && done.contains(&(set.to_owned(), index, method.to_owned()))
+            !done.is_empty() && done.contains(&(set.into(), index, method.into()))
         };
         let task = Task::default();
-        let found = campaign.run_rest(&sets, &methods, &origins, &is_done, &task, |row, _, _| {
+        let found = campaign.run_rest(&sets, &methods, &empty, &is_done, &task, |row, _, _| {
             progress.row(row);
             if file.as_mut().is_some_and(|file| !file.append(row)) {
                 task.cancel();
@@ -253,7 +247,10 @@ impl Args {
             return Err(CommandError::Usage(message));
         }
         problems.iter().for_each(|problem| eprintln!("note: {problem}"));
-        if rows.iter().any(|row| row.origin.is_none()) {
+        if rows.iter().any(|row| row.version == Some(1)) {
+            eprintln!("note: {WHY_NO_OTHER_FORMAT}; these rows are of format 1");
+        }
+        if rows.iter().any(|row| row.version.is_none()) {
             eprintln!(
                 "note: an older program wrote these rows; they don't say what made them, nor what the whole run was"
             );

@@ -30,7 +30,7 @@ impl Progress {
     /// A row is found.
     pub fn row(&mut self, row: &Row) {
         self.done += 1;
-        self.bar.set_message(row.set.clone());
+        self.bar.set_message(row.set.to_string());
         self.bar.inc(1);
         if self.every.is_some_and(|every| self.told.elapsed() >= every) && self.done < self.total {
             self.told = Instant::now();

@@ -5,7 +5,7 @@ use super::by_doubt::{self, DoubtReport};
 use super::by_echo::{self, EchoReport};
 use super::percent::{percent, percent_of};
 use crate::evaluate::Estimate;
-use crate::evaluate::rows::{Lack, Origin, Row, Scenes};
+use crate::evaluate::rows::{Column, Lack, Row};
 use crate::evaluate::sets::{NOISE_LEVEL, false_alarm};
 use crate::evaluate::tables::{
     PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally, part_near_best,
@@ -90,9 +90,9 @@ struct CfarReport {
 
 impl CfarReport {
     fn of(rows: &[&Row], tally: &Tally) -> Option<CfarReport> {
-        let cfar = rows.iter().find_map(|row| row.origin.as_ref()?.cfar)?;
+        let row = rows.iter().find(|row| !row.cfar.is_empty())?;
         Some(CfarReport {
-            detector: cfar.to_string(),
+            detector: row.cfar.to_string(),
             detection: tally.cfar_detection(),
             false_alarm: tally.cfar_false_alarm(),
         })
@@ -150,21 +150,17 @@ impl Report {
             .collect();
         let seed = rows.first().map(|row| row.seed).filter(|seed| rows.iter().all(|row| row.seed == *seed));
         // Merged rows are alike, and generated scenes come from one generator.
-        let origins = || rows.iter().filter_map(|row| row.origin.as_deref());
-        let generated = origins().find_map(|origin| match &origin.scenes {
-            Scenes::Generated { carrier, reading, radar, .. } => Some((*carrier, *reading, radar.clone())),
-            Scenes::Files { .. } => None,
-        });
-        let usual = rows.iter().find(|row| !row.has_own_floor()).and_then(|row| row.origin.as_deref());
-        let of_all = |text: fn(&Origin) -> String| usual.or_else(|| origins().next()).map(text);
+        let generated = rows.iter().find(|row| row.carrier.is_some());
+        let usual = rows.iter().filter(|row| row.version.is_some()).min_by_key(|row| row.has_own_floor());
+        let of_all = |column: Column| usual.map(|row| column.text(row));
         Report {
             count: sets.iter().flat_map(|s| &s.methods).map(|m| m.scenes).max().unwrap_or(0),
             seed,
-            floor: of_all(|origin| origin.floor.to_string()),
-            normalisation: of_all(|origin| origin.normalisation.to_string()),
-            carrier: generated.as_ref().map(|(carrier, _, _)| *carrier),
-            reading: generated.as_ref().map(|(_, reading, _)| *reading),
-            radar: generated.map(|(_, _, radar)| radar),
+            floor: of_all(Column::Floor),
+            normalisation: of_all(Column::Normalisation),
+            carrier: generated.and_then(|row| row.carrier),
+            reading: generated.and_then(|row| row.reading),
+            radar: generated.map(|row| row.radar.to_string()),
             missing,
             doubt: if sets.len() > 1 { of_methods(&all, limit) } else { Vec::new() },
             sets,

@@ -1,28 +1,25 @@
 //! All methods on one scene of a campaign.
 
 use super::error::{CampaignError, set_name};
-use crate::evaluate::rows::{CfarRates, Origin, Row};
+use crate::evaluate::rows::Row;
 use crate::evaluate::sets::SceneSet;
-use crate::evaluate::trial::{Answer, RowPlace, Trial};
+use crate::evaluate::trial::{Answer, Trial};
 use crate::maps::cfar::Cfar;
 use crate::reconstruct::{Reconstructor, Request};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
-use std::sync::Arc;
 
 /// All methods on one scene.
 pub(super) struct Job<'a> {
     /// The campaign's detector, if it has one.
     pub cfar: Option<Cfar>,
-    /// Seed of its generated scenes.
-    pub seed: u64,
     pub set: &'a SceneSet,
     pub index: u32,
     pub trial: &'a Trial,
     pub request: &'a Request,
-    /// One a method.
-    pub origins: &'a [Arc<Origin>],
+    /// One row a method, without figures.
+    pub empty: &'a [Row],
 }
 
 impl Job<'_> {
@@ -36,14 +33,17 @@ impl Job<'_> {
         })
     }
 
-    /// P_D and P_FA by the campaign's detector, if it has one.
-    fn cfar_rates(&self, answer: &Answer) -> Result<Option<CfarRates>, CampaignError> {
-        let rates = self.cfar.map(|cfar| self.trial.cfar_rates(answer, &cfar));
-        rates.transpose().map_err(|source| CampaignError::Detector {
+    /// The row of a method's answer.
+    fn row(&self, empty: &Row, answer: &Answer) -> Result<Row, CampaignError> {
+        let empty = Row { index: self.index, ..empty.clone() };
+        let row = self.trial.filled(empty, answer, self.set.false_alarm());
+        let Some(cfar) = &self.cfar else { return Ok(row) };
+        let by_cfar = self.trial.cfar_metrics(answer, cfar).map_err(|source| CampaignError::Detector {
             set: set_name(self.set),
             index: self.index,
             source,
-        })
+        })?;
+        Ok(Row { cfar_detection: by_cfar.detection, cfar_false_alarm: Some(by_cfar.false_alarm), ..row })
     }
 
     /// The rows of the methods of these places, in their order.
@@ -53,15 +53,11 @@ impl Job<'_> {
         mut order: Vec<usize>,
         on_row: &mut impl FnMut(&Row, &Trial, &Answer),
     ) -> Result<Vec<Row>, CampaignError> {
-        let set = self.set.to_string();
-        let seed = if matches!(self.set, SceneSet::Generated(_)) { self.seed } else { 0 };
         order.shuffle(&mut ChaCha8Rng::seed_from_u64(u64::from(self.index)));
         let mut found = Vec::new();
         for i in order {
             let answer = self.answer(methods[i])?;
-            let place = RowPlace { set: &set, index: self.index, seed, origin: Some(&self.origins[i]) };
-            let mut row = self.trial.row(&place, methods[i].name(), &answer, self.set.false_alarm());
-            row.cfar = self.cfar_rates(&answer)?;
+            let row = self.row(&self.empty[i], &answer)?;
             on_row(&row, self.trial, &answer);
             found.push((i, row));
         }

@@ -21,7 +21,7 @@ pub fn complete(text: &str, cursor: usize, methods: &[impl AsRef<str>]) -> Compl
     let quote = open_quote(&before);
     let start = quote.map_or_else(|| word_start(&before), |quote| quote + 1);
     let word: String = before[start..].iter().collect();
-    let columns = || Column::ALL.into_iter().map(|c| c.name().to_owned());
+    let columns = || Column::FIGURES.iter().map(|c| c.name().to_owned());
     let (start, word, all): (usize, String, Vec<String>) = match word.split_once('.') {
         _ if quote.is_some() => (start, word, methods.map(str::to_owned).collect()),
         Some((method, column)) => (start + method.chars().count() + 1, column.to_owned(), columns().collect()),
@@ -70,10 +70,10 @@ mod tests {
         assert_eq!(at("objects > 3 & li"), (14, vec!["live.".into(), "milliseconds".into()]));
         assert_eq!(at("matched-f"), (0, vec!["matched-filter-coherent.".into()]));
         assert_eq!(at("live.sq"), (5, vec!["squared_error".into()]));
-        assert_eq!(at("live.").1.len(), Column::ALL.len());
+        assert_eq!(at("live.").1.len(), Column::FIGURES.len());
         assert_eq!(at("method = \"no"), (10, vec!["nomp".into()]));
         assert_eq!(at("method = 'nomp' & gh"), (18, vec!["ghosts".into()]));
-        assert_eq!(at("").1.len(), Column::ALL.len() + 3);
+        assert_eq!(at("").1.len(), Column::FIGURES.len() + 3);
         assert_eq!(at("objects"), (0, vec![]));
     }
 

@@ -55,7 +55,7 @@ fn key(row: &Row) -> Key<'_> {
 
 impl<'a> Scenes<'a> {
     pub fn new(rows: &'a [Row]) -> Self {
-        Scenes { rows: rows.iter().map(|row| ((key(row), row.method.as_str()), row)).collect() }
+        Scenes { rows: rows.iter().map(|row| ((key(row), &*row.method), row)).collect() }
     }
 
     fn value(&self, row: &'a Row, method: Option<&'a str>, column: Column) -> Value<'a> {
@@ -81,7 +81,7 @@ impl Comparison {
     fn holds(self, a: Value<'_>, b: Value<'_>) -> bool {
         let order = match (a, b) {
             (Value::Number(a), Value::Number(b)) => a.partial_cmp(&b),
-            (Value::Text(a), Value::Text(b)) => Some(a.cmp(b)),
+            (Value::Text(a), Value::Text(b)) => Some(a.cmp(&b)),
             (Value::Missing, _) | (_, Value::Missing) => None,
             // A set's number and another's name.
             _ => return self == Comparison::Unequal,
@@ -99,13 +99,10 @@ impl Comparison {
 
 impl Term {
     fn value<'a>(&'a self, row: &'a Row, scenes: &Scenes<'a>) -> Value<'a> {
-        let number = |term: &'a Term| match term.value(row, scenes) {
-            Value::Number(v) => Some(v),
-            _ => None,
-        };
+        let number = |term: &'a Term| term.value(row, scenes).number();
         let found = match self {
             Term::Number(v) => Some(*v),
-            Term::Text(text) => return Value::Text(text),
+            Term::Text(text) => return Value::Text(text.into()),
             Term::Column(method, column) => return scenes.value(row, method.as_deref(), *column),
             Term::Negative(inner) => number(inner).map(|v| -v),
             Term::Arithmetic(a, sign, b) => number(a).zip(number(b)).map(|(a, b)| match sign {

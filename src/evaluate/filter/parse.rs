@@ -243,7 +243,7 @@ fn numeric(term: Term, start: usize) -> Result<Term, FilterError> {
 /// The column whose name is most like `name`, if any is like it.
 fn nearest(name: &str) -> Option<&'static str> {
     let like = |column: &Column| (edits(name, column.name()), column.name());
-    let (edits, column) = Column::ALL.iter().map(like).min()?;
+    let (edits, column) = Column::FIGURES.iter().map(like).min()?;
     (edits <= 1 + name.chars().count() / 4 && !name.is_empty()).then_some(column)
 }
 

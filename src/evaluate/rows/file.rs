@@ -1,111 +1,26 @@
-//! Rows written as CSV. `read` reads them.
+//! Rows written and read as CSV, with faults that name the line and the column.
 
-use super::part::Part;
-use super::{Column, Row};
-use std::io::{self, Write};
+use super::lines::{LongLine, MAX_LINE_BYTES, MAX_ROWS, ShortLines};
+use super::{Column, FORMAT, Kind, Row};
+use csv::StringRecord;
+use std::collections::HashSet;
+use std::io::{self, Read, Write};
 
-impl Row {
-    /// The cells as they are written: every figure with all its digits, so that it is read back as it was.
-    fn cells(&self) -> [String; Column::ALL.len()] {
-        fn maybe<V: std::fmt::Debug>(v: Option<V>) -> String {
-            v.map(|v| format!("{v:?}")).unwrap_or_default()
-        }
-        let [echoes, echoes_found] = self.echoes.map(|echoes| echoes.texts()).unwrap_or_default();
-        [
-            self.set.clone(),
-            self.index.to_string(),
-            self.seed.to_string(),
-            self.method.clone(),
-            format!("{:?}", self.eta),
-            format!("{:?}", self.squared_error),
-            maybe(self.detection),
-            format!("{:?}", self.false_alarm),
-            maybe(self.detection_at_printed),
-            format!("{:?}", self.milliseconds),
-            self.objects.to_string(),
-            self.reflectors.to_string(),
-            self.missed.to_string(),
-            self.ghosts.to_string(),
-            maybe(self.nearest_pair_columns),
-            maybe(self.nearest_pair_bins),
-            maybe(self.min_range_metres),
-            maybe(self.strongest_over_weakest_db),
-            maybe(self.found),
-            maybe(self.merged),
-            maybe(self.wrong_tooth),
-            echoes,
-            echoes_found,
-            maybe(self.doubt),
-            maybe(self.within_doubt),
-            maybe(self.cfar.and_then(|rates| rates.detection)),
-            maybe(self.cfar.map(|rates| rates.false_alarm)),
-        ]
-    }
-
-    /// Whether a detector of constant false-alarm rate was tried too.
-    fn has_cfar(&self) -> bool {
-        self.cfar.is_some() || self.origin.as_ref().is_some_and(|origin| origin.cfar.is_some())
-    }
+/// The file's first line.
+pub fn header() -> String {
+    Column::all().map(Column::name).collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// Which columns a file has: those of a detector of constant false-alarm rate only where there is one.
-fn has_column(column: Column, has_cfar: bool) -> bool {
-    has_cfar || !column.is_of_cfar()
-}
-
-fn has_part(part: Part, has_cfar: bool) -> bool {
-    has_cfar || part != Part::Cfar
-}
-
-/// The names in a file's first line, with those of a detector of constant false-alarm rate or without.
-pub fn header(has_cfar: bool) -> Vec<&'static str> {
-    let columns = Column::ALL.into_iter().filter(|column| has_column(*column, has_cfar)).map(Column::name);
-    columns.chain(Part::ALL.into_iter().filter(|part| has_part(*part, has_cfar)).map(Part::name)).collect()
-}
-
-/// Writes rows, a line each, under a line of names. [`RowWriter::flush`] after a row hands on whole lines, so that a run that is stopped
-/// keeps what it has found.
-pub struct RowWriter<W: Write> {
-    out: csv::Writer<W>,
-    has_cfar: bool,
-}
-
-impl<W: Write> RowWriter<W> {
-    /// Begins with the names, [`header`] of `has_cfar`.
-    ///
-    /// # Errors
-    /// What `out` says.
-    pub fn new(out: W, has_cfar: bool) -> io::Result<Self> {
-        let mut out = csv::Writer::from_writer(out);
-        out.write_record(header(has_cfar))?;
-        Ok(RowWriter { out, has_cfar })
+/// Writes each row that is [serialised](csv::Writer::serialize) as a line; `begins` with the names of the columns, or goes on beneath other
+/// rows. [`csv::Writer::flush`] after a row hands on whole lines, so that a run that is stopped keeps what it has found.
+///
+/// # Errors
+/// What `out` says.
+pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<W>> {
+    if begins {
+        out.write_all(header().as_bytes())?;
     }
-
-    /// Goes on beneath rows that [`RowWriter::new`] and [`RowWriter::add`] wrote.
-    pub fn beneath(out: W, has_cfar: bool) -> Self {
-        RowWriter { out: csv::Writer::from_writer(out), has_cfar }
-    }
-
-    /// Adds a row.
-    ///
-    /// # Errors
-    /// What `out` says.
-    pub fn add(&mut self, row: &Row) -> io::Result<()> {
-        let origin = row.origin.as_deref();
-        let text = |part| origin.map(|origin| origin.text(part)).unwrap_or_default();
-        let parts = Part::ALL.into_iter().filter(|part| has_part(*part, self.has_cfar)).map(text);
-        let cells = row.cells().into_iter().zip(Column::ALL);
-        let cells = cells.filter(|(_, column)| has_column(*column, self.has_cfar)).map(|(cell, _)| cell);
-        Ok(self.out.write_record(cells.chain(parts))?)
-    }
-
-    /// Hands on what was added.
-    ///
-    /// # Errors
-    /// What `out` says.
-    pub fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
-    }
+    Ok(csv::WriterBuilder::new().has_headers(false).from_writer(out))
 }
 
 /// Writes a whole table.
@@ -113,22 +28,167 @@ impl<W: Write> RowWriter<W> {
 /// # Errors
 /// What `out` says.
 pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) -> io::Result<()> {
-    let rows: Vec<&Row> = rows.into_iter().collect();
-    let mut writer = RowWriter::new(out, rows.iter().any(|row| row.has_cfar()))?;
-    rows.into_iter().try_for_each(|row| writer.add(row))?;
+    let mut writer = row_writer(out, true)?;
+    rows.into_iter().try_for_each(|row| writer.serialize(row))?;
     writer.flush()
+}
+
+/// Why a file's rows can't be used.
+#[derive(Debug, thiserror::Error)]
+pub enum RowError {
+    /// It can't be read.
+    #[error("{0}")]
+    Io(io::Error),
+    /// Names are missing in its first line.
+    #[error("line 1: there is no column \"{missing}\"; expected {}", header().trim_end())]
+    Header {
+        /// The first column that is missing.
+        missing: &'static str,
+    },
+    /// A cell holds something else than it should.
+    #[error("line {line}, column {column}: \"{found}\"; expected {expected}")]
+    Cell {
+        /// Line, from 1.
+        line: u64,
+        /// Name of the column.
+        column: &'static str,
+        /// What stands there.
+        found: String,
+        /// What should.
+        expected: String,
+    },
+    /// Rows are of a later format.
+    #[error("line {line}: the row is of format {found}; this program reads up to format {FORMAT}")]
+    Later {
+        /// Line, from 1.
+        line: u64,
+        /// The format.
+        found: u32,
+    },
+    /// A line is no row.
+    #[error("line {line}: {message}")]
+    Line {
+        /// Line, from 1.
+        line: u64,
+        /// What is wrong, and what was expected.
+        message: String,
+    },
+    /// There are too many.
+    #[error("there are more than {MAX_ROWS} rows; split the file")]
+    TooMany,
+}
+
+/// Rows as a file has them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Table {
+    /// The rows of whole lines.
+    pub rows: Vec<Row>,
+    /// Whether the file ends within a line: its writer was stopped, or the file was cut.
+    pub is_cut: bool,
+    /// How many bytes the whole lines have.
+    pub whole_bytes: u64,
+}
+
+/// Reads what [`write_rows`] wrote, also in format 1 and before. Columns may stand in any order, and others beside them; those that are
+/// [optional](Column::is_optional) may be missing.
+///
+/// # Errors
+/// [`RowError`] names the line and the column.
+pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
+    read(ShortLines::new(input, false)).map(|table| table.rows)
+}
+
+/// [`read_rows`] without a last line that has no end, which may hold half a row.
+///
+/// # Errors
+/// As [`read_rows`].
+pub fn read_table(input: impl Read) -> Result<Table, RowError> {
+    read(ShortLines::new(input, true))
+}
+
+fn read(mut lines: ShortLines<impl Read>) -> Result<Table, RowError> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&mut lines);
+    let header = reader.headers().map_err(of_csv)?.clone();
+    if let Some(missing) = Column::all().find(|column| !column.is_optional() && place(&header, *column).is_none()) {
+        return Err(RowError::Header { missing: missing.name() });
+    }
+    let (mut rows, mut record, mut texts) = (Vec::new(), StringRecord::new(), HashSet::new());
+    while reader.read_record(&mut record).map_err(of_csv)? {
+        if rows.len() == MAX_ROWS {
+            return Err(RowError::TooMany);
+        }
+        let mut row: Row = record.deserialize(Some(&header)).map_err(|error| of_cells(&header, &record, error))?;
+        if let Some(found) = row.version.filter(|version| *version > FORMAT) {
+            return Err(RowError::Later { line: line(&record), found });
+        }
+        row.check().map_err(|(column, expected)| of_cell(&header, &record, column, expected))?;
+        row.share(&mut texts);
+        rows.push(row);
+    }
+    drop(reader);
+    Ok(Table { rows, is_cut: lines.is_cut, whole_bytes: lines.whole_bytes })
+}
+
+fn place(header: &StringRecord, column: Column) -> Option<usize> {
+    header.iter().position(|name| name == column.name())
+}
+
+fn line(record: &StringRecord) -> u64 {
+    record.position().map_or(0, csv::Position::line)
+}
+
+fn of_cell(header: &StringRecord, record: &StringRecord, column: Column, expected: &str) -> RowError {
+    let found = place(header, column).and_then(|place| record.get(place)).unwrap_or_default();
+    let found = found.chars().take(40).collect();
+    RowError::Cell { line: line(record), column: column.name(), found, expected: expected.to_owned() }
+}
+
+/// The error of a line, by the first cell that can't be read alone.
+fn of_cells(header: &StringRecord, record: &StringRecord, error: csv::Error) -> RowError {
+    for column in Column::all() {
+        let Some(cell) = place(header, column).and_then(|place| record.get(place)) else { continue };
+        let [name, alone] = [column.name(), cell].map(|text| StringRecord::from(vec![text]));
+        let Err(error) = alone.deserialize::<Row>(Some(&name)) else { continue };
+        let said = match error.kind() {
+            csv::ErrorKind::Deserialize { err, .. } => err.kind().to_string(),
+            _ => error.to_string(),
+        };
+        let expected = match column.kind() {
+            Kind::Whole => "a whole number from 0",
+            Kind::Real => "a finite number",
+            Kind::Text => said.rsplit_once("expected ").map_or(said.as_str(), |(_, expected)| expected),
+        };
+        return of_cell(header, record, column, expected);
+    }
+    RowError::Line { line: line(record), message: error.to_string() }
+}
+
+fn of_csv(error: csv::Error) -> RowError {
+    let line = error.position().map_or(1, csv::Position::line);
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => match error.downcast::<LongLine>() {
+            Ok(LongLine { line }) => {
+                RowError::Line { line, message: format!("is longer than {MAX_LINE_BYTES} bytes; expected a row") }
+            }
+            Err(error) => RowError::Io(error),
+        },
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            RowError::Line { line, message: format!("has {len} cells; expected {expected_len}, as in the first line") }
+        }
+        csv::ErrorKind::Utf8 { .. } => RowError::Line { line, message: "is not text; expected CSV in UTF-8".into() },
+        other => RowError::Line { line, message: format!("{other:?}") },
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::origin::Origin;
-    use super::super::origin::tests::origin;
-    use super::super::part::Part;
-    use super::super::read::{read_rows, read_table};
-    use super::super::tests::row;
-    use super::super::{CfarRates, Row};
-    use super::write_rows;
-    use std::sync::Arc;
+    use super::super::tests::{made, row};
+    use super::super::{EchoCounts, Text};
+    use super::*;
+    use crate::maps::cfar::Cfar;
+    use crate::radar::{Carrier, Decibels};
+    use crate::signal::Floor;
+    use proptest::prelude::*;
 
     fn text(rows: &[Row]) -> String {
         let mut out = Vec::new();
@@ -140,91 +200,116 @@ mod tests {
         read_rows(text.as_bytes()).unwrap_err().to_string()
     }
 
-    #[test]
-    fn rows_are_read_as_they_were_written() {
-        let origin = Some(Arc::new(origin()));
-        let rows = vec![
-            row("1", 0, "live"),
-            Row { origin: origin.clone(), ..row("a \"folder\", with all", 1, "nomp") },
-            Row { origin, ..row("1", 2, "live") },
-        ];
-        assert_eq!(read_rows(text(&rows).as_bytes()).unwrap(), rows);
-        assert!(text(&rows).starts_with(
-            "set,index,seed,method,eta,squared_error,detection,false_alarm,detection_at_printed,milliseconds,objects,\
-             reflectors,missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db,\
-             found,merged,wrong_tooth,echoes,echoes_found,doubt,within_doubt,version,program,floor,normalisation,purpose,reading,carrier,radar,scenes,weights,optimiser,\
-             shard,whole,methods\n"
-        ));
+    /// The table with its columns in another order, or without some of them.
+    fn with_columns(table: &str, names: &[&str]) -> String {
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        let header = reader.headers().unwrap().clone();
+        let places: Vec<usize> = names.iter().filter_map(|name| header.iter().position(|n| n == *name)).collect();
+        let mut out = csv::Writer::from_writer(Vec::new());
+        for record in std::iter::once(header).chain(reader.records().map(Result::unwrap)) {
+            out.write_record(places.iter().map(|place| &record[*place])).unwrap();
+        }
+        String::from_utf8(out.into_inner().unwrap()).unwrap()
+    }
+
+    fn names() -> Vec<&'static str> {
+        Column::all().map(Column::name).collect()
+    }
+
+    fn some_text() -> impl Strategy<Value = Text> {
+        // Quotes, separators and ends of lines; blanks around a cell are not kept.
+        "[a-z%;,\"\u{e9}][ -~\n]{0,12}[a-z\",;]".prop_map(Text::from)
+    }
+
+    fn figure() -> impl Strategy<Value = f64> {
+        any::<f64>().prop_filter("finite", |v| v.is_finite())
+    }
+
+    prop_compose! {
+        fn rows()(
+            [set, method, program, radar, weights] in prop::array::uniform5(some_text()),
+            (index, seed, objects) in any::<(u32, u64, usize)>(),
+            eta in any::<f32>().prop_filter("finite", |v| v.is_finite()),
+            [squared_error, milliseconds, false_alarm] in prop::array::uniform3(figure()),
+            [detection, doubt, nearest] in prop::array::uniform3(prop::option::of(figure())),
+            echoes in prop::option::of(prop::array::uniform6(0usize..9)),
+            is_of_folder in any::<bool>(),
+            (snr, part) in (-100.0..300.0f64, 0u32..9),
+        ) -> Row {
+            let generated = Row {
+                floor: Some(Floor::Snr(Decibels(snr))),
+                shard: format!("{part}/9").parse().ok(),
+                cfar: Text::from(Cfar::default()),
+                cfar_detection: detection,
+                cfar_false_alarm: Some(false_alarm),
+                ..made("1", 0, "live")
+            };
+            let files = Row { purpose: None, reading: None, carrier: None, scenes: "ab".into(), ..made("own", 0, "live") };
+            Row {
+                set, method, program, radar, weights, index, seed, objects, eta,
+                squared_error, milliseconds, false_alarm, detection, doubt,
+                nearest_pair_bins: nearest,
+                wrong_tooth: nearest.map(|_| objects),
+                echoes: echoes.map(EchoCounts),
+                echoes_found: echoes.map(|echoes| EchoCounts(echoes.map(|count| count / 2))),
+                ..if is_of_folder { files } else { generated }
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn rows_are_read_as_they_were_written(
+            rows in prop::collection::vec(rows(), 0..5),
+            order in Just(names()).prop_shuffle(),
+        ) {
+            let table = text(&rows);
+            prop_assert_eq!(read_rows(table.as_bytes()).unwrap(), rows.clone());
+            prop_assert_eq!(read_rows(with_columns(&table, &order).as_bytes()).unwrap(), rows, "columns in any order");
+        }
     }
 
     #[test]
-    fn columns_may_stand_in_any_order() {
-        let table = text(&[row("1", 0, "live")]);
-        let turned: String = table
-            .lines()
-            .map(|line| line.split(',').rev().chain(["note"]).collect::<Vec<_>>().join(",") + "\r\n")
-            .collect();
-        assert_eq!(read_rows(turned.as_bytes()).unwrap(), [row("1", 0, "live")]);
+    fn cells_stand_below_the_names_that_serde_gives_them() {
+        let mut out = csv::Writer::from_writer(Vec::new());
+        out.serialize(made("1", 0, "live")).unwrap();
+        assert_eq!(out.into_inner().unwrap(), text(&[made("1", 0, "live")]).into_bytes());
+        assert_eq!(text(&[]), header());
     }
 
     #[test]
-    fn tables_from_before_echoes_were_counted_are_read() {
-        let table = text(&[Row { origin: Some(Arc::new(origin())), ..row("1", 0, "live") }]);
-        let old = table.replace("echoes,echoes_found,", "").replace("1 0 0 2 0 4,1 0 0 1 0 0,", "");
-        assert_eq!(old.len(), table.len() - 44, "both columns are cut out");
-        let read = read_rows(old.as_bytes()).unwrap();
-        assert_eq!(read[0].echoes, None);
+    fn a_lacking_column_is_named_unless_it_is_optional() {
+        let rows = [row("1", 0, "live")];
+        for column in Column::all() {
+            let others: Vec<&str> = names().into_iter().filter(|name| *name != column.name()).collect();
+            let read = read_rows(with_columns(&text(&rows), &others).as_bytes());
+            match read {
+                Ok(read) => {
+                    let lacks = Column::all().find(|c| !c.is_same(&read[0], &rows[0]));
+                    assert!(column.is_optional() && lacks.is_none_or(|c| c == column), "{column:?} {lacks:?}");
+                }
+                Err(error) => {
+                    let named = error.to_string().contains(&format!("\"{}\"", column.name()));
+                    // Echoes are counted in pairs.
+                    assert!(named || matches!(column, Column::Echoes | Column::EchoesFound), "{error}");
+                }
+            }
+        }
+        let made = text(&[made("1", 0, "live")]);
+        let without: Vec<&str> = names().into_iter().filter(|name| *name != "floor").collect();
         assert_eq!(
-            Row { echoes: row("1", 0, "live").echoes, ..read[0].clone() },
-            read_rows(table.as_bytes()).unwrap()[0]
+            error(&with_columns(&made, &without)),
+            "line 2, column floor: \"\"; expected a floor as --floor takes it"
         );
+        assert!(error("").contains("no column \"set\""));
     }
 
     #[test]
-    fn tables_from_before_doubt_was_kept_are_read() {
-        let of = |doubt| Row {
-            origin: Some(Arc::new(origin())),
-            doubt,
-            within_doubt: doubt.map(|v| v / 2.0),
-            ..row("1", 0, "live")
-        };
-        let table = text(&[of(Some(0.125)), of(None)]);
-        let old = table
-            .replace("doubt,within_doubt,", "")
-            .replace(",0.125,0.0625,1,", ",1,")
-            .replace(",,,1,0.1.0", ",1,0.1.0");
-        assert_eq!(old.len(), table.len() - 34, "both columns are cut out");
-        assert_eq!(read_rows(old.as_bytes()).unwrap(), [of(None), of(None)]);
-        assert_eq!(read_rows(table.as_bytes()).unwrap(), [of(Some(0.125)), of(None)]);
-    }
-
-    #[test]
-    fn columns_of_a_detector_are_written_where_there_is_one() {
-        let with = |cfar: &str| Some(Arc::new(Origin { cfar: Some(cfar.parse().unwrap()), ..origin() }));
-        let rates = |detection| Some(CfarRates { detection, false_alarm: 1.0 / 3.0 });
-        let rows = vec![
-            Row { cfar: rates(Some(0.1)), origin: with("os:rate=0.01"), ..row("1", 0, "live") },
-            Row { cfar: rates(None), origin: with("os:rate=0.01"), ..row("1", 1, "live") },
-        ];
-        assert_eq!(read_rows(text(&rows).as_bytes()).unwrap(), rows);
-        let first = text(&rows).lines().next().unwrap().to_owned();
-        assert!(
-            first.contains(",cfar_detection,cfar_false_alarm,version,") && first.ends_with(",methods,cfar"),
-            "{first}"
-        );
-        assert!(!text(&[row("1", 0, "live")]).contains("cfar"));
-        let half = text(&rows).replace("0.1,0.3333333333333333", "0.1,");
-        assert!(error(&half).contains("column cfar_false_alarm"), "{}", error(&half));
-    }
-
-    #[test]
-    fn tables_from_before_the_kinds_were_counted_are_read() {
-        let old = |line: &str| line.rsplitn(8 + Part::ALL.len() - 1, ',').last().unwrap().to_owned();
-        let table = text(&[row("1", 0, "live")]);
-        let table: String = table.lines().map(|line| old(line) + "\n").collect();
-        assert!(table.lines().next().unwrap().ends_with("strongest_over_weakest_db"));
+    fn tables_from_before_anything_else_was_kept_are_read() {
+        let table = with_columns(&text(&[row("1", 0, "live")]), &names()[..18]);
+        let (found, merged, echoes, echoes_found) = (None, None, None, None);
         let without =
-            Row { found: None, merged: None, echoes: None, doubt: None, within_doubt: None, ..row("1", 0, "live") };
+            Row { found, merged, echoes, echoes_found, doubt: None, within_doubt: None, ..row("1", 0, "live") };
         assert_eq!(read_rows(table.as_bytes()).unwrap(), [without]);
     }
 
@@ -246,14 +331,40 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_a_later_format_are_refused() {
-        let origin = Some(Arc::new(origin()));
-        let table = text(&[Row { origin, ..row("1", 0, "live") }]);
+    fn what_made_a_row_is_checked_cell_by_cell() {
+        let good = made("1", 0, "live");
+        let table = |column: Column, cell: &str| {
+            let table = text(std::slice::from_ref(&good));
+            let mut reader = csv::Reader::from_reader(table.as_bytes());
+            let cells: Vec<String> = reader.records().next().unwrap().unwrap().iter().map(str::to_owned).collect();
+            let cells = Column::all().zip(cells).map(|(c, own)| if c == column { cell.to_owned() } else { own });
+            format!("{}{}\n", header(), cells.collect::<Vec<_>>().join(","))
+        };
+        assert_eq!(read_rows(table(Column::Program, "0.3.0").as_bytes()).unwrap()[0].program, "0.3.0");
+        for (column, cell) in [
+            (Column::Floor, "rock"),
+            (Column::Normalisation, ""),
+            (Column::Carrier, "three-way"),
+            (Column::Purpose, "file"),
+            (Column::Reading, "loud"),
+            (Column::Shard, "4/4"),
+            (Column::Whole, "1 times 4"),
+            (Column::Whole, "1 x 4294967295"),
+            (Column::Cfar, "ca:rate=1"),
+            (Column::Version, "new"),
+            (Column::Version, "0"),
+        ] {
+            let told = error(&table(column, cell));
+            assert!(told.starts_with(&format!("line 2, column {}: \"{cell}\"; expected ", column.name())), "{told}");
+        }
+        assert!(error(&table(Column::Floor, "rock")).contains("expected thesis, exact"));
         assert_eq!(
-            error(&table.replace(",1,0.1.0,", ",2,0.1.0,")),
-            "line 2: the row is of format 2; this program reads up to format 1"
+            error(&table(Column::Version, "3")),
+            "line 2: the row is of format 3; this program reads up to format 2"
         );
-        assert!(error(&table.replace(",thesis,", ",rock,")).starts_with("line 2, column floor: \"rock\""));
+        let files = table(Column::Carrier, "file").replace(",test,program,file,", ",file,file,file,");
+        let files = read_rows(files.as_bytes()).unwrap();
+        assert_eq!((files[0].carrier, files[0].is_generated(), good.carrier), (None, false, Some(Carrier::OneWay)));
     }
 
     #[test]
@@ -263,14 +374,17 @@ mod tests {
             error(&good.replace("34.333333333333336", "inf")),
             "line 3, column squared_error: \"inf\"; expected a finite number"
         );
-        assert!(error(&good.replacen(",7,", ",-7,", 1)).starts_with("line 2, column seed: \"-7\""));
-        assert!(error(&good.replace("ghosts", "spirits")).contains("no column \"ghosts\""));
-        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 39"));
+        assert!(error(&good.replacen(",7,", ",-7,", 1)).starts_with("line 2, column seed: \"-7\"; expected a whole"));
+        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 42"));
         assert!(error(&good.replacen("1 0 0 1 0 0", "1 0 0 3 0 0", 1)).starts_with("line 2, column echoes_found: "));
-        assert!(error("").contains("no column \"set\""));
+        assert!(error(&good.replacen("1 0 0 2 0 4", "1 0 0", 1)).starts_with("line 2, column echoes: \"1 0 0\""));
+        let half = Row { cfar_detection: Some(0.5), ..row("1", 0, "live") };
+        assert!(error(&text(&[half])).starts_with("line 2, column cfar_false_alarm: \"\"; expected a rate"));
+        let twice = good.replacen("set,", "set,set,", 1).replace("\n1,", "\n1,1,");
+        assert!(error(&twice).starts_with("line 2: ") && error(&twice).contains("duplicate"), "{}", error(&twice));
         let long = format!("{good}{}", "x".repeat(1 << 20));
         assert_eq!(error(&long), "line 4: is longer than 65536 bytes; expected a row");
-        let binary = [good.as_bytes(), b"\xff\xfe,".repeat(34).as_slice()].concat();
-        assert!(read_rows(binary.as_slice()).is_err());
+        let binary = [good.as_bytes(), b"\xff\xfe,".repeat(41).as_slice(), b"\n"].concat();
+        assert!(read_rows(binary.as_slice()).unwrap_err().to_string().contains("is not text"));
     }
 }

@@ -1,10 +1,9 @@
 //! Rows that are missing from a whole run.
 
-use super::{Row, Whole};
+use super::{Row, Text, Whole};
 use crate::evaluate::shard::Shard;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
-use std::sync::Arc;
 
 /// Most scenes that a message numbers.
 const MOST_NAMED: usize = 8;
@@ -48,37 +47,34 @@ impl fmt::Display for Lack {
 /// between the scenes that are there.
 pub fn lacks(rows: &[Row]) -> Vec<Lack> {
     let mut present: BTreeMap<(&str, &str), BTreeSet<u32>> = BTreeMap::new();
-    let mut wholes: Vec<&Whole> = Vec::new();
+    let mut runs: Vec<(&Text, &Text)> = Vec::new();
+    let mut wholes: Vec<Whole> = Vec::new();
     let mut shards: Vec<Shard> = Vec::new();
-    let mut last = None;
-    let mut guessed: BTreeMap<&str, (u32, BTreeSet<&str>)> = BTreeMap::new();
+    let mut guessed: BTreeMap<&Text, (u32, BTreeSet<&Text>)> = BTreeMap::new();
     for row in rows {
-        present.entry((&row.set, &row.method)).or_default().insert(row.index);
-        let Some(origin) = &row.origin else {
+        present.entry((&*row.set, &*row.method)).or_default().insert(row.index);
+        let (run, Some(shard)) = ((&row.whole, &row.methods), row.shard) else {
             let (count, methods) = guessed.entry(&row.set).or_default();
             *count = (*count).max(row.index.saturating_add(1));
             methods.insert(&row.method);
             continue;
         };
-        if last.is_some_and(|last| Arc::ptr_eq(last, origin)) {
-            continue;
+        if !runs.contains(&run) {
+            runs.push(run);
+            wholes.extend(row.whole_run());
         }
-        last = Some(origin);
-        if !wholes.contains(&&origin.whole) {
-            wholes.push(&origin.whole);
-        }
-        if !shards.contains(&origin.shard) {
-            shards.push(origin.shard);
+        if !shards.contains(&shard) {
+            shards.push(shard);
         }
     }
     let mut wanted: Vec<(&str, &str, u32)> = Vec::new();
-    for whole in wholes {
+    for whole in &wholes {
         for (set, count) in &whole.sets {
             wanted.extend(whole.methods.iter().map(|method| (set.as_str(), method.as_str(), *count)));
         }
     }
     for (set, (count, methods)) in guessed {
-        wanted.extend(methods.into_iter().map(|method| (set, method, count)));
+        wanted.extend(methods.into_iter().map(|method| (&**set, &**method, count)));
     }
     let empty = BTreeSet::new();
     let mut found: Vec<Lack> = Vec::new();
@@ -108,17 +104,17 @@ impl Lack {
 
 #[cfg(test)]
 mod tests {
-    use super::super::origin::tests::origin;
-    use super::super::tests::row;
+    use super::super::tests::{made, row};
     use super::*;
-    use crate::evaluate::rows::Origin;
 
     fn rows(shard: &str) -> Vec<Row> {
         let shard: Shard = shard.parse().unwrap();
-        let sets = vec![("1".to_owned(), 10), ("2".to_owned(), 10)];
-        let whole = Whole::new(sets, vec!["live".into(), "nomp".into()]).unwrap();
-        let origin = Arc::new(Origin { shard, whole, ..origin() });
-        let of = |set: &str, index, method: &str| Row { origin: Some(origin.clone()), ..row(set, index, method) };
+        let of = |set: &str, index, method: &str| Row {
+            shard: Some(shard),
+            whole: "1 x 10; 2 x 10".into(),
+            methods: "live; nomp".into(),
+            ..made(set, index, method)
+        };
         let numbers: Vec<u32> = (0..10).filter(|n| shard.contains(*n)).collect();
         ["1", "2"]
             .iter()

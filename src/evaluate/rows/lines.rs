@@ -2,6 +2,8 @@
 
 use std::io::{self, BufRead, BufReader, Read};
 
+/// Most rows that a file may have: they take some 1 GB.
+pub const MAX_ROWS: usize = 2_000_000;
 /// Most bytes that a line of a file may have.
 pub(super) const MAX_LINE_BYTES: usize = 64 << 10;
 

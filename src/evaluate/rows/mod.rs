@@ -1,95 +1,167 @@
 //! One row a scene and method: what an evaluation found, kept as CSV so that it can be sorted, sliced, merged and reproduced.
+//!
+//! [`Row`] is the one place where a column stands: the file's first line, writing, reading, [`Column`], and the module's dicts come from it.
 
+mod cell;
+mod columns;
 mod file;
 mod lacks;
 mod lines;
+mod merge;
 mod order;
-mod origin;
-mod part;
-mod read;
 mod whole;
 
-pub use file::{RowWriter, header, write_rows};
+pub use cell::{Kind, Text, Value};
+pub use file::{RowError, Table, header, read_rows, read_table, row_writer, write_rows};
 pub use lacks::{Lack, lacks};
-pub use order::{Histogram, MergeError, estimate, merge, sorted_by};
-pub use origin::{FORMAT, Origin, Scenes, radar_text};
-pub use part::Part;
-pub use read::{RowError, Table, read_rows, read_table};
+pub use lines::MAX_ROWS;
+pub use merge::{MergeError, merge};
+pub use order::{Histogram, estimate, sorted_by};
 pub use whole::{GivenTwice, Whole};
 
-use super::echoes::EchoTally;
-use crate::scene::generate::Kind;
-use std::sync::Arc;
+use super::echoes::{EchoCounts, EchoTally};
+use super::shard::Shard;
+use crate::maps::Normalisation;
+use crate::maps::cfar::Cfar;
+use crate::radar::Carrier;
+use crate::scene::generate::{self, Purpose, Reading};
+use crate::signal::Floor;
+use cell::{Cell, by_text, unless_file};
+use columns::columns;
 
-/// Most rows that a file may have: they take some 600 MB.
-pub const MAX_ROWS: usize = 2_000_000;
+/// Number of the format of rows, which stands in each. Before format 2 the floor "thesis" had another level ([`WHY_NO_OTHER_FORMAT`]). Tables
+/// from before the formats were counted have no such column, and don't say what made them.
+pub const FORMAT: u32 = 2;
 
-/// What one method made of one scene.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Row {
-    /// The scenes: a test set's number, a kind's name or a folder.
-    pub set: String,
-    /// Number of the scene in its set.
-    pub index: u32,
-    /// Seed of the set's scenes; 0 for a folder's.
-    pub seed: u64,
-    /// Name of the method.
-    pub method: String,
-    /// Threshold of the method.
-    pub eta: f32,
-    /// SE.
-    pub squared_error: f64,
-    /// P_D at `eta`; `None` where the target has no cells.
-    pub detection: Option<f64>,
-    /// P_FA at `eta`.
-    pub false_alarm: f64,
-    /// P_D at the smallest threshold that holds this scene's P_FA to the set's printed one.
-    pub detection_at_printed: Option<f64>,
-    /// Time of the map, milliseconds.
-    pub milliseconds: f64,
-    /// Objects of the scene.
-    pub objects: usize,
-    /// Their reflectors.
-    pub reflectors: usize,
-    /// Objects that the method misses.
-    pub missed: usize,
-    /// Blobs of its output where nothing is.
-    pub ghosts: usize,
-    /// How far the nearest two reflectors of different objects lie apart along the columns; `None` for fewer than two objects.
-    pub nearest_pair_columns: Option<f64>,
-    /// The same along range, in range bins.
-    pub nearest_pair_bins: Option<f64>,
-    /// Range of the nearest reflector, metres; `None` for an empty scene.
-    pub min_range_metres: Option<f64>,
-    /// The strongest echo over the weakest, dB of amplitude; `None` for an empty scene.
-    pub strongest_over_weakest_db: Option<f64>,
-    /// Objects found, with nothing wrong; `None` in tables that were written before the kinds of failure were counted.
-    pub found: Option<usize>,
-    /// Objects that share a blob with a neighbour.
-    pub merged: Option<usize>,
-    /// Objects on the wrong tooth of the comb.
-    pub wrong_tooth: Option<usize>,
-    /// Echoes that stand out in the target by their strength, and how many of them the method shows; `None` for scenes without bodies, and
-    /// in tables that were written before echoes were counted.
-    pub echoes: Option<EchoTally>,
-    /// SE if every cell were off by its doubt ([`squared_doubt`](super::squared_doubt)); `None` for methods that say no doubt, and in tables
-    /// that were written before it was kept.
-    pub doubt: Option<f64>,
-    /// Part of the cells whose error is at most their doubt ([`part_within`](super::part_within)); `None` as for `doubt`.
-    pub within_doubt: Option<f64>,
-    /// P_D and P_FA by the detector of its origin; `None` where none was asked for.
-    pub cfar: Option<CfarRates>,
-    /// What made the row; `None` in tables that were written before this was kept.
-    pub origin: Option<Arc<Origin>>,
+/// Why rows of two formats are not put together.
+pub const WHY_NO_OTHER_FORMAT: &str = "the floor \"thesis\" is 1.8 dB quieter from format 2 on, so that figures of older rows don't compare with newer ones";
+
+columns! {
+    figures {
+        /// The scenes: a test set's number, a kind's name or a folder.
+        set: Text = Set,
+        /// Number of the scene in its set.
+        index: u32 = Index,
+        /// Seed of the set's scenes; 0 for a folder's.
+        seed: u64 = Seed,
+        /// Name of the method.
+        method: Text = Method,
+        /// Threshold of the method.
+        eta: f32 = Eta,
+        /// SE.
+        squared_error: f64 = SquaredError,
+        /// P_D at `eta`; `None` where the target has no cells.
+        detection: Option<f64> = Detection,
+        /// P_FA at `eta`.
+        false_alarm: f64 = FalseAlarm,
+        /// P_D at the smallest threshold that holds this scene's P_FA to the set's printed one.
+        detection_at_printed: Option<f64> = DetectionAtPrinted,
+        /// Time of the map, milliseconds.
+        milliseconds: f64 = Milliseconds,
+        /// Objects of the scene.
+        objects: usize = Objects,
+        /// Their reflectors.
+        reflectors: usize = Reflectors,
+        /// Objects that the method misses.
+        missed: usize = Missed,
+        /// Blobs of its output where nothing is.
+        ghosts: usize = Ghosts,
+        /// Columns between the nearest two reflectors of different objects; `None` for fewer than two objects.
+        nearest_pair_columns: Option<f64> = NearestPairColumns,
+        /// Range bins between them.
+        nearest_pair_bins: Option<f64> = NearestPairBins,
+        /// Range of the nearest reflector, metres; `None` for an empty scene.
+        min_range_metres: Option<f64> = MinRangeMetres,
+        /// The strongest echo over the weakest, dB of amplitude; `None` for an empty scene.
+        strongest_over_weakest_db: Option<f64> = StrongestOverWeakestDb,
+        /// Objects found, with nothing wrong; `None` in tables from before the kinds of failure were counted.
+        found: Option<usize> = Found,
+        /// Objects that share a blob with a neighbour.
+        merged: Option<usize> = Merged,
+        /// Objects on the wrong tooth of the comb.
+        wrong_tooth: Option<usize> = WrongTooth,
+        /// Echoes that stand out in the target, by their strength; `None` for scenes without bodies, and in tables from before they were counted.
+        #[serde(with = "by_text")]
+        echoes: Option<EchoCounts> = Echoes,
+        /// Those of them that the method shows.
+        #[serde(with = "by_text")]
+        echoes_found: Option<EchoCounts> = EchoesFound,
+        /// SE if every cell were off by its doubt ([`squared_doubt`](super::squared_doubt)); `None` for methods that say no doubt, and in tables
+        /// from before it was kept.
+        doubt: Option<f64> = Doubt,
+        /// Part of the cells whose error is at most their doubt ([`part_within`](super::part_within)); `None` as for `doubt`.
+        within_doubt: Option<f64> = WithinDoubt,
+        /// P_D by the detector `cfar`; `None` where none was tried, and where the target has no cells.
+        cfar_detection: Option<f64> = CfarDetection,
+        /// P_FA by the detector `cfar`; `None` where none was tried.
+        cfar_false_alarm: Option<f64> = CfarFalseAlarm,
+    }
+    origin {
+        /// The format of the row, [`FORMAT`] or an older one; `None` in tables that don't say what made them.
+        version: Option<u32> = Version,
+        /// Version of the program.
+        program: Text = Program,
+        /// What lay beneath the reflectors.
+        #[serde(with = "by_text")]
+        floor: Option<Floor> = Floor,
+        /// How maps were normalised.
+        #[serde(with = "by_text")]
+        normalisation: Option<Normalisation> = Normalisation,
+        /// What generated scenes are for; `None` for a folder's.
+        #[serde(deserialize_with = "unless_file")]
+        purpose: Option<Purpose> = Purpose,
+        /// After which description they were generated.
+        #[serde(deserialize_with = "unless_file")]
+        reading: Option<Reading> = Reading,
+        /// How the carrier's phase was read for them; the scenes of a folder say it themselves.
+        #[serde(deserialize_with = "unless_file")]
+        carrier: Option<Carrier> = Carrier,
+        /// Each constant of their radar that differs from table 3.1, the carrier's reading left out.
+        radar: Text = Radar,
+        /// The fingerprint of a folder's files.
+        scenes: Text = Scenes,
+        /// The fingerprint of the method's weights; empty for a method that learns nothing.
+        weights: Text = Weights,
+        /// The optimisers that trained them.
+        optimiser: Text = Optimiser,
+        /// Which scenes were this run's.
+        #[serde(with = "by_text")]
+        shard: Option<Shard> = Shard,
+        /// The sets of the whole run with their numbers of scenes, as [`Whole`] writes them.
+        whole: Text = Whole,
+        /// The methods of the whole run.
+        methods: Text = Methods,
+        /// The detector of constant false-alarm rate that was tried on every output; empty where none was.
+        cfar: Text = Cfar,
+    }
 }
 
-/// What a detector with a constant false-alarm rate makes of an output.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CfarRates {
-    /// P_D: part of the target cells that it detects; `None` where the target has none.
-    pub detection: Option<f64>,
-    /// P_FA: part of the other cells that it detects.
-    pub false_alarm: f64,
+impl Column {
+    /// Every column, in the file's order.
+    pub fn all() -> impl Iterator<Item = Column> {
+        Column::FIGURES.iter().chain(Column::ORIGIN).copied()
+    }
+
+    /// The column of figures called `name`.
+    pub fn by_name(name: &str) -> Option<Column> {
+        Column::FIGURES.iter().copied().find(|column| column.name() == name)
+    }
+
+    /// What stands in this column of `row`, for messages; empty where nothing does.
+    pub fn text(self, row: &Row) -> String {
+        match self {
+            Column::Seed => row.seed.to_string(),
+            _ => self.cell(row).to_string(),
+        }
+    }
+
+    /// What stands in this column of `row`. A set that is a number is one. Echoes of all classes are added up.
+    pub fn of(self, row: &Row) -> Value<'_> {
+        match self.cell(row) {
+            Value::Text(text) if self == Column::Set => text.parse().map_or(Value::Text(text), Value::Number),
+            value => value,
+        }
+    }
 }
 
 impl Row {
@@ -100,171 +172,65 @@ impl Row {
 
     /// Whether a generator made its scene.
     pub fn is_generated(&self) -> bool {
-        match &self.origin {
-            Some(origin) => matches!(origin.scenes, Scenes::Generated { .. }),
-            None => self.set.parse::<Kind>().is_ok(),
-        }
-    }
-}
-
-/// A column of the table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[expect(missing_docs, reason = "the fields of `Row` say what they are")]
-pub enum Column {
-    Set,
-    Index,
-    Seed,
-    Method,
-    Eta,
-    SquaredError,
-    Detection,
-    FalseAlarm,
-    DetectionAtPrinted,
-    Milliseconds,
-    Objects,
-    Reflectors,
-    Missed,
-    Ghosts,
-    NearestPairColumns,
-    NearestPairBins,
-    MinRangeMetres,
-    StrongestOverWeakestDb,
-    Found,
-    Merged,
-    WrongTooth,
-    Echoes,
-    EchoesFound,
-    Doubt,
-    WithinDoubt,
-    CfarDetection,
-    CfarFalseAlarm,
-}
-
-/// What stands in a cell of the table.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Value<'a> {
-    /// A number.
-    Number(f64),
-    /// A name.
-    Text(&'a str),
-    /// Nothing: the figure doesn't exist for this scene.
-    Missing,
-}
-
-impl Column {
-    /// Every column, in the file's order.
-    pub const ALL: [Column; 27] = [
-        Column::Set,
-        Column::Index,
-        Column::Seed,
-        Column::Method,
-        Column::Eta,
-        Column::SquaredError,
-        Column::Detection,
-        Column::FalseAlarm,
-        Column::DetectionAtPrinted,
-        Column::Milliseconds,
-        Column::Objects,
-        Column::Reflectors,
-        Column::Missed,
-        Column::Ghosts,
-        Column::NearestPairColumns,
-        Column::NearestPairBins,
-        Column::MinRangeMetres,
-        Column::StrongestOverWeakestDb,
-        Column::Found,
-        Column::Merged,
-        Column::WrongTooth,
-        Column::Echoes,
-        Column::EchoesFound,
-        Column::Doubt,
-        Column::WithinDoubt,
-        Column::CfarDetection,
-        Column::CfarFalseAlarm,
-    ];
-
-    /// Name in the file's first line and in filters.
-    pub fn name(self) -> &'static str {
-        match self {
-            Column::Set => "set",
-            Column::Index => "index",
-            Column::Seed => "seed",
-            Column::Method => "method",
-            Column::Eta => "eta",
-            Column::SquaredError => "squared_error",
-            Column::Detection => "detection",
-            Column::FalseAlarm => "false_alarm",
-            Column::DetectionAtPrinted => "detection_at_printed",
-            Column::Milliseconds => "milliseconds",
-            Column::Objects => "objects",
-            Column::Reflectors => "reflectors",
-            Column::Missed => "missed",
-            Column::Ghosts => "ghosts",
-            Column::NearestPairColumns => "nearest_pair_columns",
-            Column::NearestPairBins => "nearest_pair_bins",
-            Column::MinRangeMetres => "min_range_metres",
-            Column::StrongestOverWeakestDb => "strongest_over_weakest_db",
-            Column::Found => "found",
-            Column::Merged => "merged",
-            Column::WrongTooth => "wrong_tooth",
-            Column::Echoes => "echoes",
-            Column::EchoesFound => "echoes_found",
-            Column::Doubt => "doubt",
-            Column::WithinDoubt => "within_doubt",
-            Column::CfarDetection => "cfar_detection",
-            Column::CfarFalseAlarm => "cfar_false_alarm",
+        match self.version {
+            Some(_) => self.carrier.is_some(),
+            None => self.set.parse::<generate::Kind>().is_ok(),
         }
     }
 
-    /// Whether a table may lack it: older ones do.
-    pub fn is_optional(self) -> bool {
-        use Column::{Doubt, Echoes, EchoesFound, Found, Merged, WithinDoubt, WrongTooth};
-        matches!(self, Found | Merged | WrongTooth | Echoes | EchoesFound | Doubt | WithinDoubt) || self.is_of_cfar()
+    /// Echoes that stand out in the target, and those that the method shows; `None` where they are not counted.
+    pub fn echo_tally(&self) -> Option<EchoTally> {
+        Some(EchoTally { there: self.echoes?.0, found: self.echoes_found?.0 })
     }
 
-    /// Whether only rows with a detector of constant false-alarm rate have it.
-    pub fn is_of_cfar(self) -> bool {
-        matches!(self, Column::CfarDetection | Column::CfarFalseAlarm)
+    /// The run that it is of; `None` where the row doesn't say.
+    pub fn whole_run(&self) -> Option<Whole> {
+        self.version.and_then(|_| Whole::read(&self.whole, &self.methods))
     }
 
-    /// The column called `name`.
-    pub fn by_name(name: &str) -> Option<Column> {
-        Column::ALL.into_iter().find(|c| c.name() == name)
-    }
-
-    /// What stands in this column of `row`. A set that is a number is one. Echoes of all classes are added up.
-    pub fn of(self, row: &Row) -> Value<'_> {
-        let maybe = |v: Option<f64>| v.map_or(Value::Missing, Value::Number);
-        let count = |v: Option<usize>| maybe(v.map(|v| v as f64));
-        match self {
-            Column::Set => row.set.parse().map_or(Value::Text(&row.set), Value::Number),
-            Column::Index => Value::Number(f64::from(row.index)),
-            Column::Seed => Value::Number(row.seed as f64),
-            Column::Method => Value::Text(&row.method),
-            Column::Eta => Value::Number(f64::from(row.eta)),
-            Column::SquaredError => Value::Number(row.squared_error),
-            Column::Detection => maybe(row.detection),
-            Column::FalseAlarm => Value::Number(row.false_alarm),
-            Column::DetectionAtPrinted => maybe(row.detection_at_printed),
-            Column::Milliseconds => Value::Number(row.milliseconds),
-            Column::Objects => Value::Number(row.objects as f64),
-            Column::Reflectors => Value::Number(row.reflectors as f64),
-            Column::Missed => Value::Number(row.missed as f64),
-            Column::Ghosts => Value::Number(row.ghosts as f64),
-            Column::NearestPairColumns => maybe(row.nearest_pair_columns),
-            Column::NearestPairBins => maybe(row.nearest_pair_bins),
-            Column::MinRangeMetres => maybe(row.min_range_metres),
-            Column::StrongestOverWeakestDb => maybe(row.strongest_over_weakest_db),
-            Column::Found => count(row.found),
-            Column::Merged => count(row.merged),
-            Column::WrongTooth => count(row.wrong_tooth),
-            Column::Echoes => count(row.echoes.map(|echoes| echoes.there.iter().sum())),
-            Column::EchoesFound => count(row.echoes.map(|echoes| echoes.found.iter().sum())),
-            Column::Doubt => maybe(row.doubt),
-            Column::WithinDoubt => maybe(row.within_doubt),
-            Column::CfarDetection => maybe(row.cfar.and_then(|rates| rates.detection)),
-            Column::CfarFalseAlarm => maybe(row.cfar.map(|rates| rates.false_alarm)),
+    /// Checks what the types of the cells leave open.
+    ///
+    /// # Errors
+    /// The column that can't be used, and what was expected there.
+    fn check(&self) -> Result<(), (Column, &'static str)> {
+        let is_finite = |column: &Column| column.cell(self).number().is_none_or(f64::is_finite);
+        let endless = Column::FIGURES.iter().find(|column| !is_finite(column));
+        let (found, there) = (self.echoes_found.unwrap_or_default().0, self.echoes.unwrap_or_default().0);
+        let are_fewer =
+            self.echoes.is_some() == self.echoes_found.is_some() && found.iter().zip(&there).all(|(f, t)| f <= t);
+        let expected = |is_so: bool, column: Column, expected| if is_so { Ok(()) } else { Err((column, expected)) };
+        endless.map_or(Ok(()), |column| Err((*column, "a finite number")))?;
+        expected(!self.set.is_empty(), Column::Set, "a name")?;
+        expected(!self.method.is_empty(), Column::Method, "a name")?;
+        expected(
+            are_fewer,
+            Column::EchoesFound,
+            "six whole numbers from 0, none larger in echoes_found than in echoes",
+        )?;
+        let has_rate = self.cfar_false_alarm.is_some() || self.cfar_detection.is_none();
+        expected(has_rate, Column::CfarFalseAlarm, "a rate beside cfar_detection")?;
+        if self.version.is_none() {
+            return Ok(());
         }
+        expected(self.version != Some(0), Column::Version, "1 or 2, the formats of rows that this program reads")?;
+        expected(self.floor.is_some(), Column::Floor, "a floor as --floor takes it")?;
+        expected(self.normalisation.is_some(), Column::Normalisation, "min-max or db=RANGE")?;
+        let is_generated = self.carrier.is_some();
+        expected(
+            self.purpose.is_some() == is_generated,
+            Column::Purpose,
+            "training, validation or test, beside a carrier",
+        )?;
+        expected(self.reading.is_some() == is_generated, Column::Reading, "program or text, beside a carrier")?;
+        expected(self.shard.is_some(), Column::Shard, "I/N with I from 0 to N - 1")?;
+        let is_whole = Whole::read(&self.whole, &self.methods).is_some();
+        expected(
+            is_whole,
+            Column::Whole,
+            "the sets and methods of the whole run, as in 1 x 100; 2 x 100 and live; nomp",
+        )?;
+        let has_detector = self.cfar.is_empty() || self.cfar.parse::<Cfar>().is_ok();
+        expected(has_detector, Column::Cfar, "a detector as --cfar takes it, or nothing")
     }
 }
 
@@ -272,7 +238,7 @@ impl Column {
 pub(super) mod tests {
     use super::*;
 
-    /// A row in whose figures every digit counts.
+    /// A row in whose figures every digit counts, of a table that doesn't say what made it.
     pub(in crate::evaluate) fn row(set: &str, index: u32, method: &str) -> Row {
         Row {
             set: set.into(),
@@ -283,24 +249,43 @@ pub(super) mod tests {
             squared_error: 100.0 / 3.0 + f64::from(index),
             detection: Some(0.1 + 0.2),
             false_alarm: 1e-300,
-            detection_at_printed: None,
             milliseconds: 12.5,
             objects: 3,
             reflectors: 150,
             missed: 1,
-            ghosts: 0,
             nearest_pair_columns: Some(f64::MIN_POSITIVE),
-            nearest_pair_bins: None,
             min_range_metres: Some(5.0),
             strongest_over_weakest_db: Some(0.0),
             found: Some(1),
             merged: Some(0),
-            wrong_tooth: None,
-            echoes: Some(EchoTally { there: [1, 0, 0, 2, 0, 4], found: [1, 0, 0, 1, 0, 0] }),
+            echoes: Some(EchoCounts([1, 0, 0, 2, 0, 4])),
+            echoes_found: Some(EchoCounts([1, 0, 0, 1, 0, 0])),
             doubt: Some(200.0 / 7.0),
             within_doubt: Some(8.0 / 9.0),
-            cfar: None,
-            origin: None,
+            ..Row::default()
         }
+    }
+
+    /// The same as a usual run of four scenes makes it.
+    pub(in crate::evaluate) fn made(set: &str, index: u32, method: &str) -> Row {
+        Row {
+            version: Some(FORMAT),
+            program: "0.2.0".into(),
+            floor: Some(Floor::Thesis),
+            normalisation: Some(Normalisation::MinMax),
+            purpose: Some(Purpose::Test),
+            reading: Some(Reading::Program),
+            carrier: Some(Carrier::OneWay),
+            shard: Some(Shard::default()),
+            whole: "1 x 4".into(),
+            methods: "live".into(),
+            ..row(set, index, method)
+        }
+    }
+
+    #[test]
+    fn two_million_rows_take_about_a_gigabyte() {
+        let bytes = size_of::<Row>();
+        assert!(bytes <= 560, "{bytes} bytes a row");
     }
 }

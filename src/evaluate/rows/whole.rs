@@ -1,6 +1,6 @@
 //! All that a run was to find: its sets and methods, and how rows write them down.
 
-use super::MAX_ROWS;
+use super::lines::MAX_ROWS;
 
 /// Most pairs of set and method that one run may have.
 const MAX_PAIRS: usize = 10_000;
@@ -39,20 +39,28 @@ impl Whole {
     }
 
     /// The sets as they are written in their column.
-    pub(super) fn sets_text(&self) -> String {
+    pub fn sets_text(&self) -> String {
         let sets = self.sets.iter().map(|(name, count)| format!("{} x {count}", listed(name)));
         sets.collect::<Vec<_>>().join("; ")
     }
 
     /// The methods as they are written in theirs.
-    pub(super) fn methods_text(&self) -> String {
+    pub fn methods_text(&self) -> String {
         self.methods.iter().map(|m| listed(m)).collect::<Vec<_>>().join("; ")
     }
 
-    /// The same, if no file asks for more work than a run can be.
-    pub(super) fn bounded(self) -> Option<Whole> {
-        let scenes = self.sets.iter().all(|(_, count)| *count as usize <= MAX_ROWS);
-        (scenes && self.sets.len().saturating_mul(self.methods.len()) <= MAX_PAIRS).then_some(self)
+    /// Reads what [`Whole::sets_text`] and [`Whole::methods_text`] wrote; `None` where it is something else, and where it asks for more work
+    /// than a run can be.
+    pub fn read(sets: &str, methods: &str) -> Option<Whole> {
+        let set = |text: &str| {
+            let (name, count) = text.rsplit_once(" x ")?;
+            Some((unlisted(name), count.trim().parse().ok()?)).filter(|(name, _)| !name.is_empty())
+        };
+        let sets: Vec<(String, u32)> = sets.split(';').map(set).collect::<Option<_>>()?;
+        let methods: Vec<String> = methods.split(';').map(unlisted).collect();
+        let are_few = sets.iter().all(|(_, count)| *count as usize <= MAX_ROWS)
+            && sets.len().saturating_mul(methods.len()) <= MAX_PAIRS;
+        (are_few && methods.iter().all(|name| !name.is_empty())).then_some(Whole { sets, methods })
     }
 }
 
@@ -69,21 +77,6 @@ fn unlisted(name: &str) -> String {
     name.trim().replace("%3B", ";").replace("%25", "%")
 }
 
-/// Reads what [`Whole::sets_text`] wrote; `None` where it is something else.
-pub(super) fn sets(text: &str) -> Option<Vec<(String, u32)>> {
-    let set = |text: &str| {
-        let (name, count) = text.rsplit_once(" x ")?;
-        Some((unlisted(name), count.trim().parse().ok()?)).filter(|(name, _)| !name.is_empty())
-    };
-    text.split(';').map(set).collect()
-}
-
-/// Reads what [`Whole::methods_text`] wrote; `None` where a name is missing.
-pub(super) fn methods(text: &str) -> Option<Vec<String>> {
-    let names: Vec<String> = text.split(';').map(unlisted).collect();
-    names.iter().all(|name| !name.is_empty()).then_some(names)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -97,5 +90,15 @@ mod tests {
         assert_eq!(twice.to_string(), "set \"1\" is given twice; expected each set once");
         let twice = Whole::new(sets(["1", "2"]), methods(["live", "live"])).unwrap_err();
         assert_eq!(twice.to_string(), "method \"live\" is given twice; expected each method once");
+    }
+
+    #[test]
+    fn a_whole_run_is_read_as_it_was_written() {
+        let sets = vec![("my; 5 x 5 % scenes".to_owned(), 7), ("3".to_owned(), 12)];
+        let whole = Whole::new(sets, vec!["live".to_owned(), "nomp".to_owned()]).unwrap();
+        assert_eq!(Whole::read(&whole.sets_text(), &whole.methods_text()), Some(whole));
+        for (sets, methods) in [("1 times 4", "live"), ("1 x 4294967295", "live"), ("1 x 4", "live;"), ("", "")] {
+            assert_eq!(Whole::read(sets, methods), None, "{sets} {methods}");
+        }
     }
 }

@@ -41,12 +41,12 @@ impl Paired {
         let mut scenes: HashMap<_, [Option<&Row>; 2]> = HashMap::new();
         let mut order = Vec::new();
         for row in rows {
-            let slot = match row.method.as_str() {
+            let slot = match &*row.method {
                 method if method == first => 0,
                 method if method == second => 1,
                 _ => continue,
             };
-            let key = (row.set.as_str(), row.seed, row.index);
+            let key = (&*row.set, row.seed, row.index);
             scenes.entry(key).or_insert_with(|| {
                 order.push(key);
                 [None; 2]

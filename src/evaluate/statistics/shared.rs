@@ -80,7 +80,7 @@ pub struct Shared {
 /// # Errors
 /// [`FilterError`] where `bad` is no filter.
 pub fn rules(rows: &[Row], bad: &str) -> Result<Shared, FilterError> {
-    let names: BTreeSet<&str> = rows.iter().map(|row| row.method.as_str()).collect();
+    let names: BTreeSet<&str> = rows.iter().map(|row| &*row.method).collect();
     let names: Vec<&str> = names.into_iter().collect();
     let mut is_bad = vec![false; rows.len()];
     Filter::parse(bad, &names)?.matching(rows).into_iter().for_each(|row| is_bad[row] = true);
@@ -162,10 +162,7 @@ fn candidates<'a>(column: Column, rows: impl Iterator<Item = &'a Row>) -> Vec<(S
         (1..CUTS).filter_map(|k| numbers.get(k * numbers.len() / CUTS)).map(|v| rounded(*v)).collect();
     cuts.dedup();
     let of_cut = |cut: f64| -> [(String, Truth); 2] {
-        let number = move |row: &Row| match column.of(row) {
-            Value::Number(v) => Some(v),
-            _ => None,
-        };
+        let number = move |row: &Row| column.of(row).number();
         [
             (format!("{} < {cut}", column.name()), Box::new(move |row: &Row| number(row).is_some_and(|v| v < cut))),
             (format!("{} >= {cut}", column.name()), Box::new(move |row: &Row| number(row).is_some_and(|v| v >= cut))),

@@ -16,11 +16,12 @@ pub use thumbnails::{Album, HEIGHT as THUMBNAIL_HEIGHT, Thumbnail, WIDTH as THUM
 use super::rows::{RowJob, Stopped, Teller};
 use crate::app::state::{Conditions, State};
 use crate::evaluate::campaign::Campaign;
-use crate::evaluate::rows::Row;
+use crate::evaluate::rows::{FORMAT, Row, WHY_NO_OTHER_FORMAT};
 use crate::evaluate::sets::SceneSet;
 use crate::platform::Instant;
 use crate::platform::fs;
 use crate::reconstruct::Reconstructor;
+use crate::signal::Floor;
 use search::Search;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -94,12 +95,13 @@ impl Failures {
         Ok(Failures { run, table, before: None, thumbnails, store, search, file, kept: 0, written: None })
     }
 
-    /// Tries what `plan` says. Rows made under the same conditions stay; others make room, as figures don't compare.
+    /// Tries what `plan` says. Rows made under the same conditions stay; others, and those of an older format, make room, as figures don't
+    /// compare.
     pub fn begin(&mut self, plan: Plan) {
         let Campaign { floor, normalisation, ref radar, .. } = plan.campaign;
         let conditions = Conditions { floor, normalisation, radar: radar.clone() };
         self.take_in_rows();
-        if *self.table.conditions() != conditions {
+        if *self.table.conditions() != conditions || !self.table.is_of_this_format() {
             self.replace(Vec::new(), conditions);
         }
         self.thumbnails.stop();
@@ -194,9 +196,11 @@ impl Failures {
         errors.extend(self.thumbnails.poll().map(|said| format!("Small maps could not be drawn: {said}")));
         for done in self.store.poll() {
             match done {
-                Done::Read { own: true, kept: Ok((rows, conditions)), .. } => self.restore(rows, conditions),
+                Done::Read { own, kept: Ok((rows, conditions)), .. } => {
+                    errors.extend(said_of_older(&rows));
+                    if own { self.restore(rows, conditions) } else { self.replace(rows, conditions) }
+                }
                 Done::Read { own: true, path, kept: Err(error) } => errors.push(self.set_aside(&path, &error)),
-                Done::Read { own: false, kept: Ok((rows, conditions)), .. } => self.replace(rows, conditions),
                 Done::Read { kept: Err(error), .. } => errors.push(format!("{error}\nThe rows on screen were kept.")),
                 Done::Wrote(version) => self.kept = version,
                 Done::Unwritten(error) => {
@@ -214,7 +218,7 @@ impl Failures {
         if self.table.version() == 0 {
             self.table.replace(rows, conditions);
             self.kept = self.table.version();
-        } else if *self.table.conditions() == conditions {
+        } else if *self.table.conditions() == conditions && rows.iter().all(|row| row.version == Some(FORMAT)) {
             let missing: Vec<Row> = rows.into_iter().filter(|row| !self.table.has(row)).collect();
             missing.into_iter().for_each(|row| _ = self.table.add(row));
         }
@@ -270,6 +274,15 @@ impl Failures {
             _ => Ok(()),
         }
     }
+}
+
+/// A sentence about rows whose floor has another level than that of scenes now.
+fn said_of_older(rows: &[Row]) -> Option<String> {
+    let row = rows.first().filter(|row| row.version != Some(FORMAT) && row.floor.is_none_or(|f| f == Floor::Thesis))?;
+    let format = row.version.map_or("an older format".to_owned(), |version| format!("format {version}"));
+    Some(format!(
+        "These rows are of {format}: {WHY_NO_OTHER_FORMAT}. Their scenes and small maps have the floor of now."
+    ))
 }
 
 fn try_all(run: &Run, album: &Album, teller: &Teller<'_, (u64, Row)>) -> Result<(), Stopped> {

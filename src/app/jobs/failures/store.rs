@@ -1,7 +1,7 @@
 //! Rows on disk: as CSV, and beside it how they were made, where that isn't as the tables' scenes are.
 
 use crate::app::state::Conditions;
-use crate::evaluate::rows::{Column, Row, Scenes, read_rows, write_rows};
+use crate::evaluate::rows::{Column, Row, WHY_NO_OTHER_FORMAT, read_rows, write_rows};
 use crate::files::{read_bounded, write_atomically, write_bytes};
 use crate::platform::fs::{self, File};
 use crate::radar::Radar;
@@ -49,6 +49,9 @@ pub fn write(path: &Path, rows: &[Row], conditions: &Conditions) -> Result<(), S
 pub fn read(path: &Path) -> Result<Kept, String> {
     let file = File::open(path).map_err(|e| format!("{}: {e}", path.display()))?;
     let rows = read_rows(file).map_err(|e| format!("{}: {e}", path.display()))?;
+    if rows.array_windows().any(|[a, b]| a.version != b.version) {
+        return Err(format!("{}: these rows are of several formats; {WHY_NO_OTHER_FORMAT}", path.display()));
+    }
     let other = beside(path);
     let conditions = match read_bounded(&other, MAX_CONDITIONS_BYTES) {
         Ok(bytes) => read_conditions(&bytes).map_err(|e| format!("{}: {e}", other.display()))?,
@@ -66,27 +69,28 @@ fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
     let mut radar = Radar::default();
     let (own_floor, usual): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|row| row.has_own_floor());
     for row in usual.into_iter().chain(own_floor) {
-        let Some(origin) = &row.origin else { continue };
-        if let Scenes::Generated { purpose, reading, carrier, radar: other } = &origin.scenes {
-            if (*purpose, *reading) != (Purpose::Test, Reading::Program) {
+        let (Some(floor), Some(normalisation)) = (row.floor, row.normalisation) else { continue };
+        if let Some(carrier) = row.carrier {
+            if (row.purpose, row.reading) != (Some(Purpose::Test), Some(Reading::Program)) {
                 return Err(
                     "these rows are not of the test scenes that the app makes; expected rows without --thesis-text"
                         .into(),
                 );
             }
-            if !other.is_empty() {
+            if !row.radar.is_empty() {
                 return Err(format!(
-                    "these rows are of another radar ({other}); expected its .conditions.toml beside them"
+                    "these rows are of another radar ({}); expected its .conditions.toml beside them",
+                    row.radar
                 ));
             }
-            radar.carrier = *carrier;
+            radar.carrier = carrier;
         }
         let floor = match &found {
             // It has that floor whatever the others have.
             Some(found) if row.has_own_floor() => found.floor,
-            _ => origin.floor,
+            _ => floor,
         };
-        let own = Conditions { floor, normalisation: origin.normalisation, radar: radar.clone() };
+        let own = Conditions { floor, normalisation, radar: radar.clone() };
         if found.as_ref().is_some_and(|found| (found.floor, found.normalisation) != (own.floor, own.normalisation)) {
             return Err(
                 "these rows were made over several floors or normalisations; expected rows that were made alike".into(),
@@ -221,6 +225,16 @@ mod tests {
     }
 
     #[test]
+    fn rows_of_two_formats_are_not_one_table() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.csv");
+        write(&path, &[some_row(0, "live"), Row { version: None, ..some_row(1, "live") }], &Conditions::default())
+            .unwrap();
+        let refused = read(&path).unwrap_err();
+        assert!(refused.contains("several formats; the floor \"thesis\" is 1.8 dB quieter"), "{refused}");
+    }
+
+    #[test]
     fn rows_of_the_command_say_themselves_how_they_were_made() {
         use crate::evaluate::campaign::Campaign;
         use crate::evaluate::sets::SceneSet;
@@ -231,8 +245,7 @@ mod tests {
         let path = folder.path().join("rows.csv");
         let made = |campaign: &Campaign| {
             let baseline: [&dyn Reconstructor; 1] = [&Baseline];
-            let origin = campaign.origins(&[SceneSet::Generated(Kind::Set1)], &baseline).unwrap()[0][0].clone();
-            Row { origin: Some(origin), ..some_row(0, "baseline") }
+            campaign.empty_rows(&[SceneSet::Generated(Kind::Set1)], &baseline).unwrap()[0][0].clone()
         };
         let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
         let campaign = Campaign { floor: Floor::Exact, radar: radar.clone(), ..Campaign::default() };
@@ -243,7 +256,8 @@ mod tests {
         let small = Campaign { radar: Radar { elements: 64, ..Radar::default() }, ..Campaign::default() };
         write_atomically(&path, |out| write_rows(out, &[made(&small)])).unwrap();
         assert!(read(&path).unwrap_err().contains("elements=64"));
-        write_atomically(&path, |out| write_rows(out, &[some_row(0, "live")])).unwrap();
+        let older = Row { version: None, ..some_row(0, "live") };
+        write_atomically(&path, |out| write_rows(out, &[older])).unwrap();
         assert_eq!(read(&path).unwrap().1, Conditions::default(), "older rows don't say it");
     }
 }

@@ -1,17 +1,17 @@
 //! The rows: each scene and method once, in the order they came.
 
 use crate::app::state::Conditions;
-use crate::evaluate::rows::{MAX_ROWS, Row};
+use crate::evaluate::rows::{FORMAT, MAX_ROWS, Row, Text};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// What tells a row from any other of its table.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct RowKey {
-    set: String,
+    set: Text,
     seed: u64,
     index: u32,
-    method: String,
+    method: Text,
 }
 
 impl RowKey {
@@ -77,14 +77,19 @@ impl RowTable {
         match place {
             Some(place) => rows[place] = row,
             None => {
-                if !self.methods.contains(&row.method) {
-                    self.methods.insert(row.method.clone());
+                if !self.methods.contains(&*row.method) {
+                    self.methods.insert(row.method.to_string());
                 }
                 self.places.insert(key, rows.len());
                 rows.push(row);
             }
         }
         true
+    }
+
+    /// Whether rows of this program may stand beside those that are there: not beside rows of an older format.
+    pub fn is_of_this_format(&self) -> bool {
+        self.rows.iter().all(|row| row.version == Some(FORMAT))
     }
 
     /// Whether there is a row of the same scene and method.
@@ -96,33 +101,31 @@ impl RowTable {
 /// A row of no scene in particular, to test with.
 #[cfg(test)]
 pub fn some_row(index: u32, method: &str) -> Row {
+    use crate::evaluate::campaign::Campaign;
+    use crate::evaluate::sets::SceneSet;
+    use crate::reconstruct::{Baseline, Reconstructor};
+    use crate::scene::generate::Kind;
+    let methods: [&dyn Reconstructor; 1] = [&Baseline];
+    let empty = Campaign::default().empty_rows(&[SceneSet::Generated(Kind::Set1)], &methods);
     Row {
-        set: "1".into(),
         index,
-        seed: 0,
         method: method.into(),
         eta: 0.8,
         squared_error: 100.0 + f64::from(index * 7919 % 1000),
         detection: (!index.is_multiple_of(5)).then_some(0.5),
         false_alarm: 0.01,
-        detection_at_printed: None,
         milliseconds: 3.0,
         objects: 1 + index as usize % 6,
         reflectors: 3,
         missed: index as usize % 3,
-        ghosts: 0,
-        nearest_pair_columns: None,
-        nearest_pair_bins: None,
         min_range_metres: Some(5.0),
         strongest_over_weakest_db: Some(0.0),
         found: Some(1),
         merged: Some(0),
         wrong_tooth: Some(0),
-        echoes: None,
         doubt: (method == "live").then_some(90.0 + f64::from(index)),
         within_doubt: (method == "live").then_some(0.9),
-        cfar: None,
-        origin: None,
+        ..empty.expect("one set and one method")[0][0].clone()
     }
 }
 

@@ -7,7 +7,7 @@ use crate::evaluate::rows::{Column, Row, Value};
 pub fn text(row: &Row, column: Column) -> String {
     match column.of(row) {
         Value::Missing => "–".to_owned(),
-        Value::Text(text) => last_part(text).to_owned(),
+        Value::Text(text) => last_part(&text).to_owned(),
         Value::Number(value) => number(column, value),
     }
 }
@@ -30,43 +30,35 @@ fn last_part(text: &str) -> &str {
     text.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or(text)
 }
 
-/// A column's heading in at most two lines, in words.
-pub fn title(column: Column) -> [&'static str; 2] {
-    match column {
-        Column::Set => ["Set", ""],
+/// A column's heading in two lines, in words: the name in the file where nothing else is usual.
+pub fn title(column: Column) -> [String; 2] {
+    let [above, below] = match column {
         Column::Index => ["Scene", ""],
-        Column::Seed => ["Seed", ""],
-        Column::Method => ["Method", ""],
         Column::Eta => ["η", ""],
-        Column::SquaredError => ["Squared", "error"],
         Column::Detection => ["P_D", ""],
         Column::FalseAlarm => ["P_FA", ""],
         Column::DetectionAtPrinted => ["P_D at the", "printed η"],
         Column::Milliseconds => ["Time", "ms"],
-        Column::Objects => ["Objects", ""],
-        Column::Reflectors => ["Reflectors", ""],
-        Column::Missed => ["Missed", ""],
-        Column::Ghosts => ["Ghosts", ""],
-        Column::NearestPairColumns => ["Nearest pair", "columns"],
-        Column::NearestPairBins => ["Nearest pair", "bins"],
         Column::MinRangeMetres => ["Least range", "m"],
         Column::StrongestOverWeakestDb => ["Strongest over", "weakest, dB"],
-        Column::Found => ["Found", ""],
-        Column::Merged => ["Merged", ""],
-        Column::WrongTooth => ["Wrong", "tooth"],
         Column::Echoes => ["Echoes of", "bodies"],
-        Column::EchoesFound => ["Echoes", "found"],
         Column::Doubt => ["Doubt", "as SE"],
         Column::WithinDoubt => ["Cells within", "doubt"],
         Column::CfarDetection => ["P_D", "by CFAR"],
         Column::CfarFalseAlarm => ["P_FA", "by CFAR"],
-    }
+        _ => {
+            let (first, rest) = column.name().split_at(1);
+            let words = first.to_uppercase() + &rest.replace('_', " ");
+            let (above, below) = words.rsplit_once(' ').unwrap_or((&words, ""));
+            return [above.to_owned(), below.to_owned()];
+        }
+    };
+    [above.to_owned(), below.to_owned()]
 }
 
 /// A column's heading as one text.
 pub fn heading(column: Column) -> String {
-    let [above, below] = title(column);
-    if below.is_empty() { above.to_owned() } else { format!("{above} {below}") }
+    title(column).join(" ").trim_end().to_owned()
 }
 
 /// Width of a column, points.
@@ -99,12 +91,13 @@ mod tests {
     #[test]
     fn every_column_has_a_title_and_a_text() {
         let row = Row { set: "/home/me/scenes/".into(), ..some_row(3, "live") };
-        for column in Column::ALL {
+        for &column in Column::FIGURES {
             let heading = heading(column);
             assert!(!heading.is_empty() && heading != column.name(), "words, and no name of a file's column");
             assert!(!text(&row, column).is_empty());
         }
         assert_eq!(heading(Column::SquaredError), "Squared error");
+        assert_eq!(title(Column::NearestPairBins), ["Nearest pair", "bins"]);
         assert_eq!(
             [Column::Set, Column::DetectionAtPrinted, Column::Found, Column::Doubt].map(|c| text(&row, c)),
             ["scenes", "–", "1", "93.0"]

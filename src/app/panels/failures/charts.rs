@@ -99,7 +99,7 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut Memory) {
     let column = |ui: &mut Ui, id: &str, name: &str, column: &mut Column| {
         let label = ui.label(name);
         let combo = ComboBox::from_id_salt(id).selected_text(column.name()).width(150.0).show_ui(ui, |ui| {
-            for other in Column::ALL {
+            for &other in Column::FIGURES {
                 ui.selectable_value(column, other, other.name());
             }
         });

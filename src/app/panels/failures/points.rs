@@ -1,7 +1,7 @@
 //! What charts are drawn of: the rows as dots and bars, worked out when the rows changed.
 
 use crate::app::jobs::RowTable;
-use crate::evaluate::rows::{Column, Histogram, Row, Value};
+use crate::evaluate::rows::{Column, Histogram, Row};
 use crate::evaluate::statistics::Paired;
 use std::collections::HashMap;
 
@@ -42,10 +42,7 @@ pub struct Points {
 }
 
 fn number(row: &Row, column: Column) -> Option<f64> {
-    match column.of(row) {
-        Value::Number(value) => Some(value),
-        _ => None,
-    }
+    column.of(row).number()
 }
 
 impl Points {
@@ -73,12 +70,12 @@ impl Points {
             Subject::Methods(column, a, b) => {
                 let scene = |row: &Row| (row.set.clone(), row.seed, row.index);
                 let of_b: HashMap<_, usize> =
-                    listed().filter(|(_, row)| row.method == *b).map(|(index, row)| (scene(row), index)).collect();
+                    listed().filter(|(_, row)| *row.method == **b).map(|(index, row)| (scene(row), index)).collect();
                 let dot = |(index, row): (usize, &Row)| {
                     let other = *of_b.get(&scene(row))?;
                     Some(Dot { at: [number(row, *column)?, number(&rows[other], *column)?], rows: [index, other] })
                 };
-                let dots = listed().filter(|(_, row)| row.method == *a).filter_map(dot).collect();
+                let dots = listed().filter(|(_, row)| *row.method == **a).filter_map(dot).collect();
                 let paired = Paired::of(listed().map(|(_, row)| row), a, b).filter(|_| a != b);
                 Points { told: paired.map(|paired| paired.told(a, b)), ..Points::scattered(dots) }
             }

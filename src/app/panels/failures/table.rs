@@ -101,7 +101,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) -> Answer {
         area = bring_in_sight(area, at, ROW, memory.window);
     }
     memory.latest = input.opened;
-    let width = MAPS + Column::ALL.map(cells::width).iter().sum::<f32>();
+    let width = MAPS + Column::FIGURES.iter().map(|column| cells::width(*column)).sum::<f32>();
     let output = area.show_viewport(ui, |ui, viewport| {
         let size = vec2(width, TITLE + ROW * input.shown.len() as f32);
         ui.set_min_size(size);
@@ -185,7 +185,7 @@ fn row(ui: &Ui, input: &Input<'_>, at: usize, rect: Rect, memory: &mut Memory) -
 fn figures(ui: &Ui, row: &Row, rect: Rect) {
     let ink = ui.visuals().text_color();
     let mut x = rect.left() + MAPS;
-    for column in Column::ALL {
+    for &column in Column::FIGURES {
         let (from, to) = (x, x + cells::width(column));
         x = to;
         let cell = Rect::from_min_max(pos2(from, rect.top()), pos2(to, rect.bottom()));
@@ -247,7 +247,7 @@ fn titles(ui: &Ui, sort: Option<Sort>, rect: Rect) -> Option<Column> {
     }
     let mut clicked = None;
     let mut x = rect.left() + MAPS;
-    for column in Column::ALL {
+    for &column in Column::FIGURES {
         let (from, to) = (x, x + cells::width(column));
         x = to;
         let cell = Rect::from_min_max(pos2(from, rect.top()), pos2(to, rect.bottom()));
@@ -271,7 +271,7 @@ fn title(ui: &Ui, column: Column, sorted: Option<Sort>, cell: Rect) -> bool {
     let strong = sorted.is_some() || response.hovered();
     let ink = if strong { visuals.strong_text_color() } else { visuals.weak_text_color() };
     let lines = cells::title(column);
-    let lines = if lines[1].is_empty() { lines[0].to_owned() } else { lines.join("\n") };
+    let lines = lines.join("\n").trim_end().to_owned();
     let galley = ui.painter().layout_no_wrap(lines, FontId::proportional(11.5), ink);
     // Beside the triangle.
     let free = cell.width() - galley.size().x - 10.0;
