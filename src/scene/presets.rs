@@ -44,7 +44,6 @@ pub const ALL: &[Preset] = presets![
     "failure-live-merged",
     "failure-live-ghost",
     "failure-wrong-tooth",
-    "failure-hybrid-merged",
     "failure-hybrid-missed",
     "failure-thesis-missed",
     "failure-thesis-merged",

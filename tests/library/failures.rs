@@ -22,12 +22,11 @@ enum Kind {
 use Kind::{Ghost, Merged, Missed, WrongTooth};
 
 /// Scene, method, and the kinds of failure that the notes explain. None is more frequent than the first.
-const EXPLAINED: [(&str, &str, &[Kind]); 10] = [
+const EXPLAINED: [(&str, &str, &[Kind]); 9] = [
     ("failure-live-missed", "live", &[Missed]),
     ("failure-live-merged", "live", &[Merged]),
     ("failure-live-ghost", "live", &[Ghost]),
     ("failure-wrong-tooth", "live", &[WrongTooth]),
-    ("failure-hybrid-merged", "hybrid", &[Merged]),
     ("failure-hybrid-missed", "hybrid", &[Missed]),
     ("failure-thesis-missed", "thesis", &[Missed]),
     ("failure-thesis-merged", "thesis", &[Missed, Merged, Ghost]),

@@ -80,16 +80,26 @@ fn live_hardly_alarms_on_noise_that_drowns_the_echoes() {
     }
 }
 
+/// Most squared error at the maximum range and beneath the first range bin, and most false alarms.
+const AT_THE_EDGE: [(&str, [f64; 2], f64); 6] = [
+    ("iaa", [600.0, 2_000.0], 0.07),
+    ("sbl", [600.0, 2_000.0], 0.07),
+    ("omp", [600.0, 2_000.0], 0.07),
+    ("nomp", [600.0, 100.0], 2e-3),
+    ("hybrid", [600.0, 100.0], 2e-3),
+    ("live", [1_100.0, 14_000.0], 0.04),
+];
+
 #[test]
 fn one_echo_at_the_edge_of_what_is_seen_is_no_map_of_echoes() {
-    // Range bin 512, which wraps to bin 0; and beneath the first range bin.
-    for y in [38.4, 0.05] {
-        let (trial, request) = trial(&Scene::of_points([(0.0, y)]), Floor::Thesis, Normalisation::MinMax);
-        for name in ["iaa", "sbl", "omp", "nomp", "hybrid", "live"] {
+    for (name, most, most_alarms) in AT_THE_EDGE {
+        // Range bin 512, which wraps to bin 0; and beneath the first range bin.
+        for (y, most) in [38.4, 0.05].into_iter().zip(most) {
+            let (trial, request) = trial(&Scene::of_points([(0.0, y)]), Floor::Thesis, Normalisation::MinMax);
             let answer = trial.ask(methods::by_name(name).unwrap().as_ref(), &request).unwrap();
             let (se, alarms) = (answer.metrics.squared_error, answer.metrics.false_alarm);
-            println!("{name}, {y} m: SE {se:.0}, P_FA {alarms:.4}, P_D {:?}", answer.metrics.detection);
-            assert!(se < 30_000.0 && alarms < 0.05, "{name}, {y} m: SE {se:.0}, P_FA {alarms}");
+            assert!(se < most && alarms < most_alarms, "{name}, {y} m: SE {se:.0}, P_FA {alarms}");
+            assert!(answer.metrics.detection > Some(0.9), "{name}, {y} m: P_D {:?}", answer.metrics.detection);
         }
     }
 }

@@ -118,7 +118,7 @@ fn points_of_physical_captures_are_placed_within_the_bound() {
     let method = methods::by_name("nomp").unwrap_or_else(|e| panic!("{e}"));
     let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
     let mut rng = ChaCha8Rng::seed_from_u64(7);
-    let (sigma, captures) = (0.1, 120);
+    let (sigma, captures) = (0.1, 40);
     let (mut ranges, mut cosines, mut placed) = (0.0, 0.0, 0);
     for capture in 0..captures {
         let (range, cos): (f64, f64) = (3.0 + 11.0 * rng.random::<f64>(), 1.4 * (rng.random::<f64>() - 0.5));
@@ -128,11 +128,8 @@ fn points_of_physical_captures_are_placed_within_the_bound() {
         let found = method.reconstruct(radar, &recording.two_ends(), &request).unwrap().detections(radar);
         let reflector = Reflector { x_metres: point[0], y_metres: point[1], reflectivity: reflectivity(point) };
         let bound = cramer_rao(radar, &Layout::two_ends(radar), &[reflector], sigma * sigma).unwrap()[0];
-        // A point that is taken for two is no place of it.
-        let [first] = &found[..] else {
-            println!("capture {capture}: {found:?}, {range} {cos}");
-            continue;
-        };
+        // A point that is taken for two is no place of it; how often that happens is held below.
+        let [first] = &found[..] else { continue };
         let range_off = (first.range_metres - range) / bound.range_metres;
         let cos_off = (first.cos_theta - cos) / bound.cos_theta;
         assert!(range_off.abs() < 5.0 && cos_off.abs() < 5.0, "capture {capture}: {range_off}, {cos_off} bounds off");
@@ -140,9 +137,10 @@ fn points_of_physical_captures_are_placed_within_the_bound() {
         cosines += cos_off * cos_off;
         placed += 1;
     }
-    println!("{placed} of {captures}");
-    assert!(placed >= captures * 3 / 4, "{placed} of {captures} were taken for one point");
-    // Of 30 draws a root mean square is known to 13 %.
+    println!("{placed} of {captures} were taken for one point");
+    // One in twelve is taken for two.
+    assert!(f64::from(placed) >= 0.85 * f64::from(captures), "{placed} of {captures} were taken for one point");
+    // Of 36 draws a root mean square is known to 12 %.
     for (what, squares) in [("range", ranges), ("cos(theta)", cosines)] {
         let ratio = f64::sqrt(squares / f64::from(placed));
         println!("{what}: error / bound = {ratio:.3}");
