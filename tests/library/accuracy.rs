@@ -153,12 +153,12 @@ fn the_floor_is_as_dark_as_the_authors_program(scenes: u32, tolerance: f64) {
 }
 
 #[test]
-fn the_floor_is_as_dark_as_the_authors_program_on_few_scenes() {
+fn the_floor_is_as_dark_as_the_authors_on_few_scenes() {
     the_floor_is_as_dark_as_the_authors_program(3, 0.03);
 }
 
 #[test]
 #[ignore = "minutes; prints the figures"]
-fn the_floor_is_as_dark_as_the_authors_program_on_thirty_scenes_a_set() {
+fn the_floor_is_as_dark_as_the_authors_on_ninety_scenes() {
     the_floor_is_as_dark_as_the_authors_program(30, 0.03);
 }
