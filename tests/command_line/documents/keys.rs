@@ -27,7 +27,8 @@ fn keys(sentence: &str, is_of_the_window: bool) -> Vec<String> {
         let is_letter = bare.len() == 1 && bare.chars().all(|c| c.is_ascii_uppercase());
         let is_function = bare.strip_prefix('F').is_some_and(|n| n.len() <= 2 && n.parse::<u8>().is_ok());
         let has_modifier = ["Ctrl+", "Shift+", "Alt+"].iter().any(|m| bare.starts_with(m) && bare.len() > m.len());
-        let is_bracketed = word.starts_with('(') && word.len() > 2 && [")", ",", ";"].contains(&&word[2..3]);
+        let after = word.strip_prefix('(').and_then(|word| word.strip_prefix(bare));
+        let is_bracketed = after.is_some_and(|rest| rest.starts_with([')', ',', ';']));
         let next = words.get(at + 1).and_then(|next| next.chars().next());
         let begins = at == 0 && bare != "A" && (word.ends_with(':') || next.is_some_and(char::is_lowercase));
         let is_pressed = at > 0 && words[at - 1].eq_ignore_ascii_case("press");
@@ -41,9 +42,10 @@ fn keys(sentence: &str, is_of_the_window: bool) -> Vec<String> {
 /// Whether the sentence speaks of what the command does: a word of its name or tooltip begins like one of the sentence.
 fn speaks_of(sentence: &str, entry: &Entry) -> bool {
     let about = format!("{} {}", entry.name, entry.tooltip).to_lowercase();
-    let beginnings = about.split(|c: char| !c.is_alphanumeric()).filter(|w| w.len() >= 4).map(|w| &w[..w.len().min(5)]);
+    let words = about.split(|c: char| !c.is_alphanumeric()).filter(|w| w.chars().count() >= 4);
+    let beginnings = words.map(|word| word.chars().take(5).collect::<String>());
     let sentence = sentence.to_lowercase();
-    beginnings.filter(|b| !["show", "hide", "with"].contains(b)).any(|beginning| sentence.contains(beginning))
+    beginnings.filter(|b| !["show", "hide", "with"].contains(&b.as_str())).any(|b| sentence.contains(&b))
 }
 
 #[test]
