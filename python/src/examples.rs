@@ -132,10 +132,10 @@ fn arrays_of(elements: Option<(f64, f64, f64, f64)>) -> PyResult<Arrays> {
 ///
 /// Args:
 ///     folder: A new folder or an empty one.
-///     sets: Names of sets as `Scene.random` takes them.
+///     sets: Names of sets as `Scene.random` takes them for training.
 ///     count: Scenes of each set for training.
 ///     validation: For validation; a tenth of `count` where none is given.
-///     test: For the test; likewise.
+///     test: For the test; likewise, but none where "world" is among the sets.
 ///     seed: Seed of the scenes.
 ///     floor: What lies beneath all scenes: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL".
 ///     thermal: (share, lowest dB, highest dB), in place of `floor`, as for `Examples`.
@@ -166,15 +166,16 @@ pub fn dataset(
     shard: u32,
     progress: Progress<'_, '_>,
 ) -> PyResult<()> {
-    let kinds: PyResult<Vec<Kind>> = sets.iter().map(|set| named(&set_name(set)?)).collect();
+    let kinds: PyResult<Vec<Kind>> =
+        sets.iter().map(|set| Kind::for_training(&set_name(set)?).map_err(value)).collect();
+    let kinds = kinds?;
     let parts: Result<Vec<Part>, _> = match arrays {
         None => Ok(Part::ALL.to_vec()),
         Some(names) => names.iter().map(|name| name.parse()).collect(),
     };
-    let tenth = count.div_ceil(10);
     let request = DatasetRequest {
-        kinds: kinds?,
-        counts: [count, validation.unwrap_or(tenth), test.unwrap_or(tenth)],
+        counts: DatasetRequest::counts(&kinds, count, validation, test),
+        kinds,
         seed,
         floors: floors_of(floor, thermal)?,
         precision: dtype.parse().map_err(value)?,

@@ -124,7 +124,7 @@ impl Scene {
     ///
     /// Args:
     ///     set: 1, 2 or 3 for the thesis' test sets, or "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near",
-    ///         "bodies", "street", "rails", "occlusion", "rough", "noise".
+    ///         "bodies", "street", "rails", "occlusion", "rough", "noise"; "world" for training and validation.
     ///     seed: Seed of the set.
     ///     index: Number of the scene, from 0.
     ///     purpose: "test", "validation" or "training": their scenes never meet.
@@ -143,9 +143,13 @@ impl Scene {
         reading: &str,
         radar: Option<&Radar>,
     ) -> PyResult<Self> {
-        let kind: Kind = named(&set_name(set)?)?;
+        let (name, purpose) = (set_name(set)?, purpose_of(purpose)?);
+        let kind: Kind = match purpose {
+            Purpose::Test => named(&name)?,
+            _ => Kind::for_training(&name).map_err(value)?,
+        };
         let radar = radar.map(|r| r.0.clone()).unwrap_or_default();
-        let generator = Generator::new(&radar, reading_of(reading)?, purpose_of(purpose)?, seed);
+        let generator = Generator::new(&radar, reading_of(reading)?, purpose, seed);
         checked(SceneFile { scene: generator.scene(kind, index), radar })
     }
 

@@ -40,6 +40,17 @@ pub struct Example {
     pub decades: Array2<f32>,
 }
 
+/// Why there are no examples.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ExamplesError {
+    /// Test scenes of a kind that makes none.
+    #[error("{0} makes no scenes for tests; expected a purpose of training or validation")]
+    ForTests(Kind),
+    /// The network can't use the radar.
+    #[error(transparent)]
+    Radar(#[from] ReconstructError),
+}
+
 /// Why there is no example.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExampleError {
@@ -66,14 +77,17 @@ impl Examples {
     /// never meet.
     ///
     /// # Errors
-    /// [`ReconstructError`] where the network knows another radar.
+    /// [`ExamplesError`] names the kind or the radar that can't be.
     pub fn new(
         mixture: Mixture,
         purpose: Purpose,
         seed: u64,
         floors: Floors,
         arrays: Arrays,
-    ) -> Result<Self, ReconstructError> {
+    ) -> Result<Self, ExamplesError> {
+        if purpose == Purpose::Test && mixture.shares().iter().any(|(kind, _)| *kind == Kind::World) {
+            return Err(ExamplesError::ForTests(Kind::World));
+        }
         let radar = Radar::default();
         let generator = Generator::new(&radar, Reading::Program, purpose, seed);
         Ok(Examples { mixture, seed, floors, arrays, generator, extractor: FeatureExtractor::new(&radar)?, radar })
@@ -156,6 +170,15 @@ mod tests {
         assert_ne!(off.ends, ideal.ends);
         let both = [&off, &ideal].map(|e| e.decades.iter().map(|v| f64::from(*v) + e.input.gain).collect::<Vec<_>>());
         assert!(both[0].iter().zip(&both[1]).all(|(a, b)| (a - b).abs() < 1e-5));
+    }
+
+    #[test]
+    fn the_world_makes_no_test_examples() {
+        let of = |purpose| {
+            Examples::new("world".parse().unwrap(), purpose, 1, Floors::Fixed(Floor::Thesis), Arrays::IDEAL).map(|_| ())
+        };
+        assert_eq!(of(Purpose::Test), Err(ExamplesError::ForTests(Kind::World)));
+        assert_eq!((of(Purpose::Training), of(Purpose::Validation)), (Ok(()), Ok(())));
     }
 
     #[test]
