@@ -8,6 +8,7 @@ use crate::radar::Radar;
 use crate::work::{self, Progress};
 use apertura::evaluate::TARGET_ETA;
 use apertura::maps::Normalisation;
+use apertura::network::live::examples::ExamplesError;
 use apertura::picture::ColourMap;
 use apertura::scene::file::{SceneFile, from_toml, load, save, to_toml};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
@@ -132,7 +133,7 @@ impl Scene {
     ///     radar: The radar; that of table 3.1 where none is given.
     ///
     /// Raises:
-    ///     ValueError: A name is unknown.
+    ///     ValueError: A name is unknown, or the radar does not see far enough for the set's objects.
     #[staticmethod]
     #[pyo3(signature = (set, seed=0, index=0, *, purpose="test", reading="program", radar=None))]
     fn random(
@@ -149,6 +150,10 @@ impl Scene {
             _ => Kind::for_training(&name).map_err(value)?,
         };
         let radar = radar.map(|r| r.0.clone()).unwrap_or_default();
+        let (needed, found) = (kind.needed_range_metres(), radar.max_range_metres());
+        if needed > found {
+            return Err(value(ExamplesError::NoRoom { kind, needed, found }));
+        }
         let generator = Generator::new(&radar, reading_of(reading)?, purpose, seed);
         checked(SceneFile { scene: generator.scene(kind, index), radar })
     }

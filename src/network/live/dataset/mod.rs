@@ -18,6 +18,7 @@ pub use manifest::{FILE_NAME, Manifest, VERSION};
 
 use super::arrays::Arrays;
 use super::examples::{Example, ExampleError, Examples, ExamplesError};
+use super::radars::Radars;
 use crate::files::{sha256, write_bytes};
 use crate::network::floors::Floors;
 use crate::platform::fs;
@@ -71,7 +72,9 @@ impl Part {
     fn arrays(self) -> &'static [ArrayKind] {
         match self {
             Part::Ends => &[ArrayKind::Ends],
-            Part::Features => &[ArrayKind::Fine, ArrayKind::Coarse, ArrayKind::Rows, ArrayKind::Scalars],
+            Part::Features => {
+                &[ArrayKind::Fine, ArrayKind::Coarse, ArrayKind::Rows, ArrayKind::Scalars, ArrayKind::Constants]
+            }
             Part::Target => &[ArrayKind::Target],
         }
     }
@@ -98,6 +101,7 @@ enum ArrayKind {
     Coarse,
     Rows,
     Scalars,
+    Constants,
     Target,
     /// Decades by which everything of an example is scaled down.
     Gain,
@@ -245,7 +249,7 @@ fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
 fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, DatasetError> {
     let of = |kind: &Kind| {
         let mixture: Mixture = kind.to_string().parse().map_err(|e| DatasetError::Request(format!("{e}")))?;
-        Ok(Examples::new(mixture, purpose, request.seed, request.floors, Arrays::IDEAL)?)
+        Ok(Examples::new(mixture, purpose, request.seed, request.floors, Arrays::IDEAL, Radars::default())?)
     };
     request.kinds.iter().map(of).collect()
 }
