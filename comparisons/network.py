@@ -37,14 +37,15 @@ def main():
     except ImportError as missing:
         sys.exit(f"skipped: {missing.name} is not installed")
     sys.path.insert(0, os.path.join(HERE, "..", "training"))
-    from live import Live
+    from live import CONSTANTS, Live, parted, widened
 
     torch.set_num_threads(THREADS)
     torch.manual_seed(0)
     model = Live()
-    model.load_state_dict(load_file(WEIGHTS))
+    model.load_state_dict(widened(parted(load_file(WEIGHTS))[0]))
     model.eval()
-    inputs = (torch.randn(1, 4, 512, 256), torch.randn(1, 10, 512, 64), torch.randn(1, 6, 512), torch.tensor([[-11.6, -5.4]]))
+    inputs = (torch.randn(1, 4, 512, 256), torch.randn(1, 10, 512, 64), torch.randn(1, 6, 512), torch.tensor([[-11.6, -5.4]]),
+              torch.zeros(1, CONSTANTS))
     others = {}
     with torch.no_grad():
         others[f"PyTorch {torch.__version__}"] = median(lambda: model(*inputs))
@@ -56,7 +57,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "live.onnx")
             torch.onnx.export(model, inputs, path, dynamo=False, opset_version=17,
-                              input_names=["fine", "coarse", "rows", "scalars"])
+                              input_names=["fine", "coarse", "rows", "scalars", "constants"])
             options = onnxruntime.SessionOptions()
             options.intra_op_num_threads = THREADS
             session = onnxruntime.InferenceSession(path, options, providers=["CPUExecutionProvider"])
