@@ -62,7 +62,6 @@ const MOST: usize = 4096;
 impl Examples {
     #[new]
     #[pyo3(signature = (mixture, seed=0, *, purpose="training", floor="thesis", thermal=None, elements=None, radar=None))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn new(
         mixture: &str,
         seed: u64,

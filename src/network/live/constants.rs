@@ -60,3 +60,52 @@ pub fn turn_columns(radar: &Radar, map: &mut [f32]) {
         map.par_chunks_mut(COLUMNS).for_each(|row| row[1..].reverse());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::{Convention, End};
+    use crate::scene::Reflector;
+    use crate::signal::exact;
+
+    #[test]
+    fn constants_are_relative_to_table_3_1() {
+        assert_eq!(constants(&Radar::default()), [0.0; CONSTANTS]);
+        for (index, window) in WindowFunction::ALL.into_iter().enumerate() {
+            assert_eq!(window_of(&constants(&Radar { window, ..Radar::default() })), index);
+        }
+        let twice = constants(&Radar { bandwidth_hz: 4e9, ..Radar::default() });
+        assert!((twice[0] - 0.25).abs() < 1e-6, "twice the bandwidth is an octave of migration: {twice:?}");
+        let dense = constants(&Radar { element_spacing_metres: 1.6e-3, ..Radar::default() });
+        assert!((dense[SPACING_AT] - (1.6e-3 / Radar::default().element_spacing_metres - 1.0) as f32).abs() < 1e-6);
+    }
+
+    #[test]
+    fn physical_samples_are_the_thesis_at_another_carrier() {
+        let physical = Radar::default().in_convention(Convention::Physical);
+        let last = (physical.samples - 1) as f64 / physical.samples as f64;
+        let carrier_hz = 2.0 * (physical.carrier_hz + last * physical.bandwidth_hz);
+        let thesis = Radar { carrier_hz, carrier: Carrier::OneWay, ..physical.clone() };
+        let reflectors = [Reflector { x_metres: 4.0, y_metres: 17.0, reflectivity: 1.0 }];
+        let ends = |radar: &Radar| exact::beat_signal(radar, &reflectors).two_ends(radar);
+        let (found, expected) = (ends(&physical), ends(&thesis));
+        for end in End::BOTH {
+            let found = in_thesis_convention(&physical, found.end(end).clone());
+            let gap = (&found - expected.end(end)).mapv(|v| v.norm()).into_iter().fold(0.0, f64::max);
+            assert!(gap < 1e-8 * found[[0, 0]].norm(), "{gap}");
+        }
+    }
+
+    #[test]
+    fn columns_turned_twice_are_as_before() {
+        let physical = Radar::default().in_convention(Convention::Physical);
+        let map: Vec<f32> = (0..3 * COLUMNS).map(|i| i as f32).collect();
+        let mut turned = map.clone();
+        turn_columns(&Radar::default(), &mut turned);
+        assert_eq!(turned, map);
+        turn_columns(&physical, &mut turned);
+        assert_eq!((turned[0], turned[1], turned[COLUMNS - 1]), (0.0, (COLUMNS - 1) as f32, 1.0));
+        turn_columns(&physical, &mut turned);
+        assert_eq!(turned, map);
+    }
+}

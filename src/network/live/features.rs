@@ -195,7 +195,7 @@ mod tests {
                 assert!((apart - migrated).abs() < 0.1 * migrated.abs() + 1.5, "{radar:?}: {apart} for {migrated}");
                 for channel in [2, 3] {
                     let found = row(&input, channel);
-                    assert!((found - 300.0).abs() <= 1.0, "{radar:?}, {cos}, end {channel}: row {found}");
+                    assert!((found - 300.0).abs() <= 2.0, "{radar:?}, {cos}, end {channel}: row {found}");
                 }
             }
         }
