@@ -49,6 +49,7 @@ def main():
     model = network.live()
     inputs = {name: torch.randn_like(zeros) for name, zeros in network.inputs().items()}
     inputs["scalars"] = torch.tensor([[-11.6, -5.4]])
+    inputs["constants"] = network.inputs()["constants"]
     others = {}
     with torch.no_grad():
         others[f"PyTorch {torch.__version__}"] = median(lambda: model(**inputs))

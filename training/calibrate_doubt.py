@@ -18,8 +18,8 @@ from safetensors import safe_open
 from safetensors.torch import load_file, save_file
 
 import apertura as ap
-from live import CELL_DECADES, COLS, DOUBT, FINE, SCENE_DECADES, Doubt, Live, normalise, parted
-from train_live import COVERED, INPUTS, MIXTURE, OFF, error_of
+from live import CELL_DECADES, COLS, DOUBT, FINE, SCENE_DECADES, Doubt, Live, normalise, parted, widened
+from train_live import COVERED, INPUTS, KINDS, OFF, error_of
 
 #: Cells of a scene that the fit sees, drawn at random.
 CELLS = 4096
@@ -32,10 +32,10 @@ LEAST = 1e-7
 
 
 def groups():
-    """Name, kind, share and range of thermal noise, and tolerances of elements of each kind of scene."""
-    found = [(kind, kind, None, None) for kind in MIXTURE]
-    found += [(f"{kind} at 10 to 60 dB", kind, (1.0, 10.0, 60.0), None) for kind in MIXTURE]
-    return found + [(f"{kind} elements off", kind, None, (1.0, *tolerances)) for kind, tolerances in OFF]
+    """Of each kind of scene, by name, the arguments of `Scenes`."""
+    found = {kind: {"set": kind} for kind in KINDS}
+    found |= {f"{kind} at 10 to 60 dB": {"set": kind, "thermal": (1.0, 10.0, 60.0)} for kind in KINDS}
+    return found | OFF
 
 
 @torch.no_grad()
@@ -43,8 +43,8 @@ def seen(live, doubt, seed, count):
     """For each kind of scene: the hidden layer's means, [count, hidden], and log10 of error over said error of some cells, [count, CELLS]."""
     draw = np.random.default_rng(seed)
     found = {}
-    for name, kind, thermal, elements in groups():
-        data = ap.torch.Scenes(kind, seed, length=count, purpose="validation", thermal=thermal or (0.0, 10.0, 60.0), elements=elements)
+    for name, given in groups().items():
+        data = ap.torch.Scenes(**given, seed=seed, length=count, purpose="validation")
         means, gaps = [], []
         for i in range(count):
             example = data[i]
@@ -107,7 +107,7 @@ def main():
     if not of_doubt:
         parser.error(f"{args.file} has no head of doubt; expected weights that train_live.py wrote")
     live, doubt = Live(), Doubt()
-    live.load_state_dict(network)
+    live.load_state_dict(widened(network))
     doubt.load_state_dict(of_doubt, strict=False)
     if not args.judge:
         weights, constant = fitted(seen(live, doubt, 0, args.scenes))

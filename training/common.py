@@ -1,5 +1,7 @@
 """What the training programs share: figures on validation scenes, and files that are replaced in one step."""
+import contextlib
 import os
+import time
 
 import numpy as np
 import torch
@@ -21,13 +23,12 @@ def unit(maps):
     return (maps - lo) / (hi - lo)
 
 
-def validation_scenes(seed, count, kinds=tuple(P_FA), network="live", noisy=(), off=()):
-    """Examples of `count` validation scenes of each of the kinds, in f16, of (kind, dB of thermal noise) of `noisy`, and of (kind, tolerances) of `off`."""
-    floors = [(kind, kind, "thesis", None) for kind in kinds] + [(f"{kind} at {snr} dB", kind, f"snr={snr}", None) for kind, snr in noisy]
-    floors += [(f"{kind} elements off", kind, "thesis", (1.0, *tolerances)) for kind, tolerances in off]
-    made = lambda kind, floor, off: ap.torch.Scenes(kind, seed, length=count, purpose="validation", floor=floor, network=network, elements=off)
+def validation_scenes(seed, count, kinds=tuple(P_FA), network="live", others=None):
+    """Examples of `count` validation scenes of each of the kinds, in f16, and of each name in `others`, whose values are arguments of `Scenes`."""
+    sets = {kind: {"set": kind} for kind in kinds} | (others or {})
     half = lambda example: {name: t.half() if t.ndim > 1 and t.dtype == torch.float32 else t for name, t in example.items() if name != "ends"}
-    return {name: [half(made(kind, floor, off)[i]) for i in range(count)] for name, kind, floor, off in floors}
+    made = {name: ap.torch.Scenes(**given, seed=seed, length=count, purpose="validation", network=network) for name, given in sets.items()}
+    return {name: [half(scenes[i]) for i in range(count)] for name, scenes in made.items()}
 
 
 def stacked(entries):
@@ -58,6 +59,22 @@ def figures(estimate, sets):
     mean = float(np.mean([false_alarm(k) for k in sets]))
     report["eta"] = float(etas[int(np.argmax(np.mean(alarms, 0) <= mean))])
     return report
+
+
+class Clock:
+    """Seconds since the start, but for those in which it was stopped."""
+
+    def __init__(self):
+        self.began = time.monotonic()
+
+    def seconds(self):
+        return time.monotonic() - self.began
+
+    @contextlib.contextmanager
+    def stopped(self):
+        stopped = time.monotonic()
+        yield
+        self.began += time.monotonic() - stopped
 
 
 def save(path, state):

@@ -1,6 +1,6 @@
 """Writes the live network as a file of ONNX: `python3 export_onnx.py live.onnx [WEIGHTS.safetensors]`. Needs torch, safetensors and onnx.
 
-Inputs: fine [1, 4, 512, 256], coarse [1, 10, 512, 64], rows [1, 6, 512] and scalars [1, 2]. Outputs: decades [1, 512, 1024] and minimum [1].
+Inputs: fine [1, 4, 512, 256], coarse [1, 10, 512, 64], rows [1, 6, 512], scalars [1, 2] and constants [1, 6]. Outputs: decades [1, 512, 1024] and minimum [1].
 """
 import sys
 from pathlib import Path
@@ -8,7 +8,7 @@ from pathlib import Path
 import torch
 from safetensors.torch import load_file
 
-from live import COARSE_CHANNELS, FINE, GRID, ROWS, Live, parted, widened
+from live import COARSE_CHANNELS, CONSTANTS, FINE, GRID, ROWS, Live, parted, widened
 
 SHIPPED = Path(__file__).resolve().parent.parent / "assets" / "weights" / "live.safetensors"
 
@@ -27,6 +27,7 @@ def inputs():
         "coarse": torch.zeros(1, COARSE_CHANNELS, ROWS, GRID),
         "rows": torch.zeros(1, 6, ROWS),
         "scalars": torch.zeros(1, 2),
+        "constants": torch.zeros(1, CONSTANTS),
     }
 
 

@@ -8,7 +8,11 @@ import torch.nn.functional as F
 LN10 = math.log(10.0)
 ROWS, COLS, FINE, GRID = 512, 1024, 256, 64
 COARSE_CHANNELS = 10
-IN_CHANNELS = 16 + COARSE_CHANNELS + 6 + 2 + 4
+#: Constants of the radar: migration, spacing, three windows, pattern.
+CONSTANTS, SPACING_AT, WINDOWS_AT = 6, 1, 2
+IN_CHANNELS = 16 + COARSE_CHANNELS + 6 + 2 + 4 + CONSTANTS
+#: Weights of the cosines that the windows are sums of, as in `src/radar/window.rs`.
+WINDOWS = {"hann": (0.5, 0.5, 0.0), "hamming": (0.54, 0.46, 0.0), "blackman": (0.42, 0.5, 0.08), "rectangular": (1.0, 0.0, 0.0)}
 
 
 def wrap_cols(x, n=1):
@@ -74,18 +78,41 @@ def up2(x):
     return F.pixel_shuffle(x, 2)
 
 
-def circulant(log_kernel, n):
-    """Matrix [n, n] of the even circular kernel whose log10 at distances 0..n/2 is `log_kernel`."""
-    i = torch.arange(n, device=log_kernel.device)
+def circulants(log_kernels, n):
+    """Matrices [B, n, n] of the even circular kernels whose log10 at distances 0..n/2 are `log_kernels` [B, n/2 + 1]."""
+    i = torch.arange(n, device=log_kernels.device)
     d = (i[:, None] - i[None, :]) % n
     d = torch.minimum(d, n - d)
-    return torch.exp(LN10 * log_kernel)[d]
+    return torch.exp(LN10 * log_kernels)[:, d]
+
+
+def of_windows(constants, hann, others, n):
+    """The matrix of each scene's window, [B, n, n]: that of the kernel `hann`, or of the one of `others` [3, k] that the constants [B, 6] name by a 1."""
+    matrices = circulants(torch.cat([hann[None], others]), n).flatten(1)
+    windows = constants[:, WINDOWS_AT : WINDOWS_AT + len(WINDOWS) - 1]
+    return (torch.cat([1 - windows.sum(1, keepdim=True), windows], 1) @ matrices).view(-1, n, n)
 
 
 def tail_prior(n, offset):
     """log10 of the side lobes of a Hann window at distances 0..n/2: they fall as 1/k^3."""
     k = torch.arange(n // 2 + 1, dtype=torch.float32)
     return offset - 3 * torch.log10(k + 1)
+
+
+def other_windows(hann, n, step):
+    """Kernels [3, k] of the other windows to start from: that of Hann's window [k], higher by what their side lobes are, at distances of 0, step,
+    2 step ... cells of n. Where they are half a decade or more below the side lobes of a point they are raised: a gradient lowers a kernel that is
+    too high, and can't raise one that doesn't show."""
+    places = torch.arange(n, dtype=torch.float64) / (n - 1)
+    finer = 8
+    envelopes = []
+    for a, b, c in WINDOWS.values():
+        window = a - b * torch.cos(2 * math.pi * places) + c * torch.cos(4 * math.pi * places)
+        lobes = torch.fft.fft(window, finer * n).abs()[: finer * n // 2 + 1] / window.sum()
+        reach = torch.nn.functional.max_pool1d(lobes[None], finer * step + 1, finer * step, finer * step // 2)[0, : len(hann)]
+        envelopes.append(torch.log10(reach + 1e-12))
+    hann_window, *others = (envelope.float() for envelope in envelopes)
+    return torch.stack([torch.maximum(hann + other - hann_window, other - 0.5) for other in others])
 
 
 class Live(nn.Module):
@@ -113,7 +140,9 @@ class Live(nn.Module):
         self.row_sources = nn.Conv2d(c0, 2, 1)
         self.col_kernel = nn.Parameter(tail_prior(ROWS, -0.5))
         self.row_kernel = nn.Parameter(tail_prior(128, -1.0))
-        self.scalar1 = nn.Linear(2 * c3 + 2, 64)
+        self.col_kernels = nn.Parameter(other_windows(self.col_kernel.detach(), ROWS, 1))
+        self.row_kernels = nn.Parameter(other_windows(self.row_kernel.detach(), COLS, 8))
+        self.scalar1 = nn.Linear(2 * c3 + 2 + CONSTANTS, 64)
         self.scalar2 = nn.Linear(64, 2)
         nn.init.zeros_(self.scalar2.weight)
         nn.init.zeros_(self.scalar2.bias)
@@ -123,23 +152,26 @@ class Live(nn.Module):
                 m.bias.fill_(-1.0)
         r = torch.arange(ROWS, dtype=torch.float32)[:, None].expand(ROWS, GRID)
         u = ((torch.arange(GRID, dtype=torch.float32) - GRID // 2) / (GRID // 2))[None, :].expand(ROWS, GRID)
-        grid = torch.stack([r / 256 - 1, torch.log10(r + 4) - 2, u, torch.sqrt(1 - u * u)])
+        grid = torch.stack([r / 256 - 1, torch.log10(r + 4) - 2, u])
         self.register_buffer("grid", grid, persistent=False)
 
-    def forward(self, fine, coarse, rows, scalars):
+    def forward(self, fine, coarse, rows, scalars, constants):
         """log10 |Y_full| [B, 512, 1024] in decades above the gain, and its minimum [B]."""
-        return self.with_picture(fine, coarse, rows, scalars)[:2]
+        return self.with_picture(fine, coarse, rows, scalars, constants)[:2]
 
-    def with_picture(self, fine, coarse, rows, scalars):
+    def with_picture(self, fine, coarse, rows, scalars, constants):
         """The same, and the coarse half's last picture [B, c0, 512, 64], which the heads read."""
         b = fine.shape[0]
         fine_n = ((fine + 3) / 3).clamp(-4, 2)
         coarse_n = torch.cat([((coarse[:, :4] + 3) / 3).clamp(-4, 2), coarse[:, 4:]], 1)
         rows_n = torch.cat([rows[:, :4], ((rows[:, 4:] + 3) / 3).clamp(-4, 2)], 1)
         scalars_n = (scalars + 8) / 3
+        cos = self.grid[2] / (1 + constants[:, SPACING_AT])[:, None, None]
+        directions = torch.stack([cos, torch.sqrt((1 - cos * cos).clamp(min=0))], 1)
+        planes = lambda values: values[:, :, None, None].expand(-1, -1, ROWS, GRID)
         x = torch.cat([
             unshuffle_cols(fine_n, 4), coarse_n, rows_n[..., None].expand(-1, -1, -1, GRID),
-            scalars_n[:, :, None, None].expand(-1, -1, ROWS, GRID), self.grid.expand(b, -1, -1, -1)], 1)
+            planes(scalars_n), self.grid[:2].expand(b, -1, -1, -1), directions, planes(constants)], 1)
         x0 = self.enc0(self.stem(x.contiguous(memory_format=torch.channels_last)))
         x1 = self.enc1(self.down1(x0))
         x2 = self.enc2(self.down2(x1))
@@ -150,21 +182,21 @@ class Live(nn.Module):
         f = torch.cat([shuffle_cols(self.widen(y0), 4), fine_n], 1)
         f = self.fine2(F.relu(self.fine1(f)))
         with torch.autocast(fine.device.type, enabled=False):
-            return *self.sources(scalars, scalars_n, x3.float(), y0.float(), f.float()), y0
+            return *self.sources(scalars, scalars_n, constants, x3.float(), y0.float(), f.float()), y0
 
-    def sources(self, scalars, scalars_n, x3, y0, f):
+    def sources(self, scalars, scalars_n, constants, x3, y0, f):
         """What the features make of every cell, in f32 whatever the convolutions were in: sums over many decades follow."""
         b = f.shape[0]
         pooled = torch.cat([x3.mean((2, 3)), x3.amax((2, 3))], 1)
-        s = self.scalar2(F.relu(self.scalar1(torch.cat([pooled, scalars_n], 1))))
+        s = self.scalar2(F.relu(self.scalar1(torch.cat([pooled, scalars_n, constants], 1))))
         heads = shuffle_cols(f, 4) * 3 - 3
         a = heads.clamp(-18, 4)
         local = torch.exp(LN10 * a[:, 0])
-        column = circulant(self.col_kernel, ROWS) @ torch.exp(LN10 * a[:, 1])
+        column = of_windows(constants, self.col_kernel, self.col_kernels, ROWS) @ torch.exp(LN10 * a[:, 1])
         sharp = local + column
         src = shuffle_cols(self.row_sources(y0), 2)[:, 0] * 3 - 3
         wide = torch.exp(LN10 * src.clamp(-18, 4)) + sharp.view(b, ROWS, 128, 8).mean(3)
-        row = (wide @ circulant(self.row_kernel, 128)).repeat_interleave(8, 2)
+        row = (wide @ of_windows(constants, self.row_kernel, self.row_kernels, 128)).repeat_interleave(8, 2)
         floor = scalars[:, 0] + s[:, 0]
         total = sharp + row + torch.exp(LN10 * floor)[:, None, None]
         log = torch.log(total) / LN10
@@ -216,9 +248,9 @@ class Doubting(nn.Module):
         super().__init__()
         self.live, self.doubt = live, doubt
 
-    def forward(self, fine, coarse, rows, scalars):
+    def forward(self, *inputs):
         """Decades, their minimum, and the logarithm of the expected error."""
-        log, minimum, picture = self.live.with_picture(fine, coarse, rows, scalars)
+        log, minimum, picture = self.live.with_picture(*inputs)
         return log, minimum, self.doubt(picture.detach())
 
 
@@ -233,11 +265,16 @@ def parted(weights):
 
 
 def widened(weights):
-    """Weights of the first edition, which had no phase between the ends, with channels for it that start at zero."""
+    """Weights of earlier editions: zeros for the phase between the ends and for the radar's constants, and for the other windows the side lobes of
+    Hann's, higher by what the windows' own are."""
+    weights = dict(weights)
     stem = weights["stem.conv.weight"]
+    if "col_kernels" not in weights:
+        stem = F.pad(stem, (0, 0, 0, 0, 0, CONSTANTS))
+        weights["scalar1.weight"] = F.pad(weights["scalar1.weight"], (0, CONSTANTS))
+        weights["col_kernels"] = other_windows(weights["col_kernel"], ROWS, 1)
+        weights["row_kernels"] = other_windows(weights["row_kernel"], COLS, 8)
     missing = IN_CHANNELS - stem.shape[1]
-    if missing == 0:
-        return weights
     at = 16 + COARSE_CHANNELS - missing
     zeros = torch.zeros(stem.shape[0], missing, *stem.shape[2:])
     return {**weights, "stem.conv.weight": torch.cat([stem[:, :at], zeros, stem[:, at:]], 1)}

@@ -26,6 +26,10 @@ def checked(parser, arguments):
     args = parser.parse_args(arguments)
     if not args.out and not getattr(args, "judge", None):
         parser.error("--out DIR is missing: the folder of the run, new or to go on with")
+    for name in ("init", "judge"):
+        path = getattr(args, name, None)
+        if path and not os.path.isfile(path):
+            parser.error(f"--{name} {path}: there is no such file")
     if args.export and not args.init and not os.path.exists(os.path.join(args.out, "checkpoint.pt")):
         refuse_untrained(args, 0)
     return args
@@ -33,14 +37,17 @@ def checked(parser, arguments):
 
 def live(arguments=None):
     ap = argparse.ArgumentParser(description="Trains the live network; train_live.py says more in its head.")
-    ap.add_argument("--minutes", type=float, default=80, help="of this part of the run")
+    ap.add_argument("--minutes", type=float, default=80, help="of training in this part of the run; validation comes on top")
     ap.add_argument("--seed", type=int, default=0)
     ap.add_argument("--batch", type=int, default=4, help="scenes a step of each process, all of them new")
     ap.add_argument("--lr", type=float, default=5e-4)
     ap.add_argument("--bf16", action="store_true", help="convolutions in bfloat16 (weights, sums and loss stay in f32): faster where the processor has AMX")
     ap.add_argument("--edge-weight", type=float, default=0.0)
     ap.add_argument("--validation", type=int, default=6, help="validation scenes a kind")
-    ap.add_argument("--snr-share", type=float, default=1 / 3, help="part of the scenes over thermal noise, 10 to 60 dB SNR")
+    ap.add_argument("--mixture", default="world", metavar="KINDS", help="kinds of training scenes with their shares, as in 2=1,walls=3")
+    ap.add_argument("--radar", choices=["random", "thesis"], default="random", help="what sees them: radars drawn at random, or that of table 3.1")
+    ap.add_argument("--snr-share", type=float, default=0.5, help="part of the scenes over thermal noise")
+    ap.add_argument("--snr", type=float, nargs=2, default=(10.0, 100.0), metavar="DB", help="lowest and highest ratio of that noise")
     ap.add_argument("--init", metavar="FILE", help="weight file to start from; one of the first edition gets channels of zeros for what it lacks")
     ap.add_argument("--first-scene", type=int, default=0, help="with --init: number of the first training scene, so that none is seen twice")
     ap.add_argument("--cool", type=float, default=0.0, help="minutes at the end of this part over which the learning rate falls to zero")

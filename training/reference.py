@@ -29,10 +29,13 @@ def main(folder):
         doubt.scene.weight[0, ::2] = 0.3
         doubt.scene.bias.fill_(-0.2)
     given = ap.live_input(ap.Scene.of_points(POINTS).simulate(floor="exact").ends)
-    fine, coarse, rows, scalars = (torch.from_numpy(given[name]) for name in ("fine", "coarse", "rows", "scalars"))
+    fine, coarse, rows, scalars, constants = (torch.from_numpy(given[name]) for name in ("fine", "coarse", "rows", "scalars", "constants"))
     with torch.no_grad():
-        log, minimum, picture = model.with_picture(fine[None], coarse[None], rows[None], scalars[None])
+        log, minimum, picture = model.with_picture(fine[None], coarse[None], rows[None], scalars[None], constants[None])
         of_cells, hidden = doubt.parts(picture)
+        # A rectangular window, other spacing and migration, and a pattern.
+        other = torch.tensor([0.2, -0.1, 0, 0, 1, 1.5])
+        other_log, other_minimum, _ = model.with_picture(fine[None], coarse[None], rows[None], scalars[None], other[None])
         of_scene = doubt.scene(hidden)[:, 0]
         assert 0.01 < abs(of_scene) < 0.5, f"{of_scene} decades of the scene say little of the twin"
     weights = {k: v.contiguous() for k, v in model.state_dict().items()}
@@ -43,6 +46,7 @@ def main(folder):
         "fine": fine[:, ::32, ::8].contiguous(), "coarse": coarse[:, ::32, ::4].contiguous(), "rows": rows[:, ::8].contiguous(),
         "scalars": scalars, "gain": torch.tensor([given["gain"]]), "log": log[0, ::32, ::16].contiguous(), "minimum": minimum,
         "doubt": expected_error(of_cells, of_scene)[0, ::16, ::16].contiguous(),
+        "constants": other, "other_log": other_log[0, ::32, ::16].contiguous(), "other_minimum": other_minimum,
         "points": torch.from_numpy(POINTS).float(),
     }
     save_file(tensors, f"{folder}/live_reference.safetensors", metadata={"network": "live-reference"})

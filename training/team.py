@@ -45,13 +45,13 @@ class Team:
             dist.all_reduce(total)
         return float(total) / self.size
 
-    def agreed(self, flag):
+    def agreed(self, number):
         """What the first process says."""
         if self.size == 1:
-            return flag
-        said = torch.tensor([int(flag)], device=self.device)
+            return number
+        said = torch.tensor([float(number)], dtype=torch.float64, device=self.device)
         dist.broadcast(said, 0)
-        return bool(said.item())
+        return said.item()
 
     def say(self, text):
         if self.is_first:

@@ -10,13 +10,16 @@ on a CPU. The shipped weights come from here.
         --export ../assets/weights/live.safetensors                  # write the averaged weights and their figures, and stop
     python3 calibrate_doubt.py ../assets/weights/live.safetensors    # then fit its doubt to validation scenes
     python3 train_live.py --validation 24 --judge FILE               # figures of any weights on the validation scenes, and stop
+    python3 train_live.py --out DIR --minutes 11 --cool 5 --validation 0 --bf16 --batch 32 --graph --lr 1.2e-3 --pool 20000 --uses 8 \\
+        --log-every 20 --threads 4 --init ../assets/weights/live.safetensors    # on a GPU that there is for twelve minutes
 
 Needs torch, numpy, safetensors and apertura (`pip install ../python`), which makes the scenes: `apertura.torch.Scenes`. Every scene is new; with `--pool`
-each is drawn `--uses` times. A third lies over thermal noise from 60 to 10 dB. Example `i` is a function of the seed and `i` alone: a run that goes on takes the next ones, in
+each is drawn `--uses` times. They are those of `--mixture`, before the radar of table 3.1 or one drawn for each (`--radar`). Half of them lie over
+thermal noise (`--snr-share`, `--snr`), a fifth are heard by elements that are off. Example `i` is a function of the seed and `i` alone: a run that goes on takes the next ones, in
 any number of processes.
 
 The learning rate rises over 200 steps and then falls with the square root of the steps of this run; so a run needs no end. With `--cool M` it falls to
-zero over the last M minutes. A moving average of the weights is what is validated and written. Several processes average their gradients, so that a step sees `--batch` scenes of each. A checkpoint holds
+zero over the last M minutes. Minutes of validation don't count. A moving average of the weights is what is validated and written. Several processes average their gradients, so that a step sees `--batch` scenes of each. A checkpoint holds
 weights, their moving average, optimizer, the number of scenes drawn and the record of every part of the run, and is replaced in one step. When a process
 is killed, torchrun starts all of them again from it.
 
@@ -25,7 +28,6 @@ this program never sees.
 """
 import json
 import os
-import time
 
 import options
 
@@ -36,32 +38,45 @@ import torch
 
 import apertura as ap
 import provenance
-from common import export, figures, save, unit, validation_scenes
+from common import Clock, export, figures, save, unit, validation_scenes
 from graph import Replayed
 from live import COLS, DOUBT, FINE, Doubt, Doubting, Live, expected_error, normalise, parted, widened
 from pool import Pool
 from team import Log, Team, batches
 
 WARM_UP = 200
-#: Share of each kind of scene.
-MIXTURE = {"1": 6, "2": 20, "3": 24, "clusters": 9, "walls": 10, "spacings": 8, "corner": 10, "crowd": 13, "dynamic": 5, "near": 5,
-           "bodies": 6, "street": 12, "rails": 16, "occlusion": 8, "rough": 4, "fences": 10, "rain": 26}
 #: Share of the scenes whose elements are off, and the largest tolerances: gain in decibels, phase in degrees, place in millimetres.
 ELEMENTS = (0.2, 1.0, 20.0, 0.1)
-#: What the validation figures are given for: the kinds over the thesis' floor, and three sets over thermal noise.
-NOISY = (("2", 40), ("2", 20), ("3", 40))
-#: And two sets heard by elements that are off: kind, and tolerances of gain, phase and place.
-OFF = (("2", (0.6, 6.0, 0.0)), ("3", (0.6, 6.0, 0.0)))
-INPUTS = ("fine", "coarse", "rows", "scalars")
+#: What the validation figures are given for: these kinds over the thesis' floor before the radar of table 3.1.
+KINDS = ("1", "2", "3", "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near", "bodies", "street", "rails", "occlusion", "rough",
+         "fences", "rain", "world")
+#: Two sets heard by elements that are off.
+OFF = {f"{kind} elements off": {"set": kind, "elements": (1.0, 0.6, 6.0, 0.0)} for kind in ("2", "3")}
+#: And three sets over thermal noise.
+OTHERS = {f"{kind} at {snr} dB": {"set": kind, "floor": f"snr={snr}"} for kind, snr in (("2", 40), ("2", 20), ("3", 40))} | OFF
+#: Other radars, where weights are for them: name, arguments of `Radar`.
+RADARS = {
+    "76 GHz": {"carrier_hz": 76e9, "convention": "thesis"}, "1 GHz wide": {"bandwidth_hz": 1e9}, "4 GHz wide": {"bandwidth_hz": 4e9},
+    "24 GHz, 250 MHz wide": {"carrier_hz": 24e9, "bandwidth_hz": 250e6, "convention": "thesis"}, "physical": {"convention": "physical"},
+    "physical 60 GHz": {"carrier_hz": 60e9, "convention": "physical"}, "rectangular": {"window": "rectangular"},
+}
+INPUTS = ("fine", "coarse", "rows", "scalars", "constants")
 
 
 def training_scenes(args):
-    mixture = ",".join(f"{kind}={share}" for kind, share in MIXTURE.items())
-    return ap.torch.Scenes(mixture, args.seed, length=1 << 32, thermal=(args.snr_share, 10, 60), elements=ELEMENTS)
+    radar = "random" if args.radar == "random" else None
+    try:
+        return ap.torch.Scenes(args.mixture, args.seed, length=1 << 32, thermal=(args.snr_share, *args.snr), elements=ELEMENTS, radar=radar)
+    except ValueError as error:
+        raise SystemExit(f"--mixture, --snr-share, --snr or --radar: {error}") from None
 
 
 def validation_sets(args):
-    return validation_scenes(args.seed, args.validation, tuple(MIXTURE), noisy=NOISY, off=OFF)
+    others = dict(OTHERS)
+    if args.radar == "random":
+        others["world, random radars"] = {"set": "world", "radar": "random"}
+        others |= {f"{kind}, {name}": {"set": kind, "radar": ap.Radar(**given)} for name, given in RADARS.items() for kind in ("2", "3")}
+    return validation_scenes(args.seed, args.validation, KINDS, others=others)
 
 
 def loss_of(log, minimum, target, edge_weight):
@@ -93,16 +108,17 @@ def doubt_loss_of(doubt, error):
 
 
 @torch.no_grad()
-def coverage(model, doubt, sets):
+def coverage(model, doubt, sets, device="cpu"):
     """Percent of the cells whose error is at most what the network says, by kind."""
     report = {}
     for kind, entries in sets.items():
         covered = []
         for entry in entries:
-            log, minimum, picture = model.with_picture(*(entry[name][None].float() for name in INPUTS))
+            batch = {name: t[None].float().to(device) for name, t in entry.items()}
+            log, minimum, picture = model.with_picture(*(batch[name] for name in INPUTS))
             of_cells, hidden = doubt.parts(picture)
             limit = expected_error(of_cells, doubt.scene(hidden)[:, 0])
-            covered.append(float((error_of(normalise(log, minimum), entry["target"][None].float()) <= limit).float().mean()))
+            covered.append(float((error_of(normalise(log, minimum), batch["target"]) <= limit).float().mean()))
         report[kind] = round(100 * sum(covered) / len(covered), 2)
     return report
 
@@ -131,6 +147,8 @@ class Run:
         kept = {"lr": self.rate if self.recorded else args.lr, "capturable": self.recorded}
         self.optimizer = torch.optim.AdamW([*self.model.parameters(), *self.doubt.parameters()], weight_decay=1e-4, betas=(0.9, 0.99), **kept)
         self.step, self.drawn, self.parts, initial = 0, 0, [], None
+        #: The radars that the last part trained for.
+        self.domain = training_scenes(args).domain
         maps = None
         if os.path.exists(self.path):
             state = torch.load(self.path, weights_only=True, map_location=team.device)
@@ -143,6 +161,8 @@ class Run:
                 group.update(kept)  # loading copies
             self.step, self.drawn, self.parts, maps = state["step"], state["drawn"], json.loads(state["parts"]), state.get("maps")
             self.average.load_state_dict(state["average"])
+            if args.export:
+                self.domain = state.get("domain", self.domain)
         else:
             if args.init:
                 from safetensors.torch import load_file
@@ -183,7 +203,7 @@ class Run:
     def save(self):
         save(self.path, {"model": self.model.state_dict(), "doubt": self.doubt.state_dict(), "average": self.average.state_dict(),
                          "optimizer": self.optimizer.state_dict(),
-                         "step": self.step, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
+                         "step": self.step, "domain": self.domain, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
 
 
 def scenes_of(args, first, team):
@@ -223,36 +243,41 @@ def step_of(run, args, team):
     return Replayed(step) if run.recorded else step
 
 
+def validate(run, sets, log, args, team):
+    report = figures(estimate_with(run.average, team.device), sets)
+    report["covered"] = coverage(run.average, run.doubt, sets, team.device)
+    line = json.dumps({"step": run.step, "maps": run.maps, "loss": log.smoothed, **report})
+    with open(os.path.join(args.out, "validation.jsonl"), "a") as f:
+        f.write(line + "\n")
+    team.say(line)
+
+
 def train(run, args, team):
     sets = validation_sets(args) if team.is_first and args.validation else None
+    clock = Clock()
     log = Log(args.out, run.step) if team.is_first else None
     step = step_of(run, args, team)
     scenes = scenes_of(args, run.drawn, team)
-    began = time.time()
-    saved, validated = began, 0.0
-    losses = []
+    saved, validated, losses = 0.0, float("-inf"), []
     while True:
-        done = run.step >= args.steps if args.steps is not None else time.time() - began > 60 * args.minutes
-        done = team.agreed(done)
+        # The first process' clock is that of all, whose rates must be the same.
+        seconds = team.agreed(clock.seconds())
+        done = run.step >= args.steps if args.steps is not None else seconds > 60 * args.minutes
         if team.is_first:
-            if sets and (done or time.time() - validated > 60 * args.validate_every):
-                report = figures(estimate_with(run.average, team.device), sets)
-                report["covered"] = coverage(run.average, run.doubt, sets)
-                line = json.dumps({"step": run.step, "maps": run.maps, "loss": log.smoothed, **report})
-                with open(os.path.join(args.out, "validation.jsonl"), "a") as f:
-                    f.write(line + "\n")
-                team.say(line)
-                validated = time.time()
-            if done or time.time() - saved >= 60 * args.save_every:
+            if done or seconds - saved >= 60 * args.save_every:
                 finite(losses, run, args)
                 run.save()
-                saved = time.time()
+                saved = seconds
+            if sets and (done or seconds - validated > 60 * args.validate_every):
+                with clock.stopped():
+                    validate(run, sets, log, args, team)
+                validated = seconds
         if done:
             if args.pool:
                 scenes.close()
             return
         batch = {name: t.to(team.device) for name, t in next(scenes).items() if name != "ends"}
-        rate = args.lr * min((run.step + 1) / WARM_UP, (1 + run.step / 2000) ** -0.5) * cooled(args, time.time() - began)
+        rate = args.lr * min((run.step + 1) / WARM_UP, (1 + run.step / 2000) ** -0.5) * cooled(args, seconds)
         run.prepare(rate)
         losses.append(step(batch))
         run.drawn = scenes.drawn if args.pool else run.drawn + args.batch * team.size
@@ -262,7 +287,7 @@ def train(run, args, team):
             mean = team.mean(finite(losses, run, args))
             losses.clear()
             if log:
-                log.line(run.step, run.maps, time.time() - began, rate, mean)
+                log.line(run.step, run.maps, clock.seconds(), rate, mean)
 
 
 def main(args):
@@ -291,7 +316,7 @@ def main(args):
             tensor.copy_(tensor.half())
         report = figures(estimate_with(run.average, team.device), sets)
         meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(args.seed),
-                "steps": str(run.step), "scenes_simulated": str(run.drawn), **provenance.metadata(run.parts)}
+                "steps": str(run.step), "scenes_simulated": str(run.drawn), "domain": run.domain, **provenance.metadata(run.parts)}
         doubt = {f"{DOUBT}{name}": weights for name, weights in run.doubt.state_dict().items()}
         tensors = {**run.average.state_dict(), **doubt}
         export({name: tensor.half() for name, tensor in tensors.items()}, args.export, meta, report, args.validation)

@@ -27,7 +27,6 @@ them again from it. Training and validation scenes come from streams that never 
 """
 import json
 import os
-import time
 
 import options
 
@@ -39,7 +38,7 @@ import torch
 
 import apertura as ap
 import provenance
-from common import export, figures, save, stacked, unit, validation_scenes
+from common import Clock, export, figures, save, stacked, unit, validation_scenes
 from muon import Muon
 from team import Log, Team
 from thesis import Thesis
@@ -207,23 +206,25 @@ class Buffer:
 def train(run, args, team):
     run.model.train()
     sets = validation_scenes(args.experiment, args.validation, network="thesis") if team.is_first and args.validation else None
+    clock = Clock()
     log = Log(args.out, run.step) if team.is_first else None
     model, buffer = team.share(run.model), Buffer(run, args, team)
-    began = saved = time.time()
-    validated = 0.0
+    saved, validated = 0.0, float("-inf")
     while True:
-        done = team.agreed(run.step >= args.steps if args.steps is not None else time.time() - began > 60 * args.minutes)
-        if sets and (done or time.time() - validated > 60 * args.validate_every):
-            report = figures(estimate_with(run.average.cpu()), sets)
+        seconds = team.agreed(clock.seconds())
+        done = run.step >= args.steps if args.steps is not None else seconds > 60 * args.minutes
+        if team.is_first and (done or seconds - saved >= 60 * args.save_every):
+            run.save()
+            saved = seconds
+        if sets and (done or seconds - validated > 60 * args.validate_every):
+            with clock.stopped():
+                report = figures(estimate_with(run.average.cpu()), sets)
             run.average.to(team.device)
             line = json.dumps({"step": run.step, "maps": run.maps, "loss": log.smoothed, **report})
             with open(os.path.join(args.out, "validation.jsonl"), "a") as f:
                 f.write(line + "\n")
             team.say(line)
-            validated = time.time()
-        if team.is_first and (done or time.time() - saved >= 60 * args.save_every):
-            run.save()
-            saved = time.time()
+            validated = seconds
         if done:
             return
         inputs, target, maps = buffer.batch(run)
@@ -240,7 +241,7 @@ def train(run, args, team):
         run.scenes = buffer.next
         run.maps += maps * team.size
         if log:
-            log.line(run.step, run.maps, time.time() - began, rate, mean)
+            log.line(run.step, run.maps, clock.seconds(), rate, mean)
 
 
 def main(args):

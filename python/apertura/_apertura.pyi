@@ -347,7 +347,10 @@ class Examples:
         floor: str = "thesis",
         thermal: tuple[float, float, float] | None = None,
         elements: tuple[float, float, float, float] | None = None,
+        radar: Radar | Literal["random"] | None = None,
     ) -> Examples: ...
+    @property
+    def domain(self) -> str: ...
     def batch(self, indices: Sequence[SupportsIndex], *, mag_phase: bool = False) -> list[dict[str, Any]]: ...
 
 def dataset(

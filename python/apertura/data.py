@@ -20,7 +20,7 @@ class Files:
     """One split of a dataset on disk, as a map-style dataset: a `torch.utils.data.DataLoader` takes it as it is.
 
     Item `i` is a dict of arrays: those that were written of `ends` complex128 `[2, 12, 512]`, `fine` `[4, 512, 256]`, `coarse` `[10, 512, 64]`,
-    `rows` `[6, 512]`, `scalars` `[2]` and `target` `[512, 1024]`, and `gain`. Halves become float32. Files are mapped into memory: nothing is
+    `rows` `[6, 512]`, `scalars` `[2]`, `constants` `[6]` and `target` `[512, 1024]`, and `gain`. Halves become float32. Files are mapped into memory: nothing is
     read before it is asked for, and worker processes share what was.
 
     Args:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import operator
 from typing import TYPE_CHECKING, Any, Literal, Sequence
 
-from ._apertura import Examples
+from ._apertura import Examples, Radar
 
 if TYPE_CHECKING:
     import torch as _torch
 
-_TENSORS = {"live": ("ends", "fine", "coarse", "rows", "scalars", "target"), "thesis": ("ends", "mag_phase", "target")}
+_TENSORS = {"live": ("ends", "fine", "coarse", "rows", "scalars", "constants", "target"), "thesis": ("ends", "mag_phase", "target")}
 
 
 class Scenes:
@@ -32,9 +32,11 @@ class Scenes:
         elements: (share, gain in decibels, phase in degrees, place in millimetres): this share of the scenes is heard by elements that are off.
             Each such scene has its own part of these standard deviations, uniform from none to all. `target` stays that of the array as it
             should be.
+        radar: The `Radar` that sees all scenes, with 1024 elements, ends of 12 and 512 samples; "random" for one drawn for each scene, as
+            `Examples` says; that of table 3.1 where none is given.
 
     An example is a dict of tensors: `ends` complex64 `[2, 12, 512]`, the network's input `fine` float32 `[4, 512, 256]`, `coarse` float32
-    `[10, 512, 64]`, `rows` float32 `[6, 512]` and `scalars` float32 `[2]`, and `target` float32 `[512, 1024]`, decades of amplitude of the
+    `[10, 512, 64]`, `rows` float32 `[6, 512]`, `scalars` float32 `[2]` and `constants` float32 `[6]`, and `target` float32 `[512, 1024]`, decades of amplitude of the
     whole array's map. With `network="thesis"` the input is `mag_phase` float32 `[4, 512, 1024]`. Ends and target are relative to the samples'
     mean power; the rounding of complex64 covers the thesis' floor in `ends`, and in nothing else.
 
@@ -53,6 +55,7 @@ class Scenes:
         thermal: tuple[float, float, float] | None = None,
         network: Literal["live", "thesis"] = "live",
         elements: tuple[float, float, float, float] | None = None,
+        radar: Radar | Literal["random"] | None = None,
     ) -> None:
         if network not in _TENSORS:
             raise ValueError(f'network is {network!r}; expected "live" or "thesis"')
@@ -68,11 +71,17 @@ class Scenes:
             "floor": floor,
             "thermal": thermal,
             "elements": elements,
+            "radar": radar,
         }
         self._examples: Examples | None = Examples(**self._arguments)
 
     def __len__(self) -> int:
         return self._length
+
+    @property
+    def domain(self) -> str:
+        """The radars that a network which learns from these examples is trained for, as JSON: a weight file's entry `domain`."""
+        return self._made().domain
 
     def __getitem__(self, index: int) -> dict[str, _torch.Tensor]:
         """Example `index`; negative numbers count from the end.

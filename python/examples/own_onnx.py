@@ -19,7 +19,7 @@ def method(path):
 
     def reconstruct(ends, radar):
         given = ap.live_input(ends, radar)
-        inputs = {name: given[name][None] for name in ("fine", "coarse", "rows", "scalars")}
+        inputs = {name: given[name][None] for name in ("fine", "coarse", "rows", "scalars", "constants")}
         decades, minimum = (output[0] for output in session.run(["decades", "minimum"], inputs))
         spread = decades.max() - minimum
         return np.clip((decades - minimum) / spread, 0, 1), np.clip(1 - BELOW_PEAK_DECADES / spread, 0, 1)

@@ -10,10 +10,12 @@ use apertura::maps::channels_map;
 use apertura::maps::network_input::mag_phase;
 use apertura::network::floors::Floors;
 use apertura::network::live::arrays::Arrays;
+use apertura::network::live::constants::turn_columns;
 use apertura::network::live::dataset::{self as files, DatasetError, DatasetRequest, Part};
 use apertura::network::live::examples::{self, Example};
 use apertura::network::live::features::{FeatureExtractor, LiveInput};
 use apertura::network::live::grid::{COARSE, COARSE_CHANNELS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS};
+use apertura::network::live::radars::Radars;
 use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::check_ends;
 use apertura::scene::generate::Kind;
@@ -38,6 +40,9 @@ use std::sync::OnceLock;
 ///         others over the thesis' floor. In place of `floor`.
 ///     elements: (share, gain in decibels, phase in degrees, place in millimetres): this share of the scenes is heard by elements that are off.
 ///         Each such scene has its own part of these standard deviations, uniform from none to all. `target` stays that of the array as it should be.
+///     radar: The `Radar` that sees all scenes, with 1024 elements, ends of 12 and 512 samples; "random" for one drawn for each scene: 20 to
+///         100 GHz, 0.1 to 6 GHz of bandwidth, both conventions, all windows, a quarter of them that of table 3.1. That of table 3.1 where none
+///         is given.
 ///
 /// Raises:
 ///     ValueError: A name is unknown or a number can't be used.
@@ -56,7 +61,7 @@ const MOST: usize = 4096;
 #[pymethods]
 impl Examples {
     #[new]
-    #[pyo3(signature = (mixture, seed=0, *, purpose="training", floor="thesis", thermal=None, elements=None))]
+    #[pyo3(signature = (mixture, seed=0, *, purpose="training", floor="thesis", thermal=None, elements=None, radar=None))]
     fn new(
         mixture: &str,
         seed: u64,
@@ -64,11 +69,18 @@ impl Examples {
         floor: &str,
         thermal: Option<(f64, f64, f64)>,
         elements: Option<(f64, f64, f64, f64)>,
+        radar: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let (floors, arrays) = (floors_of(floor, thermal)?, arrays_of(elements)?);
-        examples::Examples::new(named(mixture)?, purpose_of(purpose)?, seed, floors, arrays)
+        let (floors, arrays, radars) = (floors_of(floor, thermal)?, arrays_of(elements)?, radars_of(radar)?);
+        examples::Examples::new(named(mixture)?, purpose_of(purpose)?, seed, floors, arrays, radars)
             .map(Examples)
             .map_err(value)
+    }
+
+    /// The radars that a network which learns from these examples is trained for, as a weight file's entry `domain` has them.
+    #[getter]
+    fn domain(&self) -> PyResult<String> {
+        self.0.domain().json().map_err(value)
     }
 
     /// Examples of these numbers, made in parallel.
@@ -80,7 +92,8 @@ impl Examples {
     /// Returns:
     ///     One dict an example: `ends` complex64 `[2, 12, 512]` and `target` float32 `[512, 1024]` (decades of amplitude), both relative to
     ///     the samples' mean power; the network's input `fine` float32 `[4, 512, 256]`, `coarse` float32 `[10, 512, 64]`, `rows` float32
-    ///     `[6, 512]`, `scalars` float32 `[2]`; `gain` (decades that were taken off), `kind` and `floor`.
+    ///     `[6, 512]`, `scalars` float32 `[2]`, `constants` float32 `[6]`; `gain` (decades that were taken off), `kind`, `floor` and `radar`.
+    ///     The columns of input and target run from left to right as cos(theta) rises, in both conventions.
     ///
     /// Raises:
     ///     ValueError: An example can't be made (silence has no input), or there are too many.
@@ -90,10 +103,9 @@ impl Examples {
             return Err(value(format!("{} examples are asked for; at most {MOST} at once", indices.len())));
         }
         let examples = &self.0;
-        let radar = apertura::radar::Radar::default();
         let make = |index: &u32, task: &Task| {
             let example = examples.example(*index, task)?;
-            let input = mag_phase.then(|| mag_phase_of(&radar, &example.ends));
+            let input = mag_phase.then(|| mag_phase_of(&example.radar, &example.ends));
             Ok::<_, examples::ExampleError>((example, input))
         };
         let made: Result<Vec<_>, _> =
@@ -128,14 +140,25 @@ fn arrays_of(elements: Option<(f64, f64, f64, f64)>) -> PyResult<Arrays> {
     Ok(Arrays { share, tolerances })
 }
 
+fn radars_of(radar: Option<&Bound<'_, PyAny>>) -> PyResult<Radars> {
+    let Some(radar) = radar else { return Ok(Radars::default()) };
+    if let Ok(radar) = radar.extract::<PyRef<'_, Radar>>() {
+        return Ok(Radars::Fixed(Box::new(radar.0.clone())));
+    }
+    match radar.extract::<String>().as_deref() {
+        Ok("random") => Ok(Radars::Random),
+        _ => Err(value(format!("radar is {}; expected a Radar, \"random\" or None", radar.repr()?))),
+    }
+}
+
 /// Writes examples as files: `apertura dataset`. `docs/data.md` says what is in them; `apertura.data.Files` reads them.
 ///
 /// Args:
 ///     folder: A new folder or an empty one.
-///     sets: Names of sets as `Scene.random` takes them.
+///     sets: Names of sets as `Scene.random` takes them for training.
 ///     count: Scenes of each set for training.
 ///     validation: For validation; a tenth of `count` where none is given.
-///     test: For the test; likewise.
+///     test: For the test; likewise, but none where "world" is among the sets.
 ///     seed: Seed of the scenes.
 ///     floor: What lies beneath all scenes: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL".
 ///     thermal: (share, lowest dB, highest dB), in place of `floor`, as for `Examples`.
@@ -166,15 +189,16 @@ pub fn dataset(
     shard: u32,
     progress: Progress<'_, '_>,
 ) -> PyResult<()> {
-    let kinds: PyResult<Vec<Kind>> = sets.iter().map(|set| named(&set_name(set)?)).collect();
+    let kinds: PyResult<Vec<Kind>> =
+        sets.iter().map(|set| Kind::for_training(&set_name(set)?).map_err(value)).collect();
+    let kinds = kinds?;
     let parts: Result<Vec<Part>, _> = match arrays {
         None => Ok(Part::ALL.to_vec()),
         Some(names) => names.iter().map(|name| name.parse()).collect(),
     };
-    let tenth = count.div_ceil(10);
     let request = DatasetRequest {
-        kinds: kinds?,
-        counts: [count, validation.unwrap_or(tenth), test.unwrap_or(tenth)],
+        counts: DatasetRequest::counts(&kinds, count, validation, test),
+        kinds,
         seed,
         floors: floors_of(floor, thermal)?,
         precision: dtype.parse().map_err(value)?,
@@ -193,11 +217,15 @@ fn shaped(values: Vec<f32>, shape: &[usize]) -> PyResult<ArrayD<f32>> {
 
 fn mag_phase_of(radar: &apertura::radar::Radar, ends: &TwoEnds) -> Array3<f32> {
     let [first, last] = [&ends.first, &ends.last].map(|end| channels_map(radar, end.view()));
-    mag_phase(&first, &last).mapv(|v| v as f32)
+    let mut maps = mag_phase(&first, &last).mapv(|v| v as f32);
+    if let Some(cells) = maps.as_slice_mut() {
+        turn_columns(radar, cells);
+    }
+    maps
 }
 
 fn dict_of(py: Python<'_>, made: (Example, Option<Array3<f32>>)) -> PyResult<Bound<'_, PyDict>> {
-    let (Example { kind, floor, ends, input, decades }, mag_phase) = made;
+    let (Example { kind, floor, radar, ends, input, decades }, mag_phase) = made;
     let scale = 10f64.powf(-input.gain);
     let ends = both_ends(&ends).mapv(|v| Complex32::new((v.re * scale) as f32, (v.im * scale) as f32));
     let dict = PyDict::new(py);
@@ -210,6 +238,7 @@ fn dict_of(py: Python<'_>, made: (Example, Option<Array3<f32>>)) -> PyResult<Bou
     dict.set_item("target", owned(py, decades))?;
     dict.set_item("kind", kind.to_string())?;
     dict.set_item("floor", floor.to_string())?;
+    dict.set_item("radar", Radar(radar))?;
     Ok(dict)
 }
 
@@ -220,11 +249,11 @@ fn dict_of(py: Python<'_>, made: (Example, Option<Array3<f32>>)) -> PyResult<Bou
 ///     radar: The radar that sampled them; that of table 3.1 where none is given.
 ///
 /// Returns:
-///     `fine` float32 `[4, 512, 256]`, `coarse` float32 `[10, 512, 64]`, `rows` float32 `[6, 512]`, `scalars` float32 `[2]`, and `gain`: the
-///     decades by which `decades` of a map exceed the network's.
+///     `fine` float32 `[4, 512, 256]`, `coarse` float32 `[10, 512, 64]`, `rows` float32 `[6, 512]`, `scalars` float32 `[2]`, `constants`
+///     float32 `[6]`, and `gain`: the decades by which `decades` of a map exceed the network's.
 ///
 /// Raises:
-///     ValueError: The shape is not the radar's, a sample is not finite, or the network knows another radar.
+///     ValueError: The shape is not the radar's, a sample is not finite, or the radar has not 1024 elements, ends of 12 and 512 samples.
 #[pyfunction]
 #[pyo3(signature = (ends, radar=None))]
 pub fn live_input<'py>(
@@ -260,5 +289,6 @@ fn set_input(dict: &Bound<'_, PyDict>, input: LiveInput) -> PyResult<()> {
     dict.set_item("coarse", owned(py, shaped(input.coarse, &[COARSE_CHANNELS, ROWS, COARSE])?))?;
     dict.set_item("rows", owned(py, shaped(input.rows, &[ROW_CHANNELS, ROWS])?))?;
     dict.set_item("scalars", owned(py, Array1::from(input.scalars.to_vec())))?;
+    dict.set_item("constants", owned(py, Array1::from(input.constants.to_vec())))?;
     dict.set_item("gain", input.gain)
 }

@@ -8,6 +8,7 @@ use crate::radar::Radar;
 use crate::work::{self, Progress};
 use apertura::evaluate::TARGET_ETA;
 use apertura::maps::Normalisation;
+use apertura::network::live::examples::ExamplesError;
 use apertura::picture::ColourMap;
 use apertura::scene::file::{SceneFile, from_toml, load, save, to_toml};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
@@ -124,7 +125,7 @@ impl Scene {
     ///
     /// Args:
     ///     set: 1, 2 or 3 for the thesis' test sets, or "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near",
-    ///         "bodies", "street", "rails", "occlusion", "rough", "noise".
+    ///         "bodies", "street", "rails", "occlusion", "rough", "noise"; "world" for training and validation.
     ///     seed: Seed of the set.
     ///     index: Number of the scene, from 0.
     ///     purpose: "test", "validation" or "training": their scenes never meet.
@@ -132,7 +133,7 @@ impl Scene {
     ///     radar: The radar; that of table 3.1 where none is given.
     ///
     /// Raises:
-    ///     ValueError: A name is unknown.
+    ///     ValueError: A name is unknown, or the radar does not see far enough for the set's objects.
     #[staticmethod]
     #[pyo3(signature = (set, seed=0, index=0, *, purpose="test", reading="program", radar=None))]
     fn random(
@@ -143,9 +144,17 @@ impl Scene {
         reading: &str,
         radar: Option<&Radar>,
     ) -> PyResult<Self> {
-        let kind: Kind = named(&set_name(set)?)?;
+        let (name, purpose) = (set_name(set)?, purpose_of(purpose)?);
+        let kind: Kind = match purpose {
+            Purpose::Test => named(&name)?,
+            _ => Kind::for_training(&name).map_err(value)?,
+        };
         let radar = radar.map(|r| r.0.clone()).unwrap_or_default();
-        let generator = Generator::new(&radar, reading_of(reading)?, purpose_of(purpose)?, seed);
+        let (needed, found) = (kind.needed_range_metres(), radar.max_range_metres());
+        if needed > found {
+            return Err(value(ExamplesError::NoRoom { kind, needed, found }));
+        }
+        let generator = Generator::new(&radar, reading_of(reading)?, purpose, seed);
         checked(SceneFile { scene: generator.scene(kind, index), radar })
     }
 

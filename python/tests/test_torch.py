@@ -1,5 +1,6 @@
 """The dataset for PyTorch."""
 
+import json
 import multiprocessing
 import pickle
 
@@ -31,6 +32,33 @@ def test_an_example_is_its_scene():
     assert np.allclose(example["ends"], maps.ends * scale, rtol=1e-6, atol=1e-6)
     assert np.abs(example["target"] - (maps.decades - example["gain"])).max() < 1e-5
     assert np.mean(np.abs(example["ends"]) ** 2) == pytest.approx(1, rel=1e-5)
+
+
+def test_the_world_trains_and_validates_and_makes_no_tests():
+    data = ap.torch.Scenes("world", seed=4, radar="random")
+    found = data.arrays(3)
+    assert found["kind"] == "world" and found["constants"].shape == (6,)
+    alone = ap.torch.Scenes("world", seed=4, radar=found["radar"]).arrays(3)
+    assert all(np.array_equal(found[name], alone[name]) for name in ("ends", "fine", "constants", "target"))
+    ap.torch.Scenes("world", purpose="validation")
+    with pytest.raises(ValueError, match="world makes no scenes for tests"):
+        ap.torch.Scenes("world", purpose="test")
+    with pytest.raises(ValueError, match="world makes no scenes for tests"):
+        ap.Scene.random("world")
+    assert ap.Scene.random("world", 4, 3, purpose="training") == ap.Scene.random("world", 4, 3, purpose="training")
+
+
+def test_examples_know_the_radars_that_they_train_for():
+    assert not ap.torch.Scenes("2").arrays(0)["constants"].any()
+    assert "radar" in json.loads(ap.torch.Scenes("2").domain)
+    assert json.loads(ap.torch.Scenes("2", radar="random").domain)["limits"]["carrier_hz"] == [20e9, 100e9]
+    with pytest.raises(ValueError, match='radar is 76; expected a Radar, "random" or None'):
+        ap.torch.Scenes("2", radar=76)
+    with pytest.raises(ValueError, match="for 512 samples; this radar has 256 samples"):
+        ap.torch.Scenes("2", radar=ap.Radar(samples=256))
+    for make in (lambda: ap.torch.Scenes("street", radar="random"), lambda: ap.Scene.random("street", radar=ap.Radar.preset("chip-8"))):
+        with pytest.raises(ValueError, match="scenes of street need a radar that sees 20 m far"):
+            make()
 
 
 def total(index):

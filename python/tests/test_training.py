@@ -139,6 +139,20 @@ def test_scenes_of_a_pool_are_drawn_several_times(tmp_path):
     assert found.returncode != 0 and "at least --batch (8) scenes" in found.stderr
 
 
+def test_minutes_leave_validation_out(tmp_path):
+    program = Path(TRAINING, "common.py")
+    script = f"import sys; sys.path.insert(0, {str(program.parent)!r}); import time; from common import Clock; c = Clock()\n"
+    script += "with c.stopped():\n    time.sleep(0.5)\nassert c.seconds() < 0.3, c.seconds()"
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=600)
+    assert found.returncode == 0, found.stderr
+
+
+def test_what_can_not_train_is_told_in_a_line(tmp_path):
+    for arguments, told in ((("--mixture", "hills"), 'no scenes called "hills"'), (("--init", "none.safetensors"), "--init none.safetensors: there is no such file")):
+        found = alone(tmp_path, *LIVE, "--steps", "1", *arguments)
+        assert found.returncode != 0 and told in found.stderr and "Traceback" not in found.stderr
+
+
 def test_weights_are_exported(tmp_path):
     assert alone(tmp_path, *LIVE, "--steps", "1").returncode == 0
     path = tmp_path / "live.safetensors"
@@ -148,6 +162,7 @@ def test_weights_are_exported(tmp_path):
 
     with safe_open(path, "pt") as file:
         assert file.metadata()["network"] == "live" and "set 3: SE" in file.metadata()["validation"]
+        assert "limits" in json.loads(file.metadata()["domain"])
 
 
 def test_untrained_weights_are_not_exported(tmp_path):

@@ -17,8 +17,8 @@ use std::time::Duration;
 /// never meet. The same arguments write the same files. docs/data.md leads from here to a training loop.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Test sets 1 to 3 or other kinds of scenes, as `apertura evaluate` takes them, separated by commas
-    #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', required = true)]
+    /// Test sets 1 to 3 or other kinds of scenes, as `apertura evaluate` takes them, separated by commas; or world, for training and validation
+    #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', required = true, value_parser = Kind::for_training)]
     set: Vec<Kind>,
 
     /// Scenes of each kind for training
@@ -29,7 +29,7 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = whole(0..=10_000_000u32))]
     validation: Option<u32>,
 
-    /// Scenes of each kind for the test [default: a tenth of --count]
+    /// Scenes of each kind for the test [default: a tenth of --count, 0 for world]
     #[arg(long, value_name = "N", value_parser = whole(0..=10_000_000u32))]
     test: Option<u32>,
 
@@ -72,11 +72,10 @@ const TICK: Duration = Duration::from_millis(100);
 impl Args {
     /// Writes the dataset.
     pub fn run(self) -> Result<(), CommandError> {
-        let tenth = self.count.div_ceil(10);
         let [from, to] = THERMAL;
         let request = DatasetRequest {
+            counts: DatasetRequest::counts(&self.set, self.count, self.validation, self.test),
             kinds: self.set,
-            counts: [self.count, self.validation.unwrap_or(tenth), self.test.unwrap_or(tenth)],
             seed: self.seed,
             floors: self.thermal.map_or(Floors::Fixed(self.floor), |share| Floors::Thermal { share, from, to }),
             precision: self.dtype,
@@ -107,6 +106,7 @@ fn told(error: DatasetError) -> CommandError {
     match error {
         DatasetError::File { path, source } => CommandError::File { path, source },
         DatasetError::Request(message) => CommandError::Usage(message),
+        DatasetError::Examples(error) => CommandError::Usage(error.to_string()),
         other => CommandError::failed(other),
     }
 }

@@ -5,6 +5,7 @@
 //! | [`live`] | the live network: features, examples to train on, burn module, an engine without a framework |
 //! | [`kernels`] | convolutions that both engines without a framework are made of |
 //! | [`floors`] | floors of training scenes |
+//! | [`domain`] | the radars that a network was trained for |
 //! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and as a reconstruction method |
 //! | [`thesis_engine`] | its forward pass without a framework |
 //! | [`unet`] | the thesis' failing U-Net |
@@ -18,6 +19,7 @@
 pub mod backend;
 #[cfg(feature = "network")]
 pub mod checkpoint;
+pub mod domain;
 pub mod floors;
 pub mod kernels;
 #[cfg(feature = "network")]
@@ -41,7 +43,6 @@ pub mod thesis_engine;
 pub mod thesis_method;
 #[cfg(feature = "network")]
 pub mod train;
-mod trained_for;
 #[cfg(feature = "network")]
 pub mod unet;
 #[cfg(feature = "network")]

@@ -1,5 +1,6 @@
 //! Each network's input, target and estimated map for a scene.
 
+use super::live::constants::turn_columns;
 use super::live::features::{FeatureExtractor, LiveInput};
 use super::live::grid::{COLUMNS, ROWS};
 use super::live::{Live, LiveBatch, LiveConfig};
@@ -184,6 +185,14 @@ impl Student for Live {
 
     fn input(tables: &FeatureExtractor, ends: &TwoEnds) -> Result<LiveInput, ReconstructError> {
         tables.extract(ends)
+    }
+
+    fn target(_: &LiveConfig, radar: &Radar, signal: &BeatSignal) -> RangeAngleMap {
+        let mut map = LogMaps::of_signal(radar, signal).full.normalise(Normalisation::MinMax);
+        if let Some(cells) = map.lambda.as_slice_mut() {
+            turn_columns(radar, cells);
+        }
+        map
     }
 
     fn estimate(&self, inputs: &[LiveInput], device: &Device) -> Tensor<3> {

@@ -1,10 +1,10 @@
 //! The thesis' networks as reconstruction methods.
 
 use super::backend::Backend;
+use super::domain::Domain;
 use super::students::{Student, ThesisInput, UnetTables};
 use super::thesis::{Thesis, ThesisConfig};
 use super::thesis_engine::{Buffers, ThesisEngine};
-use super::trained_for::check_radar;
 use super::unet::{Unet, UnetConfig};
 use super::weights::{Provenance, WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
@@ -35,7 +35,7 @@ pub struct ThesisMethod {
     name: &'static str,
     description: &'static str,
     weights: Weights,
-    trained: Radar,
+    trained: Domain,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -100,7 +100,7 @@ impl ThesisMethod {
             name,
             description,
             weights: file.weights(),
-            trained: file.provenance.radar(file.name())?,
+            trained: file.provenance.domain(file.name())?,
             provenance: file.provenance,
         })
     }
@@ -143,7 +143,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        check_radar(self.name, &self.trained, radar)
+        self.trained.check(self.name, radar)
     }
 
     fn trained_noise(&self) -> Option<TrainedNoise> {
@@ -157,7 +157,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<Reconstruction, ReconstructError> {
-        check_radar(self.name, &self.trained, radar)?;
+        self.trained.check(self.name, radar)?;
         let size = [radar.samples, radar.elements];
         let expected = vec![4, size[0], size[1]];
         if input.shape() != expected {
@@ -177,7 +177,7 @@ pub struct UnetMethod {
     config: UnetConfig,
     device: Device,
     weights: Weights,
-    trained: Radar,
+    trained: Domain,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -192,7 +192,7 @@ impl UnetMethod {
         let config = UnetConfig::default();
         let mut network = Unet::new(&config, &device);
         file.load_into(&mut network, |_| false)?;
-        let trained = file.provenance.radar(file.name())?;
+        let trained = file.provenance.domain(file.name())?;
         Ok(UnetMethod { network, config, device, weights: file.weights(), trained, provenance: file.provenance })
     }
 }
@@ -216,7 +216,7 @@ impl Reconstructor for UnetMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        check_radar(Unet::NAME, &self.trained, radar)
+        self.trained.check(Unet::NAME, radar)
     }
 
     fn weights(&self) -> Option<Weights> {

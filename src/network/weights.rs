@@ -3,6 +3,7 @@
 //! A file is checked against the module it is meant for (names, shapes, types, length, finite values) before a single weight is
 //! loaded, so that a truncated, foreign or wrong-shape file is an error that says what is wrong and not a crash.
 
+use super::domain::Domain;
 use crate::files::kind::kind_of;
 use crate::files::sha256;
 use crate::radar::Radar;
@@ -16,6 +17,8 @@ mod values;
 
 /// Entry of a weight file with the radar of its training scenes, as JSON.
 pub const RADAR_ENTRY: &str = "radar";
+/// Entry with the [`Domain`] of training scenes that several radars saw, as JSON.
+pub const DOMAIN_ENTRY: &str = "domain";
 
 /// Most tensors of a weight file; the thesis' network has some 70.
 const MAX_TENSORS: usize = 10_000;
@@ -42,17 +45,22 @@ impl Provenance {
         }
     }
 
-    /// The radar of the training scenes: that of the entry [`RADAR_ENTRY`], table 3.1's where the file `name` says nothing.
+    /// The radars of the training scenes: those of the entry [`DOMAIN_ENTRY`], else that of [`RADAR_ENTRY`], else table 3.1's.
     ///
     /// # Errors
-    /// [`WeightsError::Store`] where the entry can't be read.
-    pub fn radar(&self, name: &str) -> Result<Radar, WeightsError> {
-        match self.get(RADAR_ENTRY) {
-            "" => Ok(Radar::default()),
-            text => serde_json::from_str(text).map_err(|error| WeightsError::Store {
-                file: name.to_owned(),
-                reason: format!("its entry \"{RADAR_ENTRY}\" is no radar: {error}"),
-            }),
+    /// [`WeightsError::Store`] where an entry of the file `name` can't be read.
+    pub fn domain(&self, name: &str) -> Result<Domain, WeightsError> {
+        let wrong = |entry: &str, what: &str, error: serde_json::Error| WeightsError::Store {
+            file: name.to_owned(),
+            reason: format!("its entry \"{entry}\" is no {what}: {error}"),
+        };
+        match (self.get(DOMAIN_ENTRY), self.get(RADAR_ENTRY)) {
+            ("", "") => Ok(Domain::Radar(Box::default())),
+            ("", text) => {
+                let radar: Radar = serde_json::from_str(text).map_err(|error| wrong(RADAR_ENTRY, "radar", error))?;
+                Ok(Domain::Radar(Box::new(radar)))
+            }
+            (text, _) => serde_json::from_str(text).map_err(|error| wrong(DOMAIN_ENTRY, "domain of radars", error)),
         }
     }
 
@@ -393,20 +401,24 @@ mod tests {
 
     #[test]
     fn weights_without_a_radar_were_trained_for_table_3_1() {
-        assert_eq!(Provenance::default().radar("w").unwrap(), Radar::default());
+        assert_eq!(Provenance::default().domain("w").unwrap(), Domain::Radar(Box::default()));
     }
 
     #[test]
-    fn weights_carry_their_radar() {
-        let radar = Radar { bandwidth_hz: 1e9, ..Radar::default() };
-        let of = |text: String| {
-            let entries = [(RADAR_ENTRY.to_owned(), text)].into_iter().collect();
-            Provenance { entries }.radar("w.safetensors")
+    fn weights_carry_their_radars() {
+        let of = |entry: &str, text: String| {
+            let entries = [(entry.to_owned(), text)].into_iter().collect();
+            Provenance { entries }.domain("w.safetensors")
         };
-        let read = of(serde_json::to_string(&radar).unwrap()).unwrap();
+        let radar = Radar { bandwidth_hz: 1e9, ..Radar::default() };
+        let read = of(RADAR_ENTRY, serde_json::to_string(&radar).unwrap()).unwrap();
         // JSON may round the last bit of a number.
-        assert!(crate::network::trained_for::is_alike(&read, &radar), "{read:?}");
-        let told = of("{\"elements\": \"many\"}".into()).unwrap_err().to_string();
-        assert!(told.contains("w.safetensors") && told.contains("no radar"), "{told}");
+        assert!(read.holds(&radar) && !read.holds(&Radar::default()), "{read:?}");
+        let limits = Domain::Limits(crate::network::live::radars::DRAWN);
+        assert_eq!(of(DOMAIN_ENTRY, serde_json::to_string(&limits).unwrap()).unwrap(), limits);
+        for (entry, what) in [(RADAR_ENTRY, "no radar"), (DOMAIN_ENTRY, "no domain of radars")] {
+            let told = of(entry, "{\"elements\": \"many\"}".into()).unwrap_err().to_string();
+            assert!(told.contains("w.safetensors") && told.contains(what), "{told}");
+        }
     }
 }

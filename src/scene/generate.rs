@@ -6,8 +6,10 @@
 
 mod field;
 mod kind;
+mod laws;
 mod mixture;
 mod things;
+mod world;
 
 pub use kind::Kind;
 pub use mixture::{Mixture, MixtureError};
@@ -20,6 +22,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+use world::World;
 
 /// Which description of the scenes is followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -44,11 +47,23 @@ pub enum Purpose {
     Test,
 }
 
+impl Purpose {
+    /// A number of its own, for keys of random streams.
+    pub(crate) fn number(self) -> u8 {
+        match self {
+            Purpose::Training => 1,
+            Purpose::Validation => 2,
+            Purpose::Test => 3,
+        }
+    }
+}
+
 /// Makes random scenes for one radar.
 #[derive(Debug, Clone)]
 pub struct Generator {
     max_range: f64,
     bin: f64,
+    world: World,
     reading: Reading,
     purpose: Purpose,
     seed: u64,
@@ -60,18 +75,21 @@ const LINE_POINTS: usize = 75;
 impl Generator {
     /// Scenes for `radar`; the same arguments give the same scenes on every machine.
     pub fn new(radar: &Radar, reading: Reading, purpose: Purpose, seed: u64) -> Self {
-        Generator { max_range: radar.max_range_metres(), bin: radar.range_resolution_metres(), reading, purpose, seed }
+        Generator {
+            max_range: radar.max_range_metres(),
+            bin: radar.range_resolution_metres(),
+            world: World::new(radar),
+            reading,
+            purpose,
+            seed,
+        }
     }
 
     /// Random stream of one scene. Purposes get different keys, kinds and numbers different streams of that key.
     fn rng(&self, kind: Kind, number: u32) -> ChaCha8Rng {
         let mut key = [0u8; 32];
         key[..8].copy_from_slice(&self.seed.to_le_bytes());
-        key[8] = match self.purpose {
-            Purpose::Training => 1,
-            Purpose::Validation => 2,
-            Purpose::Test => 3,
-        };
+        key[8] = self.purpose.number();
         let mut rng = ChaCha8Rng::from_seed(key);
         rng.set_stream(kind.stream() << 32 | u64::from(number));
         rng
@@ -113,6 +131,7 @@ impl Generator {
             Kind::Bodies | Kind::Street | Kind::Rails | Kind::Occlusion | Kind::Rough => {
                 things::objects(kind, self.max_range, rng)
             }
+            Kind::World => self.world.objects(rng),
         };
         let name = format!("{kind:?} {number}, seed {}", self.seed);
         Scene { name, noise_seed: self.noise_seed(kind, number), objects, ..Scene::default() }
@@ -308,6 +327,16 @@ mod tests {
             let ([ax, ay], [bx, by]) = (a.step_metres(), b.step_metres());
             assert!((ax * bx + ay * by).abs() < 1e-12);
             assert!(matches!(objects[2..], [Object::Gaussian(_), Object::Point(_)]));
+        }
+    }
+
+    #[test]
+    fn every_kind_is_drawn_at_the_range_it_needs() {
+        for kind in Kind::all().chain([Kind::World]) {
+            let bandwidth_hz = 512.0 * crate::radar::SPEED_OF_LIGHT / 2.0 / kind.needed_range_metres().max(1.0);
+            let radar = Radar { bandwidth_hz, ..Radar::default() };
+            let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 5);
+            (0..20).for_each(|number| assert_eq!(generator.scene(kind, number).validate(&radar), Ok(()), "{kind}"));
         }
     }
 

@@ -1,9 +1,10 @@
 //! The size of the live network: what its weight file, its burn module and its engine agree on.
 
-use super::grid::{COARSE, COARSE_CHANNELS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
+use super::grid::{COARSE, COARSE_CHANNELS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
 
-/// Channels of the network's first convolution: fine features folded by 4, coarse, rows, scalars, and four of the grid itself.
-pub const INPUT_CHANNELS: usize = FINE_CHANNELS * FOLD + COARSE_CHANNELS + ROW_CHANNELS + SCALARS + 4;
+/// Channels of the network's first convolution: fine features folded by 4, coarse, rows, scalars, four of the grid itself, and the
+/// radar's constants.
+pub const INPUT_CHANNELS: usize = FINE_CHANNELS * FOLD + COARSE_CHANNELS + ROW_CHANNELS + SCALARS + 4 + CONSTANTS;
 /// Fine columns in a coarse one.
 pub(super) const FOLD: usize = FINE / COARSE;
 /// Columns of the coarse head's side-lobe sources.

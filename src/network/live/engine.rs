@@ -3,12 +3,14 @@
 //! [`super::module`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
 
 use super::config::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
+use super::constants::{SPACING_AT, window_of};
 use super::doubt::DoubtHead;
 use super::features::LiveInput;
-use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
+use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
+use super::lobes::Lobes;
 use super::planes::{Block, Plane, rectified};
-use super::range_lobes::{RangeLobes, UNSEEN};
-use super::reading::{CELLS, Layers, circulant};
+use super::range_lobes::UNSEEN;
+use super::reading::{CELLS, Layers};
 use super::winograd::{Conv3x3, Results};
 use crate::maps::RangeAngleMap;
 use crate::network::kernels::convolution::{PRODUCT_COLUMNS, Packed, convolve, product};
@@ -46,10 +48,8 @@ pub struct LiveEngine {
     fine1: Conv3x3,
     fine2: Packed,
     row_sources: Packed,
-    /// Side lobes in range.
-    columns: RangeLobes,
-    /// `[128 / 32, 128, 32]`: side lobes in angle.
-    rows: Vec<f32>,
+    /// Side lobes under the window of Hann, and under each other one where the file has them.
+    lobes: Vec<Lobes>,
     scalar1: Packed,
     scalar2: Packed,
     doubt: Option<DoubtHead>,
@@ -79,7 +79,7 @@ impl LiveEngine {
         let [b0, b1, b2, b3] = config.blocks;
         let layers = Layers { file };
         Ok(LiveEngine {
-            stem: layers.conv("stem.conv", [INPUT_CHANNELS; 2], c0)?,
+            stem: layers.stem("stem.conv", INPUT_CHANNELS, c0)?,
             encoder: [
                 layers.blocks("enc0", b0, c0, false)?,
                 layers.blocks("enc1", b1.div_ceil(2), c1, false)?,
@@ -101,10 +101,9 @@ impl LiveEngine {
             fine1: layers.conv("fine1.conv", [WIDENED + FINE_CHANNELS; 2], config.fine)?,
             fine2: layers.small("fine2", config.fine, 2 * SPREAD, 1)?,
             row_sources: layers.small("row_sources", c0, WIDE / COARSE, 1)?,
-            columns: RangeLobes::new(&file.tensor("col_kernel", &[ROWS / 2 + 1])?),
-            rows: in_blocks(&circulant(&file.tensor("row_kernel", &[WIDE / 2 + 1])?, WIDE), WIDE),
-            scalar1: layers.linear("scalar1", 2 * c3 + SCALARS, 64)?,
-            scalar2: layers.linear("scalar2", 64, 2)?,
+            lobes: Lobes::all(file)?,
+            scalar1: layers.linear("scalar1", [2 * c3 + SCALARS + CONSTANTS, CONSTANTS], 64)?,
+            scalar2: layers.linear("scalar2", [64, 0], 2)?,
             doubt: DoubtHead::new(file, c0)?,
             channels: config.channels,
         })
@@ -143,7 +142,7 @@ impl LiveEngine {
                 block.forward(&mut level[k], hidden, &mut s.pool, &mut s.mixed);
             }
         }
-        let (floor_shift, minimum_shift) = self.scalars(&level[3], &scalars);
+        let (floor_shift, minimum_shift) = self.scalars(&level[3], &scalars, &input.constants);
         for k in (0..3).rev() {
             let (finer, coarser) = level.split_at_mut(k + 1);
             let from = &coarser[0];
@@ -171,15 +170,17 @@ impl LiveEngine {
         let read = |row: usize, line: &mut [f32]| read_fine(&input.fine, hidden, row, line);
         self.fine1.run([ROWS, FINE], read, &mut s.heads.data, heads);
         let floor = input.scalars[0] + floor_shift;
-        let (map, computed) = self.decode(&s.heads, &s.sources, floor, unseen, &mut s.lobes);
+        // Weights without kernels for this window were not trained for it.
+        let kernels = self.lobes.get(window_of(&input.constants)).unwrap_or(&self.lobes[0]);
+        let (map, computed) = decode(kernels, &s.heads, &s.sources, floor, unseen, &mut s.lobes);
         Decades { map, minimum: floor - 2.5 + minimum_shift, computed }
     }
 
     /// Corrections of the floor and of the minimum, from the coarsest level.
-    fn scalars(&self, coarsest: &Plane, scalars: &[f32; SCALARS]) -> (f32, f32) {
+    fn scalars(&self, coarsest: &Plane, scalars: &[f32; SCALARS], constants: &[f32; CONSTANTS]) -> (f32, f32) {
         let c = self.channels[3];
         let cells = (coarsest.h * coarsest.w) as f32;
-        let mut pooled = vec![0.0f32; 2 * c + SCALARS];
+        let mut pooled = vec![0.0f32; 2 * c + SCALARS + CONSTANTS];
         pooled[c..2 * c].fill(f32::NEG_INFINITY);
         for cell in coarsest.data.chunks_exact(coarsest.c) {
             for (i, v) in cell[..c].iter().enumerate() {
@@ -187,7 +188,8 @@ impl LiveEngine {
                 pooled[c + i] = pooled[c + i].max(*v);
             }
         }
-        pooled[2 * c..].copy_from_slice(scalars);
+        pooled[2 * c..][..SCALARS].copy_from_slice(scalars);
+        pooled[2 * c + SCALARS..].copy_from_slice(constants);
         let mut hidden = vec![0.0; self.scalar1.output()];
         convolve(&self.scalar1, &pooled, 1, 1, &mut hidden);
         hidden.iter_mut().for_each(|v| *v = v.max(0.0));
@@ -195,48 +197,54 @@ impl LiveEngine {
         convolve(&self.scalar2, &hidden, 1, 1, &mut said);
         (said[0], said[1])
     }
+}
 
-    /// Heads and side-lobe sources to decades, with the part of the side lobes in range that was computed.
-    fn decode(&self, heads: &Plane, sources: &Plane, floor: f32, unseen: f32, lobes: &mut Vec<f32>) -> (Vec<f32>, f32) {
-        let floor = 10f32.powf(floor);
-        let read = |block: usize, sources: &mut [f32]| {
-            for (row, out) in sources.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {
-                let cells =
-                    heads.data[(row * FINE + block * PRODUCT_COLUMNS / SPREAD) * heads.c..].chunks_exact(heads.c);
-                spread_out(cells, SPREAD..2 * SPREAD, out);
+/// Heads and side-lobe sources to decades, with the part of the side lobes in range that was computed.
+fn decode(
+    kernels: &Lobes,
+    heads: &Plane,
+    sources: &Plane,
+    floor: f32,
+    unseen: f32,
+    lobes: &mut Vec<f32>,
+) -> (Vec<f32>, f32) {
+    let floor = 10f32.powf(floor);
+    let read = |block: usize, sources: &mut [f32]| {
+        for (row, out) in sources.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {
+            let cells = heads.data[(row * FINE + block * PRODUCT_COLUMNS / SPREAD) * heads.c..].chunks_exact(heads.c);
+            spread_out(cells, SPREAD..2 * SPREAD, out);
+        }
+    };
+    let computed = kernels.columns.add_up(floor, unseen, read, lobes);
+    let mut map = vec![0.0; ROWS * COLUMNS];
+    map.par_chunks_mut(ROWS_AT_ONCE * COLUMNS).enumerate().for_each(|(chunk, lines)| {
+        let mut wide = [0.0; ROWS_AT_ONCE * WIDE];
+        for (at, (line, wide)) in lines.chunks_exact_mut(COLUMNS).zip(wide.chunks_exact_mut(WIDE)).enumerate() {
+            let row = chunk * ROWS_AT_ONCE + at;
+            fill_line(heads, lobes, row, line);
+            let cells = sources.data[row * COARSE * sources.c..].chunks_exact(sources.c);
+            spread_out(cells, 0..WIDE / COARSE, wide);
+            for (w, [a, b, c, d, e, f, g, h]) in wide.iter_mut().zip(line.as_chunks::<EACH>().0) {
+                // Pair by pair, which a processor does side by side.
+                *w += (((a + b) + (c + d)) + ((e + f) + (g + h))) / EACH as f32;
             }
-        };
-        let computed = self.columns.add_up(floor, unseen, read, lobes);
-        let mut map = vec![0.0; ROWS * COLUMNS];
-        map.par_chunks_mut(ROWS_AT_ONCE * COLUMNS).enumerate().for_each(|(chunk, lines)| {
-            let mut wide = [0.0; ROWS_AT_ONCE * WIDE];
-            for (at, (line, wide)) in lines.chunks_exact_mut(COLUMNS).zip(wide.chunks_exact_mut(WIDE)).enumerate() {
-                let row = chunk * ROWS_AT_ONCE + at;
-                fill_line(heads, lobes, row, line);
-                let cells = sources.data[row * COARSE * sources.c..].chunks_exact(sources.c);
-                spread_out(cells, 0..WIDE / COARSE, wide);
-                for (w, [a, b, c, d, e, f, g, h]) in wide.iter_mut().zip(line.as_chunks::<EACH>().0) {
-                    // Pair by pair, which a processor does side by side.
-                    *w += (((a + b) + (c + d)) + ((e + f) + (g + h))) / EACH as f32;
-                }
-            }
-            self.add_lobes_in_angle(floor, &wide, lines);
-            each(lines, logarithm);
-        });
-        (map, computed)
-    }
+        }
+        add_lobes_in_angle(&kernels.rows, floor, &wide, lines);
+        each(lines, logarithm);
+    });
+    (map, computed)
+}
 
-    /// Adds what the sources `wide` of some lines add to all their cells, and the floor.
-    fn add_lobes_in_angle(&self, floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE], lines: &mut [f32]) {
-        let simd = Simd::chosen();
-        for (block, kernel) in self.rows.chunks_exact(WIDE * PRODUCT_COLUMNS).enumerate() {
-            let mut lobes = [0.0; ROWS_AT_ONCE * PRODUCT_COLUMNS];
-            product(simd, wide, kernel, std::iter::once(0..WIDE), &mut lobes);
-            for (line, lobes) in lines.chunks_exact_mut(COLUMNS).zip(lobes.chunks_exact(PRODUCT_COLUMNS)) {
-                let cells = line[block * PRODUCT_COLUMNS * EACH..].chunks_exact_mut(EACH);
-                for (cells, lobe) in cells.zip(lobes) {
-                    cells.iter_mut().for_each(|v| *v += lobe + floor);
-                }
+/// Adds what the sources `wide` of some lines add to all their cells, and the floor.
+fn add_lobes_in_angle(rows: &[f32], floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE], lines: &mut [f32]) {
+    let simd = Simd::chosen();
+    for (block, kernel) in rows.chunks_exact(WIDE * PRODUCT_COLUMNS).enumerate() {
+        let mut lobes = [0.0; ROWS_AT_ONCE * PRODUCT_COLUMNS];
+        product(simd, wide, kernel, std::iter::once(0..WIDE), &mut lobes);
+        for (line, lobes) in lines.chunks_exact_mut(COLUMNS).zip(lobes.chunks_exact(PRODUCT_COLUMNS)) {
+            let cells = line[block * PRODUCT_COLUMNS * EACH..].chunks_exact_mut(EACH);
+            for (cells, lobe) in cells.zip(lobes) {
+                cells.iter_mut().for_each(|v| *v += lobe + floor);
             }
         }
     }
@@ -285,6 +293,7 @@ fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mu
     const ROWS_AT: usize = COARSE_AT + COARSE_CHANNELS;
     const SCALARS_AT: usize = ROWS_AT + ROW_CHANNELS;
     const GRID_AT: usize = SCALARS_AT + SCALARS;
+    const CONSTANTS_AT: usize = GRID_AT + 4;
     let fine = fine_in(&input.fine, row);
     let coarse: [&[f32]; COARSE_CHANNELS] =
         std::array::from_fn(|c| &input.coarse[(c * ROWS + row) * COARSE..][..COARSE]);
@@ -295,6 +304,7 @@ fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mu
     }
     whole_row[ROW_CHANNELS..GRID_AT - ROWS_AT].copy_from_slice(scalars);
     let range = row as f32;
+    whole_row[CONSTANTS_AT - ROWS_AT..].copy_from_slice(&input.constants);
     whole_row[GRID_AT - ROWS_AT..][..2].copy_from_slice(&[range / 256.0 - 1.0, (range + 4.0).log10() - 2.0]);
     let half = (COARSE / 2) as f32;
     for (k, cell) in line.chunks_exact_mut(INPUT_CHANNELS).enumerate() {
@@ -305,8 +315,8 @@ fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mu
             *to = if c < 4 { decades_in(plane[k]) } else { plane[k] };
         }
         cell[ROWS_AT..].copy_from_slice(&whole_row);
-        let u = (k as f32 - half) / half;
-        cell[GRID_AT + 2..].copy_from_slice(&[u, (1.0 - u * u).sqrt()]);
+        let u = (k as f32 - half) / half / (1.0 + input.constants[SPACING_AT]);
+        cell[GRID_AT + 2..CONSTANTS_AT].copy_from_slice(&[u, (1.0 - u * u).max(0.0).sqrt()]);
     }
 }
 
@@ -330,11 +340,4 @@ fn add_doubled(from: &Plane, to: &mut Plane, c: usize) {
             cell.iter_mut().zip(&from.data[at..at + c]).for_each(|(v, more)| *v += more);
         }
     });
-}
-
-/// A matrix `[n, columns]` as [`product`] takes it, block after block.
-fn in_blocks(matrix: &[f32], columns: usize) -> Vec<f32> {
-    let of_block =
-        |first: usize| matrix.chunks_exact(columns).flat_map(move |row| &row[first..first + PRODUCT_COLUMNS]);
-    (0..columns).step_by(PRODUCT_COLUMNS).flat_map(of_block).copied().collect()
 }

@@ -5,16 +5,20 @@
 //! that the array's centre sees. On the fine grid an end is shown by its Capon spectrum, row by row: with next to no noise it tells
 //! apart reflectors that the end's own beam cannot.
 //!
+//! In columns and range bins the beams of an end are the same for every radar; where the same reflector lies in the other end's picture is not, and
+//! follows from the radar's constants. All pictures are made under a window of Hann, whatever the radar's maps are made under.
+//!
 //! Everything is measured relative to the mean power of the samples (the *gain*): a louder receiver gives the same tensors.
 
 use super::capon::Capon;
 use super::coarse::Coarse;
+use super::constants::{constants, in_thesis_convention};
 use super::floors::{measured_floor, rounding_floor};
-use super::grid::{ELEMENTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
+use super::grid::{CONSTANTS, ELEMENTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
+use super::radars::DRAWN;
 use super::registration::Registration;
-use crate::maps::channels_range_transform;
-use crate::network::trained_for::check_radar;
-use crate::radar::{End, Radar};
+use crate::maps::windowed_range_transform;
+use crate::radar::{End, Radar, hann};
 use crate::reconstruct::{ReconstructError, check_ends};
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Axis};
@@ -34,6 +38,10 @@ pub struct LiveInput {
     pub rows: Vec<f32>,
     /// Two estimates of the noise floor in decades: from the rounding that the thesis' samples carry, and as measured.
     pub scalars: [f32; SCALARS],
+    /// What of the radar the pictures don't show, 0 for that of table 3.1: a quarter of the octaves of its migration in range bins from end to end,
+    /// its spacing, which of the windows Hamming, Blackman and rectangular, and the decades that an echo 60 degrees off broadside loses to the
+    /// elements' pattern.
+    pub constants: [f32; CONSTANTS],
     /// Half the log10 of the samples' mean power: what the decades above are relative to.
     pub gain: f64,
 }
@@ -42,6 +50,8 @@ pub struct LiveInput {
 #[derive(Debug)]
 pub struct FeatureExtractor {
     radar: Radar,
+    constants: [f32; CONSTANTS],
+    window: Vec<f64>,
     /// Fine grid: centre from either end, first from last, last from first.
     fine_centre: [Registration<FINE>; 2],
     fine_other: [Registration<FINE>; 2],
@@ -53,10 +63,9 @@ impl FeatureExtractor {
     /// Tables for `radar`.
     ///
     /// # Errors
-    /// [`ReconstructError::Unusable`] unless it has 512 samples, 1024 elements half a wavelength apart and ends of 12, which the
-    /// network was trained for.
+    /// [`ReconstructError::Unusable`] unless it has 512 samples, 1024 elements of one antenna each and ends of 12.
     pub fn new(radar: &Radar) -> Result<Self, ReconstructError> {
-        check_radar("live", &Radar::default(), radar)?;
+        DRAWN.check_shape("live", radar)?;
         let ends = End::BOTH.map(|end| radar.end_centre_metres(end));
         let table = |from: f64, to: f64| Registration::new(radar, from, to);
         Ok(FeatureExtractor {
@@ -64,8 +73,15 @@ impl FeatureExtractor {
             fine_other: [table(ends[0], ends[1]), table(ends[1], ends[0])],
             coarse: Coarse::new(radar),
             capon: Capon::new(),
+            constants: constants(radar),
+            window: hann(radar.samples),
             radar: radar.clone(),
         })
+    }
+
+    /// The radar that it is for.
+    pub fn radar(&self) -> &Radar {
+        &self.radar
     }
 
     /// The tensors of the samples of two ends.
@@ -83,9 +99,10 @@ impl FeatureExtractor {
             });
         }
         let scale = power.sqrt().recip();
-        let ends = End::BOTH.map(|end| ends.end(end).mapv(|v| v * scale));
-        let profiles: [Array2<Complex64>; 2] =
-            ends.each_ref().map(|e| channels_range_transform(&self.radar, e.view()).profiles.reversed_axes());
+        let ends = End::BOTH.map(|end| in_thesis_convention(&self.radar, ends.end(end).mapv(|v| v * scale)));
+        let profiles: [Array2<Complex64>; 2] = ends
+            .each_ref()
+            .map(|e| windowed_range_transform(&self.radar, e.view(), &self.window).profiles.reversed_axes());
 
         let capon = profiles.each_ref().map(|p| self.capon.decades(p.view()));
         let mut fine = vec![0.0; FINE_CHANNELS * ROWS * FINE];
@@ -94,6 +111,7 @@ impl FeatureExtractor {
             fine,
             coarse: self.coarse.features(&profiles),
             rows: row_features(&profiles),
+            constants: self.constants,
             scalars: [rounding_floor(&self.radar, &profiles), measured_floor(&self.radar, &ends)],
             gain: 0.5 * power.log10(),
         })
@@ -136,4 +154,61 @@ fn row_features(profiles: &[Array2<Complex64>; 2]) -> Vec<f32> {
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::live::grid::COARSE;
+    use crate::radar::Convention;
+    use crate::scene::Reflector;
+    use crate::signal::exact;
+
+    /// Row of the strongest cell of a coarse picture.
+    fn row(input: &LiveInput, channel: usize) -> f64 {
+        let plane = &input.coarse[channel * ROWS * COARSE..][..ROWS * COARSE];
+        let strongest = plane.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(i, _)| i);
+        (strongest / COARSE) as f64
+    }
+
+    #[test]
+    fn registered_ends_have_a_reflector_at_one_range() {
+        let migrating = Radar { carrier_hz: 60e9, bandwidth_hz: 3.6e9, ..Radar::default() };
+        let dense = Radar { element_spacing_metres: 1.6e-3, ..Radar::default() };
+        let radars = [
+            Radar::default(),
+            Radar::default().in_convention(Convention::Physical),
+            migrating.clone().in_convention(Convention::Thesis),
+            migrating.in_convention(Convention::Physical),
+            Radar { carrier_hz: 24e9, bandwidth_hz: 250e6, ..Radar::default() }.in_convention(Convention::Thesis),
+            dense,
+        ];
+        for radar in radars {
+            let extractor = FeatureExtractor::new(&radar).unwrap();
+            let range = 300.0 * radar.range_resolution_metres();
+            for cos in [-0.75f64, 0.1, 0.75] {
+                let (x_metres, y_metres) = (range * cos, range * (1.0 - cos * cos).sqrt());
+                let reflectors = [Reflector { x_metres, y_metres, reflectivity: 1.0 }];
+                let input = extractor.extract(&exact::beat_signal(&radar, &reflectors).two_ends(&radar)).unwrap();
+                let apart = row(&input, 0) - row(&input, 1);
+                let migrated = radar.aperture_metres() * cos / radar.range_resolution_metres();
+                assert!((apart - migrated).abs() < 0.1 * migrated.abs() + 1.5, "{radar:?}: {apart} for {migrated}");
+                for channel in [2, 3] {
+                    let found = row(&input, channel);
+                    assert!((found - 300.0).abs() <= 2.0, "{radar:?}, {cos}, end {channel}: row {found}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn radars_of_other_counts_are_refused() {
+        for (radar, told) in [
+            (Radar { samples: 256, ..Radar::default() }, "for 512 samples; this radar has 256 samples"),
+            (Radar { end_elements: 16, ..Radar::default() }, "for 12 elements an end; this radar has 16"),
+        ] {
+            let error = FeatureExtractor::new(&radar).unwrap_err().to_string();
+            assert!(error.contains(told), "{error}");
+        }
+    }
 }

@@ -9,10 +9,11 @@ use num_complex::Complex64;
 /// the squared ulp of the carrier phase it stands for (see [`crate::signal::floor::thesis_noise_variance`]).
 pub(super) fn rounding_floor(radar: &Radar, profiles: &[Array2<Complex64>; 2]) -> f32 {
     let (mut weighted, mut total) = (0.0, 0.0);
+    let radians_per_metre = radar.carrier_radians_per_metre().abs();
     for row in 0..radar.samples {
         let power: f64 = profiles.iter().map(|z| z.slice(s![row, ..]).iter().map(|v| v.norm_sqr()).sum::<f64>()).sum();
         let range = (row + 1) as f64 * radar.range_resolution_metres();
-        let exponent = (std::f64::consts::TAU * range / radar.wavelength_metres()).log2().floor() as i32 - 52;
+        let exponent = (radians_per_metre * range).log2().floor() as i32 - 52;
         weighted += power * 2f64.powi(2 * exponent);
         total += power;
     }

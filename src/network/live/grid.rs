@@ -16,6 +16,8 @@ pub const COARSE_CHANNELS: usize = 10;
 pub const ROW_CHANNELS: usize = 6;
 /// Scalars beside the pictures.
 pub const SCALARS: usize = 2;
+/// Constants of the radar beside the pictures.
+pub const CONSTANTS: usize = 6;
 
 /// Elements of an end.
 pub(super) const ELEMENTS: usize = 12;

@@ -1,11 +1,12 @@
 //! The live network as a reconstruction method.
 
 use super::config::LiveConfig;
+use super::constants::turn_columns;
 use super::engine::{Decades, LiveEngine, Scratch};
 use super::features::{FeatureExtractor, LiveInput};
 use super::grid::{COLUMNS, ROWS};
 use crate::maps::{LambdaScale, RangeAngleMap};
-use crate::network::trained_for::{check_radar, is_alike};
+use crate::network::domain::{Domain, is_alike};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
 use crate::radar::{Decibels, Radar};
 use crate::reconstruct::{About, Family, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
@@ -14,7 +15,7 @@ use crate::signal::TwoEnds;
 use crate::signal::simd::powers::each;
 use ndarray::Array2;
 use rayon::prelude::*;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Name of the network, on the command line and in weight files.
 pub const NAME: &str = "live";
@@ -26,13 +27,14 @@ const MOST_IDLE: usize = 2;
 #[derive(Debug)]
 pub struct LiveMethod {
     engine: LiveEngine,
-    extractor: OnceLock<FeatureExtractor>,
+    /// Of the radar that was last asked for.
+    extractor: Mutex<Option<Arc<FeatureExtractor>>>,
     /// Buffers that nobody uses. They are taken out for a pass and not locked while it runs: other threads, and the thread itself
     /// where rayon hands it another caller's work, take others.
     idle: Mutex<Vec<Scratch>>,
     eta: f32,
     weights: Weights,
-    trained: Radar,
+    trained: Domain,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -45,11 +47,11 @@ impl LiveMethod {
     pub fn new(file: WeightFile) -> Result<Self, WeightsError> {
         Ok(LiveMethod {
             engine: LiveEngine::new(&file, &LiveConfig::default())?,
-            extractor: OnceLock::new(),
+            extractor: Mutex::default(),
             idle: Mutex::default(),
             eta: file.provenance.eta().unwrap_or(0.8),
             weights: file.weights(),
-            trained: file.provenance.radar(file.name())?,
+            trained: file.provenance.domain(file.name())?,
             provenance: file.provenance,
         })
     }
@@ -75,6 +77,19 @@ impl LiveMethod {
         self.decades_by(LiveEngine::forward_whole, radar, ends).map(|(decades, _)| decades)
     }
 
+    /// Tables for `radar`: those of the last call where they will do.
+    fn extractor(&self, radar: &Radar) -> Result<Arc<FeatureExtractor>, ReconstructError> {
+        // A panic elsewhere leaves whole tables or none.
+        let kept = || self.extractor.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(extractor) = kept().as_ref().filter(|extractor| is_alike(extractor.radar(), radar)) {
+            return Ok(Arc::clone(extractor));
+        }
+        self.trained.check(NAME, radar)?;
+        let made = Arc::new(FeatureExtractor::new(radar)?);
+        *kept() = Some(Arc::clone(&made));
+        Ok(made)
+    }
+
     /// The map in decades, and how far off the network expects Lambda to be.
     fn decades_by(
         &self,
@@ -82,22 +97,17 @@ impl LiveMethod {
         radar: &Radar,
         ends: &TwoEnds,
     ) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
-        let made;
-        let extractor = match self.extractor.get() {
-            Some(extractor) if is_alike(&self.trained, radar) => extractor,
-            _ => {
-                check_radar(NAME, &self.trained, radar)?;
-                made = FeatureExtractor::new(radar)?;
-                self.extractor.get_or_init(|| made)
-            }
-        };
-        let input = extractor.extract(ends)?;
+        let input = self.extractor(radar)?.extract(ends)?;
         // A panic elsewhere can't leave the buffers in a state that matters: every pass overwrites them.
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = idle().pop();
         let mut scratch = taken.unwrap_or_default();
         let mut decades = forward(&self.engine, &input, &mut scratch);
-        let doubt = self.engine.doubt(&scratch);
+        let mut doubt = self.engine.doubt(&scratch);
+        turn_columns(radar, &mut decades.map);
+        if let Some(cells) = doubt.as_mut().and_then(|doubt| doubt.lambda.as_slice_mut()) {
+            turn_columns(radar, cells);
+        }
         let mut idle = idle();
         if idle.len() < MOST_IDLE {
             idle.push(scratch);
@@ -169,7 +179,7 @@ impl Reconstructor for LiveMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        check_radar(NAME, &self.trained, radar)
+        self.trained.check(NAME, radar)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

@@ -12,12 +12,12 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | [`grid`], [`features`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
-//! | [`examples`], [`arrays`] | inputs and targets of random scenes |
+//! | [`grid`], [`features`], [`constants`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
+//! | [`examples`], [`arrays`], [`radars`] | inputs and targets of random scenes |
 //! | [`dataset`] | the same as files |
 //! | `config` | how large the network is |
 //! | `module`, `layers` | the network as a burn module: what trains (feature `network`) |
-//! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `range_lobes` | the same without a framework, over [`kernels`](super::kernels): what runs while somebody drags a reflector |
+//! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `lobes`, `range_lobes` | the same without a framework, over [`kernels`](super::kernels): what runs while somebody drags a reflector |
 //! | [`doubt`] | how far off the network expects to be |
 //! | [`method`] | the network as a reconstruction method |
 
@@ -25,6 +25,7 @@ pub mod arrays;
 mod capon;
 mod coarse;
 mod config;
+pub mod constants;
 pub mod dataset;
 pub mod doubt;
 pub mod engine;
@@ -35,10 +36,12 @@ mod floors;
 pub mod grid;
 #[cfg(feature = "network")]
 mod layers;
+mod lobes;
 pub mod method;
 #[cfg(feature = "network")]
 pub mod module;
 mod planes;
+pub mod radars;
 mod range_lobes;
 mod reading;
 mod registration;

@@ -2,8 +2,9 @@
 
 pub use super::config::INPUT_CHANNELS;
 use super::config::{FOLD, LiveConfig, WIDE, WIDENED};
+use super::constants::{SPACING_AT, WINDOWS, WINDOWS_AT};
 use super::features::LiveInput;
-use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
+use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
 use super::layers::{Block, WrapConv, blocks, small, through, zeroed};
 use crate::network::weights::WeightFile;
 use burn::module::{Module, Param};
@@ -36,6 +37,8 @@ pub struct Live {
     row_sources: Conv2d,
     col_kernel: Param<Tensor<1>>,
     row_kernel: Param<Tensor<1>>,
+    col_kernels: Param<Tensor<2>>,
+    row_kernels: Param<Tensor<2>>,
     scalar1: Linear,
     scalar2: Linear,
 }
@@ -56,6 +59,7 @@ pub struct LiveBatch {
     coarse: Tensor<4>,
     rows: Tensor<3>,
     scalars: Tensor<2>,
+    constants: Tensor<2>,
 }
 
 impl LiveBatch {
@@ -69,6 +73,7 @@ impl LiveBatch {
             coarse: Tensor::from_data(on(stacked(|i| &i.coarse), &[n, COARSE_CHANNELS, ROWS, COARSE]), device),
             rows: Tensor::from_data(on(stacked(|i| &i.rows), &[n, ROW_CHANNELS, ROWS]), device),
             scalars: Tensor::from_data(on(stacked(|i| &i.scalars), &[n, SCALARS]), device),
+            constants: Tensor::from_data(on(stacked(|i| &i.constants), &[n, CONSTANTS]), device),
         }
     }
 }
@@ -106,14 +111,20 @@ impl Live {
             row_sources: small(mix(c0, WIDE / COARSE)),
             col_kernel: Param::from_tensor(hann_tail(ROWS, -0.5, device)),
             row_kernel: Param::from_tensor(hann_tail(WIDE, -1.0, device)),
-            scalar1: LinearConfig::new(2 * c3 + SCALARS, 64).init(device),
+            col_kernels: Param::from_tensor(
+                hann_tail(ROWS, -0.5, device).unsqueeze_dim::<2>(0).repeat_dim(0, WINDOWS - 1),
+            ),
+            row_kernels: Param::from_tensor(
+                hann_tail(WIDE, -1.0, device).unsqueeze_dim::<2>(0).repeat_dim(0, WINDOWS - 1),
+            ),
+            scalar1: LinearConfig::new(2 * c3 + SCALARS + CONSTANTS, 64).init(device),
             scalar2: zeroed(LinearConfig::new(64, 2).init(device)),
         }
     }
 
     /// Estimates the maps of a batch.
     pub fn forward(&self, input: LiveBatch) -> LiveOutput {
-        let LiveBatch { fine, coarse, rows, scalars } = input;
+        let LiveBatch { fine, coarse, rows, scalars, constants } = input;
         let [n, _, _, _] = fine.dims();
         let device = fine.device();
         let fine = decades_in(fine);
@@ -130,7 +141,8 @@ impl Live {
                 steps,
                 rows.reshape([n, ROW_CHANNELS, ROWS, 1]).expand([n, ROW_CHANNELS, ROWS, COARSE]),
                 scalars.clone().reshape([n, SCALARS, 1, 1]).expand([n, SCALARS, ROWS, COARSE]),
-                grid(&device).expand([n, 4, ROWS, COARSE]),
+                grid(&device, constants.clone().narrow(1, SPACING_AT, 1)),
+                constants.clone().reshape([n, CONSTANTS, 1, 1]).expand([n, CONSTANTS, ROWS, COARSE]),
             ],
             1,
         );
@@ -144,7 +156,7 @@ impl Live {
         let y0 = relu(through(&self.dec0, x0 + double(self.up0.forward(y1))));
 
         let channels = pooled.dims()[1];
-        let hidden = Tensor::cat(vec![pooled.reshape([n, channels]), scalars], 1);
+        let hidden = Tensor::cat(vec![pooled.reshape([n, channels]), scalars, constants.clone()], 1);
         let said = self.scalar2.forward(relu(self.scalar1.forward(hidden)));
         let floor = floor + said.clone().narrow(1, 0, 1).reshape([n]);
         let minimum = floor.clone() - 2.5 + said.narrow(1, 1, 1).reshape([n]);
@@ -152,12 +164,16 @@ impl Live {
         let f = Tensor::cat(vec![spread_columns(self.widen.forward(y0.clone()), FOLD), fine], 1);
         let heads = spread_columns(self.fine2.forward(relu(self.fine1.forward(f))), COLUMNS / FINE);
         let plane = |k| amplitudes(heads.clone().narrow(1, k, 1).reshape([n, ROWS, COLUMNS]));
-        let column = circulant(self.col_kernel.val(), ROWS).unsqueeze_dim::<3>(0).matmul(plane(1));
+        let windows = constants.narrow(1, WINDOWS_AT, WINDOWS - 1);
+        let kernel = |hann: &Param<Tensor<1>>, others: &Param<Tensor<2>>, size| {
+            circulants(of_windows(&windows, hann.val(), others.val()), size)
+        };
+        let column = kernel(&self.col_kernel, &self.col_kernels, ROWS).matmul(plane(1));
         let sharp = plane(0) + column;
         let sources = spread_columns(self.row_sources.forward(y0), WIDE / COARSE).reshape([n, ROWS, WIDE]);
         let each = COLUMNS / WIDE;
         let pooled = sharp.clone().reshape([n, ROWS, WIDE, each]).mean_dim(3).reshape([n, ROWS, WIDE]);
-        let row = (amplitudes(sources) + pooled).matmul(circulant(self.row_kernel.val(), WIDE).unsqueeze_dim(0));
+        let row = (amplitudes(sources) + pooled).matmul(kernel(&self.row_kernel, &self.row_kernels, WIDE));
         let row = row.reshape([n, ROWS, WIDE, 1]).expand([n, ROWS, WIDE, each]).reshape([n, ROWS, COLUMNS]);
         let total = sharp + row + (floor * LN_10).exp().reshape([n, 1, 1]);
         LiveOutput { decades: total.log() / LN_10, minimum }
@@ -174,20 +190,18 @@ fn amplitudes(x: Tensor<3>) -> Tensor<3> {
     ((x * 3.0 - 3.0).clamp(-18.0, 4.0) * LN_10).exp()
 }
 
-/// Range, its logarithm, cos(theta) and sin(theta) of every coarse cell, `[1, 4, 512, 64]`.
-fn grid(device: &Device) -> Tensor<4> {
+/// Range, its logarithm, cos(theta) and sin(theta) of every coarse cell, `[n, 4, 512, 64]`, at spacings `[n, 1]` as the constants tell them.
+fn grid(device: &Device, spacing: Tensor<2>) -> Tensor<4> {
+    let n = spacing.dims()[0];
     let cell = |f: &dyn Fn(f32, f32) -> f32| -> Vec<f32> {
         let half = (COARSE / 2) as f32;
         (0..ROWS * COARSE).map(|i| f((i / COARSE) as f32, ((i % COARSE) as f32 - half) / half)).collect()
     };
-    let values = [
-        cell(&|r, _| r / 256.0 - 1.0),
-        cell(&|r, _| (r + 4.0).log10() - 2.0),
-        cell(&|_, u| u),
-        cell(&|_, u| (1.0 - u * u).sqrt()),
-    ]
-    .concat();
-    Tensor::from_data(TensorData::new(values, vec![1, 4, ROWS, COARSE]), device)
+    let values = [cell(&|r, _| r / 256.0 - 1.0), cell(&|r, _| (r + 4.0).log10() - 2.0), cell(&|_, u| u)].concat();
+    let grid = Tensor::<4>::from_data(TensorData::new(values, vec![1, 3, ROWS, COARSE]), device);
+    let cos = grid.clone().narrow(1, 2, 1).expand([n, 1, ROWS, COARSE]) / (spacing + 1.0).reshape([n, 1, 1, 1]);
+    let sin = (-cos.clone() * cos.clone() + 1.0).clamp_min(0.0).sqrt();
+    Tensor::cat(vec![grid.narrow(1, 0, 2).expand([n, 2, ROWS, COARSE]), cos, sin], 1)
 }
 
 /// `[n, c, h, w * r]` to `[n, c * r, h, w]`: neighbouring columns become channels.
@@ -214,12 +228,19 @@ fn hann_tail(n: usize, offset: f32, device: &Device) -> Tensor<1> {
     Tensor::from_data(TensorData::new(values, vec![n / 2 + 1]), device)
 }
 
-/// Matrix `[n, n]` of the even, circular kernel whose log10 at distances 0 to n/2 is `kernel`.
-fn circulant(kernel: Tensor<1>, n: usize) -> Tensor<2> {
+/// For each scene the kernel of its window, `[batch, k]`: `hann` `[k]`, or that of `others` `[3, k]` that `windows` `[batch, 3]` names by a 1.
+fn of_windows(windows: &Tensor<2>, hann: Tensor<1>, others: Tensor<2>) -> Tensor<2> {
+    let is_hann = -windows.clone().sum_dim(1) + 1.0;
+    is_hann.matmul(hann.unsqueeze_dim(0)) + windows.clone().matmul(others)
+}
+
+/// Matrices `[batch, n, n]` of the even, circular kernels whose log10 at distances 0 to n/2 are `kernels` `[batch, n / 2 + 1]`.
+fn circulants(kernels: Tensor<2>, n: usize) -> Tensor<3> {
     let distance = |i: usize, j: usize| i.abs_diff(j).min(n - i.abs_diff(j)) as i64;
     let index: Vec<i64> = (0..n * n).map(|k| distance(k / n, k % n)).collect();
-    let index = Tensor::<1, Int>::from_data(TensorData::new(index, vec![n * n]), &kernel.device());
-    (kernel * LN_10).exp().select(0, index).reshape([n, n])
+    let index = Tensor::<1, Int>::from_data(TensorData::new(index, vec![n * n]), &kernels.device());
+    let batch = kernels.dims()[0];
+    (kernels * LN_10).exp().select(1, index).reshape([batch, n, n])
 }
 
 #[cfg(test)]
@@ -284,6 +305,7 @@ mod tests {
         check("coarse", &found.coarse, &[10, 16, 16], ROWS, COARSE, 32, 4);
         check("rows", &found.rows, &[6, 64], 1, ROWS, 1, 8);
         check("scalars", &found.scalars, &[2], 1, 2, 1, 1);
+        assert_eq!(found.constants, [0.0; CONSTANTS]);
         check("gain", &[found.gain as f32], &[1], 1, 1, 1, 1);
     }
 
@@ -300,12 +322,22 @@ mod tests {
         let minimum = reference.tensor("minimum", &[1]).unwrap()[0];
         assert!((fast.minimum - minimum).abs() < 1e-3, "{} for {minimum}", fast.minimum);
 
+        // The same scene as another radar's, with another window.
+        let constants = reference.tensor("constants", &[CONSTANTS]).unwrap().try_into().unwrap();
+        let other = LiveInput { constants, ..input.clone() };
+        let fast_other = engine.forward(&other, &mut Scratch::default());
+        let expected = reference.tensor("other_log", &[16, 64]).unwrap();
+        let (mean, largest) = distance(&fast_other.map, &expected, ROWS, COLUMNS, 32, 16);
+        assert!(mean < 1e-4 && largest < 1e-2, "engine against twin: mean {mean}, largest {largest}");
+        assert!(distance(&fast_other.map, &fast.map, ROWS, COLUMNS, 1, 1).0 > 0.05, "the constants say nothing");
+
         let device = Device::flex();
         let mut module = Live::new(&tiny(), &device);
         weights.load_into(&mut module, |_| false).unwrap();
-        let slow = module.forward(LiveBatch::new(&[input], &device));
+        let slow = module.forward(LiveBatch::new(&[input, other], &device));
         let slow_map = slow.decades.into_data().try_into_vec::<f32>().unwrap();
-        let (mean, largest) = distance(&fast.map, &slow_map, ROWS, COLUMNS, 1, 1);
+        let fast_map = [fast.map, fast_other.map].concat();
+        let (mean, largest) = distance(&fast_map, &slow_map, ROWS, COLUMNS, 1, 1);
         assert!(mean < 1e-5 && largest < 1e-3, "engine against module: mean {mean}, largest {largest}");
     }
 

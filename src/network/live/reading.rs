@@ -1,5 +1,6 @@
 //! The layers of a weight file, packed for the engine.
 
+use super::grid::CONSTANTS;
 use super::planes::{Block, Context};
 use super::winograd::Conv3x3;
 use crate::network::kernels::convolution::{Packed, padded};
@@ -21,10 +22,34 @@ impl Layers<'_> {
         Ok([tensor("weight", shape)?, tensor("bias", &shape[..1])?])
     }
 
+    /// The same of a layer whose last inputs are `more` than those of older files, which meet zeros.
+    pub(super) fn tensors_or_older(
+        &self,
+        name: &str,
+        shape: &[usize],
+        more: usize,
+    ) -> Result<[Vec<f32>; 2], WeightsError> {
+        let mut older = shape.to_vec();
+        older[1] -= more;
+        if self.file.shape(&format!("{name}.weight")) != Some(&older) {
+            return self.tensors(name, shape);
+        }
+        let [weights, bias] = self.tensors(name, &older)?;
+        let area: usize = shape[2..].iter().product();
+        let widened = |of_output: &[f32]| [of_output, &vec![0.0; more * area]].concat();
+        Ok([weights.chunks_exact(older[1] * area).flat_map(widened).collect(), bias])
+    }
+
     /// A 3x3 convolution of cells that hold `stride` channels, of which it sees the first `input`.
     pub(super) fn conv(&self, name: &str, [input, stride]: [usize; 2], output: usize) -> Result<Conv3x3, WeightsError> {
         let [weights, bias] = self.tensors(name, &[output, input, 3, 3])?;
         Ok(Conv3x3::new(&weights, &bias, input, stride))
+    }
+
+    /// The first convolution, whose last inputs are the radar's constants, which older files don't know.
+    pub(super) fn stem(&self, name: &str, input: usize, output: usize) -> Result<Conv3x3, WeightsError> {
+        let [weights, bias] = self.tensors_or_older(name, &[output, input, 3, 3], CONSTANTS)?;
+        Ok(Conv3x3::new(&weights, &bias, input, input))
     }
 
     /// A 3x3 convolution whose output is `channels` of each of the cells that one becomes.
@@ -45,9 +70,9 @@ impl Layers<'_> {
         Ok(Packed::new(&weights, &bias, [input, padded(input)], [1, 1], 1))
     }
 
-    /// A linear layer of numbers that lie side by side.
-    pub(super) fn linear(&self, name: &str, input: usize, output: usize) -> Result<Packed, WeightsError> {
-        let [weights, bias] = self.tensors(name, &[output, input])?;
+    /// A linear layer of numbers that lie side by side, of which the last `more` are none that older files know.
+    pub(super) fn linear(&self, name: &str, [input, more]: [usize; 2], output: usize) -> Result<Packed, WeightsError> {
+        let [weights, bias] = self.tensors_or_older(name, &[output, input], more)?;
         Ok(Packed::new(&weights, &bias, [input; 2], [1, 1], 1))
     }
 
@@ -92,4 +117,23 @@ fn cell_by_cell(of_channels: &[f32], channels: usize) -> Vec<f32> {
 pub(super) fn circulant(kernel: &[f32], n: usize) -> Vec<f32> {
     let distance = |k: usize| (k / n).abs_diff(k % n).min(n - (k / n).abs_diff(k % n));
     (0..n * n).map(|k| 10f32.powf(kernel[distance(k)])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inputs_that_an_older_file_lacks_meet_zeros() {
+        let header = r#"{"a.weight":{"dtype":"F32","shape":[2,1,1,2],"data_offsets":[0,16]},
+            "a.bias":{"dtype":"F32","shape":[2],"data_offsets":[16,24]}}"#;
+        let numbers = [1.0f32, 2.0, 3.0, 4.0, 5.0, 6.0].map(f32::to_le_bytes).concat();
+        let bytes = [&(header.len() as u64).to_le_bytes(), header.as_bytes(), &numbers].concat();
+        let file = WeightFile::parse("older", &bytes).unwrap();
+        let read = |input: usize, more: usize| Layers { file: &file }.tensors_or_older("a", &[2, input, 1, 2], more);
+        assert_eq!(read(1, 0).unwrap(), [vec![1.0, 2.0, 3.0, 4.0], vec![5.0, 6.0]]);
+        let widened = vec![1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(read(3, 2).unwrap(), [widened, vec![5.0, 6.0]]);
+        assert!(read(3, 1).unwrap_err().to_string().contains("expected [2, 3, 1, 2]"));
+    }
 }

@@ -1,5 +1,6 @@
 //! What one end sees, gathered onto the polar grid that another place sees: the same reflector lies up to 27 range bins apart in the two.
 
+use super::constants::cosine_scale;
 use super::grid::{ROWS, cosine};
 use crate::radar::Radar;
 use std::ops::{Add, Mul};
@@ -22,17 +23,21 @@ struct Tap {
 const WHOLE: f32 = u16::MAX as f32;
 
 impl<const COLUMNS: usize> Registration<COLUMNS> {
-    /// For each cell of the polar grid around x = `from`, where it lies on the polar grid around x = `to`; metres.
+    /// For each cell of the polar grid around x = `from`, where it lies on the polar grid around x = `to`; metres. Columns beyond end-fire, where no
+    /// reflector is, lie as far off as end-fire does.
     pub(super) fn new(radar: &Radar, from: f64, to: f64) -> Self {
         const { assert!(COLUMNS.is_power_of_two()) };
         let bin = radar.range_resolution_metres();
         let half = (COLUMNS / 2) as f64;
+        let scale = cosine_scale(radar);
         let tap = |i: usize| {
-            let (r, u) = ((i / COLUMNS) as f64 * bin, cosine(i % COLUMNS, COLUMNS));
+            let (r, seen) = ((i / COLUMNS) as f64 * bin, cosine(i % COLUMNS, COLUMNS) * scale);
+            let u = seen.clamp(-1.0, 1.0);
             let dx = r * u + from - to;
             let distance = (dx * dx + r * r * (1.0 - u * u)).sqrt();
-            let u = if distance > 0.0 { dx / distance } else { 0.0 };
-            let (row, column) = ((distance / bin).min((ROWS - 1) as f64), u * half + half);
+            let there = if distance > 0.0 { dx / distance } else { 0.0 };
+            let there = if u == seen { there } else { seen };
+            let (row, column) = ((distance / bin).min((ROWS - 1) as f64), there / scale * half + half);
             let (r0, c0) = ((row.floor() as usize).min(ROWS - 2), column.floor());
             let part = [row - r0 as f64, column - c0].map(|part| (part as f32 * WHOLE).round() as u16);
             Tap { cell: (r0 * COLUMNS + c0.rem_euclid(COLUMNS as f64) as usize) as u32, part }

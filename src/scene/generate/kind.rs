@@ -46,6 +46,9 @@ pub enum Kind {
     Occlusion,
     /// One or two rough bodies (height deviation 0.2 to 1.5 mm) and a post.
     Rough,
+    /// Points along curves, in clouds and scattered, and bodies, of every count, step and strength. It is for training and validation: no menu
+    /// lists it, and it makes no test scenes.
+    World,
     /// Nothing: over thermal noise of a level of its own the samples are noise alone.
     Noise,
     /// Experiment 1: this many points (1 to 4).
@@ -78,9 +81,30 @@ impl Kind {
         Kind::TEST_SETS.into_iter().chain(Kind::BEYOND)
     }
 
+    /// The kind called `name`, where test scenes are not wanted: [`Kind::World`] is one of them.
+    ///
+    /// # Errors
+    /// As `name.parse::<Kind>()`.
+    pub fn for_training(name: &str) -> Result<Kind, String> {
+        if name.trim() == WORLD { Ok(Kind::World) } else { name.parse() }
+    }
+
     /// 1, 2 or 3 for the thesis' test sets, whose printed figures tables 4.1 to 4.3 hold.
     pub fn test_set(self) -> Option<usize> {
         Kind::TEST_SETS.iter().position(|&k| k == self).map(|i| i + 1)
+    }
+
+    /// Maximum range of a radar before which its objects find room, metres.
+    pub fn needed_range_metres(self) -> f64 {
+        match self {
+            Kind::Street => 20.0,
+            Kind::Fences => 19.0,
+            Kind::Occlusion => 15.0,
+            Kind::Rails => 13.5,
+            Kind::Bodies | Kind::Rough => 6.0,
+            Kind::Set1 | Kind::Set2 | Kind::Set3 | Kind::Noise | Kind::Points(_) | Kind::Mixed(_) => 0.0,
+            _ => 2.5,
+        }
     }
 
     /// What such a scene holds, in a few words.
@@ -103,6 +127,7 @@ impl Kind {
             Kind::Rails => "guard rails, a car and posts",
             Kind::Occlusion => "bodies behind a car or a post",
             Kind::Rough => "rough bodies and a post",
+            Kind::World => "curves, clouds and bodies of every kind, for training",
             Kind::Noise => "noise alone",
             Kind::Points(_) => "points of experiment 1",
             Kind::Mixed(_) => "points and lines of experiment 2",
@@ -143,11 +168,15 @@ impl Kind {
             Kind::Rough => 16,
             Kind::Fences => 17,
             Kind::Rain => 18,
+            Kind::World => 19,
             Kind::Points(n) => 0x100 + u64::from(n),
             Kind::Mixed(n) => 0x200 + u64::from(n),
         }
     }
 }
+
+/// The name of [`Kind::World`].
+const WORLD: &str = "world";
 
 /// The name that the command line takes: `1` to `3` for the test sets, a word for the others.
 impl fmt::Display for Kind {
@@ -170,6 +199,7 @@ impl fmt::Display for Kind {
             Kind::Rails => "rails",
             Kind::Occlusion => "occlusion",
             Kind::Rough => "rough",
+            Kind::World => WORLD,
             Kind::Noise => "noise",
             Kind::Points(n) => return write!(f, "points-{n}"),
             Kind::Mixed(n) => return write!(f, "mixed-{n}"),
@@ -181,9 +211,14 @@ impl fmt::Display for Kind {
 impl FromStr for Kind {
     type Err = String;
 
-    /// Reads what [`Display`](fmt::Display) writes.
+    /// Reads what [`Display`](fmt::Display) writes, but for [`Kind::World`]: what reads names by this makes test scenes.
     fn from_str(s: &str) -> Result<Self, String> {
         let wanted = s.trim();
+        if wanted == WORLD {
+            return Err(format!(
+                "{WORLD} makes no scenes for tests; expected another kind, or a purpose of training or validation"
+            ));
+        }
         let counted = (1..=4).flat_map(|n| [Kind::Points(n), Kind::Mixed(n)]);
         Kind::all().chain(counted).find(|k| k.to_string() == wanted).ok_or_else(|| {
             let names: Vec<String> = Kind::all().skip(Kind::TEST_SETS.len()).map(|kind| kind.to_string()).collect();
@@ -208,6 +243,11 @@ mod tests {
             assert_eq!(kind.to_string().parse(), Ok(kind));
         }
         assert!("points-5".parse::<Kind>().is_err());
+        assert_eq!(Kind::for_training("world"), Ok(Kind::World));
+        assert!(
+            "world".parse::<Kind>().unwrap_err().contains("no scenes for tests")
+                && !Kind::all().any(|k| k == Kind::World)
+        );
         let error = "wall".parse::<Kind>().unwrap_err();
         assert!(error.contains("\"wall\"") && error.contains("walls, spacings"), "{error}");
     }
@@ -215,7 +255,7 @@ mod tests {
     #[test]
     fn no_two_kinds_share_a_stream() {
         let counted = (1..=4).flat_map(|n| [Kind::Points(n), Kind::Mixed(n)]);
-        let mut streams: Vec<u64> = Kind::all().chain(counted).map(Kind::stream).collect();
+        let mut streams: Vec<u64> = Kind::all().chain(counted).chain([Kind::World]).map(Kind::stream).collect();
         let kinds = streams.len();
         streams.sort_unstable();
         streams.dedup();

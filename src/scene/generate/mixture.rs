@@ -56,7 +56,7 @@ impl FromStr for Mixture {
         let mut shares: Vec<(Kind, f64)> = Vec::new();
         for part in text.split(',') {
             let (kind, share) = part.split_once('=').unwrap_or((part, "1"));
-            let kind: Kind = kind.trim().parse().map_err(wrong)?;
+            let kind = Kind::for_training(kind).map_err(wrong)?;
             let number = share.trim().parse::<f64>().ok().filter(|share| share.is_finite() && *share > 0.0);
             let share =
                 number.ok_or_else(|| wrong(format!("the share of {kind} is \"{share}\", not a number above 0")))?;
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn a_mixture_is_read_as_it_was_written() {
-        for text in ["3=1", "1=4,2=12,clusters=0.5"] {
+        for text in ["3=1", "1=4,2=12,clusters=0.5", "world=1"] {
             assert_eq!(text.parse::<Mixture>().unwrap().to_string(), text);
         }
         assert_eq!("3".parse::<Mixture>().unwrap(), "3=1".parse().unwrap());

@@ -61,7 +61,7 @@ fn post([x, y]: [f64; 2], rng: &mut ChaCha8Rng) -> Object {
 }
 
 /// An L, turned anyhow.
-fn ell([x, y]: [f64; 2], rng: &mut ChaCha8Rng) -> Object {
+pub(super) fn ell([x, y]: [f64; 2], rng: &mut ChaCha8Rng) -> Object {
     let (long, thick): (f64, f64) = (rng.random_range(1.0..3.0), rng.random_range(0.2..0.6));
     let [cos, sin] = crate::scene::shape::direction(rng.random_range(0.0..360.0));
     let corners = [[0.0, 0.0], [long, 0.0], [long, thick], [thick, thick], [thick, long], [0.0, long]];
@@ -102,24 +102,24 @@ fn samples(shape: &Shape) -> Vec<[f64; 2]> {
     shape.faces().into_iter().flat_map(along).collect()
 }
 
+/// Whether an object stands in the field, nearer than `far_metres`, and apart from all others.
+pub(super) fn has_room(object: &Object, others: &[Object], far_metres: f64) -> bool {
+    let shape = |o: &Object| o.body().map(|body| body.shape());
+    let Some(own) = shape(object) else {
+        return !others.iter().filter_map(shape).any(|s| s.distance_metres(object.centre_metres()) < APART_METRES);
+    };
+    let places = samples(&own);
+    let is_near = |other: &Shape| {
+        places.iter().any(|p| other.distance_metres(*p) < APART_METRES)
+            || samples(other).iter().any(|p| own.distance_metres(*p) < APART_METRES)
+    };
+    places.iter().all(|[x, y]| *y > APART_METRES && x.hypot(*y) < far_metres)
+        && !others.iter().filter_map(shape).any(|other| is_near(&other))
+}
+
 impl Things {
-    /// Whether an object stands in the field, apart from all others.
     fn has_room(&self, object: &Object) -> bool {
-        let shape = |o: &Object| o.body().map(|body| body.shape());
-        let Some(own) = shape(object) else {
-            return !self
-                .objects
-                .iter()
-                .filter_map(shape)
-                .any(|s| s.distance_metres(object.centre_metres()) < APART_METRES);
-        };
-        let places = samples(&own);
-        let is_near = |other: &Shape| {
-            places.iter().any(|p| other.distance_metres(*p) < APART_METRES)
-                || samples(other).iter().any(|p| own.distance_metres(*p) < APART_METRES)
-        };
-        places.iter().all(|[x, y]| *y > APART_METRES && x.hypot(*y) < self.far / FARTHEST)
-            && !self.objects.iter().filter_map(shape).any(|other| is_near(&other))
+        has_room(object, &self.objects, self.far / FARTHEST)
     }
 
     /// Adds what `make` makes at a random place where it has room.

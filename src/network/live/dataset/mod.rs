@@ -17,12 +17,12 @@ mod shard;
 pub use manifest::{FILE_NAME, Manifest, VERSION};
 
 use super::arrays::Arrays;
-use super::examples::{Example, ExampleError, Examples};
+use super::examples::{Example, ExampleError, Examples, ExamplesError};
+use super::radars::Radars;
 use crate::files::{sha256, write_bytes};
 use crate::network::floors::Floors;
 use crate::platform::fs;
 use crate::radar::Radar;
-use crate::reconstruct::ReconstructError;
 use crate::scene::generate::{Kind, Mixture, Purpose};
 use crate::task::{Cancelled, Task};
 use manifest::{ArrayEntry, FileEntry, ShardEntry};
@@ -72,7 +72,9 @@ impl Part {
     fn arrays(self) -> &'static [ArrayKind] {
         match self {
             Part::Ends => &[ArrayKind::Ends],
-            Part::Features => &[ArrayKind::Fine, ArrayKind::Coarse, ArrayKind::Rows, ArrayKind::Scalars],
+            Part::Features => {
+                &[ArrayKind::Fine, ArrayKind::Coarse, ArrayKind::Rows, ArrayKind::Scalars, ArrayKind::Constants]
+            }
             Part::Target => &[ArrayKind::Target],
         }
     }
@@ -99,6 +101,7 @@ enum ArrayKind {
     Coarse,
     Rows,
     Scalars,
+    Constants,
     Target,
     /// Decades by which everything of an example is scaled down.
     Gain,
@@ -127,6 +130,16 @@ pub struct DatasetRequest {
     pub shard: u32,
 }
 
+impl DatasetRequest {
+    /// Scenes of each kind for training, validation and test: a tenth of `training` where nothing else is said, and no test scenes beside
+    /// [`Kind::World`], which makes none.
+    pub fn counts(kinds: &[Kind], training: u32, validation: Option<u32>, test: Option<u32>) -> [u32; 3] {
+        let tenth = training.div_ceil(10);
+        let of_test = if kinds.contains(&Kind::World) { 0 } else { tenth };
+        [training, validation.unwrap_or(tenth), test.unwrap_or(of_test)]
+    }
+}
+
 /// Why there is no dataset.
 #[derive(Debug, thiserror::Error)]
 pub enum DatasetError {
@@ -144,9 +157,9 @@ pub enum DatasetError {
     /// A scene can't be made.
     #[error(transparent)]
     Example(#[from] ExampleError),
-    /// The live network knows another radar.
+    /// There are no examples of this kind or radar.
     #[error(transparent)]
-    Network(#[from] ReconstructError),
+    Examples(#[from] ExamplesError),
     /// Somebody asked to stop.
     #[error("cancelled")]
     Cancelled(#[from] Cancelled),
@@ -173,6 +186,10 @@ pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Man
     let mut manifest = manifest_of(request, &arrays, &radar);
     let mut done = 0;
     for ((split, purpose), count) in SPLITS.into_iter().zip(request.counts) {
+        if count == 0 {
+            manifest.splits.insert(split.to_owned(), Vec::new());
+            continue;
+        }
         let makers = makers(request, purpose)?;
         let of_split = folder.join(split);
         fs::create_dir_all(&of_split).map_err(on(&of_split))?;
@@ -232,7 +249,7 @@ fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
 fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, DatasetError> {
     let of = |kind: &Kind| {
         let mixture: Mixture = kind.to_string().parse().map_err(|e| DatasetError::Request(format!("{e}")))?;
-        Ok(Examples::new(mixture, purpose, request.seed, request.floors, Arrays::IDEAL)?)
+        Ok(Examples::new(mixture, purpose, request.seed, request.floors, Arrays::IDEAL, Radars::default())?)
     };
     request.kinds.iter().map(of).collect()
 }

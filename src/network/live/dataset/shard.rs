@@ -3,7 +3,9 @@
 use super::half::half_bits;
 use super::{ArrayKind, Precision};
 use crate::network::live::examples::Example;
-use crate::network::live::grid::{COARSE, COARSE_CHANNELS, COLUMNS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
+use crate::network::live::grid::{
+    COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS,
+};
 use crate::radar::Radar;
 
 impl ArrayKind {
@@ -15,6 +17,7 @@ impl ArrayKind {
             ArrayKind::Coarse => "coarse",
             ArrayKind::Rows => "rows",
             ArrayKind::Scalars => "scalars",
+            ArrayKind::Constants => "constants",
             ArrayKind::Target => "target",
             ArrayKind::Gain => "gain",
         }
@@ -27,6 +30,7 @@ impl ArrayKind {
             ArrayKind::Fine | ArrayKind::Coarse => &["example", "channel", "range_bin", "column"],
             ArrayKind::Rows => &["example", "channel", "range_bin"],
             ArrayKind::Scalars => &["example", "scalar"],
+            ArrayKind::Constants => &["example", "constant"],
             ArrayKind::Target => &["example", "range_bin", "column"],
             ArrayKind::Gain => &["example"],
         }
@@ -40,6 +44,7 @@ impl ArrayKind {
             ArrayKind::Coarse => vec![COARSE_CHANNELS, ROWS, COARSE],
             ArrayKind::Rows => vec![ROW_CHANNELS, ROWS],
             ArrayKind::Scalars => vec![SCALARS],
+            ArrayKind::Constants => vec![CONSTANTS],
             ArrayKind::Target => vec![ROWS, COLUMNS],
             ArrayKind::Gain => Vec::new(),
         }
@@ -50,7 +55,7 @@ impl ArrayKind {
         match (self, precision) {
             (ArrayKind::Ends, _) => "<c16",
             (ArrayKind::Gain, _) => "<f8",
-            (ArrayKind::Scalars, _) | (_, Precision::Single) => "<f4",
+            (ArrayKind::Scalars | ArrayKind::Constants, _) | (_, Precision::Single) => "<f4",
             (_, Precision::Half) => "<f2",
         }
     }
@@ -66,6 +71,7 @@ impl ArrayKind {
                 ArrayKind::Coarse => put(&mut bytes, &example.input.coarse, precision),
                 ArrayKind::Rows => put(&mut bytes, &example.input.rows, precision),
                 ArrayKind::Scalars => put(&mut bytes, &example.input.scalars, Precision::Single),
+                ArrayKind::Constants => put(&mut bytes, &example.input.constants, Precision::Single),
                 ArrayKind::Target => put(&mut bytes, &example.decades, precision),
                 ArrayKind::Gain => bytes.extend(example.input.gain.to_le_bytes()),
             }

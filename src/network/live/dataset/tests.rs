@@ -22,9 +22,15 @@ fn an_example_on_disk_is_the_example() {
     let manifest = write(folder.path(), &request(), &Task::default()).unwrap();
     let shards: Vec<u32> = manifest.splits["train"].iter().map(|shard| shard.examples).collect();
     assert_eq!(shards, [3, 1]);
-    let maker =
-        Examples::new("clusters".parse().unwrap(), Purpose::Training, 5, Floors::Fixed(Floor::Thesis), Arrays::IDEAL)
-            .unwrap();
+    let maker = Examples::new(
+        "clusters".parse().unwrap(),
+        Purpose::Training,
+        5,
+        Floors::Fixed(Floor::Thesis),
+        Arrays::IDEAL,
+        Radars::default(),
+    )
+    .unwrap();
     let example = maker.example(0, &Task::default()).unwrap();
     let path = |array: &str| folder.path().join(format!("train/00000.{array}.npy"));
     let target: Array3<f32> = read_npy(path("target")).unwrap();
@@ -82,8 +88,15 @@ fn halves_are_off_by_a_two_thousandth_at_most() {
     write(folder.path(), &request, &Task::default()).unwrap();
     let bytes = std::fs::read(folder.path().join("train/00000.target.npy")).unwrap();
     assert_eq!(bytes.len() - 128, 2 * 512 * 1024);
-    let maker =
-        Examples::new("2".parse().unwrap(), Purpose::Training, 5, Floors::Fixed(Floor::Thesis), Arrays::IDEAL).unwrap();
+    let maker = Examples::new(
+        "2".parse().unwrap(),
+        Purpose::Training,
+        5,
+        Floors::Fixed(Floor::Thesis),
+        Arrays::IDEAL,
+        Radars::default(),
+    )
+    .unwrap();
     let example = maker.example(0, &Task::default()).unwrap();
     for (half, exact) in bytes[128..].chunks(2).zip(&example.decades).step_by(101) {
         let bits = u16::from_le_bytes([half[0], half[1]]);

@@ -1,0 +1,241 @@
+//! The radars that a network was trained for.
+
+use crate::radar::{Antennas, Carrier, LinkBudget, Radar};
+use crate::reconstruct::ReconstructError;
+use serde::{Deserialize, Serialize};
+
+/// Quantities that differ by less than this part of themselves are the same.
+const SAME_QUANTITY: f64 = 1e-9;
+
+/// The radars that a network was trained for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Domain {
+    /// One radar, and all whose samples are as its.
+    Radar(Box<Radar>),
+    /// All radars within limits.
+    Limits(Limits),
+}
+
+/// Limits of radars of one antenna an element, in both conventions and with all windows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// Elements of the whole array.
+    pub elements: usize,
+    /// Elements of an end.
+    pub end_elements: usize,
+    /// Samples of a chirp.
+    pub samples: usize,
+    /// Lowest and highest carrier, hertz.
+    pub carrier_hz: [f64; 2],
+    /// Lowest and highest bandwidth, hertz.
+    pub bandwidth_hz: [f64; 2],
+    /// Most bandwidth, as a part of the carrier.
+    pub max_relative_bandwidth: f64,
+    /// Most range bins that a reflector at end-fire migrates from the first element to the last.
+    pub max_migration_bins: f64,
+    /// Least and most spacing of elements, over the one that fills the convention ([`Radar::filled_spacing_metres`]).
+    pub relative_spacing: [f64; 2],
+    /// Narrowest and widest pattern of elements, beside isotropic ones: degrees between its half-power directions.
+    pub half_power_width_degrees: [f64; 2],
+}
+
+/// Of one quantity, what a network was trained for and what a radar has.
+type Difference = [String; 2];
+
+impl Domain {
+    /// As a weight file's entry.
+    ///
+    /// # Errors
+    /// [`serde_json::Error`] for numbers that JSON doesn't have.
+    pub fn json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string(self)
+    }
+
+    /// Whether the network was trained for samples of `radar`.
+    pub fn holds(&self, radar: &Radar) -> bool {
+        self.differences(radar).is_empty()
+    }
+
+    /// Refuses every radar whose samples are others than those that `method` was trained with: its weights know no other, and what they would
+    /// draw means nothing.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Unusable`] names what differs.
+    pub fn check(&self, method: &'static str, radar: &Radar) -> Result<(), ReconstructError> {
+        refused(method, &self.differences(radar))
+    }
+
+    fn differences(&self, radar: &Radar) -> Vec<Difference> {
+        match self {
+            Domain::Radar(trained) => differences(trained, radar),
+            Domain::Limits(limits) => limits.differences(radar),
+        }
+    }
+}
+
+fn refused(method: &'static str, differences: &[Difference]) -> Result<(), ReconstructError> {
+    if differences.is_empty() {
+        return Ok(());
+    }
+    let list = |which: usize| differences.iter().map(|d| d[which].as_str()).collect::<Vec<_>>().join(", ");
+    let reason = format!("the network was trained for {}; this radar has {}", list(0), list(1));
+    Err(ReconstructError::Unusable { method, reason })
+}
+
+/// Whether the samples of both radars are alike.
+pub(super) fn is_alike(trained: &Radar, radar: &Radar) -> bool {
+    differences(trained, radar).is_empty()
+}
+
+/// Between how many range bins a reflector at end-fire migrates from the first element to the last.
+pub(super) fn migration_bins(radar: &Radar) -> f64 {
+    radar.aperture_metres() / radar.range_resolution_metres()
+}
+
+fn count(trained: usize, found: usize, what: &str) -> Option<Difference> {
+    (trained != found).then(|| [trained, found].map(|n| format!("{n} {what}")))
+}
+
+fn antennas(trained: Option<&Antennas>, found: Option<&Antennas>) -> Option<Difference> {
+    let name = |antennas: Option<&Antennas>| match antennas {
+        None => "one antenna an element",
+        Some(_) => "transmitters apart from receivers",
+    };
+    named(name(trained), name(found))
+}
+
+fn named(trained: &str, found: &str) -> Option<Difference> {
+    (trained != found).then(|| [trained.to_owned(), found.to_owned()])
+}
+
+fn pattern(budget: Option<LinkBudget>) -> String {
+    match budget.and_then(|b| b.half_power_width_degrees) {
+        None => "isotropic elements".to_owned(),
+        Some(degrees) => format!("elements of {degrees:.1} degrees"),
+    }
+}
+
+/// What makes the samples of `radar` others than those of `trained`. The transmit power only makes samples louder, which no network hears; the
+/// chirp's duration changes no echo, and of a link budget only the pattern of an element does.
+fn differences(trained: &Radar, radar: &Radar) -> Vec<Difference> {
+    // A new constant must be named here, or the networks would not know of it.
+    let Radar {
+        transmit_power_watts: _,
+        bandwidth_hz,
+        carrier_hz,
+        element_spacing_metres,
+        elements,
+        end_elements,
+        samples,
+        chirp_seconds: _,
+        carrier,
+        window,
+        antennas: found_antennas,
+        focus_off_line: _,
+        // Networks see one chirp.
+        chirps: _,
+        chirp_interval_seconds: _,
+        budget,
+    } = radar;
+    let convention = |carrier: &Carrier| match carrier {
+        Carrier::OneWay => "the thesis' convention (one-way carrier)",
+        Carrier::TwoWay => "the physical convention (two-way carrier)",
+    };
+    let quantity = |a: f64, b: f64, scale: f64, what: &str| {
+        ((a - b).abs() > SAME_QUANTITY * a.abs()).then(|| [a, b].map(|v| format!("{:.4} {what}", v / scale)))
+    };
+    [
+        count(trained.elements, *elements, "elements"),
+        count(trained.end_elements, *end_elements, "elements an end"),
+        count(trained.samples, *samples, "samples"),
+        quantity(trained.bandwidth_hz, *bandwidth_hz, 1e9, "GHz of bandwidth"),
+        quantity(trained.carrier_hz, *carrier_hz, 1e9, "GHz of carrier"),
+        quantity(trained.element_spacing_metres, *element_spacing_metres, 1e-3, "mm between elements"),
+        named(convention(&trained.carrier), convention(carrier)),
+        antennas(trained.antennas.as_ref(), found_antennas.as_ref()),
+        named(&pattern(trained.budget), &pattern(*budget)),
+        named(&format!("the {} window", trained.window.name()), &format!("the {} window", window.name())),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+impl Limits {
+    /// Refuses radars of other counts, or with transmitters apart from receivers, whatever their frequencies.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Unusable`] names what differs.
+    pub(super) fn check_shape(&self, method: &'static str, radar: &Radar) -> Result<(), ReconstructError> {
+        refused(method, &self.shape(radar).collect::<Vec<_>>())
+    }
+
+    fn shape(&self, radar: &Radar) -> impl Iterator<Item = Difference> {
+        [
+            count(self.elements, radar.elements, "elements"),
+            count(self.end_elements, radar.end_elements, "elements an end"),
+            count(self.samples, radar.samples, "samples"),
+            antennas(None, radar.antennas.as_ref()),
+        ]
+        .into_iter()
+        .flatten()
+    }
+
+    fn differences(&self, radar: &Radar) -> Vec<Difference> {
+        let between = |[least, most]: [f64; 2], found: f64, scale: f64, what: &str| {
+            let inside = (least * (1.0 - SAME_QUANTITY)..=most * (1.0 + SAME_QUANTITY)).contains(&found);
+            let trained = match least {
+                0.0 => format!("at most {} {what}", most / scale),
+                least => format!("{} to {} {what}", least / scale, most / scale),
+            };
+            (!inside).then(|| [trained, format!("{:.4} {what}", found / scale)])
+        };
+        let relative_bandwidth = radar.bandwidth_hz / radar.carrier_hz;
+        let relative_spacing = radar.element_spacing_metres / radar.filled_spacing_metres();
+        let width = radar.budget.and_then(|b| b.half_power_width_degrees);
+        let quantities = [
+            between(self.carrier_hz, radar.carrier_hz, 1e9, "GHz of carrier"),
+            between(self.bandwidth_hz, radar.bandwidth_hz, 1e9, "GHz of bandwidth"),
+            between([0.0, self.max_relative_bandwidth], relative_bandwidth, 0.01, "% of the carrier as bandwidth"),
+            between([0.0, self.max_migration_bins], migration_bins(radar), 1.0, "range bins from end to end"),
+            between(self.relative_spacing, relative_spacing, 1.0, "of the filled spacing between elements"),
+            width.and_then(|width| between(self.half_power_width_degrees, width, 1.0, "degrees of elements' pattern")),
+        ];
+        self.shape(radar).chain(quantities.into_iter().flatten()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(domain: &Domain, radar: &Radar) -> Option<String> {
+        domain.check("live", radar).err().map(|e| e.to_string())
+    }
+
+    fn thesis() -> Domain {
+        Domain::Radar(Box::default())
+    }
+
+    #[test]
+    fn a_louder_radar_is_no_other_radar() {
+        assert_eq!(refused(&thesis(), &Radar { transmit_power_watts: 7.0, ..Radar::default() }), None);
+        let budget = Radar { chirp_seconds: 1e-3, budget: Some(LinkBudget::default()), ..Radar::default() };
+        assert_eq!(refused(&thesis(), &budget), None);
+    }
+
+    #[test]
+    fn what_differs_from_a_radar_is_named() {
+        let told = refused(&thesis(), &Radar { elements: 512, carrier: Carrier::TwoWay, ..Radar::default() }).unwrap();
+        let expected = "trained for 1024 elements, the thesis' convention (one-way carrier); this radar has 512 elements, \
+                        the physical convention (two-way carrier)";
+        assert!(told.contains(expected), "{told}");
+        let narrow = LinkBudget { half_power_width_degrees: Some(60.0), ..LinkBudget::default() };
+        let told = refused(&thesis(), &Radar { budget: Some(narrow), ..Radar::default() }).unwrap();
+        assert!(told.contains("isotropic elements; this radar has elements of 60.0 degrees"), "{told}");
+        let told = refused(&thesis(), &Radar { carrier_hz: 76e9, ..Radar::default() }).unwrap();
+        assert!(told.contains("77.0000 GHz of carrier; this radar has 76.0000 GHz"), "{told}");
+    }
+}
