@@ -1,7 +1,7 @@
 //! `apertura reconstruct` and `apertura train` as a user runs them.
 
 use assert_cmd::Command;
-use ndarray::{Array2, Array3, Ix0};
+use ndarray::{Array1, Array2, Array3, Ix0};
 use ndarray_npy::{NpzReader, NpzWriter};
 use num_complex::Complex64;
 use predicates::str::contains;
@@ -35,6 +35,21 @@ fn live_writes_what_it_promises() {
     assert!((0.5..1.0).contains(&eta.into_scalar()));
     let time: ndarray::Array<f64, Ix0> = npz.by_name("milliseconds").unwrap();
     assert!(time.into_scalar() > 0.0);
+}
+
+#[test]
+fn an_archive_of_version_0_1_is_read_with_its_radar() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out.npz");
+    let archive = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/program-0.1.0/maps.npz");
+    apertura().args(["reconstruct", archive, "--method", "iaa", "-o"]).arg(&output).assert().success();
+    let mut written = NpzReader::new(File::open(archive).unwrap()).unwrap();
+    let mut found = NpzReader::new(File::open(&output).unwrap()).unwrap();
+    let cosines: [Array1<f64>; 2] = [written.by_name("cos_theta").unwrap(), found.by_name("cos_theta").unwrap()];
+    assert_eq!(cosines[0], cosines[1]);
+    let map: Array2<f32> = found.by_name("net_output").unwrap();
+    let full: Array3<f64> = written.by_name("polar_full").unwrap();
+    assert_eq!([map.nrows(), map.ncols()], full.shape()[1..]);
 }
 
 #[test]

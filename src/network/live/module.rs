@@ -309,6 +309,18 @@ mod tests {
         check("gain", &[found.gain as f32], &[1], 1, 1, 1, 1);
     }
 
+    /// Weights of version 0.1.0 have no constants of the radar: for the radar that they were trained for, they answer as they did.
+    #[test]
+    fn weights_of_version_0_1_answer_as_they_did() {
+        let weights = include_bytes!("../../../tests/data/program-0.1.0/live_reference_weights.safetensors");
+        let reference = include_bytes!("../../../tests/data/program-0.1.0/live_reference.safetensors");
+        let reference = WeightFile::parse("reference", reference).unwrap();
+        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &tiny()).unwrap();
+        let found = engine.forward(&input(&reference, 1.0), &mut Scratch::default());
+        let (mean, largest) = distance(&found.map, &reference.tensor("log", &[16, 64]).unwrap(), ROWS, COLUMNS, 32, 16);
+        assert!(mean < 1e-4 && largest < 1e-2, "mean {mean}, largest {largest}");
+    }
+
     #[test]
     fn the_three_implementations_agree() {
         let reference = WeightFile::parse("reference", REFERENCE).unwrap();
