@@ -34,6 +34,7 @@ mod rows;
 pub mod search;
 mod seen;
 mod trained;
+mod untrained;
 
 pub use answer::{Detection, Reconstruction, Request};
 pub use attempt::{Attempt, Refusal, Tried, Verdict};
@@ -51,4 +52,5 @@ pub use rows::{
     BARTLETT, CAPON, CAPON_PEAKS, ESPRIT, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS, MUSIC, MUSIC_PEAKS, ROOT_MUSIC,
     ROOT_MUSIC_PEAKS, RowMethod,
 };
-pub use trained::{TrainedNoise, untrained_noise};
+pub use trained::TrainedNoise;
+pub use untrained::untrained_noise;

@@ -214,7 +214,7 @@ fn keys_walk_through_ten_thousand_rows() {
     let path = s.folder.path().join("many.csv");
     let rows: Vec<Row> = (0..10_000).map(|index| Row { index, ..row.clone() }).collect();
     write_rows(&mut std::fs::File::create(&path).unwrap(), &rows).unwrap();
-    s.ask(RowsCommand::OpenTable(path));
+    s.ask_and_wait(RowsCommand::OpenTable(path));
     assert_eq!(s.state().rows().len(), 10_000);
     s.ask(WindowCommand::Maximise(Panel::Failures));
     let first = s.handle(&name(&s.state().rows()[0]));

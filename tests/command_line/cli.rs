@@ -146,7 +146,7 @@ fn a_start_without_display_draws_the_output_of_the_asked_method() {
         apertura(&folder).arg("s.toml").args(method).assert().success();
         std::fs::read(folder.path().join("apertura.png")).unwrap()
     };
-    assert_ne!(drawn(&["--method", "mf"]), drawn(&[]));
+    assert_ne!(drawn(&["--method", "matched-filter"]), drawn(&[]));
 }
 
 #[test]

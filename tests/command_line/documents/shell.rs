@@ -33,11 +33,16 @@ pub fn commands(line: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// With a number in place of each that a shell fills in: a variable, `{}` of parallel, and `I/N`.
+/// With a number in place of each that a shell fills in: a variable, `{}` of parallel, and `I/N`; and with the backend that every build has.
 pub fn filled(arguments: &[String]) -> Vec<String> {
+    let is_backend = |at: usize| at > 0 && arguments[at - 1] == "--backend";
     arguments
         .iter()
-        .map(|argument| {
+        .enumerate()
+        .map(|(at, argument)| {
+            if is_backend(at) {
+                return "flex".to_owned();
+            }
             let mut pieces = argument.split('$');
             let first = pieces.next().unwrap_or_default().to_owned();
             let text = pieces.fold(first, |text, piece| {
