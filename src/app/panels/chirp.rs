@@ -7,7 +7,7 @@ use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
-use crate::radar::Radar;
+use crate::radar::{Carrier, Radar};
 use crate::scene::Scene;
 use crate::theory::chirp::{Chirp, Heard, delay_seconds, heard};
 use eframe::egui::{self, CursorIcon, Id, Rect, Sense, Stroke, Ui, vec2};
@@ -62,6 +62,11 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         choices(ui, &input, element, &mut asked);
         let stretch = stretch(input.radar, &chirp);
         legend(ui, &input, stretch);
+        if input.radar.carrier == Carrier::OneWay {
+            let half_gigahertz = input.radar.carrier_hz / 2e9;
+            let said = format!("Drawn rising from the carrier; the thesis' formula falls from {half_gigahertz} GHz, with the same beats.");
+            ui.weak(said);
+        }
         let area = ui.available_rect_before_wrap();
         ui.advance_cursor_after_rect(area);
         let [frequencies, beat, spectrum] = parts(area);
@@ -336,6 +341,7 @@ mod tests {
             // 12 m before the middle element's neighbour: 20.0 turns in 25.6 us.
             let texts = seen::texts(panel.output());
             assert!(texts.iter().any(|t| t.text == "point 1 0.78 MHz"), "{texts:?}");
+            assert!(texts.iter().any(|t| t.text.contains("the thesis' formula falls from 38.5 GHz")), "{texts:?}");
             seen::assert_readable(panel.output());
         }
     }
