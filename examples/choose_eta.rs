@@ -4,16 +4,15 @@
 //! One rule for the thresholds of all methods: the threshold at which the mean false-alarm rate over the validation scenes of the three
 //! sets is the mean of the thesis' own rates, 0.65 %; or the highest threshold that detects 99.9 % on average, where that one is higher.
 //! A method that detects so much needs no more false alarms. Not by this rule are the thresholds that a method brings along: `baseline`
-//! and the thesis' networks keep the thesis' own, and `live` reads its off each scene (`live` below).
+//! and the thesis' networks keep the thesis' own, and `live` and `hybrid` read theirs off each answer (`examples/experts.rs`).
 //!
-//! `cargo run --release --example choose_eta -- thresholds|live|penalty|weights|takeover`; minutes each.
+//! `cargo run --release --example choose_eta -- thresholds|penalty`; minutes each.
 
 use apertura::evaluate::trial::Trial;
-use apertura::evaluate::{Roc, RocPoint, detection_rates, squared_error};
+use apertura::evaluate::{Roc, RocPoint, squared_error};
 use apertura::methods;
-use apertura::radar::{Decibels, Radar};
-use apertura::reconstruct::search::{Settings, find};
-use apertura::reconstruct::{Fista, Hybrid, Reconstructor, Request, Unexplained};
+use apertura::radar::Radar;
+use apertura::reconstruct::{Fista, Reconstructor, Request};
 use apertura::scene::Scene;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
@@ -46,22 +45,8 @@ enum Choice {
         /// Methods; all where none is named
         methods: Vec<String>,
     },
-    /// For live, P_D and P_FA over how far below the peak its threshold lies, on validation scenes of every kind and over all floors
-    Live,
     /// Squared error of FISTA over its penalty
     Penalty,
-    /// Weight of the hybrid's fallback over the parts of a cell's power and of a scene's energy that are unexplained, on validation scenes
-    /// of every kind: figures to judge by, which fail nowhere
-    Weights {
-        /// Kinds of scenes; all where none is named
-        kinds: Vec<Kind>,
-    },
-    /// Squared error of the hybrid over the parts of a map's unexplained cells between which its fallback takes the whole map over, on
-    /// validation scenes of every kind; fails where other parts have a squared error that is less by 2 % or more in the mean of all kinds
-    Takeover {
-        /// Kinds of scenes; all where none is named
-        kinds: Vec<Kind>,
-    },
 }
 
 type Outcome<T = ()> = Result<T, Box<dyn Error>>;
@@ -69,10 +54,7 @@ type Outcome<T = ()> = Result<T, Box<dyn Error>>;
 fn main() -> Outcome {
     match Choice::parse() {
         Choice::Thresholds { methods } => thresholds(&methods),
-        Choice::Live => live(),
         Choice::Penalty => penalty(),
-        Choice::Weights { kinds } => weights(kinds),
-        Choice::Takeover { kinds } => takeover(kinds),
     }
 }
 
@@ -148,49 +130,6 @@ fn thresholds(names: &[String]) -> Outcome {
     if others.is_empty() { Ok(()) } else { Err(format!("thresholds chosen: {}", others.join("; ")).into()) }
 }
 
-/// Thresholds that are tried for live, as parts of its own distance below the peak.
-const PARTS: [f64; 13] = [0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0, 1.05, 1.1, 1.15, 1.2, 1.25, 1.3];
-
-/// The mean false-alarm rate of live over all kinds and floors.
-const LIVE_FALSE_ALARM: f64 = 0.01;
-
-fn live() -> Outcome {
-    let radar = Radar::default();
-    let method = methods::by_name("live")?;
-    let thermal = [40.0, 20.0].map(|db| Floor::Snr(Decibels(db)));
-    let over_thesis = Kind::with_echoes().map(|kind| (kind, Floor::Thesis));
-    let over_thermal = Kind::TEST_SETS.into_iter().flat_map(|kind| thermal.map(|floor| (kind, floor)));
-    let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 0);
-    let mut means = [[0.0; 2]; PARTS.len()];
-    let mut rows = 0.0;
-    println!(
-        "P_D / P_FA in %, its own threshold in the middle\n{:24}{}",
-        "",
-        PARTS.map(|p| format!("{p:>14}")).concat()
-    );
-    for (kind, floor) in over_thesis.chain(over_thermal) {
-        let mut rates = [[0.0; 2]; PARTS.len()];
-        for number in 0..SCENES {
-            let trial = Trial::new(&radar, &generator.scene(kind, number), floor, Request::default().normalisation)?;
-            let answer = trial.ask(method.as_ref(), &Request { noise: floor.into(), ..Request::default() })?;
-            for (rates, part) in rates.iter_mut().zip(PARTS) {
-                let eta = 1.0 - part as f32 * (1.0 - answer.eta);
-                let (detection, false_alarm) = detection_rates(&trial.target, &answer.found.lambda, eta);
-                for (rate, own) in rates.iter_mut().zip([detection.unwrap_or(1.0), false_alarm]) {
-                    *rate += own / f64::from(SCENES);
-                }
-            }
-        }
-        rows += 1.0;
-        let cells = rates.map(|[d, f]| format!("{:>8.2} /{:>4.2}", 100.0 * d, 100.0 * f));
-        println!("{:24}{}", format!("{kind}, {floor}"), cells.concat());
-        means.iter_mut().flatten().zip(rates.iter().flatten()).for_each(|(mean, rate)| *mean += rate);
-    }
-    let best = (0..PARTS.len()).rev().find(|i| means[*i][1] / rows <= LIVE_FALSE_ALARM).ok_or("all alarm too often")?;
-    println!("P_FA {:.2} % on average at {} of its own", 100.0 * means[best][1] / rows, PARTS[best]);
-    if (PARTS[best] - 1.0).abs() < 0.06 { Ok(()) } else { Err(format!("{} of it would be better", PARTS[best]).into()) }
-}
-
 fn penalty() -> Outcome {
     let radar = Radar::default();
     let trials =
@@ -209,119 +148,4 @@ fn penalty() -> Outcome {
         }
     }
     if Fista::default().penalty == best.1 { Ok(()) } else { Err(format!("{} would be better", best.1).into()) }
-}
-
-/// Decades of the unexplained part of a cell's power that share one weight.
-const DECADES: f64 = 0.25;
-
-/// Weights that are told apart, from everything unexplained downwards.
-const BINS: usize = 14;
-
-/// Parts of a scene's energy that are left which part the scenes.
-const LEFT: [f64; 2] = [1e-3, 0.03];
-
-/// What is known of all cells in which about the same part of the power is unexplained.
-#[derive(Default, Clone, Copy)]
-struct Cells {
-    count: f64,
-    /// Squared error of the drawn map and of the fallback's.
-    drawn: f64,
-    filled: f64,
-    /// Products of (target - drawn) and of (filled - drawn) with (filled - drawn).
-    wanted: f64,
-    square: f64,
-}
-
-/// For cells in which about the same part of the power is unexplained, the part of the way from the drawn map to the fallback's that leaves
-/// the least squared error; apart for scenes of which little, some and much of the energy is left.
-fn weights(kinds: Vec<Kind>) -> Outcome {
-    let kinds = all_where_none(kinds);
-    let radar = Radar::default();
-    let request = Request::default();
-    let fallback = methods::by_name("live").or_else(|_| methods::by_name("matched-filter-incoherent"))?;
-    let mut all = [[Cells::default(); BINS]; LEFT.len() + 1];
-    for kind in kinds {
-        for trial in validation(&radar, kind, SCENES) {
-            let trial = trial?;
-            let found = find(&radar, &trial.ends, &request, &Settings::default())?;
-            if found.complete {
-                continue;
-            }
-            let expected = found.expected(&radar, &request);
-            let unexplained = Unexplained::by(&found, &radar, &trial.ends, &expected);
-            let drawn = expected.map;
-            let filled = fallback.reconstruct(&radar, &trial.ends, &request)?.lambda;
-            let filled = unexplained.on_one_scale(&drawn, filled);
-            let group = &mut all[LEFT.partition_point(|left| *left < found.energy_left())];
-            let cells =
-                unexplained.cells().iter().zip(&trial.target.lambda).zip(drawn.lambda.iter().zip(&filled.lambda));
-            for ((part, target), (drawn, filled)) in cells {
-                let bin = (-f64::from(part.max(1e-9)).log10() / DECADES) as usize;
-                let [target, drawn, filled] = [target, drawn, filled].map(|v| f64::from(*v));
-                let cell = &mut group[bin.min(BINS - 1)];
-                cell.count += 1.0;
-                cell.drawn += (target - drawn).powi(2);
-                cell.filled += (target - filled).powi(2);
-                cell.wanted += (target - drawn) * (filled - drawn);
-                cell.square += (filled - drawn).powi(2);
-            }
-        }
-    }
-    for (group, cells) in all.iter().enumerate() {
-        let from = if group == 0 { 0.0 } else { LEFT[group - 1] };
-        println!(
-            "scenes of which {from} of the energy or more is left, and less than {}",
-            LEFT.get(group).unwrap_or(&1.0)
-        );
-        println!("{:>8}{:>12}{:>10}{:>10}{:>8}", "decades", "cells", "SE drawn", "SE filled", "weight");
-        for (i, c) in cells.iter().enumerate() {
-            let weight = c.wanted / c.square.max(f64::MIN_POSITIVE);
-            let decades = -DECADES * (i as f64 + 0.5);
-            println!("{decades:>8.2}{:>12.0}{:>10.0}{:>10.0}{weight:>8.2}", c.count, c.drawn, c.filled);
-        }
-    }
-    Ok(())
-}
-
-/// These kinds of scenes; every kind with echoes where none is named.
-fn all_where_none(kinds: Vec<Kind>) -> Vec<Kind> {
-    if !kinds.is_empty() {
-        return kinds;
-    }
-    Kind::with_echoes().chain(Kind::IRREGULAR).chain(Kind::THINGS).collect()
-}
-
-/// Parts of a map's cells between which the fallback may take over; the last are never reached. The hybrid's own are the third.
-const TAKEOVERS: [[f32; 2]; 6] = [[0.3, 0.5], [0.5, 0.7], [0.7, 0.9], [0.8, 1.0], [0.9, 1.1], [2.0, 3.0]];
-
-/// The hybrid's own among [`TAKEOVERS`].
-const OWN_TAKEOVER: usize = 2;
-
-fn takeover(kinds: Vec<Kind>) -> Outcome {
-    let radar = Radar::default();
-    let request = Request::default();
-    let fallback = methods::by_name("live")?;
-    let hybrids = TAKEOVERS.map(|parts| Hybrid::new(fallback.clone()).with_map_parts(parts));
-    println!("{:12}{}", "SE", TAKEOVERS.map(|[low, high]| format!("{:>10}", format!("{low}-{high}"))).concat());
-    let kinds = all_where_none(kinds);
-    let mut ratios = [0.0; TAKEOVERS.len()];
-    for kind in &kinds {
-        let mut errors = [0.0; TAKEOVERS.len()];
-        for trial in validation(&radar, *kind, SCENES) {
-            let trial = trial?;
-            for (error, hybrid) in errors.iter_mut().zip(&hybrids) {
-                *error += trial.ask(hybrid, &request)?.metrics.squared_error / f64::from(SCENES);
-            }
-        }
-        println!("{:12}{}", kind.to_string(), errors.map(|error| format!("{error:>10.0}")).concat());
-        for (ratio, error) in ratios.iter_mut().zip(errors) {
-            *ratio += error / errors[OWN_TAKEOVER] / kinds.len() as f64;
-        }
-    }
-    println!("{:12}{}", "over its own", ratios.map(|ratio| format!("{ratio:>10.3}")).concat());
-    let better = TAKEOVERS.iter().zip(ratios).filter(|(_, ratio)| *ratio < 0.98);
-    match better.min_by(|a, b| a.1.total_cmp(&b.1)) {
-        Some((parts, ratio)) => Err(format!("{parts:?} would be better: {ratio:.3} of the squared error").into()),
-        None => Ok(()),
-    }
 }

@@ -10,8 +10,8 @@ import onnxruntime
 
 import apertura as ap
 
-#: Cells this many decades below the strongest are no detections.
-BELOW_PEAK_DECADES = 3.3
+#: The part of the answer's cells at or below 0.9 that may exceed the threshold; the file of ONNX says nothing of the answer's doubt.
+FALSE_ALARM = 0.0092
 
 
 def method(path):
@@ -21,8 +21,8 @@ def method(path):
         given = ap.live_input(ends, radar)
         inputs = {name: given[name][None] for name in ("fine", "coarse", "rows", "scalars", "constants")}
         decades, minimum = (output[0] for output in session.run(["decades", "minimum"], inputs))
-        spread = decades.max() - minimum
-        return np.clip((decades - minimum) / spread, 0, 1), np.clip(1 - BELOW_PEAK_DECADES / spread, 0, 1)
+        answer = np.clip((decades - minimum) / (decades.max() - minimum), 0, 1)
+        return answer, min(np.quantile(answer[answer <= 0.9], 1 - FALSE_ALARM), 0.896)
 
     return reconstruct
 

@@ -24,8 +24,10 @@ pub mod found;
 mod grid;
 mod hearing;
 mod hybrid;
+mod judge;
 mod noise;
 mod noise_test;
+mod own_threshold;
 mod power;
 mod prior;
 mod profiles;
@@ -43,9 +45,12 @@ pub use coherent::{CoherentMethod, IAA, SBL};
 pub use error::ReconstructError;
 pub use family::Family;
 pub use grid::{Fista, MatchedFilter, Omp, layout_matched_filter};
-pub use hybrid::{Hybrid, Unexplained};
+pub use hybrid::Hybrid;
+pub use judge::{blended, network_weight};
 #[cfg(feature = "live")]
 pub(crate) use noise_test::level_above_mean_decades;
+#[cfg(feature = "live")]
+pub(crate) use own_threshold::own_threshold;
 pub use prior::{NoisePrior, NoisePriorError};
 pub use reconstructor::{About, Reconstructor, Weights, check_ends};
 pub use rows::{

@@ -4,6 +4,7 @@
 //! Every scene comes from its own random stream, named by purpose, kind and number: training, validation and test scenes can't
 //! meet, and scene 7 is the same whether or not scenes 0 to 6 were made. So does the noise beneath it ([`Scene::noise_seed`]).
 
+mod beyond;
 mod field;
 mod kind;
 mod laws;
@@ -11,11 +12,13 @@ mod mixture;
 mod things;
 mod world;
 
+pub use beyond::Beyond;
 pub use kind::Kind;
 pub use mixture::{Mixture, MixtureError};
 
 use super::{Line, Object, Point, Scene};
 use crate::radar::Radar;
+use beyond::BeyondField;
 use field::Field;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -132,6 +135,9 @@ impl Generator {
                 things::objects(kind, self.max_range, rng)
             }
             Kind::World => self.world.objects(rng),
+            Kind::Beyond(kind) => {
+                BeyondField { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
+            }
         };
         let name = format!("{kind:?} {number}, seed {}", self.seed);
         Scene { name, noise_seed: self.noise_seed(kind, number), objects, ..Scene::default() }
@@ -271,7 +277,7 @@ mod tests {
     #[test]
     fn named_kinds_keep_to_the_field() {
         let radar = Radar::default();
-        for kind in Kind::BEYOND.into_iter().chain(Kind::IRREGULAR) {
+        for kind in Kind::VARIED.into_iter().chain(Kind::IRREGULAR) {
             for (number, objects) in scenes(kind).into_iter().enumerate() {
                 let scene = Scene { objects, ..Scene::default() };
                 scene.validate(&radar).unwrap();

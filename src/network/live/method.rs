@@ -10,7 +10,7 @@ use crate::network::domain::{Domain, is_alike};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
 use crate::radar::{Decibels, Radar};
 use crate::reconstruct::{About, Family, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
-use crate::reconstruct::{TrainedNoise, level_above_mean_decades};
+use crate::reconstruct::{TrainedNoise, level_above_mean_decades, own_threshold};
 use crate::signal::TwoEnds;
 use crate::signal::simd::powers::each;
 use ndarray::Array2;
@@ -123,15 +123,6 @@ impl LiveMethod {
 /// Signal-to-noise ratios of the third of its training scenes that lay over thermal noise, as the recipe `live` says.
 const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 
-/// Cells this far below the strongest are no detections: 1 % of false alarms on average on validation scenes of every kind and over all floors,
-/// which no threshold in Lambda has (`choose_eta live`).
-const BELOW_PEAK_DECADES: f64 = 3.3;
-
-/// A threshold to three decimals, as people read it: a thousandth of Lambda is about a hundredth of a decade.
-fn rounded(eta: f64) -> f32 {
-    ((eta * 1e3).round() / 1e3) as f32
-}
-
 /// One cell in so many is looked at for the median.
 const CELLS_A_LOOK: usize = 17;
 
@@ -145,6 +136,15 @@ fn noise_level_decades(map: &[f32]) -> f64 {
     let middle = cells.len() / 2;
     let median = *cells.select_nth_unstable_by(middle, f32::total_cmp).1;
     f64::from(median) + level_above_mean_decades(map.len())
+}
+
+/// `doubt` of Lambda from the smallest to the largest cell, brought to `scale`.
+fn on_scale(mut doubt: RangeAngleMap, [minimum, peak]: [f32; 2], scale: LambdaScale) -> RangeAngleMap {
+    let wider = (f64::from(peak - minimum) / (scale.peak - scale.floor)) as f32;
+    if wider != 1.0 && wider.is_finite() {
+        doubt.lambda.par_mapv_inplace(|v| (v * wider).min(1.0));
+    }
+    doubt
 }
 
 impl Reconstructor for LiveMethod {
@@ -187,12 +187,14 @@ impl Reconstructor for LiveMethod {
         let peak = map.par_iter().copied().reduce(|| f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
         let least_eta = scale.lambda(noise_level_decades(&map)) as f32;
+        let doubt = doubt.map(|doubt| on_scale(doubt, [minimum, peak], scale));
         map.par_chunks_mut(COLUMNS).for_each(|line| each(line, |v| scale.lambda(v.into()) as f32));
         let lambda = Array2::from_shape_vec((ROWS, COLUMNS), map)
             .map_err(|e| ReconstructError::Unusable { method: NAME, reason: e.to_string() })?;
-        let eta = rounded(scale.lambda(f64::from(peak) - BELOW_PEAK_DECADES));
+        let lambda = RangeAngleMap { lambda };
+        let eta = own_threshold(&lambda, doubt.as_ref());
         Ok(Reconstruction {
-            lambda: RangeAngleMap { lambda },
+            lambda,
             eta: Some(eta),
             least_eta: Some(least_eta),
             doubt,

@@ -1,7 +1,7 @@
-//! How far each cell of the picture is explained: what the ends' maps hold against what is left of them.
+//! How far each cell of the drawn map is explained: what the ends' maps hold when the drawn objects are taken out of them.
 //!
-//! A log map shows every reflector at full brightness, however little energy it has: so explained or not is decided cell by cell, in
-//! the cells of both ends' maps that a cell of the whole array's map is made from.
+//! A log map shows every reflector at full brightness, however little energy it has. So what is left is compared with what is drawn in the
+//! cell itself, where both ends see it.
 
 use super::draw::Expected;
 use super::finish::Found;
@@ -9,7 +9,6 @@ use super::propose::end_beams::{BEAMS_PER_ELEMENT, beam_noise_power, beam_of_cos
 use super::propose::view::View;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
-use crate::signal::simd::powers::{each, power_of_ten};
 use ndarray::{Array2, ArrayView1, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -17,31 +16,25 @@ use rayon::prelude::*;
 /// Rows and beams to each side over which powers are averaged.
 const AROUND: usize = 2;
 
-/// Power of a residual, over that of the noise, which noise itself may have.
+/// Power of a residual, over that of the noise that was measured in it, up to which it is noise: averaged so, white noise exceeds it in one
+/// cell of 300 at most.
 const NOISE_MARGIN: f64 = 3.0;
 
-/// Powers that a cell may have, in decades below the strongest: further down they are no normal numbers.
-const LEAST_DECADES: f32 = -36.0;
+/// Least power that is left, over that of the strongest cell.
+const LEAST_LEFT: f64 = 1e-36;
 
 /// Columns of the map that share one look at the ends.
 const COLUMNS_TOGETHER: usize = 4;
 
 impl Found {
-    /// How far each cell of the whole array's map is unexplained on which the ends agree: 0 where all is explained, or where there is
-    /// nothing but noise; 1 where nothing is. `[range bins, columns]`; `ends` are the samples that were searched, `expected` what was
-    /// found in them.
-    ///
-    /// The ends' beams are wide: what is left in one may belong to any of many cells. Two parts are weighed against each other, by their
-    /// geometric mean: what is left of the beam, and what is left beside what is drawn in the cell.
-    pub fn unexplained_cells(&self, radar: &Radar, ends: &TwoEnds, expected: &Expected) -> Array2<f32> {
-        let mut parts = Array2::zeros((radar.samples, radar.elements));
-        if self.not_agreed.is_empty() {
-            return parts;
-        }
+    /// Power that the drawn objects leave of the samples, over the power that is drawn in each cell of the whole array's map, in decades:
+    /// `[range bins, columns]`. 0 where as much is left as is drawn; of both ends the one that leaves less. `ends` are the samples that were
+    /// searched, `expected` is the map of what was found in them.
+    pub fn left_decades(&self, radar: &Radar, ends: &TwoEnds, expected: &Expected) -> Array2<f32> {
         let samples: Vec<Complex64> = ends.flat().iter().map(|v| v * self.scale).collect();
         let beams = BEAMS_PER_ELEMENT * radar.end_elements;
         let powers = |flat: &[Complex64]| end_beams(radar, flat, beams).map(|b| smoothed(&b.mapv(|v| v.norm_sqr())));
-        let (all, left) = rayon::join(|| powers(&samples), || powers(&self.not_agreed));
+        let (all, left) = rayon::join(|| powers(&samples), || powers(&self.left_when_drawn));
         let noise = NOISE_MARGIN * beam_noise_power(radar, self.noise_variance);
         let drawn = &expected.map.lambda;
         let decades = (2.0 * expected.decades) as f32;
@@ -54,27 +47,21 @@ impl Found {
             [beam_of_cos(cos, beams), radar.bin_of_range(range).round() as usize % radar.samples]
         };
         let peak = [0, 1].map(|end: usize| all[end][seen_at(&views[end], peak_bin, cos_of(peak_column))]);
-        parts.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each(|(bin, mut row)| {
-            // Power drawn in each cell, over that of the strongest.
-            let mut own: Vec<f32> = drawn.row(bin).to_vec();
-            each(&mut own, |lambda| power_of_ten((decades * (lambda - 1.0)).max(LEAST_DECADES)));
+        let mut over = Array2::zeros((radar.samples, radar.elements));
+        over.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each(|(bin, mut row)| {
             for first in (0..radar.elements).step_by(COLUMNS_TOGETHER) {
                 let cos = cos_of(first + COLUMNS_TOGETHER / 2);
-                // Of the beams' power, and of that of the strongest cell; finite even where an end is silent there.
-                let (mut of_beam, mut of_peak) = (0.0f64, f64::MAX);
-                for (end, (all, left)) in all.iter().zip(&left).enumerate() {
-                    let at = seen_at(&views[end], bin, cos);
-                    let left = (left[at] - noise).max(0.0);
-                    of_beam = of_beam.max(left / all[at].max(f64::MIN_POSITIVE)).min(1.0);
-                    of_peak = of_peak.min(left / peak[end].max(f64::MIN_POSITIVE));
-                }
-                let (of_beam, of_peak) = (of_beam as f32, of_peak.min(f64::from(f32::MAX)) as f32);
+                let of_end = |end: usize| {
+                    let left = (left[end][seen_at(&views[end], bin, cos)] - noise).max(0.0);
+                    left / peak[end].max(f64::MIN_POSITIVE)
+                };
+                let left = of_end(0).min(of_end(1)).clamp(LEAST_LEFT, LEAST_LEFT.recip()).log10() as f32;
                 for column in first..(first + COLUMNS_TOGETHER).min(radar.elements) {
-                    row[column] = (of_beam * (of_peak / (of_peak + own[column]))).sqrt();
+                    row[column] = left - decades * (drawn[[bin, column]] - 1.0);
                 }
             }
         });
-        parts
+        over
     }
 }
 
@@ -104,10 +91,24 @@ fn smoothed(powers: &Array2<f64>) -> Array2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::radar::DecibelMilliwatts;
     use crate::reconstruct::Request;
     use crate::reconstruct::search::{Settings, find};
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
+
+    #[test]
+    fn noise_seldom_exceeds_its_margin() {
+        let radar = Radar::default();
+        let floor = Floor::Level(DecibelMilliwatts(-20.0));
+        let flat = simulate(&radar, &Scene::default(), floor, 1).unwrap().two_ends(&radar).flat();
+        let beams = end_beams(&radar, &flat, BEAMS_PER_ELEMENT * radar.end_elements);
+        let level = NOISE_MARGIN * beam_noise_power(&radar, DecibelMilliwatts(-20.0).watts());
+        for of_end in beams.map(|b| smoothed(&b.mapv(|v| v.norm_sqr()))) {
+            let above = of_end.iter().filter(|power| **power > level).count() as f64 / of_end.len() as f64;
+            assert!(above < 1.0 / 300.0, "{above}");
+        }
+    }
 
     #[test]
     fn only_what_was_found_is_explained() {
@@ -116,20 +117,21 @@ mod tests {
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let mut found = find(&radar, &ends, &Request::default(), &Settings::default()).unwrap();
         let expected = found.expected(&radar, &Request::default());
-        assert!(found.unexplained_cells(&radar, &ends, &expected).iter().all(|p| *p < 1e-3));
+        let left = found.left_decades(&radar, &ends, &expected);
+        assert!(left.iter().all(|decades| *decades < -1.0), "{left:?}");
         // Without the far reflector in the answer, its own surroundings are unexplained and the near one's are not.
         let far = Scene::of_points([(-9.0, 20.0)]);
         let missing = simulate(&radar, &far, Floor::Exact, 0).unwrap().two_ends(&radar).flat();
-        found.not_agreed.iter_mut().zip(&missing).for_each(|(r, m)| *r += m * found.scale);
+        found.left_when_drawn.iter_mut().zip(&missing).for_each(|(r, m)| *r += m * found.scale);
         let near = found.atoms.iter().position(|atom| atom.position_metres(0.0)[0] > 0.0).unwrap();
         found.atoms = vec![found.atoms[near]];
         found.reflectivities = vec![found.reflectivities[near]];
         let expected = found.expected(&radar, &Request::default());
-        let parts = found.unexplained_cells(&radar, &ends, &expected);
+        let left = found.left_decades(&radar, &ends, &expected);
         let cell = |x: f64, y: f64| {
             let at = radar.polar_of(x, y);
             [radar.bin_of_range(at.range_metres) as usize, radar.column_of_cos(at.cos_theta) as usize]
         };
-        assert!(parts[cell(-9.0, 20.0)] > 0.5 && parts[cell(3.0, 11.0)] < 1e-3);
+        assert!(left[cell(-9.0, 20.0)] > 0.0 && left[cell(3.0, 11.0)] < -3.0);
     }
 }

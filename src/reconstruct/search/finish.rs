@@ -5,8 +5,8 @@ use super::state::Answer;
 use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Attempt;
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie, Workbench};
-use crate::reconstruct::{NoisePrior, ReconstructError, Request};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, Workbench, rows_of};
+use crate::reconstruct::{ReconstructError, Request};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -47,8 +47,10 @@ pub struct Found {
     pub noise_variance: f64,
     /// Gains of the objects at the first and at the last end, for samples times `scale`.
     pub gains: Vec<[Complex64; 2]>,
-    /// Samples times `scale` less the objects that both ends agree on, channel by channel, first end first.
-    pub not_agreed: Vec<Complex64>,
+    /// For each object the energy that would be left more without it, over what is left around its range, in decades.
+    pub needed_decades: Vec<f64>,
+    /// Samples times `scale` less the objects as they are drawn, with one gain for both ends, channel by channel, first end first.
+    pub left_when_drawn: Vec<Complex64>,
     /// Whether nothing stands out of the residual any more.
     pub complete: bool,
     /// What the search tried, the first first; at most [`MOST_ATTEMPTS`](super::MOST_ATTEMPTS).
@@ -72,7 +74,8 @@ impl Found {
             residual_variance: 0.0,
             noise_variance: 0.0,
             gains: Vec::new(),
-            not_agreed: Vec::new(),
+            needed_decades: Vec::new(),
+            left_when_drawn: Vec::new(),
             complete: true,
             trace: Vec::new(),
         }
@@ -124,11 +127,8 @@ pub(super) fn finish(
         sample_power: all / weight,
         residual_variance: best.cost() / weight,
         noise_variance,
-        not_agreed: if complete || settings.lacks(Part::NotAgreed) {
-            residual
-        } else {
-            not_agreed(bench, &best, request.noise)
-        },
+        needed_decades: needed_decades(radar, bench, &best, noise_variance),
+        left_when_drawn: left_when_drawn(bench, samples, &best),
         atoms: best.atoms,
         gains: best.gains,
         scale,
@@ -137,22 +137,25 @@ pub(super) fn finish(
     })
 }
 
-/// Gains of one object at both ends differ by this part at most where no noise is heard.
-const MOST_DISAGREED: f64 = 0.05;
-
-/// And under noise.
-const MOST_DISAGREED_IN_NOISE: f64 = 0.3;
-
-/// What `fit` leaves, with the echoes of those atoms that the ends don't agree on: a reflector sounds alike at both, what merely makes up
-/// for others that were not told apart seldom does.
-fn not_agreed(bench: &Workbench, fit: &Fit, noise: NoisePrior) -> Vec<Complex64> {
-    let most = if noise.is_white() { MOST_DISAGREED_IN_NOISE } else { MOST_DISAGREED };
-    let disagrees = |i: &usize| {
-        let [a, b] = fit.gains[*i].map(|g| g.norm());
-        (a - b).abs() > most * a.max(b)
+/// For each atom of `fit` the energy that would be left more without it, over what `fit` leaves or noise holds around its range, in decades.
+fn needed_decades(radar: &Radar, bench: &Workbench, fit: &Fit, noise_variance: f64) -> Vec<f64> {
+    let profile = Profile::new(radar, &fit.residual.flat(&bench.sensor));
+    let window = radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>();
+    let squared = bench.squared.iter().sum::<f64>();
+    // Both energies as they are under the radar's window.
+    let worths = bench.worths(fit).into_iter().map(|worth| worth * window / squared);
+    let of_atom = |(worth, atom): (f64, &Atom)| {
+        let noise = noise_variance * window * bench.sensor.element_x.len() as f64 / radar.samples as f64;
+        let left = profile.at(&rows_of(radar, atom)).max(noise).max(f64::MIN_POSITIVE);
+        (worth / left).max(f64::MIN_POSITIVE).log10()
     };
-    let doubtful: Vec<usize> = (0..fit.atoms.len()).filter(disagrees).collect();
-    bench.less(fit.clone(), &doubtful).residual.flat(&bench.sensor)
+    worths.zip(&fit.atoms).map(of_atom).collect()
+}
+
+/// What the objects leave with one gain for both ends, as they are drawn: an echo that the ends hear differently isn't explained by it.
+fn left_when_drawn(bench: &Workbench, samples: &Samples, fit: &Fit) -> Vec<Complex64> {
+    let tied: Vec<Gains> = fit.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
+    bench.without(samples, &fit.atoms, &tied).residual.flat(&bench.sensor)
 }
 
 /// Each point tried on the neighbouring teeth of the comb, the others staying where they are.

@@ -70,6 +70,7 @@ pub use without::Without;
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
 use super::family::Family;
+use super::own_threshold::own_threshold;
 use super::prior::NoisePrior;
 use super::reconstructor::{About, Reconstructor};
 use crate::maps::RangeAngleMap;
@@ -79,6 +80,11 @@ use draw::{Noise, Weighted, expected_lambda, expected_noise};
 
 /// Threshold for the maps of found objects, chosen on validation scenes.
 pub(super) const ETA: f32 = 0.896;
+
+/// Energy that an atom must explain, over what is left around its range, to be as likely there as not, in decades; and decades of odds for a
+/// decade more. Fitted to validation scenes (`examples/experts.rs --confidence`).
+const EVEN_ODDS_DECADES: f64 = 1.0;
+const CONFIDENCE_SLOPE: f64 = 0.8;
 
 /// What the search knows beside the samples.
 pub(super) const TOLD: &str = "that a scene holds single reflectors or straight rows of equal ones; for long rows along y also the \
@@ -133,10 +139,12 @@ impl Reconstructor for Nomp {
 }
 
 impl Found {
-    /// The map of what was found, over the floor that `request` names.
+    /// The map of what was found, over the floor that `request` names. Its threshold is the answer's own where something may be missing.
     pub fn reconstruction(&self, radar: &Radar, request: &Request) -> Reconstruction {
         let expected = self.expected(radar, request);
-        self.as_drawn(expected.map, Some(expected.least_eta))
+        let is_certain = self.complete && !request.noise.is_white();
+        let eta = (!is_certain).then(|| own_threshold(&expected.map, None));
+        Reconstruction { eta, ..self.as_drawn(expected.map, Some(expected.least_eta)) }
     }
 
     /// What was found with a map of it, in which noise alone does not exceed `least_eta`, where that is known.
@@ -145,7 +153,7 @@ impl Found {
         Reconstruction {
             lambda,
             reflectors,
-            confidences: Vec::new(),
+            confidences: self.confidences(),
             eta: None,
             least_eta,
             doubt: None,
@@ -167,6 +175,15 @@ impl Found {
             NoisePrior::White { .. } => Noise::Variance(self.noise_variance),
         };
         expected_lambda(radar, &self.weighted().collect::<Vec<_>>(), noise, request)
+    }
+
+    /// Probability of each reflector that it is there, by what its atom is needed for.
+    fn confidences(&self) -> Vec<f64> {
+        let of_atom = |(atom, needed): (&Atom, &f64)| {
+            let odds = 10f64.powf(CONFIDENCE_SLOPE * (needed - EVEN_ODDS_DECADES));
+            std::iter::repeat_n(odds / (1.0 + odds), atom.reflector_count())
+        };
+        self.atoms.iter().zip(&self.needed_decades).flat_map(of_atom).collect()
     }
 
     fn weighted(&self) -> impl Iterator<Item = Weighted> {

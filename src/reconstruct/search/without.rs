@@ -36,8 +36,6 @@ pub enum Part {
     Teeth,
     /// Rule: what is complete is fitted without a window.
     Unwindowed,
-    /// Rule: objects that the ends disagree on are left to the fallback.
-    NotAgreed,
 }
 
 const PARTS: &[(&str, Part)] = &[
@@ -57,7 +55,6 @@ const PARTS: &[(&str, Part)] = &[
     ("tied", Part::Tied),
     ("teeth", Part::Teeth),
     ("unwindowed", Part::Unwindowed),
-    ("not-agreed", Part::NotAgreed),
 ];
 
 /// Bits below this one are rungs.

@@ -24,7 +24,7 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// The objects of a scene of `kind`, one of [`Kind::BEYOND`] or [`Kind::IRREGULAR`]; none for the others.
+    /// The objects of a scene of `kind`, one of [`Kind::VARIED`] or [`Kind::IRREGULAR`]; none for the others.
     pub fn objects(&self, kind: Kind, rng: &mut ChaCha8Rng) -> Vec<Object> {
         match kind {
             Kind::Clusters => {

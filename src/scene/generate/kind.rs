@@ -1,5 +1,6 @@
 //! Kinds of random scenes and their names.
 
+use super::beyond::Beyond;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -49,6 +50,8 @@ pub enum Kind {
     /// Points along curves, in clouds and scattered, and bodies, of every count, step and strength. It is for training and validation: no menu
     /// lists it, and it makes no test scenes.
     World,
+    /// Scenes that nothing is trained on or chosen by. No menu lists them, and they are for tests alone.
+    Beyond(Beyond),
     /// Nothing: over thermal noise of a level of its own the samples are noise alone.
     Noise,
     /// Experiment 1: this many points (1 to 4).
@@ -62,7 +65,7 @@ impl Kind {
     pub const TEST_SETS: [Kind; 3] = [Kind::Set1, Kind::Set2, Kind::Set3];
 
     /// The kinds beside the test sets.
-    pub const BEYOND: [Kind; 7] =
+    pub const VARIED: [Kind; 7] =
         [Kind::Clusters, Kind::Walls, Kind::Spacings, Kind::Corner, Kind::Crowd, Kind::Dynamic, Kind::Near];
 
     /// Points in numbers or at steps that no other kind has.
@@ -78,15 +81,21 @@ impl Kind {
 
     /// The test sets and what lies beyond them: scenes of points with something to detect.
     pub fn with_echoes() -> impl Iterator<Item = Kind> {
-        Kind::TEST_SETS.into_iter().chain(Kind::BEYOND)
+        Kind::TEST_SETS.into_iter().chain(Kind::VARIED)
     }
 
-    /// The kind called `name`, where test scenes are not wanted: [`Kind::World`] is one of them.
+    /// The kind called `name`, where test scenes are not wanted: [`Kind::World`] is one of them, [`Kind::Beyond`] is not.
     ///
     /// # Errors
     /// As `name.parse::<Kind>()`.
     pub fn for_training(name: &str) -> Result<Kind, String> {
-        if name.trim() == WORLD { Ok(Kind::World) } else { name.parse() }
+        if name.trim() == WORLD {
+            return Ok(Kind::World);
+        }
+        match name.parse()? {
+            Kind::Beyond(kind) => Err(format!("{} makes scenes for tests alone; expected another kind", kind.name())),
+            kind => Ok(kind),
+        }
     }
 
     /// 1, 2 or 3 for the thesis' test sets, whose printed figures tables 4.1 to 4.3 hold.
@@ -127,6 +136,7 @@ impl Kind {
             Kind::Rails => "guard rails, a car and posts",
             Kind::Occlusion => "bodies behind a car or a post",
             Kind::Rough => "rough bodies and a post",
+            Kind::Beyond(kind) => kind.description(),
             Kind::World => "curves, clouds and bodies of every kind, for training",
             Kind::Noise => "noise alone",
             Kind::Points(_) => "points of experiment 1",
@@ -169,6 +179,7 @@ impl Kind {
             Kind::Fences => 17,
             Kind::Rain => 18,
             Kind::World => 19,
+            Kind::Beyond(kind) => 0x20 + kind as u64,
             Kind::Points(n) => 0x100 + u64::from(n),
             Kind::Mixed(n) => 0x200 + u64::from(n),
         }
@@ -200,6 +211,7 @@ impl fmt::Display for Kind {
             Kind::Occlusion => "occlusion",
             Kind::Rough => "rough",
             Kind::World => WORLD,
+            Kind::Beyond(kind) => kind.name(),
             Kind::Noise => "noise",
             Kind::Points(n) => return write!(f, "points-{n}"),
             Kind::Mixed(n) => return write!(f, "mixed-{n}"),
@@ -220,7 +232,8 @@ impl FromStr for Kind {
             ));
         }
         let counted = (1..=4).flat_map(|n| [Kind::Points(n), Kind::Mixed(n)]);
-        Kind::all().chain(counted).find(|k| k.to_string() == wanted).ok_or_else(|| {
+        let beyond = Beyond::ALL.into_iter().map(Kind::Beyond);
+        Kind::all().chain(counted).chain(beyond).find(|k| k.to_string() == wanted).ok_or_else(|| {
             let names: Vec<String> = Kind::all().skip(Kind::TEST_SETS.len()).map(|kind| kind.to_string()).collect();
             format!("there are no scenes called \"{s}\"; expected test set 1, 2 or 3, or {}", names.join(", "))
         })
@@ -239,7 +252,7 @@ mod tests {
 
     #[test]
     fn every_name_leads_back_to_its_kind() {
-        for kind in Kind::all().chain([Kind::Points(1), Kind::Mixed(4)]) {
+        for kind in Kind::all().chain([Kind::Points(1), Kind::Mixed(4), Kind::Beyond(Beyond::Ring)]) {
             assert_eq!(kind.to_string().parse(), Ok(kind));
         }
         assert!("points-5".parse::<Kind>().is_err());
@@ -248,6 +261,7 @@ mod tests {
             "world".parse::<Kind>().unwrap_err().contains("no scenes for tests")
                 && !Kind::all().any(|k| k == Kind::World)
         );
+        assert!(Kind::for_training("beyond-ring").unwrap_err().contains("tests alone"));
         let error = "wall".parse::<Kind>().unwrap_err();
         assert!(error.contains("\"wall\"") && error.contains("walls, spacings"), "{error}");
     }
@@ -255,7 +269,9 @@ mod tests {
     #[test]
     fn no_two_kinds_share_a_stream() {
         let counted = (1..=4).flat_map(|n| [Kind::Points(n), Kind::Mixed(n)]);
-        let mut streams: Vec<u64> = Kind::all().chain(counted).chain([Kind::World]).map(Kind::stream).collect();
+        let beyond = Beyond::ALL.into_iter().map(Kind::Beyond);
+        let mut streams: Vec<u64> =
+            Kind::all().chain(counted).chain(beyond).chain([Kind::World]).map(Kind::stream).collect();
         let kinds = streams.len();
         streams.sort_unstable();
         streams.dedup();

@@ -1,0 +1,158 @@
+//! Which of two maps of one scene to believe, cell by cell: that of the objects which a search found, or that of a network.
+//!
+//! The search's map is exact where its objects are right, and says so: nothing is left of the samples when they are drawn. The network's is
+//! about right everywhere, and says how far off it expects to be. So the search is believed where it leaves nothing. Elsewhere the two are
+//! averaged, and the more they differ beyond the network's doubt, the more the network is believed.
+
+use crate::maps::RangeAngleMap;
+use ndarray::{Array1, Array2, ArrayView1, Axis, Zip};
+use rayon::prelude::*;
+
+/// What is left over what is drawn, in decades of power, from which on the search is no longer believed alone, and from which on not more
+/// than the network: a tenth of the power is half a decibel of the cell.
+const LEFT_DECADES: [f32; 2] = [-3.0, -1.0];
+
+/// Part of the cells with more left than drawn, between which the search isn't believed anywhere: such a scene is not made of what it
+/// looks for.
+const UNEXPLAINED_PART: [f32; 2] = [0.7, 0.9];
+
+/// Weight of the network where the search leaves something and the two don't contradict each other. Their errors differ, so that the mean is
+/// better than either, and the network's is the smaller one there.
+const AGREED_WEIGHT: f32 = 0.7;
+
+/// Mean square of the difference, over that of the network's expected error, from which on the two contradict each other, and from which on
+/// the network is believed alone.
+const CONTRADICTION: [f32; 2] = [1.0, 3.0];
+
+/// Standard deviations in a doubt that nine of ten normal errors stay below.
+const DOUBT_DEVIATIONS: f32 = 1.645;
+
+/// Range bins and columns to each side over which the difference of the maps is averaged: the width of a lobe of the ends' maps.
+const AROUND: [usize; 2] = [2, 8];
+
+/// Weight of `network`'s map in each cell, 0 to 1, over `drawn`, the search's; both are Lambda on one scale, `[range bins, columns]`.
+/// `left_decades` is what the search leaves ([`Found::left_decades`](super::search::Found::left_decades)), and `doubt` what nine of ten
+/// errors of the network stay below. A network without doubt is believed wherever something is left.
+pub fn network_weight(
+    drawn: &RangeAngleMap,
+    network: &RangeAngleMap,
+    doubt: Option<&RangeAngleMap>,
+    left_decades: &Array2<f32>,
+) -> Array2<f32> {
+    let more_left = left_decades.iter().filter(|left| **left > 0.0).count() as f32 / left_decades.len().max(1) as f32;
+    let nowhere = between(UNEXPLAINED_PART, more_left);
+    let mut square = &drawn.lambda - &network.lambda;
+    square.par_mapv_inplace(|v| v * v);
+    let mut weight = mean_around(&square);
+    let unexplained = |left: f32| between(LEFT_DECADES, left).max(nowhere);
+    let agreed = |contradiction: f32| AGREED_WEIGHT + (1.0 - AGREED_WEIGHT) * contradiction;
+    match doubt {
+        None => Zip::from(&mut weight).and(left_decades).par_for_each(|w, left| *w = unexplained(*left)),
+        Some(doubt) => Zip::from(&mut weight).and(left_decades).and(&doubt.lambda).par_for_each(|w, left, doubt| {
+            let expected = (doubt / DOUBT_DEVIATIONS).powi(2).max(f32::MIN_POSITIVE);
+            *w = unexplained(*left) * agreed(between(CONTRADICTION, *w / expected));
+        }),
+    }
+    weight
+}
+
+/// How far between two values another one is, 0 to 1.
+fn between([low, high]: [f32; 2], value: f32) -> f32 {
+    ((value - low) / (high - low)).clamp(0.0, 1.0)
+}
+
+/// Mean of the cells within [`AROUND`] of each; those beyond the edges count as the edges.
+fn mean_around(cells: &Array2<f32>) -> Array2<f32> {
+    let [rows, columns] = AROUND;
+    let mut along = cells.clone();
+    along.axis_iter_mut(Axis(0)).into_par_iter().for_each(|mut row| {
+        let mean = mean_of_window(row.view(), columns);
+        row.assign(&mean);
+    });
+    let (height, _) = along.dim();
+    let mut mean = Array2::zeros(along.dim());
+    Zip::indexed(mean.axis_iter_mut(Axis(0))).par_for_each(|row, mut to| {
+        for offset in 0..=2 * rows {
+            let from = (row + offset).saturating_sub(rows).min(height - 1);
+            to += &along.row(from);
+        }
+        to /= (2 * rows + 1) as f32;
+    });
+    mean
+}
+
+/// Running mean of `2 * side + 1` cells.
+fn mean_of_window(cells: ArrayView1<f32>, side: usize) -> Array1<f32> {
+    let last = cells.len() as isize - 1;
+    let at = |i: isize| f64::from(cells[i.clamp(0, last) as usize]);
+    let side = side as isize;
+    let mut sum: f64 = (-side..=side).map(at).sum();
+    let width = (2 * side + 1) as f64;
+    Array1::from_shape_fn(cells.len(), |i| {
+        let mean = (sum / width) as f32;
+        sum += at(i as isize + side + 1) - at(i as isize - side);
+        mean
+    })
+}
+
+/// `drawn` towards `network` by `weight`; all `[range bins, columns]`.
+pub fn blended(mut drawn: RangeAngleMap, network: &RangeAngleMap, weight: &Array2<f32>) -> RangeAngleMap {
+    Zip::from(&mut drawn.lambda).and(&network.lambda).and(weight).par_for_each(|d, n, w| *d += w * (n - *d));
+    drawn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn flat(value: f32) -> RangeAngleMap {
+        RangeAngleMap { lambda: Array2::from_elem((40, 60), value) }
+    }
+
+    fn weight(drawn: f32, network: f32, doubt: f32, left: f32) -> f32 {
+        let left = Array2::from_elem((40, 60), left);
+        network_weight(&flat(drawn), &flat(network), Some(&flat(doubt)), &left)[[20, 30]]
+    }
+
+    #[test]
+    fn the_search_is_believed_where_it_leaves_nothing() {
+        assert_eq!(weight(0.2, 0.6, 0.01, -4.0), 0.0);
+    }
+
+    #[test]
+    fn the_network_is_believed_where_the_search_contradicts_it() {
+        // Twice the expected error is a square of four.
+        assert_eq!(weight(0.2, 0.4, 0.1645, -0.5), 1.0);
+        assert_eq!(weight(0.2, 0.25, 0.1645, -0.5), AGREED_WEIGHT);
+        let halfway = weight(0.2, 0.2 + 0.1 * 2f32.sqrt(), 0.1645, -0.5);
+        assert!((halfway - (1.0 + AGREED_WEIGHT) / 2.0).abs() < 1e-3, "{halfway}");
+    }
+
+    #[test]
+    fn a_scene_that_is_mostly_unexplained_is_the_networks() {
+        let mut left = Array2::from_elem((40, 60), 1.0);
+        left.row_mut(3).fill(-9.0);
+        let weight = network_weight(&flat(0.2), &flat(0.9), Some(&flat(0.1)), &left);
+        assert_eq!(weight[[3, 5]], 1.0);
+    }
+
+    #[test]
+    fn a_network_without_doubt_is_believed_where_something_is_left() {
+        let left = Array2::from_elem((40, 60), -2.0);
+        let weight = network_weight(&flat(0.2), &flat(0.9), None, &left);
+        assert!((weight[[1, 1]] - 0.5).abs() < 1e-6);
+        assert!((blended(flat(0.2), &flat(0.9), &weight).lambda[[1, 1]] - 0.55).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_mean_counts_each_cell_around_once() {
+        let mut one = Array2::zeros((40, 60));
+        one[[20, 30]] = 1.0;
+        let mean = mean_around(&one);
+        let [rows, columns] = AROUND;
+        let cells = ((2 * rows + 1) * (2 * columns + 1)) as f32;
+        assert!((mean[[20 + rows, 30 - columns]] - 1.0 / cells).abs() < 1e-6);
+        assert!(mean[[20 + rows + 1, 30]].abs() < 1e-6 && mean[[20, 30 + columns + 1]].abs() < 1e-6);
+        assert!((mean.sum() - 1.0).abs() < 1e-4);
+    }
+}

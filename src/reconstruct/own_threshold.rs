@@ -1,0 +1,100 @@
+//! A threshold read off the answer itself, for any floor and normalisation.
+//!
+//! P_D counts the cells whose true Lambda exceeds 0.9, and P_FA the others ([`Metrics`](crate::evaluate::Metrics)). A map that were exact
+//! would need a threshold of 0.9. One that is off by some doubt needs a lower one, so that cells which it draws too dark are not missed;
+//! and false alarms of its own bound how low.
+
+use crate::maps::RangeAngleMap;
+
+/// Lambda beyond which a cell of the target counts as an object (thesis section 4.2).
+const TARGET_ETA: f32 = 0.9;
+
+/// Part of the answer's cells at or below [`TARGET_ETA`] that may exceed the threshold: P_FA of the answer against itself.
+const FALSE_ALARM: f64 = 0.0092;
+
+/// Cells whose doubt decides how far below [`TARGET_ETA`] the threshold lies: those whose own Lambda is as near to it.
+const NEAR: std::ops::Range<f32> = 0.75..0.95;
+
+/// The part of those cells whose doubt is covered.
+const COVERED: f64 = 0.9;
+
+/// Highest threshold: a map without doubt is drawn to about this part of 0.9.
+const EXACT_ETA: f32 = 0.896;
+
+/// Steps of Lambda, in which both quantiles are taken.
+const STEPS: usize = 4096;
+
+/// The threshold for an answer: no more of its own cells at or below 0.9 exceed it than 0.92 %, and no threshold is lower than the answer's
+/// doubt asks for. Rounded to three decimals, as people read it. Both constants from validation scenes (`examples/choose_eta.rs own`).
+pub(crate) fn own_threshold(answer: &RangeAngleMap, doubt: Option<&RangeAngleMap>) -> f32 {
+    let below = quantile(answer.lambda.iter().copied().filter(|v| *v <= TARGET_ETA), 1.0 - FALSE_ALARM).unwrap_or(0.0);
+    let doubtful = doubt.map(|doubt| {
+        let near = answer.lambda.iter().zip(&doubt.lambda).filter(|(v, _)| NEAR.contains(*v));
+        TARGET_ETA - quantile(near.map(|(_, doubt)| *doubt), COVERED).unwrap_or(0.0)
+    });
+    let eta = doubtful.unwrap_or(0.0).max(below).min(EXACT_ETA);
+    (eta * 1e3).round() / 1e3
+}
+
+/// The value that this part of `values`, 0 to 1 each, don't exceed; `None` without any.
+fn quantile(values: impl Iterator<Item = f32>, part: f64) -> Option<f32> {
+    let mut counts = [0u32; STEPS + 1];
+    let mut all = 0u32;
+    for value in values {
+        counts[(value.clamp(0.0, 1.0) * STEPS as f32) as usize] += 1;
+        all += 1;
+    }
+    let wanted = (part * f64::from(all)).ceil() as u32;
+    let mut sum = 0;
+    let step = counts.iter().position(|count| {
+        sum += count;
+        sum >= wanted
+    })?;
+    (all > 0).then(|| (step as f32 + 1.0).min(STEPS as f32) / STEPS as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array2;
+
+    fn map(of: impl Fn(usize) -> f32) -> RangeAngleMap {
+        RangeAngleMap { lambda: Array2::from_shape_fn((100, 100), |(i, j)| of(100 * i + j)) }
+    }
+
+    #[test]
+    fn a_quantile_is_within_a_step() {
+        let all = || (0..1000).map(|i| i as f32 / 1000.0);
+        for part in [0.1, 0.5, 0.99] {
+            let found = quantile(all(), part).unwrap();
+            assert!((found - part as f32).abs() < 2e-3, "{part}: {found}");
+        }
+        assert_eq!(quantile(std::iter::empty(), 0.5), None);
+    }
+
+    #[test]
+    fn few_cells_below_the_target_exceed_it() {
+        let even = map(|i| i as f32 / 10_000.0);
+        let eta = own_threshold(&even, None);
+        let alarms = even.lambda.iter().filter(|v| **v <= TARGET_ETA && **v > eta).count() as f64 / 9000.0;
+        assert!((0.007..=0.0095).contains(&alarms), "{alarms} at {eta}");
+    }
+
+    #[test]
+    fn doubt_lowers_it_and_alarms_bound_how_far() {
+        // One bright cell in a thousand over a dark map, and cells between.
+        let few = map(|i| {
+            if i % 1000 == 0 {
+                0.95
+            } else if i % 500 == 1 {
+                0.8
+            } else {
+                0.1
+            }
+        });
+        let with = |doubt: f32| own_threshold(&few, Some(&map(|_| doubt)));
+        assert_eq!((with(0.0), with(0.05)), (EXACT_ETA, 0.85));
+        let bright = map(|i| i as f32 / 10_000.0);
+        assert_eq!(own_threshold(&bright, Some(&map(|_| 0.5))), own_threshold(&bright, None));
+    }
+}
