@@ -10,6 +10,7 @@
 //! entertainment?", Am. J. Phys. 72, 2004).
 
 pub mod challenge;
+mod criterion;
 mod fault;
 pub mod file;
 pub mod object_number;

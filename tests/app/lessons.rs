@@ -85,7 +85,7 @@ fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
         s.app.get_by_label("Show a solution").click();
         step_until(s, &format!("{place}: it counts as unsolved"), |s| shows(s, "counts as unsolved"));
         step_until(s, &format!("{place}: met"), |s| {
-            shows(s, "required ") && !shows(s, "not met yet") && !shows(s, "measuring…")
+            shows(s, "(now ") && !shows(s, "not met yet") && !shows(s, "measuring…")
         });
     }
 }
@@ -215,7 +215,7 @@ fn a_shown_solution_counts_as_unsolved_until_the_step_is_begun_again() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 5);
     let is_met = |s: &Session| s.state().progress().record("range-and-bandwidth", 4).challenge_met;
-    let measured = |s: &Session| shows(s, "required ") && !shows(s, "not met yet");
+    let measured = |s: &Session| shows(s, "(now ") && !shows(s, "not met yet");
     s.ask(LessonCommand::ShowSolution);
     step_until(&mut s, "the solution is measured", measured);
     assert!(!is_met(&s) && shows(&s, "counts as unsolved"));
