@@ -369,7 +369,7 @@ impl eframe::App for App {
             self.memory.file_dialog.ask(question);
         }
         self.let_time_go_on(&ctx);
-        self.state.follow_challenge();
+        apply::follow_challenge(&mut self.state);
         apply::follow_failure(&mut self.state, &self.jobs);
         let commands = self.draw(ui);
         self.apply(&ctx, commands);

@@ -1,6 +1,5 @@
 //! Challenges: "now change it until ...", checked by the engine.
 
-use super::criterion;
 use super::fault::Fault;
 use super::object_number::ObjectNumber;
 use super::quantity::Quantity;
@@ -107,17 +106,6 @@ pub enum Measure {
     },
 }
 
-/// A requirement, measured.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
-    /// What is wanted, as a sentence without its full stop.
-    pub wanted: String,
-    /// What there is, with its unit.
-    pub found: String,
-    /// Whether it holds.
-    pub holds: bool,
-}
-
 impl Challenge {
     /// Checks that the challenge can be set on a scene of `objects` objects.
     pub(super) fn check(&self, objects: usize) -> Result<(), Fault> {
@@ -152,14 +140,6 @@ impl Challenge {
     pub fn hidden_scene(&self) -> Option<Scene> {
         (!self.hidden.is_empty()).then(|| Scene { objects: self.hidden.clone(), ..Scene::default() })
     }
-
-    /// Measures every requirement on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
-    ///
-    /// # Errors
-    /// A sentence when something can't be measured: an object is gone, the method refuses.
-    pub fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Vec<Measured>, String> {
-        self.requirements.iter().map(|r| r.measure(stage, hidden)).collect()
-    }
 }
 
 impl Requirement {
@@ -186,17 +166,11 @@ impl Requirement {
             _ => Ok(()),
         }
     }
-
-    fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Measured, String> {
-        let value = self.measure.value(stage, hidden)?;
-        let holds = self.at_least.is_none_or(|b| value >= b) && self.at_most.is_none_or(|b| value <= b);
-        let (wanted, found) = (criterion::wanted(self, &stage.scene), criterion::found(&self.measure, value));
-        Ok(Measured { wanted, found, holds })
-    }
 }
 
 impl Measure {
-    fn value(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<f64, String> {
+    /// What there is on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
+    pub(super) fn value(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<f64, String> {
         let object =
             |number: &ObjectNumber| number.index(stage.scene.objects.len()).map(|index| &stage.scene.objects[index]);
         let truth = || hidden.ok_or_else(|| "nothing is hidden".to_owned());

@@ -1,11 +1,42 @@
-//! Requirements of a challenge as sentences: what is wanted, and what there is now.
+//! Requirements of a challenge measured, and told as sentences: what is wanted, and what there is now.
 
-use super::challenge::{Measure, Requirement};
+use super::challenge::{Challenge, Measure, Requirement};
 use super::object_number::ObjectNumber;
+use super::stage::Stage;
 use crate::scene::Scene;
 
+/// A requirement, measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// What is wanted, as a sentence without its full stop.
+    pub wanted: String,
+    /// What there is, with its unit.
+    pub found: String,
+    /// Whether it holds.
+    pub holds: bool,
+}
+
+impl Challenge {
+    /// Measures every requirement on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
+    ///
+    /// # Errors
+    /// A sentence when something can't be measured: an object is gone, the method refuses.
+    pub fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Vec<Measured>, String> {
+        self.requirements.iter().map(|r| r.measure(stage, hidden)).collect()
+    }
+}
+
+impl Requirement {
+    fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Measured, String> {
+        let value = self.measure.value(stage, hidden)?;
+        let holds = self.at_least.is_none_or(|b| value >= b) && self.at_most.is_none_or(|b| value <= b);
+        let (wanted, found) = (wanted(self, &stage.scene), found(&self.measure, value));
+        Ok(Measured { wanted, found, holds })
+    }
+}
+
 /// What a requirement wants of a scene, as a sentence without its full stop: "A dip of at least 0.06 between the two in the target".
-pub fn wanted(requirement: &Requirement, scene: &Scene) -> String {
+fn wanted(requirement: &Requirement, scene: &Scene) -> String {
     let (times, unit) = requirement.measure.unit();
     let bound = bound(requirement, times, unit);
     let object = |number: &ObjectNumber| named(*number, scene);
@@ -35,7 +66,7 @@ pub fn wanted(requirement: &Requirement, scene: &Scene) -> String {
 }
 
 /// What was measured, with its unit.
-pub fn found(measure: &Measure, value: f64) -> String {
+fn found(measure: &Measure, value: f64) -> String {
     let (times, unit) = measure.unit();
     with_unit(&digits(times * value), unit)
 }

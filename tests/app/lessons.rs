@@ -150,10 +150,10 @@ fn predict(s: &mut Session, guess: Guess, verdict: &str) {
 #[test]
 fn no_panel_answers_a_question_before_the_learner_does() {
     let mut s = Session::start();
-    for panel in [Panel::Radar, Panel::Inspector] {
+    begin(&mut s, "range-and-bandwidth", 3);
+    for panel in [Panel::Inspector, Panel::Radar] {
         s.ask(WindowCommand::OpenPanel(panel));
     }
-    begin(&mut s, "range-and-bandwidth", 3);
     let tells = |s: &Session, text: &str| painted(s).iter().any(|t| t.contains(text));
     // The question itself says "maximum range": the Radar panel would say how much.
     for answer in ["range, m", "maximum range 5", "511.67 m", "500 m"] {

@@ -94,6 +94,16 @@ fn show_challenge(state: &mut State) {
     state.editor.select(object, SelectionMode::Replace);
 }
 
+/// Keeps in sight what a challenge is about, as the scene and the radar change, until the learner zooms.
+pub fn follow_challenge(state: &mut State) {
+    let Some(run) = state.lesson.as_mut().filter(|_| state.editor.dragged().is_none()) else { return };
+    let Some(part) = run.challenged_part(state.editor.radar(), state.editor.scene()) else { return };
+    let shown = &mut state.map_views.range_angle;
+    if run.part.is_none_or(|last| last == *shown) {
+        (*shown, run.part) = (part, Some(part));
+    }
+}
+
 fn show_solution(state: &mut State) {
     let step = state.lesson.as_ref().and_then(|run| run.current());
     let Some(challenge) = step.and_then(|s| s.challenge.clone()) else { return };

@@ -18,6 +18,7 @@ mod work;
 pub use document::{read, show_recording_panels};
 pub use effect::Effect;
 pub use failure_view::follow as follow_failure;
+pub use lesson::follow_challenge;
 pub use shared::of as shared_text;
 
 use super::jobs::Jobs;

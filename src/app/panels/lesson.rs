@@ -2,7 +2,9 @@
 
 mod answer;
 mod challenge;
+mod large;
 mod list;
+mod memory;
 
 use crate::app::state::{Command, LessonCommand, LessonRun};
 use crate::app::widgets::entry::button;
@@ -12,7 +14,9 @@ use answer::{answer, answered, judgement};
 use challenge::requirements;
 use eframe::egui;
 use eframe::egui::{RichText, ScrollArea, TextureId, Ui};
+use large::{LARGE, large};
 use list::list;
+pub use memory::Memory;
 
 /// What is shown.
 pub struct Input<'a> {
@@ -24,22 +28,6 @@ pub struct Input<'a> {
     pub hidden: Option<TextureId>,
     /// Whether lessons have the whole screen.
     pub presenting: bool,
-}
-
-/// What was typed but not answered yet.
-#[derive(Default)]
-pub struct Memory {
-    number: String,
-    eta: f32,
-    learner: String,
-    /// Whether the judgement was brought into sight.
-    told: bool,
-    /// Whether the field of the answer had the focus since the step began.
-    focused: bool,
-    /// Whether text and question are higher than the panel.
-    overflows: bool,
-    /// Lesson and step these belong to.
-    of: Option<(String, usize)>,
 }
 
 /// Draws the panel.
@@ -84,18 +72,6 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
         }
     });
     asked
-}
-
-impl Memory {
-    /// Forgets what belongs to another step; whether a step begins.
-    fn begin(&mut self, run: &LessonRun) -> bool {
-        let of = Some((run.id.clone(), run.step));
-        let begins = self.of != of;
-        if begins {
-            *self = Memory { of, eta: 0.5, learner: std::mem::take(&mut self.learner), ..Memory::default() };
-        }
-        begins
-    }
 }
 
 /// The question at the foot of the panel, in view however long the text above is.
@@ -163,14 +139,6 @@ fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command
         }
         whole_screen(ui, presenting, asked);
     });
-}
-
-/// Text that is to be read first is this much larger than the rest.
-const LARGE: f32 = 1.15;
-
-/// Such a text.
-fn large(ui: &Ui, text: impl Into<String>) -> RichText {
-    RichText::new(text).size(LARGE * egui::TextStyle::Body.resolve(ui.style()).size)
 }
 
 /// For a projector.

@@ -1,5 +1,6 @@
 //! Rows of an evaluation as the app holds them: how they were made, which is open, which are in sight.
 
+use super::view::MapView;
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::rows::Row;
 use crate::evaluate::sets::{Case, SceneSet};
@@ -18,7 +19,7 @@ pub struct FailureView {
     /// Of this document, once it is known.
     pub wanted: Option<u64>,
     /// Of this document, and the part that is shown.
-    pub shown: Option<(u64, super::MapView)>,
+    pub shown: Option<(u64, MapView)>,
 }
 
 /// How rows were made: what a scene needs beside its row to be made again.

@@ -1,6 +1,5 @@
 //! What a step of a lesson puts in front: the map that it asks about, the control that its challenge needs, the part of the map where it happens.
 
-use super::State;
 use super::panel::{MapKind, Panel};
 use super::view::MapView;
 use crate::lesson::challenge::Measure;
@@ -81,18 +80,6 @@ pub fn part_of(challenge: &Challenge, radar: &Radar, scene: &Scene) -> Option<Ma
     let middle = (a + b.to_vec2()) / 2.0;
     let low = (middle - half).clamp(Pos2::ZERO, pos2(1.0, 1.0) - 2.0 * half);
     Some(MapView { low, high: low + 2.0 * half })
-}
-
-impl State {
-    /// Keeps in sight what a challenge is about, as the scene and the radar change, until the learner zooms.
-    pub fn follow_challenge(&mut self) {
-        let Some(run) = self.lesson.as_mut().filter(|_| self.editor.dragged().is_none()) else { return };
-        let Some(part) = run.challenged_part(self.editor.radar(), self.editor.scene()) else { return };
-        let shown = &mut self.map_views.range_angle;
-        if run.part.is_none_or(|last| last == *shown) {
-            (*shown, run.part) = (part, Some(part));
-        }
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! A question, what it is answered with, and what the answer was worth.
 
-use super::{LARGE, Memory, large};
+use super::large::{LARGE, large};
+use super::memory::Memory;
 use crate::app::state::{Command, LessonCommand, LessonRun};
 use crate::app::widgets::inline::inline;
 use crate::app::widgets::number_field::{NumberField, Wanted};

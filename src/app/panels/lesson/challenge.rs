@@ -1,7 +1,7 @@
 //! A challenge: what is asked for, and how far the scene meets it.
 
 use super::answer::Symbol;
-use super::large;
+use super::large::large;
 use crate::app::state::{Command, LessonCommand, LessonRun};
 use crate::app::widgets::theme;
 use crate::lesson::{Challenge, Measured};

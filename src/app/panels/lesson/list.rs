@@ -1,6 +1,6 @@
 //! The list of lessons, with how far each was taken.
 
-use super::Memory;
+use super::memory::Memory;
 use crate::app::state::{Command, LessonCommand};
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Lesson, Progress};
