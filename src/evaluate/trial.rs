@@ -3,7 +3,7 @@
 use super::echoes::{self, EchoCounts, EchoTally};
 use super::failure::{Failures, Fate, Footprints};
 use super::rows::Row;
-use super::{Metrics, Roc, part_within, squared_doubt};
+use super::{Metrics, Roc, part_within, squared_doubt, squared_error};
 use crate::maps::cfar::{Cfar, CfarError};
 use crate::maps::{self, Aperture, LambdaScale, Normalisation, RangeAngleMap};
 use crate::platform::Instant;
@@ -98,14 +98,16 @@ impl Trial {
         echoes::tally(&self.radar, &self.scene, &self.target, &answer.found.lambda, &self.scale)
     }
 
-    /// SE, P_D and P_FA of what `cfar` detects in an answer, in the place of the method's threshold. Its Lambda is brought to power on the
-    /// target's scale.
+    /// SE, P_D and P_FA of what `cfar` detects in an answer, against what it detects in the target, in the place of both thresholds. Lambda is
+    /// brought to power on the target's scale.
     ///
     /// # Errors
     /// [`CfarError`] where the detector can't work on the radar's maps.
     pub fn cfar_metrics(&self, answer: &Answer, cfar: &Cfar) -> Result<Metrics, CfarError> {
-        let detected = cfar.detect_lambda(&answer.found.lambda, self.scale)?.as_map();
-        Ok(Metrics::of_echoes(!self.scene.is_silent(), &self.target, &detected, 0.5))
+        let detected = |map: &RangeAngleMap| Ok(cfar.detect_lambda(map, self.scale)?.as_map());
+        let (target, output) = (detected(&self.target)?, detected(&answer.found.lambda)?);
+        let by_cfar = Metrics::of_echoes(!self.scene.is_silent(), &target, &output, 0.5);
+        Ok(Metrics { squared_error: squared_error(&self.target, &answer.found.lambda), ..by_cfar })
     }
 
     /// The row of an answer: `row`, which says what makes it, with all figures but those of a detector of constant false-alarm rate.

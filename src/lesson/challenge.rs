@@ -106,19 +106,6 @@ pub enum Measure {
     },
 }
 
-/// A requirement, measured.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
-    /// What was measured, in words.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// The bound, in words.
-    pub bound: String,
-    /// Whether it holds.
-    pub holds: bool,
-}
-
 impl Challenge {
     /// Checks that the challenge can be set on a scene of `objects` objects.
     pub(super) fn check(&self, objects: usize) -> Result<(), Fault> {
@@ -153,14 +140,6 @@ impl Challenge {
     pub fn hidden_scene(&self) -> Option<Scene> {
         (!self.hidden.is_empty()).then(|| Scene { objects: self.hidden.clone(), ..Scene::default() })
     }
-
-    /// Measures every requirement on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
-    ///
-    /// # Errors
-    /// A sentence when something can't be measured: an object is gone, the method refuses.
-    pub fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Vec<Measured>, String> {
-        self.requirements.iter().map(|r| r.measure(stage, hidden)).collect()
-    }
 }
 
 impl Requirement {
@@ -187,29 +166,16 @@ impl Requirement {
             _ => Ok(()),
         }
     }
-
-    fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Measured, String> {
-        let (name, value) = self.measure.value(stage, hidden)?;
-        let holds = self.at_least.is_none_or(|b| value >= b) && self.at_most.is_none_or(|b| value <= b);
-        let bound = match (self.at_least, self.at_most) {
-            (Some(low), Some(high)) => format!("from {low} to {high}"),
-            (Some(low), None) => format!("at least {low}"),
-            (None, Some(high)) => format!("at most {high}"),
-            (None, None) => "anything".to_owned(),
-        };
-        Ok(Measured { name, value, bound, holds })
-    }
 }
 
 impl Measure {
-    fn value(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<(String, f64), String> {
+    /// What there is on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
+    pub(super) fn value(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<f64, String> {
         let object =
             |number: &ObjectNumber| number.index(stage.scene.objects.len()).map(|index| &stage.scene.objects[index]);
+        let truth = || hidden.ok_or_else(|| "nothing is hidden".to_owned());
         Ok(match self {
-            Measure::Lambda { map, object: number } => {
-                let (_, lambda) = stage.blob(stage.map(*map)?, object(number)?);
-                (format!("Λ of object {} in {}", number.0, map.words()), f64::from(lambda))
-            }
+            Measure::Lambda { map, object: number } => f64::from(stage.blob(stage.map(*map)?, object(number)?).1),
             Measure::Dip { map, objects } => {
                 let shown = stage.map(*map)?;
                 let [a, b] = stage.blobs_apart(shown, [object(&objects[0])?, object(&objects[1])?]);
@@ -219,45 +185,32 @@ impl Measure {
                     let at = |from: f64, to: f64| (from + part * (to - from)).round() as usize;
                     shown.lambda[[at(a.0.bin, b.0.bin), at(a.0.column, b.0.column)]]
                 });
-                let lowest = between.fold(f32::INFINITY, f32::min);
-                let name = format!("dip between objects {} and {} in {}", objects[0].0, objects[1].0, map.words());
-                (name, f64::from(a.1.min(b.1) - lowest))
+                f64::from(a.1.min(b.1) - between.fold(f32::INFINITY, f32::min))
             }
-            Measure::SquaredError => {
-                let (target, output) = (stage.map(MapName::Target)?, stage.map(MapName::Output)?);
-                ("squared error of the output".to_owned(), squared_error(target, output))
-            }
-            Measure::Unexplained => {
-                let hidden = hidden.ok_or_else(|| "nothing is hidden".to_owned())?;
-                let error = squared_error(hidden.map(MapName::Target)?, stage.map(MapName::Target)?);
-                ("squared error against the hidden scene".to_owned(), error)
-            }
+            Measure::SquaredError => squared_error(stage.map(MapName::Target)?, stage.map(MapName::Output)?),
+            Measure::Unexplained => squared_error(truth()?.map(MapName::Target)?, stage.map(MapName::Target)?),
             Measure::UnexplainedOverMethod => {
-                let hidden = hidden.ok_or_else(|| "nothing is hidden".to_owned())?;
-                let truth = hidden.map(MapName::Target)?;
-                let ours = squared_error(truth, stage.map(MapName::Target)?);
-                let theirs = squared_error(truth, hidden.map(MapName::Output)?);
-                ("your squared error over the method's".to_owned(), ours / theirs.max(f64::MIN_POSITIVE))
+                let hidden = truth()?;
+                let target = hidden.map(MapName::Target)?;
+                let ours = squared_error(target, stage.map(MapName::Target)?);
+                let theirs = squared_error(target, hidden.map(MapName::Output)?);
+                ours / theirs.max(f64::MIN_POSITIVE)
             }
-            Measure::Objects => ("objects".to_owned(), stage.scene.objects.len() as f64),
+            Measure::Objects => stage.scene.objects.len() as f64,
             Measure::Distance { objects } => {
                 let [a, b] = [object(&objects[0])?.centre_metres(), object(&objects[1])?.centre_metres()];
-                let name = format!("metres between objects {} and {}", objects[0].0, objects[1].0);
-                (name, (a[0] - b[0]).hypot(a[1] - b[1]))
+                (a[0] - b[0]).hypot(a[1] - b[1])
             }
-            Measure::BandwidthGigahertz => ("bandwidth in GHz".to_owned(), stage.radar.bandwidth_hz / 1e9),
+            Measure::BandwidthGigahertz => stage.radar.bandwidth_hz / 1e9,
             Measure::Range { object: number } => {
                 let [x, y] = object(number)?.centre_metres();
-                (format!("range of object {} in metres", number.0), x.hypot(y))
+                x.hypot(y)
             }
             Measure::BrightPart { map, above } => {
                 let shown = stage.map(*map)?;
-                let part = shown.above(*above).count() as f64 / shown.lambda.len() as f64;
-                (format!("part of {} above {above}", map.words()), part)
+                shown.above(*above).count() as f64 / shown.lambda.len() as f64
             }
-            Measure::Quantity { quantity, object } => {
-                (quantity.words().to_owned(), quantity.of(&stage.radar, &stage.scene, *object)?)
-            }
+            Measure::Quantity { quantity, object } => quantity.of(&stage.radar, &stage.scene, *object)?,
         })
     }
 }

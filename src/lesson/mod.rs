@@ -10,6 +10,7 @@
 //! entertainment?", Am. J. Phys. 72, 2004).
 
 pub mod challenge;
+mod criterion;
 mod fault;
 pub mod file;
 pub mod object_number;
@@ -21,7 +22,8 @@ pub mod stage;
 mod trial;
 mod uses;
 
-pub use challenge::{Challenge, Measured};
+pub use challenge::Challenge;
+pub use criterion::Measured;
 pub use file::{Lesson, LessonError, LessonTextError, Step};
 pub use progress::Progress;
 pub use question::{Guess, Judgement, Question, Truth};

@@ -39,20 +39,38 @@ pub enum Quantity {
 
 impl Quantity {
     /// Its name in sentences.
-    pub fn words(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
-            Quantity::RangeBinMetres => "range bin in metres",
-            Quantity::MaximumRangeMetres => "maximum range in metres",
-            Quantity::ApertureMetres => "aperture in metres",
-            Quantity::FarFieldMetres => "far-field distance in metres",
-            Quantity::EndBeamColumns => "beam of an end in columns",
-            Quantity::GratingLobeCos => "distance to the grating lobe in cos θ",
-            Quantity::ApparentRangeMetres => "apparent range in metres",
-            Quantity::SnrDecibels => "SNR by the whole array in decibels",
-            Quantity::EndsDifferenceBins => "difference between the ends in range bins",
-            Quantity::UnambiguousVelocityMetresPerSecond => "unambiguous velocity in metres a second",
-            Quantity::VelocityColumnMetresPerSecond => "column of velocity in metres a second",
-            Quantity::ApparentVelocityMetresPerSecond => "apparent radial velocity in metres a second",
+            Quantity::RangeBinMetres => "a range bin",
+            Quantity::MaximumRangeMetres => "a maximum range",
+            Quantity::ApertureMetres => "an aperture",
+            Quantity::FarFieldMetres => "a far-field distance",
+            Quantity::EndBeamColumns => "a beam of an end",
+            Quantity::GratingLobeCos => "a distance to the grating lobe",
+            Quantity::ApparentRangeMetres => "an apparent range",
+            Quantity::SnrDecibels => "an SNR by the whole array",
+            Quantity::EndsDifferenceBins => "a difference between the ends",
+            Quantity::UnambiguousVelocityMetresPerSecond => "an unambiguous velocity",
+            Quantity::VelocityColumnMetresPerSecond => "a column of velocity",
+            Quantity::ApparentVelocityMetresPerSecond => "an apparent radial velocity",
+        }
+    }
+
+    /// The unit of its value.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Quantity::RangeBinMetres
+            | Quantity::MaximumRangeMetres
+            | Quantity::ApertureMetres
+            | Quantity::FarFieldMetres
+            | Quantity::ApparentRangeMetres => "m",
+            Quantity::EndBeamColumns => "columns",
+            Quantity::GratingLobeCos => "in cos θ",
+            Quantity::SnrDecibels => "dB",
+            Quantity::EndsDifferenceBins => "range bins",
+            Quantity::UnambiguousVelocityMetresPerSecond
+            | Quantity::VelocityColumnMetresPerSecond
+            | Quantity::ApparentVelocityMetresPerSecond => "m/s",
         }
     }
 

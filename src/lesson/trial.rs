@@ -78,7 +78,7 @@ fn meet(step: &Step, challenge: &Challenge) -> Result<(), Fault> {
 }
 
 fn told(measured: &Measured) -> String {
-    format!("{} is {:.3}, required {}", measured.name, measured.value, measured.bound)
+    format!("{} is wanted, and there is {}", measured.wanted, measured.found)
 }
 
 #[cfg(test)]

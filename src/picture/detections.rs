@@ -1,15 +1,18 @@
 //! The output above its threshold: hits, misses and false alarms differ in brightness as well as in hue.
 
 use super::colour::Rgb;
+use ndarray::ArrayView2;
 
 /// What a cell of a thresholded output is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Detection {
     /// Neither map has it.
     Nothing,
+    /// The output alone has it, around something that the target has too.
+    Rim,
     /// The target has it, the output doesn't.
     Miss,
-    /// The output has it, the target doesn't.
+    /// The output has it, and the target has nothing there.
     FalseAlarm,
     /// Both have it.
     Hit,
@@ -17,9 +20,9 @@ pub enum Detection {
 
 impl Detection {
     /// Those that are seen, in the order of a legend.
-    pub const SEEN: [Detection; 3] = [Detection::Hit, Detection::FalseAlarm, Detection::Miss];
+    pub const SEEN: [Detection; 4] = [Detection::Hit, Detection::Rim, Detection::FalseAlarm, Detection::Miss];
 
-    /// Of a cell that the `target` has or not, and the `output`.
+    /// Of a cell that the `target` has or not, and the `output`; a rim is a false alarm by itself.
     pub fn of(target: bool, output: bool) -> Detection {
         match (target, output) {
             (true, true) => Detection::Hit,
@@ -33,6 +36,7 @@ impl Detection {
     pub fn name(self) -> &'static str {
         match self {
             Detection::Nothing => "nothing",
+            Detection::Rim => "rim",
             Detection::Miss => "miss",
             Detection::FalseAlarm => "false alarm",
             Detection::Hit => "hit",
@@ -44,6 +48,8 @@ impl Detection {
     pub fn fill(self, dark: bool) -> Rgb {
         match (self, dark) {
             (Detection::Nothing, true) => [18, 22, 30],
+            // As the line around hits, so that both are one quiet band.
+            (Detection::Rim, _) => Detection::Hit.outline(dark),
             (Detection::Miss, true) => [40, 92, 176],
             (Detection::FalseAlarm, true) => [232, 152, 40],
             (Detection::Hit, true) => [255, 255, 252],
@@ -57,7 +63,7 @@ impl Detection {
     /// The line around its cells: apart from its fill and from the ground.
     pub fn outline(self, dark: bool) -> Rgb {
         match (self, dark) {
-            (Detection::Nothing, _) => self.fill(dark),
+            (Detection::Nothing | Detection::Rim, _) => self.fill(dark),
             (Detection::Miss, true) => [128, 180, 246],
             (Detection::FalseAlarm, true) => [138, 80, 12],
             (Detection::Hit, true) => [132, 140, 154],
@@ -68,9 +74,90 @@ impl Detection {
     }
 }
 
+/// How far from what the target shows a blob of the output is its rim, cells.
+const RIM_CELLS: usize = 3;
+/// Smaller blobs are specks, no objects, cells.
+const SPECK_CELLS: usize = 8;
+/// What stands out of the target by this much is there, although its threshold hides it, decibels.
+const STANDS_OUT_DB: f32 = 10.0;
+/// How far around a blob the target's surroundings reach, cells.
+const AROUND: usize = 5;
+
+/// What each cell of an output above `etas[0]` is beside a target above `etas[1]`, both `[range bins, columns]`, row by row.
+///
+/// A blob of the output is false where the target has nothing near it: neither cells above its threshold nor a cell that stands 10 dB out of
+/// its surroundings. `decibels` is what Lambda spans in the target; 0 leaves the second rule out.
+pub fn told_apart(
+    output: ArrayView2<'_, f32>,
+    target: ArrayView2<'_, f32>,
+    etas: [f32; 2],
+    decibels: f32,
+) -> Vec<Detection> {
+    let (rows, columns) = output.dim();
+    let mut kinds: Vec<Detection> =
+        output.iter().zip(&target).map(|(&v, &t)| Detection::of(t > etas[1], v > etas[0])).collect();
+    let near = |at: usize, by: usize, end: usize| at.saturating_sub(by)..(at + by + 1).min(end);
+    let around = |at: usize, by: usize| {
+        let (row, column) = (at / columns, at % columns);
+        near(row, by, rows).flat_map(move |r| near(column, by, columns).map(move |c| r * columns + c))
+    };
+    let mut seen = vec![false; kinds.len()];
+    for start in 0..kinds.len() {
+        if seen[start] || kinds[start] != Detection::FalseAlarm {
+            continue;
+        }
+        seen[start] = true;
+        let mut blob = vec![start];
+        let mut next = 0;
+        while let Some(&at) = blob.get(next) {
+            next += 1;
+            for beside in around(at, 1) {
+                if kinds[beside] == Detection::FalseAlarm && !std::mem::replace(&mut seen[beside], true) {
+                    blob.push(beside);
+                }
+            }
+        }
+        let is_there = |at: usize| matches!(kinds[at], Detection::Hit | Detection::Miss);
+        let is_rim = blob.len() < SPECK_CELLS
+            || blob.iter().any(|at| around(*at, RIM_CELLS).any(is_there))
+            || stands_out(target, &blob) * decibels >= STANDS_OUT_DB;
+        if is_rim {
+            blob.into_iter().for_each(|at| kinds[at] = Detection::Rim);
+        }
+    }
+    kinds
+}
+
+/// By how much of Lambda the largest of some cells of a map exceeds the median of what surrounds them.
+fn stands_out(map: ArrayView2<'_, f32>, cells: &[usize]) -> f32 {
+    let (rows, columns) = map.dim();
+    let of = |at: &usize| map[[at / columns, at % columns]];
+    let peak = cells.iter().map(of).fold(f32::NEG_INFINITY, f32::max);
+    let ends = |axis: fn(usize, usize) -> usize| {
+        let all = cells.iter().map(|at| axis(*at, columns));
+        all.fold((usize::MAX, 0), |(low, high), at| (low.min(at), high.max(at)))
+    };
+    let ((top, bottom), (left, right)) = (ends(|at, columns| at / columns), ends(|at, columns| at % columns));
+    let band = top.saturating_sub(AROUND)..(bottom + AROUND + 1).min(rows);
+    let across = left.saturating_sub(AROUND)..(right + AROUND + 1).min(columns);
+    let is_beside = |r: usize, c: usize| !((top..=bottom).contains(&r) && (left..=right).contains(&c));
+    let mut beside: Vec<f32> = band
+        .flat_map(|r| across.clone().map(move |c| (r, c)))
+        .filter(|(r, c)| is_beside(*r, *c))
+        .map(|(r, c)| map[[r, c]])
+        .filter(|v| !v.is_nan())
+        .collect();
+    if beside.is_empty() {
+        return 0.0;
+    }
+    let middle = beside.len() / 2;
+    peak - *beside.select_nth_unstable_by(middle, f32::total_cmp).1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ndarray::{Array2, s};
 
     /// What common colour deficiencies make of linear red, green and blue, at full severity (Machado, Oliveira and Fernandes, 2009, table 1).
     const VISIONS: [(&str, [[f64; 3]; 3]); 4] = [
@@ -123,12 +210,32 @@ mod tests {
     #[test]
     fn every_outline_is_seen_beside_its_fill_under_common_colour_deficiencies() {
         for (name, vision) in &VISIONS {
-            for (kind, dark) in Detection::SEEN.into_iter().flat_map(|kind| [(kind, true), (kind, false)]) {
+            let outlined = Detection::SEEN.into_iter().filter(|kind| *kind != Detection::Rim);
+            for (kind, dark) in outlined.flat_map(|kind| [(kind, true), (kind, false)]) {
                 for beside in [kind.fill(dark), Detection::Nothing.fill(dark)] {
                     let contrast = contrast(kind.outline(dark), beside, vision);
                     assert!(contrast >= 1.6, "{kind:?} beside {beside:?}, {name}, dark {dark}: {contrast}");
                 }
             }
         }
+    }
+
+    #[test]
+    fn only_a_blob_where_the_target_has_nothing_is_a_false_alarm() {
+        let mut target = Array2::from_elem((40, 60), 0.2f32);
+        let mut output = Array2::from_elem((40, 60), 0.0f32);
+        target.slice_mut(s![4..6, 8..14]).fill(0.95);
+        output.slice_mut(s![3..7, 6..16]).fill(1.0);
+        // One that the target shows below its threshold, one where it shows nothing, and a speck.
+        target.slice_mut(s![20..22, 30..34]).fill(0.5);
+        output.slice_mut(s![20..22, 29..35]).fill(1.0);
+        output.slice_mut(s![30..33, 45..50]).fill(1.0);
+        output[[36, 3]] = 1.0;
+        let count = |decibels: f32| {
+            let kinds = told_apart(output.view(), target.view(), [0.8, 0.9], decibels);
+            Detection::SEEN.map(|kind| kinds.iter().filter(|k| **k == kind).count())
+        };
+        assert_eq!(count(100.0), [12, 4 * 10 - 12 + 12 + 1, 15, 0]);
+        assert_eq!(count(0.0), [12, 4 * 10 - 12 + 1, 15 + 12, 0], "thresholds alone");
     }
 }

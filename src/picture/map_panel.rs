@@ -4,20 +4,19 @@ use super::canvas::{Area, FAINT_INK, HAIRLINE, INK, PictureError};
 use super::colour::{ColourMap, Rgb};
 use super::detections::Detection;
 use super::text::{self, Weight};
-use crate::evaluate::TARGET_ETA;
 use crate::radar::Radar;
-use ndarray::ArrayView2;
+use ndarray::{Array2, ArrayView2};
 use plotters::prelude::*;
 
 /// What a panel paints: cells `[range bins, columns]` as they are drawn, the leftmost column first.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) enum Cells<'a> {
     /// Lambda in colours, with a colour bar.
     Lambda(ArrayView2<'a, f32>, ColourMap),
     /// The cells above a threshold.
     Above(ArrayView2<'a, f32>, f32),
     /// The output above its threshold: hits, misses and false alarms.
-    Detections { target: ArrayView2<'a, f32>, output: ArrayView2<'a, f32>, eta: f32 },
+    Detections(Array2<Detection>),
 }
 
 /// A map and its title.
@@ -92,10 +91,10 @@ impl MapPanel<'_> {
 
         let (chart_x, chart_y) = area.get_pixel_range();
         let (bar_left, bar_top, bar_height) = (x.end - chart_x.start + 12, y.start - chart_y.start, size.1 as i32);
-        match self.cells {
-            Cells::Lambda(_, colours) => colour_bar(area, (bar_left, bar_top), bar_height, colours),
+        match &self.cells {
+            Cells::Lambda(_, colours) => colour_bar(area, (bar_left, bar_top), bar_height, *colours),
             Cells::Above(..) => Ok(()),
-            Cells::Detections { .. } => legend(area),
+            Cells::Detections(_) => legend(area),
         }
     }
 }
@@ -103,7 +102,8 @@ impl MapPanel<'_> {
 impl Cells<'_> {
     fn dim(&self) -> (usize, usize) {
         match self {
-            Cells::Lambda(map, _) | Cells::Above(map, _) | Cells::Detections { output: map, .. } => map.dim(),
+            Cells::Lambda(map, _) | Cells::Above(map, _) => map.dim(),
+            Cells::Detections(kinds) => kinds.dim(),
         }
     }
 
@@ -133,10 +133,7 @@ impl Cells<'_> {
                 let mut cells = cells;
                 if cells.any(|c| map[c] > *eta) { HIT } else { NOTHING }
             }
-            Cells::Detections { target, output, eta } => {
-                let of = |c: [usize; 2]| Detection::of(target[c] > TARGET_ETA, output[c] > *eta);
-                cells.map(of).max().unwrap_or(Detection::Nothing).fill(true)
-            }
+            Cells::Detections(kinds) => cells.map(|c| kinds[c]).max().unwrap_or(Detection::Nothing).fill(true),
         }
     }
 }

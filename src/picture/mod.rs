@@ -28,7 +28,7 @@ mod scene_panel;
 mod text;
 
 pub use colour::ColourMap;
-pub use detections::Detection;
+pub use detections::{Detection, told_apart};
 
 #[cfg(feature = "pictures")]
 pub use canvas::{Drawing, PictureError};

@@ -1,6 +1,7 @@
 //! Every panel on one picture: what [`render`] and [`render_svg`] draw.
 
 use super::canvas::{Area, Drawing, FAINT_INK, INK, PAPER, PictureError};
+use super::detections::{Detection, told_apart};
 use super::map_panel::{Cells, MapPanel};
 use super::scene_panel::{self, Content};
 use super::{ColourMap, text};
@@ -9,6 +10,7 @@ use crate::maps::RangeAngleMap;
 use crate::radar::{End, Radar};
 use crate::scene::Scene;
 use image::RgbImage;
+use ndarray::{Array2, ArrayView2};
 use plotters::prelude::*;
 
 /// Everything a picture shows.
@@ -130,12 +132,15 @@ impl<'a> Panels<'a> {
             lambda(format!("Target: all {} elements", self.radar.elements), target),
             output,
             MapPanel { title: format!("Target > {TARGET_ETA}"), cells: Cells::Above(drawn(target), TARGET_ETA) },
-            MapPanel {
-                title,
-                cells: Cells::Detections { target: drawn(target), output: drawn(self.output), eta: self.eta },
-            },
+            MapPanel { title, cells: Cells::Detections(self.told_apart(drawn(target), drawn(self.output))) },
         ]);
         panels
+    }
+
+    /// What each cell of the output is beside the target.
+    fn told_apart(&self, target: ArrayView2<'_, f32>, output: ArrayView2<'_, f32>) -> Array2<Detection> {
+        let mut kinds = told_apart(output, target, [self.eta, TARGET_ETA], 0.0).into_iter();
+        Array2::from_shape_simple_fn(output.dim(), || kinds.next().unwrap_or(Detection::Nothing))
     }
 
     /// The three figures of the tables for this scene, then the scene's notes.

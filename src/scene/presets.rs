@@ -52,6 +52,11 @@ pub const ALL: &[Preset] = presets![
 ];
 
 impl Preset {
+    /// Whether its file names a radar; another scene is seen by whatever radar there is.
+    pub fn has_radar(&self) -> bool {
+        self.toml.lines().any(|line| line.trim() == "[radar]")
+    }
+
     /// The scene.
     ///
     /// # Errors

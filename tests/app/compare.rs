@@ -204,11 +204,11 @@ fn marks_of_failure_are_those_of_the_evaluation() {
         let trial = trial(&s);
         let answer = trial.ask(&Baseline, &Request { noise: Floor::Thesis.into(), ..Request::default() }).unwrap();
         assert_eq!(s.state().failures(), Some(&trial.failures(&answer)), "round {round}");
-        assert!(s.app.query_all_by_label_contains("Legend: hit, false alarm, miss, ").next().is_some());
+        assert!(s.app.query_all_by_label_contains("Legend: hit, rim, false alarm, miss, ").next().is_some());
         let at = s.handle("point 2: move");
         s.drag(at, vec2(-20.0, 15.0), 5);
     }
     s.press(Modifiers::NONE, Key::H);
     assert!(s.state().failures().is_none());
-    assert!(s.app.query_all_by_label("Legend: hit, false alarm, miss").next().is_some(), "hatches go on");
+    assert!(s.app.query_all_by_label("Legend: hit, rim, false alarm, miss").next().is_some(), "hatches go on");
 }

@@ -6,7 +6,7 @@ use apertura::interact::Document;
 use apertura::radar::{Carrier, Radar, WindowFunction};
 use apertura::reconstruct::Baseline;
 use apertura::scene::file::{self, SceneFile};
-use apertura::scene::{Object, Scene};
+use apertura::scene::{Object, Scene, presets};
 use eframe::egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
@@ -48,10 +48,20 @@ fn each_scene_is_saved_into_its_own_file() {
 }
 
 #[test]
-fn a_new_scene_has_the_usual_radar() {
+fn new_and_presets_keep_the_radar_unless_they_have_one() {
     let mut s = Session::start();
     s.ask(DocumentCommand::New);
-    assert_eq!((title(&s).as_str(), **s.state().editor().radar() == Radar::default()), ("untitled", true));
+    assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("untitled", 128));
+    undo(&mut s);
+    let preset = |id: &str| {
+        let index = presets::ALL.iter().position(|preset| preset.id == id).unwrap();
+        DocumentCommand::Preset(index)
+    };
+    for (id, elements) in [("four-reflectors", 128), ("failure-wrong-tooth", Radar::default().elements)] {
+        s.ask(preset(id));
+        assert_eq!(s.state().editor().radar().elements, elements, "{id}");
+        undo(&mut s);
+    }
     undo(&mut s);
     assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml", 128));
 }

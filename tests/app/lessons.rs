@@ -85,7 +85,7 @@ fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
         s.app.get_by_label("Show a solution").click();
         step_until(s, &format!("{place}: it counts as unsolved"), |s| shows(s, "counts as unsolved"));
         step_until(s, &format!("{place}: met"), |s| {
-            shows(s, "required ") && !shows(s, "not met yet") && !shows(s, "measuring…")
+            shows(s, "(now ") && !shows(s, "not met yet") && !shows(s, "measuring…")
         });
     }
 }
@@ -150,10 +150,10 @@ fn predict(s: &mut Session, guess: Guess, verdict: &str) {
 #[test]
 fn no_panel_answers_a_question_before_the_learner_does() {
     let mut s = Session::start();
-    for panel in [Panel::Radar, Panel::Inspector] {
+    begin(&mut s, "range-and-bandwidth", 3);
+    for panel in [Panel::Inspector, Panel::Radar] {
         s.ask(WindowCommand::OpenPanel(panel));
     }
-    begin(&mut s, "range-and-bandwidth", 3);
     let tells = |s: &Session, text: &str| painted(s).iter().any(|t| t.contains(text));
     // The question itself says "maximum range": the Radar panel would say how much.
     for answer in ["range, m", "maximum range 5", "511.67 m", "500 m"] {
@@ -215,7 +215,7 @@ fn a_shown_solution_counts_as_unsolved_until_the_step_is_begun_again() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 5);
     let is_met = |s: &Session| s.state().progress().record("range-and-bandwidth", 4).challenge_met;
-    let measured = |s: &Session| shows(s, "required ") && !shows(s, "not met yet");
+    let measured = |s: &Session| shows(s, "(now ") && !shows(s, "not met yet");
     s.ask(LessonCommand::ShowSolution);
     step_until(&mut s, "the solution is measured", measured);
     assert!(!is_met(&s) && shows(&s, "counts as unsolved"));
@@ -332,4 +332,66 @@ fn hidden_tools_compute_nothing() {
     assert_eq!(s.state().radar().window, apertura::radar::WindowFunction::Rectangular);
     s.press(eframe::egui::Modifiers::COMMAND, eframe::egui::Key::Z);
     assert_eq!(s.state().radar().window, apertura::radar::WindowFunction::Hann);
+}
+
+#[test]
+fn the_map_that_a_question_asks_about_is_the_large_one() {
+    let mut s = Session::start();
+    for (id, step, asked) in [
+        ("range-and-bandwidth", 1, MapKind::Target),
+        ("angle-and-aperture", 3, MapKind::Input0),
+        ("the-floor", 3, MapKind::Input1),
+        ("range-and-bandwidth", 1, MapKind::Target),
+    ] {
+        begin(&mut s, id, step);
+        s.settle();
+        let area = |kind: MapKind| s.app.get_by_label(&format!("{} map", kind.title())).rect().area();
+        for other in [MapKind::Input0, MapKind::Input1, MapKind::Target].into_iter().filter(|kind| *kind != asked) {
+            assert!(area(asked) > 1.5 * area(other), "{id}: {asked:?} beside {other:?}");
+        }
+    }
+    s.ask(LessonCommand::Leave);
+    assert!(s.state().arrangement().is_open(Panel::Controls), "the panels are as before");
+}
+
+#[test]
+fn a_challenge_shows_its_control_and_where_it_happens() {
+    let mut s = Session::start();
+    begin(&mut s, "range-and-bandwidth", 5);
+    s.settle();
+    assert!(s.state().arrangement().shown().contains(&Panel::Radar), "{:?}", s.state().arrangement().shown());
+    let part = s.state().views().1.range_angle;
+    assert!(part.high.y - part.low.y < 0.1, "the two points alone: {part:?}");
+    step_until(&mut s, "it is measured", |s| shows(s, "A dip of at least 0.06 between the two in the target"));
+    let radar = Radar { bandwidth_hz: 0.95e9, ..s.state().radar().clone() };
+    s.ask(RadarCommand::Set(Box::new(radar)));
+    let followed = s.state().views().1.range_angle;
+    assert!(followed.low.y > part.high.y, "they stand elsewhere in the map now: {followed:?}");
+    begin(&mut s, "smooth-and-rough", 4);
+    s.settle();
+    let shown = s.state().arrangement().shown().clone();
+    assert!(shown.contains(&Panel::Inspector) || shown.contains(&Panel::Scene), "{shown:?}");
+}
+
+#[test]
+fn the_question_is_in_view_on_a_projector() {
+    for size in [[1440.0, 900.0], [1024.0, 640.0]] {
+        let folder = tempfile::tempdir().unwrap();
+        let methods: Vec<std::sync::Arc<dyn apertura::reconstruct::Reconstructor>> =
+            vec![std::sync::Arc::new(apertura::reconstruct::Baseline)];
+        let app = crate::session::harness_of(folder.path(), None, methods, size);
+        let mut s = Session { app, folder };
+        s.ask(LessonCommand::Present);
+        for (id, step) in [("range-and-bandwidth", 1), ("which-points-a-car-is", 4), ("folding-and-wrapping", 4)] {
+            begin(&mut s, id, step);
+            (0..4).for_each(|_| s.app.step());
+            let lesson = shipped::ALL.iter().find(|file| file.id == id).unwrap().load().unwrap();
+            let question = lesson.steps[step - 1].predict.clone().unwrap();
+            let window = s.app.ctx.content_rect();
+            let ask = s.app.get_by_label(&question.ask).rect();
+            assert!(window.contains_rect(ask), "{id} at {size:?}: {ask:?} in {window:?}");
+            let title = s.app.get_by_label_contains(&format!("Step {step} of ")).rect();
+            assert!(window.contains_rect(title), "{id} at {size:?} begins at its top: {title:?}");
+        }
+    }
 }

@@ -1,10 +1,10 @@
 //! For whoever hears the window, or reads it at twice the size.
 
 use crate::session::Session;
-use apertura::app::{Command, MapKind, Panel, WindowCommand};
+use apertura::app::{Command, DocumentCommand, EditCommand, MapKind, Panel, RadarCommand, WindowCommand};
 use apertura::interact::SelectionMode;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 
 /// What a person works with, and what has to be told in words.
@@ -163,4 +163,25 @@ fn wider_than_their_place(s: &Session) -> Vec<String> {
     let mut found = Vec::new();
     s.app.output().shapes.iter().for_each(|clipped| gather(clipped.clip_rect, &clipped.shape, &mut found));
     found
+}
+
+#[test]
+fn the_first_drag_is_told_in_one_sentence() {
+    let mut s = Session::start();
+    s.ask(DocumentCommand::Preset(0));
+    s.ask(RadarCommand::Set(Box::default()));
+    s.ask(WindowCommand::ToggleCaptions);
+    let told = |s: &Session, text: &str| apertura_texts(s).iter().any(|t| t == text);
+    assert!(told(&s, "Drag the post along its ring, to the wall"), "{:?}", apertura_texts(&s));
+    let (from, metres_per_point) = (s.handle("point 4: move"), s.state().views().0.metres_per_point);
+    let [x, y] = s.place(3);
+    let (range, (sin, cos)) = (x.hypot(y), 27f64.to_radians().sin_cos());
+    let by = vec2(((range * sin - x) / metres_per_point) as f32, ((y - range * cos) / metres_per_point) as f32);
+    s.drag(from, by, 6);
+    s.settle();
+    let both = "Both inputs now show post and wall as one blob; the target shows two";
+    assert!(told(&s, both), "{:?}", apertura_texts(&s));
+    s.ask(EditCommand::Undo);
+    s.ask(DocumentCommand::New);
+    assert!(!told(&s, both), "it belongs to that scene");
 }

@@ -1,15 +1,10 @@
 //! What is shown to many people, or taken to their slides.
 
 use crate::session::{Session, step_until};
-use apertura::app::{DocumentCommand, ExportCommand, MapKind, Panel, WindowCommand};
-use apertura::radar::Radar;
-use apertura::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
-use apertura::scene::generate::Kind;
-use apertura::signal::TwoEnds;
+use apertura::app::{ExportCommand, MapKind, Panel, WindowCommand};
 use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Shape, ViewportCommand, vec2};
 use egui_kittest::kittest::Queryable;
 use std::collections::BTreeSet;
-use std::sync::Arc;
 use std::time::Duration;
 
 #[test]
@@ -71,47 +66,6 @@ fn both_presentations_enlarge_the_axes() {
 fn is_photographed(s: &Session) -> bool {
     let mut commands = s.app.output().viewport_output.values().flat_map(|viewport| &viewport.commands);
     commands.any(|command| matches!(command, ViewportCommand::Screenshot(_)))
-}
-
-/// Takes its time.
-struct Slow;
-
-impl Reconstructor for Slow {
-    fn about(&self) -> About {
-        About { name: "slow", description: "takes half a second", told: "nothing", eta: 0.5 }
-    }
-
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        std::thread::sleep(Duration::from_millis(500));
-        Baseline.reconstruct(radar, ends, request)
-    }
-}
-
-#[test]
-fn an_exported_picture_waits_for_the_maps() {
-    let mut s = Session::with_methods(vec![Arc::new(Slow)]);
-    s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
-    s.app.state_mut().ask(ExportCommand::PictureTo(s.folder.path().join("window.png")));
-    step_until(&mut s, "the picture is taken", is_photographed);
-    assert!(!s.state().output_is_outdated());
-    let said: Vec<String> = texts(&s).into_iter().map(|(text, _)| text).collect();
-    assert!(
-        !said.iter().any(|t| t.contains("(updating)") || t.contains("earlier scene") || t == "computing…"),
-        "{said:?}"
-    );
-}
-
-#[test]
-fn an_exported_picture_holds_no_message() {
-    let mut s = Session::start();
-    s.app.state_mut().ask(DocumentCommand::OpenPath(s.folder.path().join("missing.toml")));
-    s.app.state_mut().ask(ExportCommand::PictureTo(s.folder.path().join("window.png")));
-    let holds =
-        |s: &Session| texts(s).iter().any(|(text, _)| text.contains("Exporting") || text.contains("missing.toml"));
-    step_until(&mut s, "the messages are seen", holds);
-    step_until(&mut s, "the picture is taken", is_photographed);
-    assert!(!holds(&s), "{:?}", texts(&s));
-    step_until(&mut s, "the messages are seen again", holds);
 }
 
 #[test]

@@ -150,8 +150,13 @@ fn a_recording_is_exported() {
     s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0))));
     let (maps, drawing) = (s.folder.path().join("maps.npz"), s.folder.path().join("maps.svg"));
     s.ask(ExportCommand::MapsTo(maps.clone()));
+    let bitmap = drawing.with_extension("png");
     s.ask(ExportCommand::PictureTo(drawing.clone()));
-    step_until(&mut s, "no export", |_| maps.exists() && drawing.exists());
+    s.ask(ExportCommand::PictureTo(bitmap.clone()));
+    step_until(&mut s, "no export", |_| maps.exists() && drawing.exists() && bitmap.exists());
+    let size = image::image_dimensions(&bitmap).unwrap();
+    let svg = std::fs::read_to_string(&drawing).unwrap();
+    assert!(svg.contains(&format!("width=\"{}\" height=\"{}\"", size.0, size.1)), "both show the same panels");
     assert!(std::fs::read_to_string(&drawing).unwrap().contains("Target: all 8 elements"));
     let mut archive = ndarray_npy::NpzReader::new(std::fs::File::open(&maps).unwrap()).unwrap();
     let output: ndarray::Array3<f32> = archive.by_name("output").unwrap();

@@ -25,6 +25,7 @@ mod physical_convention;
 mod radars;
 mod readme;
 mod snapshot;
+mod street;
 mod stress;
 #[cfg(all(unix, feature = "live"))]
 mod tables;

@@ -15,7 +15,10 @@ use std::path::{Path, PathBuf};
 /// Does such a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) {
     match command {
-        DocumentCommand::New => state.set_document("new scene", Document::default()),
+        DocumentCommand::New => {
+            let file = SceneFile { radar: state.radar().clone(), ..SceneFile::default() };
+            state.set_document("new scene", Document::shipped(file));
+        }
         DocumentCommand::Open => jobs.choose_file(state, Purpose::Open),
         DocumentCommand::OpenPath(path) => open(state, path),
         DocumentCommand::Save => saving::save_again(state, jobs),
@@ -45,9 +48,20 @@ fn open(state: &mut State, path: PathBuf) {
 fn show(state: &mut State, label: &str, document: Document) {
     let recording = document.recording().cloned();
     state.set_document(label, document);
+    use_a_method_that_can(state);
     if let Some(recording) = recording {
         show_recording_panels(state);
         recording.doubts.iter().for_each(|doubt| state.notices.error(doubt.clone()));
+    }
+}
+
+/// Changes to a method that takes the radar of what was opened, where the one in use doesn't; says so.
+fn use_a_method_that_can(state: &mut State) {
+    let Some(method) = state.method().filter(|method| method.check_array(state.radar()).is_err()) else { return };
+    let name = method.name();
+    if let Some(other) = state.methods.instead_of(name, state.radar()) {
+        state.settings.method = other.to_owned();
+        state.notices.info(format!("{name} can't do this radar: {other} is used instead."));
     }
 }
 
@@ -81,7 +95,13 @@ fn preset(state: &mut State, index: usize) {
     let Some(preset) = presets::ALL.get(index) else { return };
     match preset.load() {
         Ok(file) => {
-            state.set_document("preset", Document::shipped(file));
+            // A failure is one of its method before its radar.
+            let keeps_radar = !preset.has_radar() && !preset.is_failure();
+            let radar = if keeps_radar { state.radar().clone() } else { file.radar.clone() };
+            let document = Document::shipped(SceneFile { radar, ..file });
+            state.failures.view.wanted = preset.is_failure().then(|| document.id());
+            state.set_document("preset", document);
+            use_a_method_that_can(state);
         }
         Err(error) => state.notices.error(format!("Preset {}: {error}", preset.id)),
     }

@@ -52,7 +52,7 @@ pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
         EditCommand::Add(kind, place) => add(state, kind, place),
         EditCommand::Nudge { dx_metres, dy_metres } => {
             editor.nudge(dx_metres, dy_metres);
-            state.captions = false;
+            state.note_first_drag();
         }
         EditCommand::SetNoiseSeed(seed) => {
             editor.edit("noise seed", Some("noise seed"), |scene, _| scene.noise_seed = seed);

@@ -18,7 +18,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: ExportCommand) -> Opti
         ExportCommand::RecordDrag => return choose(state, jobs, Purpose::RecordDrag),
         ExportCommand::DrawLesson => return choose(state, jobs, Purpose::DrawLesson),
         ExportCommand::StopRecording => {
-            let given_up = jobs.recorder.cancel().or_else(|| jobs.exports.give_up());
+            let given_up = jobs.recorder.cancel();
             Ok(given_up.unwrap_or_else(|| "Nothing is recorded.".to_owned()))
         }
         ExportCommand::RecordDragTo(path) => jobs.recorder.record_drag(path),

@@ -1,8 +1,9 @@
 //! Commands of lessons: begin, predict, go on, leave.
 
 use crate::app::jobs::{Jobs, Purpose};
-use crate::app::state::{Arrangement, Before, LessonCommand, LessonRun, MapViews, Panel, State};
-use crate::interact::Document;
+use crate::app::state::lesson_focus::{control_of, map_of};
+use crate::app::state::{Arrangement, Before, LessonCommand, LessonRun, MapViews, Panel, State, Task};
+use crate::interact::{Document, SelectionMode};
 use crate::lesson::{Guess, Lesson, shipped};
 use crate::scene::Scene;
 use crate::scene::file::SceneFile;
@@ -23,6 +24,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: LessonCommand) {
                 if let Guess::Eta(eta) = guess {
                     state.settings.target_eta = eta;
                 }
+                show_challenge(state);
             }
         }
         LessonCommand::ShowSolution => show_solution(state),
@@ -52,7 +54,9 @@ fn begin(state: &mut State, id: String, lesson: Arc<Lesson>) {
     leave(state);
     let (setup, scene_view, map_views) = (state.setup(), state.scene_view, state.map_views);
     let task = state.kept_arrangement().task();
-    state.map_views = MapViews::default();
+    if !state.is_presenting() {
+        state.arrangement.switch(Task::Teach);
+    }
     state.lesson = Some(LessonRun::new(id, lesson, Before { setup, scene_view, map_views, task }));
     state.arrangement.set_open(Panel::Lesson, true);
     state.close_unused();
@@ -69,12 +73,34 @@ fn set_up(state: &mut State) {
     let name = state.lesson.as_ref().map_or_else(String::new, |run| run.lesson.title.clone());
     // Name and notes of a scene tell what its maps show: that is asked for here.
     let scene = Scene { name, notes: String::new(), noise_seed: step.view.seed, ..step.scene() };
-    state.set_document("lesson", Document::shipped(SceneFile { scene, radar: step.radar }));
+    state.set_document("lesson", Document::shipped(SceneFile { scene, radar: step.radar.clone() }));
     let scene = state.editor.scene().clone();
+    state.map_views = MapViews::default();
+    state.arrangement.set_open(Panel::Scene, true);
+    state.arrangement.put_large(map_of(&step));
+    show_challenge(state);
     let Some(run) = &mut state.lesson else { return };
     run.set_up = Some(scene);
     if let Some(Guess::Eta(eta)) = run.guess {
         state.settings.target_eta = eta;
+    }
+}
+
+/// Brings the control in front that the step's challenge needs, once the challenge is there.
+fn show_challenge(state: &mut State) {
+    let run = state.lesson.as_ref().filter(|run| !run.is_predicting());
+    let Some((panel, object)) = run.and_then(|run| run.current()).and_then(control_of) else { return };
+    state.arrangement.set_open(panel, true);
+    state.editor.select(object, SelectionMode::Replace);
+}
+
+/// Keeps in sight what a challenge is about, as the scene and the radar change, until the learner zooms.
+pub fn follow_challenge(state: &mut State) {
+    let Some(run) = state.lesson.as_mut().filter(|_| state.editor.dragged().is_none()) else { return };
+    let Some(part) = run.challenged_part(state.editor.radar(), state.editor.scene()) else { return };
+    let shown = &mut state.map_views.range_angle;
+    if run.part.is_none_or(|last| last == *shown) {
+        (*shown, run.part) = (part, Some(part));
     }
 }
 

@@ -4,6 +4,7 @@ mod document;
 mod edit;
 mod effect;
 mod export;
+mod failure_view;
 mod lesson;
 mod map_picture;
 mod radar;
@@ -16,6 +17,8 @@ mod work;
 
 pub use document::{read, show_recording_panels};
 pub use effect::Effect;
+pub use failure_view::follow as follow_failure;
+pub use lesson::follow_challenge;
 pub use shared::of as shared_text;
 
 use super::jobs::Jobs;

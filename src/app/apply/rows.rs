@@ -62,9 +62,10 @@ fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPl
 
 /// Puts a row's scene on screen as another document, its floor and method in the settings. One undo takes back all of it, and a walk along
 /// many rows too, as long as nothing was changed on the way.
-fn open_row(state: &mut State, jobs: &Jobs, index: usize) {
+fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
     let table = jobs.failures.table();
     let Some(row) = table.rows().get(index).cloned() else { return };
+    let generation = table.generation();
     let conditions = table.conditions();
     let document = match conditions.document(&row) {
         Ok(document) => document,
@@ -88,11 +89,17 @@ fn open_row(state: &mut State, jobs: &Jobs, index: usize) {
         }
         None => state.notices.info(format!("There is no method \"{}\" here; the one in use stays.", row.method)),
     }
+    // Another method of the rows stands beside it, where Compare is opened.
+    let offered = |name: &&String| **name != *row.method && state.methods.all.iter().any(|m| m.name() == **name);
+    if let Some(second) = table.methods().iter().find(offered) {
+        state.settings.compare.second.clone_from(second);
+    }
     let opened = document.id();
     state.set_document("open row", document);
     let after = state.setup();
     state.guided.push(before, after);
-    state.failures.opened = Some(OpenedRow { row, index, generation: table.generation(), document: opened });
+    state.failures.opened = Some(OpenedRow { row, index, generation, document: opened });
+    jobs.failures.search.keep_to(opened);
 }
 
 /// Whether the scene on screen is that of a row, as it was opened.

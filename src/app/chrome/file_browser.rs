@@ -192,7 +192,13 @@ impl Browser {
             self.problem = Some(format!("{} is not there.", path.display()));
             return None;
         }
-        Some(Answer::Chosen(path))
+        match self.purpose.destination(path) {
+            Ok(path) => Some(Answer::Chosen(path)),
+            Err(problem) => {
+                self.problem = Some(problem);
+                None
+            }
+        }
     }
 
     fn make_folder(&mut self) {
@@ -284,6 +290,18 @@ mod tests {
         dialog.run_steps(3);
         assert!(dialog.state().1.is_empty());
         let _told = dialog.get_by_label_contains("missing.toml is not there");
+    }
+
+    #[test]
+    fn an_ending_that_can_not_be_written_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut dialog = panel(Purpose::ExportPicture, folder.path());
+        dialog.event(egui::Event::Text("window.jpg".to_owned()));
+        dialog.run_steps(2);
+        dialog.get_by_label("Save").click();
+        dialog.run_steps(3);
+        assert!(dialog.state().1.is_empty());
+        let _told = dialog.get_by_label_contains("expected .png or .svg");
     }
 
     #[test]

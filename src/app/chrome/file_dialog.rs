@@ -113,6 +113,18 @@ mod tests {
     }
 
     #[test]
+    fn a_name_without_an_ending_does_not_replace_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("maps.npz"), "").unwrap();
+        let question = Question { name: "maps".to_owned(), ..Question::beside(Purpose::ExportMaps, None) };
+        let mut dialog = panel(Question { folder: Some(folder.path().to_path_buf()), ..question });
+        dialog.get_by_label("Save").click();
+        dialog.run_steps(3);
+        assert!(dialog.state().1.is_empty() && dialog.state().0.is_open());
+        let _asked = dialog.get_by_label("Replace");
+    }
+
+    #[test]
     fn a_new_file_is_written_at_once() {
         let folder = tempfile::tempdir().unwrap();
         let question = Question::beside(Purpose::ExportMaps, Some(&folder.path().join("scene.toml")));

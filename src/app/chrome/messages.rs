@@ -1,4 +1,4 @@
-//! Messages in the corner: they wrap, can be read aloud and closed, and go away by themselves.
+//! Messages in the corner below scene and settings, where they cover no map: they wrap, can be read aloud and closed, and go away by themselves.
 
 use crate::app::state::{Notice, NoticeKind, Notices};
 use crate::app::widgets::icons::{Icon, icon};
@@ -25,7 +25,7 @@ pub fn show(ctx: &Context, notices: &mut Notices) {
     let mut hovered = false;
     Area::new(Id::unique("messages"))
         .order(Order::Foreground)
-        .anchor(Align2::RIGHT_BOTTOM, vec2(-12.0, -36.0))
+        .anchor(Align2::LEFT_BOTTOM, vec2(12.0, -36.0))
         .interactable(true)
         .show(ctx, |ui| {
             ui.set_max_width(width);

@@ -1,10 +1,14 @@
 //! The palette: find any command by typing part of its name.
 
-use crate::app::state::{Command, Panel, ViewCommand, WindowCommand, listed, menu_path, synonyms};
+use crate::app::state::{
+    Command, DocumentCommand, LessonCommand, Panel, ViewCommand, WindowCommand, listed, menu_path, synonyms,
+};
+use crate::lesson::shipped;
 use crate::reconstruct::Reconstructor;
+use crate::scene::presets;
 use eframe::egui;
 use eframe::egui::{Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What the palette lists beside the commands that are always there.
 pub struct Input<'a> {
@@ -93,6 +97,38 @@ fn matches(name: &str, text: &str) -> bool {
     text.to_lowercase().split_whitespace().all(|word| name.contains(word))
 }
 
+/// A lesson that comes with the program, and the words of its text.
+struct Taught {
+    index: usize,
+    title: String,
+    about: String,
+    words: String,
+}
+
+/// Every lesson that comes with the program, read once.
+fn taught() -> &'static [Taught] {
+    static TAUGHT: OnceLock<Vec<Taught>> = OnceLock::new();
+    TAUGHT.get_or_init(|| {
+        let read = |(index, file): (usize, &shipped::Shipped)| {
+            let lesson = file.load().ok()?;
+            let words = lesson.steps.iter().map(|step| step.text.as_str()).collect::<Vec<_>>().join(" ");
+            Some(Taught { index, title: lesson.title, about: lesson.about, words })
+        };
+        shipped::ALL.iter().enumerate().filter_map(read).collect()
+    })
+}
+
+/// What else may be typed for a command: the words of a scene's file, or of what is said of it.
+fn words(command: &Command) -> &'static str {
+    match command {
+        Command::Document(DocumentCommand::Preset(index)) => presets::ALL.get(*index).map_or("", |preset| preset.toml),
+        Command::Lesson(LessonCommand::Begin(index)) => {
+            taught().iter().find(|lesson| lesson.index == *index).map_or("", |lesson| &lesson.words)
+        }
+        _ => "",
+    }
+}
+
 /// The commands that `text` finds by name, by another word for it, or by the menu it stands in: first those whose name it is, of these
 /// the ones that were run last.
 fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<Found> {
@@ -110,8 +146,18 @@ fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<
         key: String::new(),
         path: Panel::Controls.title().to_owned(),
     });
-    let any = |f: &Found| matches(&format!("{} {} {}", f.name, synonyms(&f.command), f.path), text);
-    let mut found: Vec<Found> = commands.chain(methods).filter(any).collect();
+    let lessons = taught().iter().map(|lesson| Found {
+        command: LessonCommand::Begin(lesson.index).into(),
+        name: format!("Lesson: {}", lesson.title),
+        tooltip: &lesson.about,
+        key: String::new(),
+        path: Panel::Lesson.title().to_owned(),
+    });
+    let any = |f: &Found| {
+        let all = [f.name.as_str(), synonyms(&f.command), f.path.as_str(), f.tooltip, words(&f.command)];
+        matches(&all.join(" "), text)
+    };
+    let mut found: Vec<Found> = commands.chain(methods).chain(lessons).filter(any).collect();
     let since = |name: &str| recent.iter().position(|r| r == name).unwrap_or(recent.len());
     found.sort_by_key(|f| (!matches(&f.name, text), since(&f.name)));
     found
@@ -236,6 +282,22 @@ mod tests {
             assert!(found.iter().any(|name| name == wanted), "{text} finds {found:?}");
         }
         assert!(names("zzz", &[]).is_empty());
+    }
+
+    #[test]
+    fn presets_lessons_and_methods_are_found_by_any_of_their_words() {
+        let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline)];
+        let input = Input { methods: &methods };
+        for (text, wanted) in [
+            ("parked cars", "Preset: street"),
+            ("regulators wide sweep", "Lesson: Range and bandwidth"),
+            ("range becomes a frequency", "Lesson: Range and bandwidth"),
+            ("thesis compares with", "Method: baseline"),
+        ] {
+            let found = find(&Context::default(), &input, text, &[]);
+            let names: Vec<&String> = found.iter().map(|found| &found.name).collect();
+            assert!(names.iter().any(|name| *name == wanted), "{text} finds {names:?}");
+        }
     }
 
     #[test]

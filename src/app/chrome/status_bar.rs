@@ -19,8 +19,8 @@ pub struct Input {
     pub reflectors: usize,
     /// How many of the objects are bodies.
     pub bodies: usize,
-    /// Most echoes that one element gets of the bodies.
-    pub echoes: usize,
+    /// Most echoes that one element gets of the bodies; not told while a lesson asks for them.
+    pub echoes: Option<usize>,
     /// Time of the last update of maps and pictures.
     pub took: Option<Duration>,
     /// Whether everything is computed on the thread that draws.
@@ -106,7 +106,7 @@ fn count_of(input: &Input) -> String {
     }
     if bodies > 0 {
         parts.push(counted(bodies, "body", "bodies"));
-        parts.push(format!("up to {}", counted(echoes, "echo", "echoes")));
+        parts.extend(echoes.map(|echoes| format!("up to {}", counted(echoes, "echo", "echoes"))));
     }
     parts.join(" · ")
 }
@@ -119,7 +119,7 @@ mod tests {
     use egui_kittest::Harness;
 
     fn of(objects: usize, reflectors: usize, bodies: usize) -> Input {
-        let echoes = 4 * bodies;
+        let echoes = Some(4 * bodies);
         Input { cursor: None, echo: None, objects, reflectors, bodies, echoes, took: None, alone: false }
     }
 
@@ -128,6 +128,7 @@ mod tests {
         assert_eq!(count_of(&of(2, 40, 0)), "2 objects · 40 reflectors");
         assert_eq!(count_of(&of(9, 0, 9)), "9 bodies · up to 36 echoes");
         assert_eq!(count_of(&of(2, 1, 1)), "2 objects · 1 reflector · 1 body · up to 4 echoes");
+        assert_eq!(count_of(&Input { echoes: None, ..of(1, 0, 1) }), "1 body", "a lesson asks for them");
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub fn menu_input<'a>(
         recent: &state.recent,
         finds_reflectors: state.finds_reflectors(),
         has_recording: state.editor.document().recording().is_some(),
-        is_recording: jobs.recorder.is_at_work() || jobs.exports.is_waiting(),
+        is_recording: jobs.recorder.is_at_work(),
         left: state.editor.left(),
         task: state.arrangement.task(),
         is_open,
@@ -42,7 +42,7 @@ pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
         objects: scene.objects.len(),
         reflectors: scene.reflector_count(),
         bodies: bodies().count(),
-        echoes: bodies().map(|body| body.echo_count()).sum(),
+        echoes: (!state.is_predicting()).then(|| bodies().map(|body| body.echo_count()).sum()),
         took: jobs.pipeline.took(),
         alone: !platform::has_threads(),
     }

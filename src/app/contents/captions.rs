@@ -1,7 +1,9 @@
 //! What maps and scene say of themselves at a first start.
 
+use crate::app::jobs::Pipeline;
 use crate::app::panels::scene::Hint;
 use crate::app::state::{MapKind, MethodSlot, State};
+use crate::evaluate::dip_between;
 use crate::interact::Place;
 use crate::radar::{End, Radar};
 use crate::scene::{Object, Scene, presets};
@@ -9,6 +11,9 @@ use std::sync::LazyLock;
 
 /// The scene of a first start, as it opens.
 static STREET: LazyLock<Scene> = LazyLock::new(|| presets::default_scene().scene);
+
+/// Index of the post that is to be dragged, in that scene.
+const STREET_POST: usize = 3;
 
 /// What a map shows, in a line; nothing where the box of the theory stands.
 pub fn of_map(state: &State, kind: MapKind) -> Option<String> {
@@ -34,30 +39,84 @@ fn text(kind: MapKind, radar: &Radar, method: &str) -> String {
     }
 }
 
-/// What to do in the scene: in the street as it opens a post is to be dragged towards the wall, elsewhere whatever there is.
-pub fn of_scene(state: &State) -> Option<Hint> {
+/// What to do in the scene: in the street as it opens a post is to be dragged towards the wall, elsewhere whatever there is. After the first
+/// drag, what it did.
+pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
     let scene = state.editor.scene();
-    state.shows_captions().then(|| hint(scene, state.editor.document().recording().is_some()))
+    if state.shows_captions() {
+        return Some(hint(scene, state.editor.document().recording().is_some()));
+    }
+    let is_told = state.tells_first_drag && state.lesson.is_none() && state.editor.dragged().is_none();
+    let places_metres = is_told.then(|| post_and_wall(scene)).flatten()?;
+    let is_old = [MapKind::Input0, MapKind::Input1, MapKind::Target].iter().any(|kind| pipeline.is_stale(*kind));
+    let frame = &pipeline.result().filter(|_| !is_old)?.frame;
+    let maps = [frame.first.as_ref()?, frame.last.as_ref()?, frame.full.as_ref()?];
+    let text = match places_metres {
+        None => OFF_THE_RING,
+        Some(places) => told(maps.map(|map| dip_between(state.radar(), &map.lambda, places) >= SEEN_DIP)),
+    };
+    Some(Hint { text: text.to_owned(), way: Vec::new() })
+}
+
+/// A dip of this much of Lambda between two blobs is seen.
+const SEEN_DIP: f32 = 0.05;
+
+/// Post and wall differ by at most this in range, metres, as long as the post is on its ring.
+const SAME_RANGE_METRES: f64 = 0.5;
+
+/// What is said where the post was dragged off its ring.
+const OFF_THE_RING: &str = "Post and wall now differ in range: drag the post along its ring, to the wall's range";
+
+/// What the drag did: whether either input and the target show post and wall apart.
+fn told([first, last, target]: [bool; 3]) -> &'static str {
+    match (first, last, target) {
+        (true, true, true) => "Every map still shows post and wall apart: drag on, towards the wall",
+        (false, false, true) => "Both inputs now show post and wall as one blob; the target shows two",
+        (_, _, true) => "One input now shows post and wall as one blob; the target shows two",
+        (_, _, false) => "Now even the target shows post and wall as one blob: drag back a little",
+    }
 }
 
 fn hint(scene: &Scene, is_recorded: bool) -> Hint {
+    let plain = |text: &str| Hint { text: text.to_owned(), way: Vec::new() };
     if is_recorded {
-        return Hint { text: "Double-click to lay a reflector over the recording".to_owned(), way: None };
+        return plain("Double-click to lay a reflector over the recording");
     }
     if scene.objects.is_empty() {
-        return Hint { text: "Double-click to add a reflector".to_owned(), way: None };
+        return plain("Double-click to add a reflector");
     }
-    let way = (scene.objects == STREET.objects).then(|| from_post_to_wall(scene)).flatten();
-    let text = if way.is_some() { "Drag the post towards the wall" } else { "Drag a reflector: every map follows" };
-    Hint { text: text.to_owned(), way }
+    match post_and_wall(scene).flatten().filter(|_| scene.objects == STREET.objects) {
+        Some(ends) => Hint { text: "Drag the post along its ring, to the wall".to_owned(), way: along_the_ring(ends) },
+        None => plain("Drag a reflector: every map follows"),
+    }
 }
 
-fn from_post_to_wall(scene: &Scene) -> Option<[Place; 2]> {
-    let place = |object: &Object| Place::from(object.centre_metres());
-    let wall = scene.objects.iter().find(|o| matches!(o, Object::Line(_)));
-    let post = scene.objects.iter().filter(|o| matches!(o, Object::Point(_)));
-    let nearest = post.min_by(|a, b| a.centre_metres()[1].total_cmp(&b.centre_metres()[1]));
-    Some([place(nearest?), place(wall?)])
+/// Where the post of the street stands, and the wall at the same range, metres; nothing in another scene, and no places where the post has
+/// left the ranges of the wall.
+fn post_and_wall(scene: &Scene) -> Option<Option<[[f64; 2]; 2]>> {
+    let is_post = |index: usize| index == STREET_POST;
+    let same = |(index, (now, then)): (usize, (&Object, &Object))| is_post(index) || now == then;
+    let is_street =
+        scene.objects.len() == STREET.objects.len() && scene.objects.iter().zip(&STREET.objects).enumerate().all(same);
+    let post = scene.objects.get(STREET_POST).filter(|_| is_street)?.centre_metres();
+    let wall = scene.objects.iter().find(|o| matches!(o, Object::Line(_)))?;
+    let range = post[0].hypot(post[1]);
+    let off = |at: &[f64; 2]| (at[0].hypot(at[1]) - range).abs();
+    let nearest =
+        wall.reflectors().into_iter().map(|r| [r.x_metres, r.y_metres]).min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    Some(Some([post, nearest]).filter(|_| off(&nearest) <= SAME_RANGE_METRES))
+}
+
+/// Places on a ring around the array, from one direction to another.
+fn along_the_ring([from, to]: [[f64; 2]; 2]) -> Vec<Place> {
+    const STEPS: usize = 48;
+    let range = from[0].hypot(from[1]);
+    let angle = |at: [f64; 2]| at[1].atan2(at[0]);
+    let at = |step: usize| {
+        let angle = angle(from) + (angle(to) - angle(from)) * step as f64 / STEPS as f64;
+        Place::new(range * angle.cos(), range * angle.sin())
+    };
+    (0..=STEPS).map(at).collect()
 }
 
 #[cfg(test)]
@@ -73,12 +132,14 @@ mod tests {
     }
 
     #[test]
-    fn the_first_scene_asks_to_drag_the_post_towards_the_wall() {
+    fn the_first_scene_asks_to_drag_the_post_along_its_ring() {
         let street = presets::default_scene().scene;
         let Hint { text, way } = hint(&street, false);
-        let [from, to] = way.expect("from the post to the wall");
-        assert_eq!(text, "Drag the post towards the wall");
-        assert!(from.y_metres < to.y_metres && from.x_metres < to.x_metres, "{from:?} to {to:?}");
+        assert_eq!(text, "Drag the post along its ring, to the wall");
+        let ranges: Vec<f64> = way.iter().map(|at| at.x_metres.hypot(at.y_metres)).collect();
+        assert!(ranges.iter().all(|range| (range - ranges[0]).abs() < 1e-9), "{ranges:?}");
+        let [.., end] = way[..] else { panic!("an arrow") };
+        assert!((end.x_metres - 9.0).abs() < 0.1, "the arrow ends at {end:?}, not at the wall");
         assert_eq!(hint(&Scene::default(), false).text, "Double-click to add a reflector");
     }
 
@@ -86,6 +147,17 @@ mod tests {
     fn another_scene_of_a_point_with_a_line_asks_to_drag_any_reflector() {
         let mut other = presets::default_scene().scene;
         other.objects.retain(|object| matches!(object, Object::Line(_) | Object::Point(_)));
-        assert_eq!(hint(&other, false), Hint { text: "Drag a reflector: every map follows".to_owned(), way: None });
+        let plain = Hint { text: "Drag a reflector: every map follows".to_owned(), way: Vec::new() };
+        assert_eq!(hint(&other, false), plain);
+    }
+
+    #[test]
+    fn a_post_off_the_ranges_of_the_wall_has_no_counterpart() {
+        let mut street = presets::default_scene().scene;
+        assert!(post_and_wall(&street).flatten().is_some());
+        street.objects[STREET_POST].translate(0.0, -8.0);
+        assert_eq!(post_and_wall(&street), Some(None));
+        street.objects.swap_remove(0);
+        assert_eq!(post_and_wall(&street), None, "another scene");
     }
 }

@@ -1,6 +1,6 @@
 //! What the panels are told that set maps beside each other.
 
-use super::maps::{caption, cells, is_updating, map_input, marked};
+use super::maps::{caption, cells, is_updating, map_input, marked, verdict};
 use super::{Contents, offered};
 use crate::app::jobs::Jobs;
 use crate::app::panels::{compare, values};
@@ -68,7 +68,9 @@ fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
                 let detection = m.detection.map_or("–".to_owned(), percent);
                 format!(" · SE {:.0} · P_D {detection} · P_FA {}", m.squared_error, percent(m.false_alarm))
             });
-            format!("{method}{figures}{updating}")
+            let verdict = verdict(state, jobs, kind.slot().unwrap_or(MethodSlot::First));
+            let verdict = verdict.map_or_else(String::new, |verdict| format!(" · {verdict}"));
+            format!("{method}{verdict}{figures}{updating}")
         }
         MapKind::Difference | MapKind::SecondDifference => format!("{method} − target{updating}"),
         MapKind::OutputAbove | MapKind::SecondAbove => {

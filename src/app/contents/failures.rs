@@ -21,6 +21,7 @@ impl Contents<'_> {
             before: job.before(),
             progress: job.progress(),
             note: job.note(),
+            unfit: job.unfit(),
             own: own.as_deref(),
             colours: state.settings.colours,
             opened: opened.map(|opened| opened.index),

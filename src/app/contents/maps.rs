@@ -5,7 +5,7 @@ use crate::app::jobs::{Jobs, TheoryResult};
 use crate::app::panels::{cuts, map, roc};
 use crate::app::state::{Command, MapKind, MethodSlot, State};
 use crate::engine::ReadyMap;
-use crate::evaluate::TARGET_ETA;
+use crate::evaluate::{TARGET_ETA, median_offset_metres};
 use crate::reconstruct::untrained_noise;
 use crate::scattering::Echoing;
 use eframe::egui::{TextureFilter, TextureId, TextureOptions, Ui};
@@ -89,6 +89,7 @@ pub(super) fn map_input<'a>(
         other_view: state.map_views.seen(settings.projection.other()),
         colours: settings.colours,
         units: settings.units,
+        directions: settings.directions,
         difference: settings.difference,
         texture,
         pictured: picture.map_or(settings.projection, |p| p.projection),
@@ -122,7 +123,12 @@ pub(super) fn map_input<'a>(
 fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<map::ToldApart<'a>> {
     let pair = &jobs.pipeline.method(slot).output()?.pair;
     let (output, eta) = jobs.pipeline.judged(state, slot)?;
-    Some(map::ToldApart { output, target: pair.target.as_deref()?, etas: [eta, TARGET_ETA] })
+    let target = match state.settings.cfar {
+        None => pair.target.as_ref(),
+        Some(_) if pair.target.is_none() => None,
+        Some(_) => jobs.pipeline.result().and_then(|result| result.detected.target.as_ref()),
+    };
+    Some(map::ToldApart { output, target: target?, etas: [eta, TARGET_ETA] })
 }
 
 /// Over which noise the method whose map it is was trained, where the scene has other noise. A recording's noise is not known.
@@ -152,6 +158,7 @@ pub(super) fn caption(state: &State, jobs: &Jobs, kind: MapKind) -> Option<Strin
         method: pipeline.method(slot).output().map(|o| o.method),
         updating: is_updating(jobs, kind),
         running: kind.slot().and_then(|slot| running(state, jobs, slot)),
+        verdict: verdict(state, jobs, slot),
         metrics: pipeline.scores_in(slot).map(|s| s.metrics).filter(|_| !state.is_predicting()),
         target_eta: state.settings.target_eta,
         output_eta: pipeline.eta(state, slot),
@@ -160,6 +167,27 @@ pub(super) fn caption(state: &State, jobs: &Jobs, kind: MapKind) -> Option<Strin
         units: state.settings.units,
         range_db: pipeline.range_db(),
     })
+}
+
+/// What became of the objects in a method's output, as far as that is known of the one on screen: "5 of 5 found, 0 false, 3 cm off".
+pub(super) fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<String> {
+    let (fates, current) = jobs.kinds.of(slot, &jobs.pipeline)?;
+    if !current || state.is_predicting() || fates.scene.objects.is_empty() {
+        return None;
+    }
+    let output = jobs.pipeline.method(slot).output()?;
+    let offset = median_offset_metres(&fates.scene, &fates.failures, &output.reflectors);
+    let off = offset.map_or_else(String::new, |metres| format!(", {}", off_text(metres)));
+    Some(format!("{}{off}", fates.failures.verdict()))
+}
+
+/// A distance in the unit in which it has one to three digits before the point.
+fn off_text(metres: f64) -> String {
+    match metres {
+        m if m < 0.0095 => format!("{:.0} mm off", 1e3 * m),
+        m if m < 0.995 => format!("{:.0} cm off", 1e2 * m),
+        m => format!("{m:.1} m off"),
+    }
 }
 
 /// Whether a map is of something else than what is on screen.

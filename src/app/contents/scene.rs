@@ -22,7 +22,8 @@ impl Contents<'_> {
             cursor: state.shown_cursor(),
             error: pipeline.scene_error(),
             numbers: state.shows_axes(),
-            hint: captions::of_scene(state),
+            hint: captions::of_scene(state, pipeline),
+            tells_maps: !state.is_predicting(),
             moved: moved.as_deref().map(|scene| (scene, state.timeline.seconds())),
         };
         scene::show(ui, input, &mut state.editor, &mut state.scene_view)

@@ -99,6 +99,26 @@ impl Purpose {
         }
     }
 
+    /// The file that is written where `path` was chosen: with the usual ending where it has none.
+    ///
+    /// # Errors
+    /// A sentence with the endings that there are, where it has another.
+    pub fn destination(self, path: PathBuf) -> Result<PathBuf, String> {
+        let endings = self.kind().1;
+        match path.extension() {
+            _ if self.reads() => Ok(path),
+            None => Ok(path.with_extension(endings[0])),
+            Some(ending) if endings.iter().any(|known| ending.eq_ignore_ascii_case(known)) => Ok(path),
+            Some(_) => Err(self.unknown_ending(&path)),
+        }
+    }
+
+    /// What is said of a file with another ending.
+    pub fn unknown_ending(self, path: &Path) -> String {
+        let endings: Vec<String> = self.kind().1.iter().map(|ending| format!(".{ending}")).collect();
+        format!("{}: nothing is written with this ending; expected {}", path.display(), endings.join(" or "))
+    }
+
     /// Name of the file where nobody chooses another.
     pub fn name(self) -> &'static str {
         match self {
@@ -137,6 +157,12 @@ impl Question {
         Question { purpose, folder, name }
     }
 
+    /// Asks with this file as the usual one.
+    fn at(purpose: Purpose, path: &Path) -> Question {
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        Question { purpose, folder: path.parent().map(Path::to_path_buf), name }
+    }
+
     fn for_the_system(&self) -> FileQuestion {
         let (kind, endings) = self.purpose.kind();
         FileQuestion {
@@ -158,6 +184,8 @@ type Reply = Box<dyn FnOnce(Option<PathBuf>) + Send>;
 
 enum Answer {
     Chosen(Command),
+    /// The window asks once more.
+    Again(Question),
     NotShown(Question),
     Unreadable(String),
 }
@@ -209,8 +237,13 @@ impl Dialogs {
         let began = Instant::now();
         let asked = question.for_the_system();
         let reply = move |path: Option<PathBuf>| {
-            let answer = match path {
-                Some(path) => Answer::Chosen(question.purpose.command(path)),
+            let answer = match path.map(|path| (question.purpose.destination(path.clone()), path)) {
+                Some((Err(why), _)) => Answer::Unreadable(why),
+                // The system asked about another name: the window asks about this one.
+                Some((Ok(path), chosen)) if path != chosen && platform::fs::exists(&path) => {
+                    Answer::Again(Question::at(question.purpose, &path))
+                }
+                Some((Ok(path), _)) => Answer::Chosen(question.purpose.command(path)),
                 None if began.elapsed() < NEVER_SHOWN => Answer::NotShown(question),
                 None => return,
             };
@@ -229,6 +262,7 @@ impl Dialogs {
             match answer {
                 Answer::Chosen(command) => chosen.push(command),
                 Answer::Unreadable(problem) => problems.push(problem),
+                Answer::Again(question) => self.unanswered = Some(question),
                 Answer::NotShown(question) => {
                     self.unanswered = Some(question);
                     if self.system.take().is_some() {
@@ -319,6 +353,16 @@ mod tests {
         assert_eq!(named(Purpose::ExportMaps, Some(path)), "maps.npz");
         assert_eq!(named(Purpose::SaveScene, None), "scene.toml");
         assert_eq!(named(Purpose::SaveScene, Some(Path::new("chip-8-overlay.toml"))), "chip-8-overlay.toml");
+    }
+
+    #[test]
+    fn an_unknown_ending_is_refused_with_the_list() {
+        let to = |purpose: Purpose, name: &str| purpose.destination(name.into());
+        assert_eq!(to(Purpose::ExportPicture, "a"), Ok("a.png".into()));
+        assert_eq!(to(Purpose::ExportPicture, "a.SVG"), Ok("a.SVG".into()));
+        let refused = to(Purpose::ExportPicture, "a.jpg").unwrap_err();
+        assert!(refused.starts_with("a.jpg: ") && refused.ends_with("expected .png or .svg"), "{refused}");
+        assert!(to(Purpose::SaveRows, "rows.txt").unwrap_err().ends_with("expected .csv"));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Pictures, arrays and figures for other programs, written on threads of their own.
 
-use super::camera::Camera;
+use super::dialogs::Purpose;
 use super::failures::{RowTable, write_rows_to};
 use super::pipeline::Pipeline;
 use super::recorded::seen_by;
@@ -9,21 +9,15 @@ use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::maps::archive::{write_maps, write_recorded_maps};
 use crate::picture::{Format, Style, compose, compose_recording, maps_of};
-use crate::platform::{self, Instant};
+use crate::platform;
 use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
 use crate::signal;
 use crate::task::panic_message;
-use eframe::egui::{ColorImage, Context};
-use std::io::Cursor;
+use eframe::egui::Context;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::Duration;
-
-/// Between asking for a picture of the window and taking it: menus and dialogs are gone by then, and maps have come to rest in their
-/// coordinates.
-const PAUSE: Duration = Duration::from_millis(600);
 
 /// What came of an export.
 pub struct Export {
@@ -51,15 +45,12 @@ impl Export {
 pub struct Exports {
     wake: Context,
     done: (Sender<Export>, Receiver<Export>),
-    camera: Camera,
-    /// Pictures of the window that wait for its maps, and when they were asked for.
-    waiting: Vec<(PathBuf, Instant)>,
 }
 
 impl Exports {
     /// Nothing yet; `wake` draws another frame when one is finished.
     pub fn new(wake: Context) -> Self {
-        Exports { camera: Camera::new(wake.clone()), wake, done: channel(), waiting: Vec::new() }
+        Exports { wake, done: channel() }
     }
 
     /// What has been finished since the last call.
@@ -67,63 +58,12 @@ impl Exports {
         self.done.1.try_iter().collect()
     }
 
-    /// Writes a picture: what the window shows as PNG, or all panels of the scene drawn afresh as SVG. Returns what to tell.
+    /// Draws the panels that `apertura maps` draws, with the method and the settings on screen, as PNG or SVG. Returns what to tell.
     ///
     /// # Errors
     /// Why it could not be begun.
-    pub fn picture(&mut self, state: &State, path: PathBuf) -> Result<String, String> {
-        match Format::of_path(&path) {
-            Some(Format::Svg) => self.drawing(state, path),
-            _ => Ok(self.window(path)),
-        }
-    }
-
-    /// Takes a picture of the window as soon as its maps are there, and writes it as PNG.
-    fn window(&mut self, mut path: PathBuf) -> String {
-        path.set_extension("png");
-        let said = format!("Exporting {} as soon as all maps are there…", path.display());
-        self.waiting.push((path, Instant::now()));
-        said
-    }
-
-    /// Takes the pictures that wait, once everything that is drawn `is_whole`; called at the end of each frame.
-    pub fn look(&mut self, is_whole: bool, now: Instant) {
-        let Some((_, asked)) = self.waiting.last() else { return };
-        if !is_whole || now.duration_since(*asked) < PAUSE {
-            self.wake.request_repaint_after(PAUSE);
-            return;
-        }
-        for (path, _) in std::mem::take(&mut self.waiting) {
-            let (done, wake) = (self.done.0.clone(), self.wake.clone());
-            self.camera.take(now, move |picture| {
-                // Compressing takes longer than a frame.
-                if let Err(error) =
-                    in_background(done, wake, path, move |path| write_png(path, &picture).map(|()| None))
-                {
-                    tracing::warn!("the picture could not be exported: {error}");
-                }
-            });
-        }
-    }
-
-    /// Whether a picture of the window waits for its maps.
-    pub fn is_waiting(&self) -> bool {
-        !self.waiting.is_empty()
-    }
-
-    /// Whether a picture is taken: no message may stand in it.
-    pub fn hides_messages(&self, now: Instant) -> bool {
-        self.camera.is_taking(now)
-    }
-
-    /// Gives up the pictures that wait. Returns what to tell.
-    pub fn give_up(&mut self) -> Option<String> {
-        let (path, _) = std::mem::take(&mut self.waiting).pop()?;
-        Some(format!("{} was not written.", path.display()))
-    }
-
-    /// Draws the panels that `apertura maps` draws, with the method and the settings on screen.
-    fn drawing(&self, state: &State, path: PathBuf) -> Result<String, String> {
+    pub fn picture(&self, state: &State, path: PathBuf) -> Result<String, String> {
+        let format = Format::of_path(&path).ok_or_else(|| Purpose::ExportPicture.unknown_ending(&path))?;
         let Some(method) = state.method().cloned() else {
             return Err("There is no method to draw the output of.".to_owned());
         };
@@ -137,11 +77,11 @@ impl Exports {
         };
         self.begin(path, move |path| {
             let bytes = match recording {
-                Some(recording) => compose_recording(&recording, method.as_ref(), &style, Format::Svg),
+                Some(recording) => compose_recording(&recording, method.as_ref(), &style, format),
                 None => {
                     let seed = scene.noise_seed;
                     let signal = signal::simulate(&radar, &scene, floor, seed).map_err(|e| e.to_string())?;
-                    compose(&radar, &scene, &signal, method.as_ref(), &style, Format::Svg)
+                    compose(&radar, &scene, &signal, method.as_ref(), &style, format)
                 }
             };
             let bytes = bytes.map_err(|e| e.to_string())?;
@@ -153,8 +93,7 @@ impl Exports {
     ///
     /// # Errors
     /// Why it could not be begun.
-    pub fn maps(&self, state: &State, mut path: PathBuf) -> Result<String, String> {
-        path.set_extension("npz");
+    pub fn maps(&self, state: &State, path: PathBuf) -> Result<String, String> {
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
         let (floor, normalisation) = (state.settings.floor, state.settings.normalisation);
         let method = state.method().cloned();
@@ -184,11 +123,10 @@ impl Exports {
     ///
     /// # Errors
     /// That there are none, or why it could not be begun.
-    pub fn rows(&self, table: &RowTable, mut path: PathBuf) -> Result<String, String> {
+    pub fn rows(&self, table: &RowTable, path: PathBuf) -> Result<String, String> {
         if table.rows().is_empty() {
             return Err("There are no rows yet: try methods on scenes first.".to_owned());
         }
-        path.set_extension("csv");
         let (rows, conditions) = (table.rows().clone(), table.conditions().clone());
         self.begin(path, move |path| write_rows_to(path, &rows, &conditions).map(|()| None))
     }
@@ -246,15 +184,6 @@ fn in_background(
         wake();
     };
     platform::spawn("export", work)
-}
-
-fn write_png(path: &Path, picture: &ColorImage) -> Result<(), String> {
-    let [width, height] = picture.size;
-    let bytes = picture.pixels.iter().flat_map(|p| p.to_array()).collect();
-    let image = image::RgbaImage::from_raw(width as u32, height as u32, bytes).ok_or("the picture is incomplete")?;
-    let mut png = Cursor::new(Vec::new());
-    image.write_to(&mut png, image::ImageFormat::Png).map_err(|e| e.to_string())?;
-    write_bytes(path, png.get_ref()).map_err(|e| e.to_string())
 }
 
 fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {

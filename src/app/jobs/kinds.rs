@@ -108,7 +108,8 @@ impl Kinds {
     /// Asks for verdicts on the outputs on screen, where they are to be marked and belong to the maps.
     pub fn ask(&mut self, state: &State, pipeline: &Pipeline) {
         let told = state.arrangement.shown().contains(&Panel::Failures) && state.row_on_screen().is_some();
-        if !(state.settings.show_kinds || told) || !pipeline.wants_output() {
+        // The headline of an output is made once the scene rests: a drag costs nothing for it.
+        if !(state.settings.show_kinds || told || pipeline.is_settled()) || !pipeline.wants_output() {
             return;
         }
         let Some(truth) = pipeline.truth() else { return };

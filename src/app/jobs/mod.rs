@@ -251,7 +251,6 @@ impl Jobs {
         let is_done = !self.draws_more() && self.pipeline.rests_in().is_none() && !is_outdated;
         // What came after this frame was drawn is drawn in the next.
         let is_whole = std::mem::replace(&mut self.was_done, is_done) && is_done;
-        self.exports.look(is_whole, now);
         let is_dimmed = state.pictured().into_iter().any(|kind| self.pipeline.is_stale(kind));
         self.recorder.look(Window { is_dragged: state.editor.dragged().is_some(), is_dimmed, is_whole }, now);
     }
@@ -259,7 +258,7 @@ impl Jobs {
     /// Whether a picture of the window is taken: no message may stand in it.
     pub fn hides_messages(&self) -> bool {
         let now = Instant::now();
-        self.exports.hides_messages(now) || self.recorder.hides_messages(now)
+        self.recorder.hides_messages(now)
     }
 
     /// Whether something that panels draw is still being computed.
@@ -328,10 +327,7 @@ impl Jobs {
 
     /// Whether maps, output or bounds are being computed.
     pub fn is_busy(&self) -> bool {
-        self.draws_more()
-            || self.failures.is_busy()
-            || self.exports.is_waiting()
-            || self.autosave.as_ref().is_some_and(|a| a.is_busy())
+        self.draws_more() || self.failures.is_busy() || self.autosave.as_ref().is_some_and(|a| a.is_busy())
     }
 }
 

@@ -7,7 +7,7 @@ use crate::app::widgets::textures::colour_table;
 use crate::app::widgets::theme;
 use crate::evaluate::TARGET_ETA;
 use crate::maps::{RangeAngleMap, cartesian};
-use crate::picture::{ColourMap, Detection};
+use crate::picture::{ColourMap, Detection, told_apart};
 use crate::radar::Radar;
 use eframe::egui::{Color32, ColorImage};
 use ndarray::ArrayView2;
@@ -92,12 +92,16 @@ fn end_of(subject: &Subject) -> f32 {
     if let Paint::Doubt(_) = subject.paint {
         return round(subject.map.lambda.iter().copied().fold(0.0, f32::max));
     }
-    let (Paint::Difference { view, .. }, Some(minus)) = (subject.paint, &subject.minus) else { return 1.0 };
+    let (Paint::Difference { view, beside, .. }, Some(minus)) = (subject.paint, &subject.minus) else { return 1.0 };
     if view.whole || minus.lambda.dim() != subject.map.lambda.dim() {
         return 1.0;
     }
-    let most = subject.map.lambda.iter().zip(&minus.lambda).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    round(most)
+    round(largest_difference(&subject.map, minus).max(beside))
+}
+
+/// The largest difference between the cells of two maps.
+pub fn largest_difference(map: &RangeAngleMap, minus: &RangeAngleMap) -> f32 {
+    map.lambda.iter().zip(&minus.lambda).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
 
 /// Where scales end, but for those that end at 1.
@@ -121,11 +125,11 @@ fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<
             let mask = theme::mask(dark);
             cells.map(|&v| shown(v, mask[usize::from(v > eta)])).collect()
         }
-        (Paint::Detections { eta, dark }, Some(target)) => {
-            let colours = detections(map, target, eta, dark);
+        (Paint::Detections { eta, dark, decibels }, Some(target)) => {
+            let colours = fills(&told_apart(map, target, [eta, TARGET_ETA], decibels), map.dim(), dark);
             cells.zip(colours).map(|(&v, colour)| shown(v, colour)).collect()
         }
-        (Paint::Difference { view, colours }, Some(minus)) if view.absolute => {
+        (Paint::Difference { view, colours, .. }, Some(minus)) if view.absolute => {
             let table = colour_table(colours);
             let part = |v: f32, m: f32| 255.0 * (v - m).abs() / end + 0.5;
             cells.zip(&minus).map(|(&v, &m)| shown(v, table[part(v, m) as u8 as usize])).collect()
@@ -141,11 +145,8 @@ fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<
     }
 }
 
-/// Fills of hits, misses and false alarms, and an outline around each patch of them.
-fn detections(output: ArrayView2<'_, f32>, target: ArrayView2<'_, f32>, eta: f32, dark: bool) -> Vec<Color32> {
-    let (rows, columns) = output.dim();
-    let kinds: Vec<Detection> =
-        output.iter().zip(&target).map(|(&v, &t)| Detection::of(t > TARGET_ETA, v > eta)).collect();
+/// Fills of hits, rims, misses and false alarms, and an outline around each patch of them.
+fn fills(kinds: &[Detection], (rows, columns): (usize, usize), dark: bool) -> Vec<Color32> {
     // A map of many cells is shrunk on screen: a thinner outline would be lost there.
     let [wide, high] = [(columns / ON_SCREEN[0]).max(1), (rows / ON_SCREEN[1]).max(1)];
     let mut around = vec![Detection::Nothing; kinds.len()];
@@ -166,7 +167,7 @@ fn detections(output: ArrayView2<'_, f32>, target: ArrayView2<'_, f32>, eta: f32
         let [r, g, b] = if kind == Detection::Nothing { around.outline(dark) } else { kind.fill(dark) };
         Color32::from_rgb(r, g, b)
     };
-    kinds.into_iter().zip(around).map(colour).collect()
+    kinds.iter().copied().zip(around).map(colour).collect()
 }
 
 #[cfg(test)]
@@ -207,13 +208,13 @@ mod tests {
     }
 
     #[test]
-    fn hits_misses_and_false_alarms_are_told_apart_by_the_target() {
+    fn hits_rims_and_misses_are_told_apart_by_the_target() {
         let (mut painter, radar) = (Painter::default(), Radar::default());
         for dark in [true, false] {
             let subject = Subject {
                 map: lambda(array![[0.0f32, 0.0], [0.8, 0.8]]),
                 minus: Some(lambda(array![[0.0f32, 0.95], [0.89, 0.95]])),
-                paint: Paint::Detections { eta: 0.5, dark },
+                paint: Paint::Detections { eta: 0.5, dark, decibels: 0.0 },
                 projection: Projection::RangeAngle,
             };
             let painted = painter.paint(&radar, MapKind::OutputAbove, &subject).image.pixels.clone();
@@ -221,7 +222,7 @@ mod tests {
             // The cell of neither map is beside a hit: the outline of what it touches most telling.
             let expected = [Detection::Hit.outline(dark)]
                 .into_iter()
-                .chain([Detection::Miss, Detection::FalseAlarm, Detection::Hit].map(|kind| kind.fill(dark)));
+                .chain([Detection::Miss, Detection::Rim, Detection::Hit].map(|kind| kind.fill(dark)));
             let expected: Vec<Color32> = expected.map(colour).collect();
             assert_eq!(painted, expected);
         }
@@ -231,7 +232,8 @@ mod tests {
     fn a_patch_of_hits_is_flat_with_an_outline_around_it() {
         let mut target = Array2::from_elem((9, 9), 0.0f32);
         target.slice_mut(ndarray::s![3..6, 2..7]).fill(0.95);
-        let colours = detections(target.view(), target.view(), 0.5, true);
+        let kinds = told_apart(target.view(), target.view(), [0.5, TARGET_ETA], 0.0);
+        let colours = fills(&kinds, target.dim(), true);
         let of = |[r, g, b]: [u8; 3]| colours.iter().filter(|c| **c == Color32::from_rgb(r, g, b)).count();
         let [inside, around, beside] =
             [Detection::Hit.fill(true), Detection::Hit.outline(true), Detection::Nothing.fill(true)].map(of);
@@ -240,7 +242,8 @@ mod tests {
 
     /// Differences of 0, -0.03, 0.03 and 0.02.
     fn difference(absolute: bool, whole: bool) -> Picture {
-        let paint = Paint::Difference { view: DifferenceView { absolute, whole }, colours: ColourMap::Grey };
+        let view = DifferenceView { absolute, whole };
+        let paint = Paint::Difference { view, colours: ColourMap::Grey, beside: 0.0 };
         let (map, minus) = (lambda(array![[0.5, 0.5, 0.5, 0.5]]), lambda(array![[0.5, 0.53, 0.47, 0.48]]));
         let subject = Subject { map, minus: Some(minus), paint, projection: Projection::RangeAngle };
         Painter::default().paint(&Radar::default(), MapKind::Difference, &subject)
@@ -253,6 +256,18 @@ mod tests {
         assert_eq!((signed.end, whole.end), (0.05, 1.0));
         assert_eq!(signed.image.pixels[1], table[51], "three fifths of the way down");
         assert_eq!(whole.image.pixels[2], table[131], "hardly to be seen on the whole scale");
+    }
+
+    #[test]
+    fn two_differences_beside_each_other_have_one_scale() {
+        let (map, minus) = (lambda(array![[0.5, 0.5]]), lambda(array![[0.5, 0.53]]));
+        let of = |beside| {
+            let paint = Paint::Difference { view: DifferenceView::default(), colours: ColourMap::Grey, beside };
+            let subject =
+                Subject { map: map.clone(), minus: Some(minus.clone()), paint, projection: Projection::RangeAngle };
+            Painter::default().paint(&Radar::default(), MapKind::Difference, &subject).end
+        };
+        assert_eq!([of(0.0), of(0.15)], [0.05, 0.2]);
     }
 
     #[test]

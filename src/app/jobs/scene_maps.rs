@@ -1,7 +1,7 @@
 //! The maps of a scene, their pictures and their figures: what the maps worker is asked for, and what it makes.
 
 use super::detected::{DETECTED, Detected, Detector};
-use super::painter::{Painter, Picture};
+use super::painter::{Painter, Picture, largest_difference};
 use super::recorded::{RecordedMaps, Unexplained};
 use super::subject::{Paint, Subject};
 use crate::app::state::{DifferenceView, MapKind, Projection};
@@ -204,7 +204,8 @@ impl MapsState {
         let output =
             |slot: usize, above| request.pairs[slot].as_ref().filter(|_| shows(above)).map(|pair| &pair.output);
         let outputs = [output(0, MapKind::OutputAbove), output(1, MapKind::SecondAbove)];
-        let detected = self.detector.detect(request.cfar, &frame, shows(MapKind::TargetAbove), outputs);
+        let needs_target = outputs.iter().any(Option::is_some) || shows(MapKind::TargetAbove);
+        let detected = self.detector.detect(request.cfar, &frame, needs_target, outputs);
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
             if let Some(subject) = subject(&frame, unexplained.as_ref(), &request, &detected, kind) {
@@ -281,7 +282,9 @@ fn scored(kept: &mut Option<ScoresOf>, is_silent: bool, pair: &Pair, judged: &Ju
         None => ((target, &pair.output), etas),
         Some(_) => (detected?, [DETECTED; 2]),
     };
-    let metrics = Metrics::of_echoes(!is_silent, target, above.1, output_eta);
+    // What the map of the target shows is what hits and misses are counted against.
+    let truth = if cfar.is_some() { above.0 } else { target };
+    let metrics = Metrics::of_echoes(!is_silent, truth, above.1, output_eta);
     let scores = Scores {
         metrics: Metrics { squared_error: squared_error(target, &pair.output), ..metrics },
         target_blobs: blobs(above.0, target_eta),
@@ -299,6 +302,14 @@ struct Judged<'a> {
     cfar: Option<Cfar>,
     /// What it found in target and output.
     detected: Option<(&'a Arc<RangeAngleMap>, &'a Arc<RangeAngleMap>)>,
+}
+
+/// The largest difference of the other method's output, where both differences are looked at.
+fn beside(request: &MapsRequest, slot: usize) -> f32 {
+    let both = [MapKind::Difference, MapKind::SecondDifference];
+    let other = request.pairs[1 - slot].as_ref().filter(|_| both.iter().all(|kind| request.pictures.contains(kind)));
+    let of_pair = |pair: &Pair| Some(largest_difference(&pair.output, pair.target.as_ref()?));
+    other.filter(|_| !request.difference.whole).and_then(of_pair).unwrap_or(0.0)
 }
 
 /// What the picture of one map shows; `None` where there is no such map.
@@ -330,15 +341,21 @@ fn subject(
                 None => (output, request.etas[slot?]),
                 Some(_) => (detected.outputs[slot?].clone(), DETECTED),
             };
-            match &pair?.target {
-                Some(target) => (output, Some(target.clone()), Paint::Detections { eta, dark }),
+            let target = match request.cfar {
+                None => pair?.target.clone(),
+                Some(_) => detected.target.clone().filter(|_| pair.is_some_and(|pair| pair.target.is_some())),
+            };
+            let spans = |map: &ReadyMap| (20.0 * (map.scale.peak - map.scale.floor)) as f32;
+            let decibels = frame.full.as_ref().filter(|_| request.cfar.is_none()).map_or(0.0, spans);
+            match target {
+                Some(target) => (output, Some(target), Paint::Detections { eta, dark, decibels }),
                 None => (output, None, Paint::Above { eta, dark }),
             }
         }
         MapKind::Difference | MapKind::SecondDifference => (
             output,
             Some(pair?.target.clone()?),
-            Paint::Difference { view: request.difference, colours: request.colours },
+            Paint::Difference { view: request.difference, colours: request.colours, beside: beside(request, slot?) },
         ),
         MapKind::Unexplained => (lambda(&unexplained?.as_ref().ok().map(|u| u.map.clone())), None, colours),
     };

@@ -31,7 +31,8 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
         (Paint::Detections { eta, .. }, Some(target)) => {
             let of =
                 |kind| map.iter().zip(target).filter(move |(v, t)| Detection::of(**t > TARGET_ETA, **v > eta) == kind);
-            let [hits, alarms, misses] = Detection::SEEN.map(|kind| of(kind).count());
+            let [hits, alarms, misses] =
+                [Detection::Hit, Detection::FalseAlarm, Detection::Miss].map(|kind| of(kind).count());
             format!("{} hit, {alarms} false alarms, {misses} missed; {}", cells(hits), lowered(&peaks(radar, map)))
         }
         (Paint::Difference { .. }, Some(target)) => largest_difference(radar, map, target),
@@ -132,7 +133,7 @@ mod tests {
     #[test]
     fn detections_are_counted() {
         let (output, target) = (map(&[(9, 9, 0.95), (99, 99, 0.9)]), map(&[(9, 9, 0.95), (200, 9, 1.0)]));
-        let told = said(Paint::Detections { eta: 0.8, dark: true }, output.clone(), Some(target));
+        let told = said(Paint::Detections { eta: 0.8, dark: true, decibels: 0.0 }, output.clone(), Some(target));
         assert!(told.starts_with("1 cell hit, 1 false alarms, 1 missed; peaks"), "{told}");
         let told = said(Paint::Above { eta: 0.8, dark: true }, output, None);
         assert!(told.starts_with("2 cells above the threshold; peaks"), "{told}");
@@ -142,7 +143,7 @@ mod tests {
     fn a_difference_is_told_where_it_is_largest() {
         let radar = Radar::default();
         let bin = radar.bin_of_range(10.0).round() as usize;
-        let paint = Paint::Difference { view: DifferenceView::default(), colours: ColourMap::Grey };
+        let paint = Paint::Difference { view: DifferenceView::default(), colours: ColourMap::Grey, beside: 0.0 };
         let told = said(paint, map(&[(bin, 512, 0.1)]), Some(map(&[])));
         assert_eq!(told, "The largest difference is −0.10 at 10.0 m, ±0.0°.");
         assert_eq!(said(paint, map(&[]), Some(map(&[]))), "Output and target are the same.");

@@ -23,6 +23,8 @@ pub enum Paint {
         eta: f32,
         /// Whether the window is dark.
         dark: bool,
+        /// What Lambda spans in the target, decibels; 0 where the target is what a detector made of it.
+        decibels: f32,
     },
     /// Expected errors, from none to the next round number.
     Doubt(ColourMap),
@@ -32,6 +34,8 @@ pub enum Paint {
         view: DifferenceView,
         /// Colours of differences without a sign.
         colours: ColourMap,
+        /// The largest of another difference that stands beside it: both have one scale.
+        beside: f32,
     },
 }
 

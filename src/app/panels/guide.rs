@@ -105,8 +105,11 @@ const CHAPTERS: &[&[Step]] = &[
 
 /// Opens a preset, then does the rest.
 fn scene(id: &str, then: Vec<Command>) -> Vec<Command> {
-    let preset = presets::ALL.iter().position(|p| p.id == id).map(|v| Command::Document(DocumentCommand::Preset(v)));
-    preset.into_iter().chain(then).collect()
+    let Some(index) = presets::ALL.iter().position(|p| p.id == id) else { return then };
+    // A chapter speaks of the default radar, whichever is on screen.
+    let radar = (!presets::ALL[index].has_radar()).then(|| Command::Radar(RadarCommand::Set(Box::default())));
+    let preset = Command::Document(DocumentCommand::Preset(index));
+    [preset].into_iter().chain(radar).chain(then).collect()
 }
 
 /// A scene on which a method fails, its output in sight and marked.

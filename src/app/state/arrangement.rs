@@ -208,6 +208,27 @@ impl Arrangement {
         self.opened = Some(panel);
     }
 
+    /// Puts a map into the largest place that a map has, and what stood there into its place.
+    pub fn put_large(&mut self, kind: MapKind) {
+        let asked = Panel::Map(kind);
+        if !self.is_open(asked) || !self.is_in_front(asked) {
+            self.set_open(asked, true);
+        }
+        let tiles = &self.tree.tiles;
+        let area = |panel: &Panel| {
+            let place = tiles.find_pane(panel).filter(|_| self.is_open(*panel) && self.is_in_front(*panel));
+            place.and_then(|id| tiles.rect(id)).map_or(0.0, |rect| rect.area())
+        };
+        // Where nothing was laid out yet, the target has the largest place.
+        let maps = MapKind::ALL.map(Panel::Map).into_iter().chain([Panel::Map(MapKind::Target)]);
+        let Some(large) = maps.max_by(|a, b| area(a).total_cmp(&area(b))) else { return };
+        let (Some(to), Some(from)) = (tiles.find_pane(&large), tiles.find_pane(&asked)) else { return };
+        if area(&large) > area(&asked) || area(&large) == 0.0 {
+            self.tree.tiles.insert(to, Tile::Pane(asked));
+            self.tree.tiles.insert(from, Tile::Pane(large));
+        }
+    }
+
     /// Gives a panel that was opened the room it needs, once it was laid out; whether anything moved.
     pub fn make_room(&mut self) -> bool {
         let in_sight = |panel: &Panel| self.shown.contains(panel);
@@ -315,6 +336,16 @@ mod tests {
         arrangement.shown.insert(Panel::Cuts);
         arrangement.toggle(Panel::Cuts);
         assert!(arrangement.is_open(Panel::Timing) && !arrangement.is_open(Panel::Cuts));
+    }
+
+    #[test]
+    fn the_map_that_is_asked_for_takes_the_largest_place() {
+        let mut arrangement = Arrangement::of_a_lesson();
+        let place = |arrangement: &Arrangement, kind| arrangement.tree.tiles.find_pane(&Panel::Map(kind));
+        let largest = place(&arrangement, MapKind::Target);
+        arrangement.put_large(MapKind::Input1);
+        assert_eq!(place(&arrangement, MapKind::Input1), largest);
+        assert!(place(&arrangement, MapKind::Target).is_some_and(|target| Some(target) != largest));
     }
 
     fn tabs_of(arrangement: &Arrangement, panel: Panel) -> Option<TileId> {

@@ -1,5 +1,6 @@
 //! Rows of an evaluation as the app holds them: how they were made, which is open, which are in sight.
 
+use super::view::MapView;
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::rows::Row;
 use crate::evaluate::sets::{Case, SceneSet};
@@ -11,6 +12,15 @@ use crate::scene::file::SceneFile;
 use crate::scene::generate::Kind;
 use crate::signal::Floor;
 use serde::{Deserialize, Serialize};
+
+/// Whether maps are to show where the method fails, and whether they do.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FailureView {
+    /// Of this document, once it is known.
+    pub wanted: Option<u64>,
+    /// Of this document, and the part that is shown.
+    pub shown: Option<(u64, MapView)>,
+}
 
 /// How rows were made: what a scene needs beside its row to be made again.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -100,6 +110,8 @@ pub struct OpenedRow {
 /// What the app knows of rows beside the rows themselves.
 #[derive(Debug, Default)]
 pub struct Failures {
+    /// The part of the maps in which the scene's method fails.
+    pub view: FailureView,
     /// The row whose scene was put on screen last.
     pub opened: Option<OpenedRow>,
     /// Indices of the rows that the panel showed last, from top to bottom.

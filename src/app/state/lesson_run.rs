@@ -1,11 +1,12 @@
 //! The lesson being taken: its step, what was predicted, and what came of it.
 
 use super::guided::Setup;
+use super::lesson_focus::{kind_of, part_of};
 use super::panel::{MapKind, Panel};
 use super::task_layouts::Task;
-use super::view::{MapViews, SceneView};
+use super::view::{MapView, MapViews, SceneView};
 use crate::lesson::question::Answer;
-use crate::lesson::{Cell, Guess, Judgement, Lesson, MapName, Measured, Step, Truth};
+use crate::lesson::{Cell, Guess, Judgement, Lesson, Measured, Step, Truth};
 use crate::radar::Radar;
 use crate::scene::Scene;
 use std::collections::BTreeMap;
@@ -48,6 +49,8 @@ pub struct LessonRun {
     pub closed: Vec<(Panel, bool)>,
     /// As everything was before the lesson.
     pub before: Before,
+    /// The part of the maps that was shown for the challenge last, until the learner zooms.
+    pub part: Option<MapView>,
     /// What was predicted in other steps.
     answered: BTreeMap<usize, Answered>,
 }
@@ -66,6 +69,7 @@ impl LessonRun {
             set_up: None,
             closed: Vec::new(),
             before,
+            part: None,
             answered: BTreeMap::new(),
         }
     }
@@ -83,7 +87,13 @@ impl LessonRun {
         self.step = step.min(self.lesson.steps.len().saturating_sub(1));
         let (guess, judgement) = self.answered.remove(&self.step).unzip();
         (self.guess, self.judgement) = (guess, judgement.flatten());
-        (self.measured, self.gave_up) = (None, false);
+        (self.measured, self.gave_up, self.part) = (None, false, None);
+    }
+
+    /// The part of the maps that the challenge is about; nothing while a prediction is asked for, and where all of a map counts.
+    pub fn challenged_part(&self, radar: &Radar, scene: &Scene) -> Option<MapView> {
+        let challenge = self.current()?.challenge.as_ref().filter(|_| !self.is_predicting())?;
+        part_of(challenge, radar, scene)
     }
 
     /// Whether the maps are still hidden, since a prediction is asked for.
@@ -99,12 +109,7 @@ impl LessonRun {
     /// The map in which the step asks for a place.
     fn asked_map(&self) -> Option<MapKind> {
         let Answer::Click { map, .. } = &self.current()?.predict.as_ref()?.answer else { return None };
-        Some(match map {
-            MapName::Input0 => MapKind::Input0,
-            MapName::Input1 => MapKind::Input1,
-            MapName::Target => MapKind::Target,
-            MapName::Output => MapKind::Output,
-        })
+        Some(kind_of(*map))
     }
 
     /// The place that was guessed in a map and the true one, as long as the scene and the radar are the step's.

@@ -11,6 +11,7 @@ mod cuts;
 mod failures;
 mod guided;
 mod help;
+pub mod lesson_focus;
 mod lesson_run;
 mod method_times;
 mod methods;
@@ -48,7 +49,7 @@ pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
 pub use phasor_settings::{PhasorMap, PhasorSettings};
 pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
-pub use settings::{Brightness, DifferenceView, Projection, Settings, Units};
+pub use settings::{Brightness, DifferenceView, Directions, Projection, Settings, Units};
 pub use several::{MOST as MOST_AT_ONCE, Parameter, Several, Variant};
 pub use synonyms::{menu_path, synonyms};
 pub use task_layouts::Task;
@@ -106,6 +107,8 @@ pub struct State {
     pub recent: Vec<PathBuf>,
     /// Whether maps and scene say what they show, until the first drag.
     pub captions: bool,
+    /// Whether the scene says what the first drag did.
+    pub tells_first_drag: bool,
     /// The time at which the scene is looked at.
     pub timeline: Timeline,
     /// The page of help that is open.

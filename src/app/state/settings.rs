@@ -55,6 +55,16 @@ impl Units {
     }
 }
 
+/// What the axis of directions counts, in every map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Directions {
+    /// cos θ, which the columns divide evenly.
+    #[default]
+    Cosine,
+    /// Degrees from straight ahead.
+    Degrees,
+}
+
 /// How the difference of output and target is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -95,6 +105,8 @@ pub struct Settings {
     pub projection: Projection,
     /// What colour bars and cuts count.
     pub units: Units,
+    /// What the axis of directions counts.
+    pub directions: Directions,
     /// How the difference is drawn.
     pub difference: DifferenceView,
     /// eta', the threshold of the target.
@@ -182,6 +194,7 @@ impl Default for Settings {
             colours: ColourMap::default(),
             projection: Projection::default(),
             units: Units::default(),
+            directions: Directions::default(),
             difference: DifferenceView::default(),
             target_eta: crate::evaluate::TARGET_ETA,
             cfar: None,

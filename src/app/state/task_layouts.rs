@@ -136,28 +136,33 @@ fn failures() -> Tree<Panel> {
     Tree::new(egui::Id::unique("failures"), root, tiles)
 }
 
-/// A lesson large, with the scene, the four maps that lessons ask about, and the target above its threshold.
+/// A lesson large, with the scene and the controls of challenges, one map large, the others that lessons ask about, and the target above
+/// its threshold.
 pub fn lesson(name: &'static str) -> Tree<Panel> {
     let mut tiles = Tiles::default();
-    let [lesson, scene] = [Panel::Lesson, Panel::Scene].map(|panel| tabs(&mut tiles, &[panel]));
+    let lesson = tabs(&mut tiles, &[Panel::Lesson]);
+    let controls = [Panel::Radar, Panel::Inspector].map(|panel| tiles.insert_pane(panel));
+    controls.iter().for_each(|control| tiles.set_visible(*control, false));
+    let scene = tiles.insert_pane(Panel::Scene);
+    let scene = tiles.insert_tab_tile([scene].into_iter().chain(controls).collect());
     let [in0, in1, target] =
         [MapKind::Input0, MapKind::Input1, MapKind::Target].map(|kind| tabs(&mut tiles, &[Panel::Map(kind)]));
     let output = tabs(&mut tiles, &[MapKind::Output, MapKind::TargetAbove].map(Panel::Map));
-    let left = column(&mut tiles, vec![lesson, scene], &[0.6, 0.4]);
-    let middle = column(&mut tiles, vec![target, in0], &[1.0, 1.0]);
-    let right = column(&mut tiles, vec![output, in1], &[1.0, 1.0]);
-    let root = row(&mut tiles, vec![left, middle, right], &[1.15, 1.0, 1.0]);
+    let left = column(&mut tiles, vec![lesson, scene], &[0.56, 0.44]);
+    let others = row(&mut tiles, vec![in0, in1, output], &[1.0, 1.0, 1.0]);
+    let right = column(&mut tiles, vec![target, others], &[1.5, 1.0]);
+    let root = row(&mut tiles, vec![left, right], &[1.0, 1.75]);
     Tree::new(egui::Id::unique(name), root, tiles)
 }
 
-/// What is shown to many people at once: the scene, an end's map, the target and the output, large.
+/// What is shown to many people at once: target and output equally large, below them the scene and the ends' maps.
 pub fn presentation() -> Tree<Panel> {
     let mut tiles = Tiles::default();
     let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output];
     let scene = tabs(&mut tiles, &[Panel::Scene]);
     let [first, last, target, output] = maps.map(|kind| tabs(&mut tiles, &[Panel::Map(kind)]));
-    let upper = row(&mut tiles, vec![scene, target], &[1.0, 1.0]);
-    let lower = row(&mut tiles, vec![first, last, output], &[1.0, 1.0, 1.0]);
+    let upper = row(&mut tiles, vec![target, output], &[1.0, 1.0]);
+    let lower = row(&mut tiles, vec![scene, first, last], &[1.0, 1.0, 1.0]);
     let root = column(&mut tiles, vec![upper, lower], &[1.0, 1.0]);
     Tree::new(egui::Id::unique("presentation"), root, tiles)
 }

@@ -14,6 +14,7 @@ impl State {
                 ViewCommand::SetProjection(projection) => Some(settings.projection == *projection),
                 ViewCommand::ToggleUnits => Some(settings.units == Units::Decibels),
                 ViewCommand::SetUnits(units) => Some(settings.units == *units),
+                ViewCommand::SetDirections(directions) => Some(settings.directions == *directions),
                 ViewCommand::ToggleAbsoluteDifference => Some(settings.difference.absolute),
                 ViewCommand::ToggleWholeDifference => Some(!settings.difference.whole),
                 ViewCommand::Colours(colours) => Some(settings.colours == *colours),
@@ -42,6 +43,12 @@ impl State {
             },
             _ => None,
         }
+    }
+
+    /// A drag ends the captions: the maps were seen to follow. The scene then says what the drag did.
+    pub fn note_first_drag(&mut self) {
+        self.tells_first_drag |= self.shows_captions();
+        self.captions = false;
     }
 
     /// Whether maps and scene say what they show: not while a lesson does.

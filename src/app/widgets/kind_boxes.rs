@@ -1,25 +1,68 @@
-//! Kinds of random scenes to choose from.
+//! Kinds of random scenes to choose from, in a menu that stays open while boxes are ticked.
 
 use crate::scene::generate::Kind;
-use eframe::egui::Ui;
+use eframe::egui::containers::menu::{MenuButton, MenuConfig};
+use eframe::egui::{Grid, Label, PopupCloseBehavior, Response, RichText, Ui};
 use std::collections::BTreeSet;
 
-/// A box to tick for each of `kinds`; what is ticked is in `chosen`.
+/// Width of what is said of a kind, points.
+const SENTENCE_WIDTH: f32 = 420.0;
+
+/// A button with a menu that a click into it leaves open; the button's response.
+pub fn ticking_menu(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) -> Response {
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    MenuButton::new(title).config(config).ui(ui, contents).0
+}
+
+/// A box to tick for each of `kinds`, with a sentence beside it; what is ticked is in `chosen`.
 pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &mut BTreeSet<Kind>) {
-    for kind in kinds {
-        let mut ticked = chosen.contains(&kind);
-        let name = if kind.test_set().is_some() { format!("set {kind}") } else { kind.to_string() };
-        if ui.checkbox(&mut ticked, name).on_hover_text(kind.description()).changed() {
-            match ticked {
-                true => chosen.insert(kind),
-                false => chosen.remove(&kind),
-            };
+    let room = SENTENCE_WIDTH.min((ui.ctx().content_rect().width() - 220.0).max(120.0));
+    Grid::new("kinds").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
+        for kind in kinds {
+            let mut ticked = chosen.contains(&kind);
+            let name = if kind.test_set().is_some() { format!("set {kind}") } else { kind.to_string() };
+            if ui.checkbox(&mut ticked, name).changed() {
+                match ticked {
+                    true => chosen.insert(kind),
+                    false => chosen.remove(&kind),
+                };
+            }
+            ui.scope(|ui| {
+                ui.set_width(room);
+                ui.add(Label::new(RichText::new(kind.description()).weak().small()).wrap().selectable(false));
+            });
+            ui.end_row();
         }
-    }
+    });
 }
 
 /// The names of `chosen` kinds and of what stands beside them, or how many they are where they are many.
 pub fn kind_names(chosen: &BTreeSet<Kind>, beside: Option<&str>) -> String {
     let names: Vec<String> = chosen.iter().map(Kind::to_string).chain(beside.map(str::to_owned)).collect();
     if names.len() > 4 { format!("{} kinds", names.len()) } else { names.join(", ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn a_menu_with_ticks_stays_open_and_each_kind_has_its_sentence() {
+        let draw = |ui: &mut Ui, chosen: &mut BTreeSet<Kind>| {
+            ticking_menu(ui, "Scenes", |ui| kind_boxes(ui, Kind::all(), chosen));
+        };
+        let mut menu = Harness::builder().with_size([800.0, 900.0]).build_ui_state(draw, BTreeSet::new());
+        menu.get_by_label("Scenes").click();
+        menu.run();
+        for kind in ["walls", "clusters"] {
+            menu.get_by_label(kind).click();
+            menu.run();
+        }
+        assert_eq!(menu.state().len(), 2, "two boxes were ticked in one opening");
+        for kind in Kind::all() {
+            assert!(menu.query_all_by_label(kind.description()).next().is_some(), "{kind}");
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Lists of methods by family, each with a line that says what it is and the time it takes here: one to choose, or several.
 
+use super::kind_boxes::ticking_menu;
 use super::numbers::significant;
 use crate::app::state::{Command, Times, WorkCommand};
 use crate::reconstruct::{Family, Reconstructor};
@@ -44,8 +45,8 @@ pub fn method_menu(ui: &mut Ui, offered: Offered<'_>, chosen: &mut BTreeSet<&'st
         count if count > MOST_NAMED => format!("{count} methods"),
         _ => chosen.iter().copied().collect::<Vec<_>>().join(", "),
     };
-    let menu = ui.menu_button(format!("Methods: {title}"), |ui| {
-        method_lines(ui, offered, |ui, method| {
+    let menu = ticking_menu(ui, &format!("Methods: {title}"), |ui| {
+        _ = method_lines(ui, offered, |ui, method| {
             let mut is_chosen = chosen.contains(method.name());
             let response = ui.checkbox(&mut is_chosen, method.name());
             if response.changed() {
@@ -57,7 +58,7 @@ pub fn method_menu(ui: &mut Ui, offered: Offered<'_>, chosen: &mut BTreeSet<&'st
             response
         });
     });
-    menu.response.on_hover_text(tip);
+    menu.on_hover_text(tip);
 }
 
 /// The contents of a popup in which one of the methods is chosen, scrolled to the one that is; what is asked for: another method by

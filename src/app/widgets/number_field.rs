@@ -37,14 +37,17 @@ impl Wanted {
         let letters: String =
             text.chars().filter(|c| !c.is_whitespace()).map(|c| if c == '−' { '-' } else { c }).collect();
         let unit: String = self.unit.chars().filter(|c| !c.is_whitespace()).collect();
-        let number = letters.strip_suffix(unit.as_str()).unwrap_or(&letters);
+        let (number, times) = match letters.strip_suffix(unit.as_str()) {
+            Some(number) if !number.ends_with(char::is_alphabetic) => (number, 1.0),
+            _ => in_other_unit(&letters, &unit).unwrap_or((letters.as_str(), 1.0)),
+        };
         let number = match number.matches(',').count() == 1 && !number.contains('.') {
             true => number.replace(',', "."),
             false => number.to_owned(),
         };
         // The standard library also reads "nan" and "infinity".
         let is_number = number.chars().all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
-        let Some(value) = number.parse::<f64>().ok().filter(|_| is_number) else {
+        let Some(value) = number.parse::<f64>().ok().filter(|_| is_number).map(|value| times * value) else {
             return Err(wrong("is not a number"));
         };
         if !value.is_finite() || !self.range.contains(&value) {
@@ -70,6 +73,21 @@ impl Wanted {
             (None, None) => format!("Enter {number}."),
         }
     }
+}
+
+/// Units that a number may be entered in where another one of the same row is asked for, each with its size.
+const UNITS: [&[(&str, f64)]; 4] = [
+    &[("km", 1e3), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("m", 1.0)],
+    &[("GHz", 1e9), ("MHz", 1e6), ("kHz", 1e3), ("Hz", 1.0)],
+    &[("ms", 1e-3), ("µs", 1e-6), ("us", 1e-6), ("ns", 1e-9), ("s", 1.0)],
+    &[("km/h", 1.0 / 3.6), ("cm/s", 1e-2), ("m/s", 1.0)],
+];
+
+/// A number in another unit of the same quantity: what stands before that unit, and how many of the unit that is asked for it is.
+fn in_other_unit<'a>(letters: &'a str, unit: &str) -> Option<(&'a str, f64)> {
+    let row = UNITS.iter().find(|row| row.iter().any(|(name, _)| *name == unit))?;
+    let wanted = row.iter().find(|(name, _)| *name == unit)?.1;
+    row.iter().find_map(|(name, size)| Some((letters.strip_suffix(name)?, size / wanted)))
 }
 
 /// What was typed, in quotation marks, as much of it as fits a message.

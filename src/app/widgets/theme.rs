@@ -121,6 +121,8 @@ pub fn apply(ctx: &Context, theme: Brightness) {
                 style.visuals.warn_fg_color = Color32::from_rgb(255, 190, 92);
                 style.visuals.hyperlink_color = Color32::from_rgb(116, 180, 255);
                 style.visuals.selection.bg_fill = Color32::from_rgb(38, 92, 150);
+                // Boxes that are not ticked, and the rails of sliders.
+                style.visuals.widgets.inactive.bg_fill = Color32::from_rgb(104, 112, 128);
             } else {
                 style.visuals.panel_fill = Color32::from_rgb(245, 247, 250);
                 style.visuals.override_text_color = Some(Color32::from_rgb(34, 40, 52));
@@ -129,6 +131,7 @@ pub fn apply(ctx: &Context, theme: Brightness) {
                 style.visuals.warn_fg_color = Color32::from_rgb(140, 78, 0);
                 style.visuals.hyperlink_color = Color32::from_rgb(0, 92, 184);
                 style.visuals.selection.bg_fill = Color32::from_rgb(176, 210, 250);
+                style.visuals.widgets.inactive.bg_fill = Color32::from_rgb(138, 146, 160);
             }
         });
     }
@@ -152,6 +155,19 @@ mod tests {
         };
         let (a, b) = (luminance(a), luminance(b));
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn a_box_that_is_not_ticked_is_seen_in_dark_and_light() {
+        let ctx = Context::default();
+        apply(&ctx, Brightness::Dark);
+        for theme in [egui::Theme::Dark, egui::Theme::Light] {
+            let visuals = ctx.style_of(theme).visuals.clone();
+            for ground in [visuals.panel_fill, visuals.window_fill] {
+                let seen = contrast(visuals.widgets.inactive.bg_fill, ground);
+                assert!(seen >= 2.5, "{theme:?}: {seen}");
+            }
+        }
     }
 
     #[test]

@@ -60,6 +60,39 @@ impl CampaignError {
     }
 }
 
+/// A method that failed on scenes of a set, so that they have no rows of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unfit {
+    /// Name of the method.
+    pub method: &'static str,
+    /// The set.
+    pub set: String,
+    /// On how many of its scenes.
+    pub scenes: u32,
+    /// Why, on the first of them.
+    pub reason: String,
+}
+
+impl Unfit {
+    /// Takes in a method's failure on a scene.
+    ///
+    /// # Errors
+    /// Any other error, and a failure that is the cancellation of the campaign.
+    pub(super) fn note(all: &mut Vec<Unfit>, error: CampaignError) -> Result<(), CampaignError> {
+        match error {
+            error if error.is_cancelled() => Err(error),
+            CampaignError::Method { method, set, source, .. } => {
+                match all.iter_mut().find(|unfit| unfit.method == method && unfit.set == set) {
+                    Some(unfit) => unfit.scenes += 1,
+                    None => all.push(Unfit { method, set, scenes: 1, reason: source.to_string() }),
+                }
+                Ok(())
+            }
+            error => Err(error),
+        }
+    }
+}
+
 /// What a message calls a set.
 pub(super) fn set_name(set: &SceneSet) -> String {
     match set {

@@ -46,17 +46,24 @@ impl Job<'_> {
         Ok(Row { cfar_detection: by_cfar.detection, cfar_false_alarm: Some(by_cfar.false_alarm), ..row })
     }
 
-    /// The rows of the methods of these places, in their order.
+    /// The rows of the methods of these places, in their order; `on_failure` says whether it goes on without one that failed.
     pub fn rows(
         &self,
         methods: &[&dyn Reconstructor],
         mut order: Vec<usize>,
         on_row: &mut impl FnMut(&Row, &Trial, &Answer),
+        on_failure: &mut impl FnMut(CampaignError) -> Result<(), CampaignError>,
     ) -> Result<Vec<Row>, CampaignError> {
         order.shuffle(&mut ChaCha8Rng::seed_from_u64(u64::from(self.index)));
         let mut found = Vec::new();
         for i in order {
-            let answer = self.answer(methods[i])?;
+            let answer = match self.answer(methods[i]) {
+                Ok(answer) => answer,
+                Err(error) => {
+                    on_failure(error)?;
+                    continue;
+                }
+            };
             let row = self.row(&self.empty[i], &answer)?;
             on_row(&row, self.trial, &answer);
             found.push((i, row));

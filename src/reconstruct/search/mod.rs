@@ -83,7 +83,7 @@ pub(super) const ETA: f32 = 0.896;
 
 /// Energy that an atom must explain, over what is left around its range, to be as likely there as not, in decades; and decades of odds for a
 /// decade more. Fitted to validation scenes (`examples/experts.rs --confidence`).
-const EVEN_ODDS_DECADES: f64 = 1.0;
+const EVEN_ODDS_DECADES: f64 = 0.8;
 const CONFIDENCE_SLOPE: f64 = 0.8;
 
 /// What the search knows beside the samples.

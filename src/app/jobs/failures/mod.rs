@@ -15,7 +15,7 @@ pub use thumbnails::{Album, HEIGHT as THUMBNAIL_HEIGHT, Thumbnail, WIDTH as THUM
 
 use super::rows::{RowJob, Stopped, Teller};
 use crate::app::state::{Conditions, State};
-use crate::evaluate::campaign::Campaign;
+use crate::evaluate::campaign::{Campaign, Unfit};
 use crate::evaluate::rows::{FORMAT, Row, WHY_NO_OTHER_FORMAT};
 use crate::evaluate::sets::SceneSet;
 use crate::platform::Instant;
@@ -60,7 +60,7 @@ struct Run {
 
 /// The rows there are, and the threads that make more.
 pub struct Failures {
-    run: RowJob<Run, (u64, Row), ()>,
+    run: RowJob<Run, (u64, Row), Vec<Unfit>>,
     table: RowTable,
     /// The rows that others took the place of last.
     before: Option<(Arc<Vec<Row>>, Conditions)>,
@@ -155,6 +155,11 @@ impl Failures {
     /// The part that is done, while methods are tried.
     pub fn progress(&self) -> Option<f32> {
         self.run.progress()
+    }
+
+    /// Methods that the last run went on without, and on which scenes.
+    pub fn unfit(&self) -> &[Unfit] {
+        self.run.end().map_or(&[], Vec::as_slice)
     }
 
     /// How the last run ended, if not well.
@@ -285,18 +290,18 @@ fn said_of_older(rows: &[Row]) -> Option<String> {
     ))
 }
 
-fn try_all(run: &Run, album: &Album, teller: &Teller<'_, (u64, Row)>) -> Result<(), Stopped> {
+fn try_all(run: &Run, album: &Album, teller: &Teller<'_, (u64, Row)>) -> Result<Vec<Unfit>, Stopped> {
     let Run { plan, generation } = run;
     let methods: Vec<&dyn Reconstructor> = plan.methods.iter().map(AsRef::as_ref).collect();
     let (mut done, total) = (0, plan.maps().max(1));
-    let found = plan.campaign.run_watched(&plan.sets, &methods, teller.task, |row, trial, answer| {
+    let found = plan.campaign.run_fit(&plan.sets, &methods, teller.task, |row, trial, answer| {
         album.insert(*generation, row, Ok(Arc::new(Thumbnail::of(trial, answer))));
         done += 1;
         teller.task.set_progress(done as f32 / total as f32);
         teller.row((*generation, row.clone()));
     });
     match found {
-        Ok(_) => Ok(()),
+        Ok((_, unfit)) => Ok(unfit),
         Err(error) if error.is_cancelled() => Err(Stopped::Cancelled),
         Err(error) => Err(Stopped::Failed(error.to_string())),
     }

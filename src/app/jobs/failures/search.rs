@@ -2,7 +2,8 @@
 
 use crate::app::jobs::rows::{RowJob, Stopped, Teller};
 use crate::app::state::{SearchChoice, State};
-use crate::evaluate::worsen::{Aim, Finding, Search as Job};
+use crate::evaluate::worsen::{Aim, Finding, Measure, Search as Job};
+use crate::radar::counted;
 use crate::reconstruct::Reconstructor;
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -127,12 +128,19 @@ impl Search {
             return (self.progress().is_none() && self.note().is_none())
                 .then(|| format!("No scene {nothing} for {method} within {} m.", choice.within_metres));
         };
-        let before = start.metrics.squared_error;
-        let Finding { metrics, moved_metres, tries, .. } = end;
-        Some(format!(
-            "{method}: SE {before:.0}, then {:.0} after {moved_metres:.2} m; try {tries}",
-            metrics.squared_error
-        ))
+        let told = |finding: &Finding| match choice.measure {
+            Measure::SquaredError => format!("SE {:.1}", finding.metrics.squared_error),
+            Measure::Missed => format!("{} missed", finding.failures.missed()),
+            Measure::Ghosts => counted(finding.failures.ghosts.len(), "ghost", "ghosts"),
+        };
+        Some(format!("{method}: {} here, {} after {:.2} m", told(start), told(end), end.moved_metres))
+    }
+
+    /// Forgets a search that began in another document than the one on screen: its result says nothing of that.
+    pub fn keep_to(&mut self, document: u64) {
+        if self.subject.as_ref().is_some_and(|subject| subject.document != document) {
+            self.forget();
+        }
     }
 }
 

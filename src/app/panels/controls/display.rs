@@ -1,7 +1,7 @@
 //! How maps and the scene are drawn: coordinates, scale, colours, marks, snapping, difference and failures.
 
 use super::choices::choices;
-use crate::app::state::{Command, DifferenceView, EditCommand, Projection, Settings, Units, ViewCommand};
+use crate::app::state::{Command, DifferenceView, Directions, EditCommand, Projection, Settings, Units, ViewCommand};
 use crate::app::widgets::setting_row::{rarely, row_of};
 use crate::interact::Snap;
 use crate::lesson::Uses;
@@ -13,6 +13,10 @@ pub(super) fn show(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec
     row_of(ui, "Coordinates", "Draw maps over cos θ and range, or over x and y", |ui| {
         let of = [(Projection::RangeAngle, "Range–angle", ""), (Projection::Cartesian, "Cartesian", "")];
         choices(ui, settings.projection, of, ViewCommand::SetProjection, asked);
+    });
+    row_of(ui, "Directions", "What the axis of directions counts, in every map", |ui| {
+        let of = [(Directions::Cosine, "cos θ", ""), (Directions::Degrees, "degrees", "From straight ahead")];
+        choices(ui, settings.directions, of, ViewCommand::SetDirections, asked);
     });
     row_of(ui, "Scale", "What colour bars, cuts, readouts and thresholds are told in (D)", |ui| {
         let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];

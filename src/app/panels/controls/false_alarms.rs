@@ -1,7 +1,7 @@
 //! The threshold of the method's output by the false alarms that it lets through.
 
 use crate::app::state::{Command, ThresholdChoice, WorkCommand};
-use crate::app::widgets::kind_boxes::{kind_boxes, kind_names};
+use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
 use crate::app::widgets::setting_row::{rarely, row, row_of};
@@ -91,11 +91,10 @@ fn choose(ui: &mut Ui, memory: &mut Memory) {
         ui.add(NumberField::new(&mut memory.percent).range(0.01..=50.0).speed(0.02).suffix(" %"))
     });
     row_of(ui, "Tried on", "Validation scenes, which no figure is reported of", |ui| {
-        let menu = ui.menu_button(format!("Kinds: {}", kind_names(&memory.kinds, None)), |ui| {
+        let menu = ticking_menu(ui, &format!("Kinds: {}", kind_names(&memory.kinds, None)), |ui| {
             kind_boxes(ui, Kind::all().filter(|kind| *kind != Kind::Noise), &mut memory.kinds);
         });
-        menu.response
-            .on_hover_text("Kinds of scenes that the method is tried on: choose those that it is to be used on");
+        menu.on_hover_text("Kinds of scenes that the method is tried on: choose those that it is to be used on");
         let label = ui.label("of each");
         let tip = memory.price();
         let field = NumberField::new(&mut memory.count).range(1..=100_000);

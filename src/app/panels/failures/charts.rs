@@ -1,10 +1,11 @@
 //! Histogram and scatter plot of the rows; a box selects rows, a click opens one.
 
 use super::order::{Boxed, Order};
-use super::points::{Dot, Points, Subject};
+use super::points::{Dot, Grouping, Points, Subject};
 use crate::app::jobs::RowTable;
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::{Chart, Drawn};
+use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::theme::Inks;
 use crate::evaluate::rows::Column;
 use eframe::egui;
@@ -59,7 +60,8 @@ pub struct Memory {
     x: Column,
     y: Column,
     methods: [String; 2],
-    made: Option<(u64, Subject, Points)>,
+    grouping: Grouping,
+    made: Option<(u64, (Subject, Grouping), Points)>,
     mesh: Option<(MeshKey, Arc<Mesh>)>,
     start: Option<Pos2>,
     boxes: u64,
@@ -69,12 +71,13 @@ impl Default for Memory {
     fn default() -> Self {
         let (x, y) = (Column::NearestPairColumns, Column::SquaredError);
         let view = View::default();
-        Memory { view, x, y, methods: Default::default(), made: None, mesh: None, start: None, boxes: 0 }
+        let (methods, grouping) = Default::default();
+        Memory { view, x, y, methods, grouping, made: None, mesh: None, start: None, boxes: 0 }
     }
 }
 
 /// What dots look like depends on this.
-type MeshKey = (u64, Rect, Option<u64>, Color32);
+type MeshKey = (u64, Rect, Option<u64>, Color32, Grouping);
 
 /// What was asked of a chart.
 #[derive(Default)]
@@ -105,6 +108,16 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut Memory) {
         });
         combo.response.labelled_by(label.id);
     };
+    if !matches!(memory.view, View::None | View::Shared) {
+        let label = ui.label("Colour");
+        let chosen = Grouping::ALL.iter().find(|(of, _)| *of == memory.grouping).map_or("", |(_, name)| name);
+        let combo = ComboBox::from_id_salt("grouping").selected_text(chosen).width(90.0).show_ui(ui, |ui| {
+            for (grouping, name) in Grouping::ALL {
+                ui.selectable_value(&mut memory.grouping, grouping, name);
+            }
+        });
+        combo.response.labelled_by(label.id);
+    }
     match memory.view {
         View::None | View::Shared => {}
         View::Histogram => column(ui, "histogram", "of", &mut memory.y),
@@ -132,12 +145,27 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut Memory) {
     }
 }
 
+/// What the colours of groups stand for.
+fn groups(ui: &mut Ui, points: &Points, grouping: Grouping) {
+    if grouping == Grouping::None {
+        return;
+    }
+    let entry = |(group, name): (usize, &String)| Entry {
+        sign: Sign::Square { filled: true },
+        colour: colour_of(ui, group, points.groups.len()),
+        name: name.clone(),
+    };
+    let entries: Vec<Entry> = points.groups.iter().enumerate().map(entry).collect();
+    legend::row(ui, &entries);
+}
+
 /// Draws the chart that was chosen.
 pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut Memory) -> Answer {
     let Some((subject, titles)) = subject(memory) else { return Answer::default() };
-    let stamp = input.order.stamp();
+    let (stamp, grouping) = (input.order.stamp(), memory.grouping);
+    let subject = (subject, grouping);
     if !memory.made.as_ref().is_some_and(|(made, of, _)| *made == stamp && *of == subject) {
-        let points = Points::of(input.table, input.order.filtered(), &subject);
+        let points = Points::of(input.table, input.order.filtered(), &subject.0, grouping);
         memory.made = Some((stamp, subject.clone(), points));
         memory.mesh = None;
     }
@@ -145,6 +173,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut 
     if let Some(told) = &points.told {
         ui.label(told);
     }
+    groups(ui, points, grouping);
     let area = ui.available_rect_before_wrap();
     ui.allocate_rect(area, Sense::hover());
     if points.dots.is_empty() {
@@ -162,9 +191,9 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut 
             let (low, high) = (left.max(bottom), right.min(top));
             let equal = Stroke::new(1.0, ui.visuals().weak_text_color());
             drawn.line([[low, low], [high, high]].into_iter().filter(|_| low < high), equal, Some([4.0, 4.0]));
-            dots(ui, &drawn, points, stamp, boxed, &mut memory.mesh);
+            dots(ui, &drawn, points, (stamp, grouping), boxed, &mut memory.mesh);
         }
-        None => dots(ui, &drawn, points, stamp, boxed, &mut memory.mesh),
+        None => dots(ui, &drawn, points, (stamp, grouping), boxed, &mut memory.mesh),
     }
     if let Some(dot) = points.dots.iter().find(|dot| input.opened.is_some_and(|row| dot.rows.contains(&row))) {
         let stroke = Stroke::new(2.0, ui.visuals().strong_text_color());
@@ -198,14 +227,36 @@ fn subject(memory: &Memory) -> Option<(Subject, [String; 2])> {
     })
 }
 
+/// Colours of groups: those of Okabe and Ito, which differ for the colour-blind, too.
+const GROUPS: [[u8; 3]; 7] =
+    [[86, 180, 233], [230, 159, 0], [0, 158, 115], [204, 121, 167], [213, 94, 0], [0, 114, 178], [240, 228, 66]];
+
+/// The colour of a group; where there is only one, that of all charts.
+fn colour_of(ui: &Ui, group: usize, groups: usize) -> Color32 {
+    let [r, g, b] = GROUPS[group % GROUPS.len()];
+    if groups > 1 { Color32::from_rgb(r, g, b) } else { Inks::of(ui.visuals()).ends[0] }
+}
+
 fn bars(ui: &Ui, drawn: &Drawn<'_>, points: &Points, boxed: Option<&Boxed>) {
     let Some(bars) = &points.bars else { return };
     let inks = Inks::of(ui.visuals());
     let wide = (bars.high - bars.low).max(f64::MIN_POSITIVE) / bars.counts.len() as f64;
     for (i, count) in bars.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
         let from = bars.low + wide * i as f64;
-        let bar = Rect::from_two_pos(drawn.at([from, 0.0]), drawn.at([from + wide, *count as f64]));
-        drawn.painter().rect_filled(bar.expand2(Vec2::new(0.5, 0.0)), 0.0, inks.ends[0]);
+        // Each group's part of a bar stands on those before it.
+        let inside = |dot: &&Dot| (((dot.at[0] - bars.low) / wide) as usize).min(bars.counts.len() - 1) == i;
+        let mut below = 0;
+        for group in 0..points.groups.len() {
+            let own = match points.groups.len() {
+                1 => *count,
+                _ => points.dots.iter().filter(inside).filter(|dot| dot.group == group).count(),
+            };
+            let (foot, top) = (below as f64, (below + own) as f64);
+            below += own;
+            let bar = Rect::from_two_pos(drawn.at([from, foot]), drawn.at([from + wide, top]));
+            let colour = colour_of(ui, group, points.groups.len());
+            drawn.painter().rect_filled(bar.expand2(Vec2::new(0.5, 0.0)), 0.0, colour);
+        }
     }
     let chosen = points.dots.iter().filter(|dot| boxed.is_some_and(|b| b.rows.contains(&dot.rows[0])));
     let ends = chosen
@@ -223,18 +274,19 @@ fn dots(
     ui: &Ui,
     drawn: &Drawn<'_>,
     points: &Points,
-    stamp: u64,
+    (stamp, grouping): (u64, Grouping),
     boxed: Option<&Boxed>,
     kept: &mut Option<(MeshKey, Arc<Mesh>)>,
 ) {
     let inks = Inks::of(ui.visuals());
-    let key = (stamp, drawn.rect, boxed.map(|b| b.stamp), inks.ends[0]);
+    let key = (stamp, drawn.rect, boxed.map(|b| b.stamp), inks.ends[0], grouping);
     if !kept.as_ref().is_some_and(|(of, _)| *of == key) {
         let mut mesh = Mesh::default();
         let size = Vec2::splat(if points.dots.len() < FEW { 5.0 } else { 3.0 });
         for dot in &points.dots {
             let chosen = boxed.is_some_and(|b| dot.rows.iter().any(|row| b.rows.contains(row)));
-            let colour = if chosen { inks.selected } else { inks.ends[0].gamma_multiply(0.8) };
+            let colour = colour_of(ui, dot.group, points.groups.len()).gamma_multiply(0.8);
+            let colour = if chosen { inks.selected } else { colour };
             mesh.add_colored_rect(Rect::from_center_size(drawn.at(dot.at), size), colour);
         }
         *kept = Some((key, Arc::new(mesh)));

@@ -2,10 +2,11 @@
 
 use super::input::Input;
 use crate::app::state::{Command, FailureChoice, RowsCommand};
-use crate::app::widgets::kind_boxes::{kind_boxes, kind_names};
+use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
 use crate::app::widgets::method_menu::method_menu;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
+use crate::evaluate::campaign::Unfit;
 use crate::radar::counted;
 use crate::scene::generate::Kind;
 use eframe::egui;
@@ -45,11 +46,21 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec
     if let Some(note) = input.note {
         ui.colored_label(ui.visuals().warn_fg_color, note);
     }
+    unfit(ui, input.unfit);
+}
+
+/// A row for each method that the last run went on without, with its reason.
+fn unfit(ui: &mut Ui, unfit: &[Unfit]) {
+    for Unfit { method, set, scenes, reason } in unfit {
+        let reason = reason.strip_prefix(&format!("{method}: ")).unwrap_or(reason);
+        let text = format!("{method}: no rows of {} of {set}: {reason}", counted(*scenes as usize, "scene", "scenes"));
+        ui.add(egui::Label::new(egui::RichText::new(text).color(ui.visuals().warn_fg_color)).wrap());
+    }
 }
 
 fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
     method_menu(ui, input.methods, &mut memory.methods, "Methods to try");
-    let menu = ui.menu_button(format!("Scenes: {}", sets(memory)), |ui| {
+    let menu = ticking_menu(ui, &format!("Scenes: {}", sets(memory)), |ui| {
         kind_boxes(ui, Kind::all(), &mut memory.kinds);
         ui.separator();
         let folder = input.own.map_or_else(|| "none is chosen".to_owned(), |path| path.display().to_string());
@@ -59,7 +70,7 @@ fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<C
             ui.close();
         }
     });
-    menu.response.on_hover_text("Kinds of scenes to try them on");
+    menu.on_hover_text("Kinds of scenes to try them on");
     let label = ui.label("of each");
     ui.add(NumberField::new(&mut memory.count).range(1..=100_000)).labelled_by(label.id);
     let label = ui.label("seed");

@@ -3,6 +3,7 @@
 use crate::app::jobs::{Album, RowTable};
 use crate::app::widgets::method_menu::Offered;
 use crate::evaluate::Metrics;
+use crate::evaluate::campaign::Unfit;
 use crate::evaluate::rows::Row;
 use crate::picture::ColourMap;
 use std::path::Path;
@@ -23,6 +24,8 @@ pub struct Input<'a> {
     pub progress: Option<f32>,
     /// How the last run ended, if not well.
     pub note: Option<&'a str>,
+    /// Methods that the last run went on without.
+    pub unfit: &'a [Unfit],
     /// The folder of one's own scenes.
     pub own: Option<&'a Path>,
     /// Colours of Lambda.

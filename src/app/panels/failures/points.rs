@@ -3,7 +3,7 @@
 use crate::app::jobs::RowTable;
 use crate::evaluate::rows::{Column, Histogram, Row};
 use crate::evaluate::statistics::Paired;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Bars of a histogram.
 const BARS: usize = 40;
@@ -19,11 +19,39 @@ pub enum Subject {
     Methods(Column, String, String),
 }
 
+/// What the colour of a row in a chart says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Grouping {
+    /// Nothing: all rows have one.
+    #[default]
+    None,
+    /// Its method.
+    Method,
+    /// Its set.
+    Set,
+}
+
+impl Grouping {
+    /// All, with their names.
+    pub const ALL: [(Grouping, &'static str); 3] =
+        [(Grouping::None, "one colour"), (Grouping::Method, "method"), (Grouping::Set, "set")];
+
+    fn of(self, row: &Row) -> String {
+        match self {
+            Grouping::None => String::new(),
+            Grouping::Method => row.method.to_string(),
+            Grouping::Set => row.set.to_string(),
+        }
+    }
+}
+
 /// A dot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
     /// Where.
     pub at: [f64; 2],
+    /// Index of its group in [`Points::groups`].
+    pub group: usize,
     /// The row to open, and the other one where there are two.
     pub rows: [usize; 2],
 }
@@ -35,6 +63,8 @@ pub struct Points {
     pub dots: Vec<Dot>,
     /// The bars of a histogram.
     pub bars: Option<Histogram>,
+    /// Names of the groups, in order; one without a name where nothing is grouped.
+    pub groups: Vec<String>,
     /// Where the axes begin and end.
     pub spans: [[f64; 2]; 2],
     /// What statistics say of the two methods.
@@ -47,25 +77,30 @@ fn number(row: &Row, column: Column) -> Option<f64> {
 
 impl Points {
     /// Of the rows whose indices are in `filtered`.
-    pub fn of(table: &RowTable, filtered: &[usize], subject: &Subject) -> Points {
+    pub fn of(table: &RowTable, filtered: &[usize], subject: &Subject, grouping: Grouping) -> Points {
         let rows = table.rows();
         let of_row = |index: &usize| rows.get(*index).map(|row| (*index, row));
         let listed = || filtered.iter().filter_map(of_row);
+        let names: BTreeSet<String> = listed().map(|(_, row)| grouping.of(row)).collect();
+        let groups: Vec<String> = names.into_iter().collect();
+        let group = |row: &Row| groups.iter().position(|name| *name == grouping.of(row)).unwrap_or(0);
         match subject {
             Subject::Histogram(column) => {
-                let on_axis =
-                    |(index, row): (usize, &Row)| Some(Dot { at: [number(row, *column)?, 0.0], rows: [index; 2] });
+                let on_axis = |(index, row): (usize, &Row)| {
+                    Some(Dot { at: [number(row, *column)?, 0.0], group: group(row), rows: [index; 2] })
+                };
                 let dots = listed().filter_map(on_axis).collect();
                 let bars = Histogram::of(listed().map(|(_, row)| row), *column, BARS);
                 let most = bars.as_ref().and_then(|b| b.counts.iter().max()).map_or(1, |most| *most);
                 let x = bars.as_ref().map_or([0.0, 1.0], |b| padded(b.low, b.high, 0.0));
-                Points { dots, bars, spans: [x, [0.0, 1.05 * most as f64]], told: None }
+                Points { dots, bars, groups, spans: [x, [0.0, 1.05 * most as f64]], told: None }
             }
             Subject::Columns(x, y) => {
                 let dot = |(index, row): (usize, &Row)| {
-                    Some(Dot { at: [number(row, *x)?, number(row, *y)?], rows: [index; 2] })
+                    Some(Dot { at: [number(row, *x)?, number(row, *y)?], group: group(row), rows: [index; 2] })
                 };
-                Points::scattered(listed().filter_map(dot).collect())
+                let dots = listed().filter_map(dot).collect();
+                Points { groups, ..Points::scattered(dots) }
             }
             Subject::Methods(column, a, b) => {
                 let scene = |row: &Row| (row.set.clone(), row.seed, row.index);
@@ -73,11 +108,12 @@ impl Points {
                     listed().filter(|(_, row)| *row.method == **b).map(|(index, row)| (scene(row), index)).collect();
                 let dot = |(index, row): (usize, &Row)| {
                     let other = *of_b.get(&scene(row))?;
-                    Some(Dot { at: [number(row, *column)?, number(&rows[other], *column)?], rows: [index, other] })
+                    let at = [number(row, *column)?, number(&rows[other], *column)?];
+                    Some(Dot { at, group: group(row), rows: [index, other] })
                 };
                 let dots = listed().filter(|(_, row)| *row.method == **a).filter_map(dot).collect();
                 let paired = Paired::of(listed().map(|(_, row)| row), a, b).filter(|_| a != b);
-                Points { told: paired.map(|paired| paired.told(a, b)), ..Points::scattered(dots) }
+                Points { told: paired.map(|paired| paired.told(a, b)), groups, ..Points::scattered(dots) }
             }
         }
     }
@@ -88,7 +124,7 @@ impl Points {
             let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
             if low <= high { padded(low, high, 0.03) } else { [0.0, 1.0] }
         };
-        Points { spans: [span(0), span(1)], dots, bars: None, told: None }
+        Points { spans: [span(0), span(1)], dots, ..Points::default() }
     }
 }
 
@@ -118,7 +154,7 @@ mod tests {
         let table = table();
         let all: Vec<usize> = (0..table.rows().len()).collect();
         let subject = Subject::Methods(Column::SquaredError, "live".into(), "nomp".into());
-        let points = Points::of(&table, &all, &subject);
+        let points = Points::of(&table, &all, &subject, Grouping::None);
         assert_eq!(points.dots.len(), 5, "the first scene was tried by one only");
         assert!(points.dots.iter().all(|dot| dot.at[0] == dot.at[1] && dot.rows[1] == dot.rows[0] + 5));
         let [low, high] = points.spans[0];
@@ -126,19 +162,30 @@ mod tests {
     }
 
     #[test]
+    fn rows_are_grouped_by_their_method() {
+        let table = table();
+        let all: Vec<usize> = (0..table.rows().len()).collect();
+        let subject = Subject::Columns(Column::Index, Column::SquaredError);
+        let points = Points::of(&table, &all, &subject, Grouping::Method);
+        assert_eq!(points.groups, ["live", "nomp"]);
+        let of = |group| points.dots.iter().filter(|dot| dot.group == group).count();
+        assert_eq!([of(0), of(1)], [6, 5]);
+    }
+
+    #[test]
     fn rows_without_a_figure_have_no_dot() {
         let table = table();
-        let points = Points::of(&table, &[0, 2, 3], &Subject::Columns(Column::Index, Column::Found));
+        let points = Points::of(&table, &[0, 2, 3], &Subject::Columns(Column::Index, Column::Found), Grouping::None);
         assert_eq!(points.dots.iter().map(|dot| dot.rows[0]).collect::<Vec<_>>(), [0, 3]);
         assert!(points.spans[1][0] < 4.0 && points.spans[1][1] > 4.0, "a span is never empty");
-        let none = Points::of(&table, &[0, 2], &Subject::Histogram(Column::Method));
+        let none = Points::of(&table, &[0, 2], &Subject::Histogram(Column::Method), Grouping::None);
         assert!(none.bars.is_none() && none.dots.is_empty());
     }
 
     #[test]
     fn the_bars_of_a_histogram_count_the_filtered_rows() {
         let table = table();
-        let points = Points::of(&table, &[0, 1, 5], &Subject::Histogram(Column::Index));
+        let points = Points::of(&table, &[0, 1, 5], &Subject::Histogram(Column::Index), Grouping::None);
         assert_eq!(points.bars.map(|b| b.counts.iter().sum::<usize>()), Some(3));
         assert_eq!(points.spans[0], [0.0, 5.0]);
     }

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::app::state::{Before, MapViews, SceneView, Settings, Setup, Task};
-use crate::lesson::Stage;
+use crate::app::widgets::theme;
+use crate::lesson::{Guess, Stage};
 use crate::radar::Radar;
 use crate::scene::Scene;
 use egui_kittest::Harness;
@@ -51,6 +52,69 @@ fn what_is_no_number_is_no_answer() {
     panel.run_steps(3);
     assert!(panel.query_by_label_contains("“abc” is not a number").is_some() && panel.state().2.is_empty());
     assert!(panel.get_by_label("Your number").is_focused(), "the next key goes to the field");
+}
+
+#[test]
+fn the_field_of_a_number_has_the_focus_when_its_step_begins() {
+    let mut panel = harness(Some(run("range-and-bandwidth", 1)));
+    panel.run_steps(2);
+    assert!(panel.get_by_label("Your number").is_focused());
+    panel.event(egui::Event::Text("7.5 cm".to_owned()));
+    panel.step();
+    panel.get_by_label("Answer").click();
+    panel.step();
+    assert_eq!(panel.state().2, [Command::Lesson(LessonCommand::Predict(Guess::Number(0.075)))]);
+}
+
+#[test]
+fn a_digit_that_is_typed_elsewhere_goes_to_the_field() {
+    let mut panel = harness(Some(run("range-and-bandwidth", 1)));
+    panel.run_steps(2);
+    panel.ctx.memory_mut(|memory| memory.surrender_focus(egui::Id::unique("the number of an answer")));
+    panel.step();
+    panel.event(egui::Event::Text("5".to_owned()));
+    panel.run_steps(2);
+    assert_eq!(panel.state().1.number, "5");
+    assert!(panel.get_by_label("Your number").is_focused());
+}
+
+#[test]
+fn the_question_is_in_view_however_little_room_there_is() {
+    for (lesson, step) in [("which-points-a-car-is", 3), ("range-and-bandwidth", 1), ("where-a-wall-shines", 2)] {
+        for size in [[360.0, 300.0], [520.0, 480.0]] {
+            let draw = |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
+                let progress = Progress::default();
+                let input = Input { run: run.as_ref(), progress: &progress, hidden: None, presenting: true };
+                asked.extend(show(ui, input, memory));
+            };
+            let state = (Some(self::run(lesson, step)), Memory::default(), Vec::new());
+            let mut panel = Harness::builder().with_size(size).build_ui_state(draw, state);
+            panel.run_steps(3);
+            let step = panel.state().0.as_ref().and_then(LessonRun::current).unwrap().clone();
+            let (title, question) = (panel.get_by_label_contains("Step "), step.predict.unwrap());
+            let ask = panel.get_by_label(&question.ask).rect();
+            assert!(title.rect().top() < 80.0, "{lesson} at {size:?} begins at its top");
+            assert!(ask.bottom() < size[1] - 30.0, "{lesson} at {size:?}: the question is at {ask:?}");
+        }
+    }
+}
+
+#[test]
+fn each_step_starts_at_its_top() {
+    let mut panel = harness(Some(run("which-points-a-car-is", 4)));
+    panel.set_size(egui::vec2(360.0, 260.0));
+    panel.run_steps(3);
+    let over = panel.get_by_label_contains("Step ").rect().center();
+    panel.hover_at(over);
+    panel.step();
+    let unit = egui::MouseWheelUnit::Point;
+    let (delta, modifiers, phase) = (egui::vec2(0.0, -120.0), egui::Modifiers::NONE, egui::TouchPhase::Move);
+    panel.event(egui::Event::MouseWheel { unit, delta, modifiers, phase, source: egui::MouseWheelSource::Unknown });
+    panel.run_steps(20);
+    assert!(panel.get_by_label_contains("Step ").rect().top() < 0.0, "it was scrolled");
+    panel.state_mut().0.as_mut().unwrap().go_to(3);
+    panel.run_steps(3);
+    assert!(panel.get_by_label_contains("Step ").rect().top() > 0.0);
 }
 
 #[test]

@@ -24,23 +24,29 @@ const GUESS: Color32 = Color32::from_rgb(255, 170, 60);
 /// The truth.
 const TRUTH: Color32 = Color32::from_rgb(120, 255, 150);
 
-/// Arms of the guess's cross and radius of the truth's ring, points.
-const SIZE: f32 = 8.0;
+/// From a place to the nearest stroke of its mark, and to the farthest, points: what lies at the place stays free.
+const FREE: f32 = 9.0;
+const REACH: f32 = 16.0;
 
-/// Draws the guess as a cross, the truth as a ring, and a line between them; each says what it is.
+/// Draws the guess as a cross with an open middle, the truth as a ring, and a line between them; each says what it is, beside the map's blob.
 pub fn draw(painter: &Painter, frame: Frame<'_>, places: &Places) {
     let Places { guess, truth, distance } = places;
     let (guess, truth) = (*guess, *truth);
     let [guess, truth] = [guess, truth].map(|cell| frame.cell(theory::Cell { bin: cell.bin, column: cell.column }));
-    for (width, colour) in [(4.0, MARK_EDGE), (1.8, MARK)] {
-        painter.line_segment([guess, truth], Stroke::new(width, colour));
+    let apart = guess.distance(truth);
+    if apart > 2.0 * REACH {
+        let along = REACH * (truth - guess) / apart;
+        for (width, colour) in [(4.0, MARK_EDGE), (1.4, MARK)] {
+            painter.line_segment([guess + along, truth - along], Stroke::new(width, colour));
+        }
     }
     for (width, edge) in [(4.0, true), (2.0, false)] {
         let colour = |own: Color32| if edge { MARK_EDGE } else { own };
-        for arm in [vec2(SIZE, SIZE), vec2(SIZE, -SIZE)] {
-            painter.line_segment([guess - arm, guess + arm], Stroke::new(width, colour(GUESS)));
+        for towards in [vec2(1.0, 1.0), vec2(1.0, -1.0), vec2(-1.0, 1.0), vec2(-1.0, -1.0)] {
+            let towards = towards.normalized();
+            painter.line_segment([guess + FREE * towards, guess + REACH * towards], Stroke::new(width, colour(GUESS)));
         }
-        painter.circle_stroke(truth, SIZE, Stroke::new(width, colour(TRUTH)));
+        painter.circle_stroke(truth, 0.5 * (FREE + REACH), Stroke::new(width, colour(TRUTH)));
     }
     // One above, one below: they stay readable where the two places are close.
     let guess_is_above = guess.y < truth.y;
@@ -48,15 +54,52 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, places: &Places) {
     label(painter, truth, !guess_is_above, "truth");
     let middle = guess + (truth - guess) / 2.0;
     // Beside the line, where it is long enough not to stand over its ends.
-    if guess.distance(truth) > 5.0 * SIZE {
-        axes::text_on_patch(painter, middle + vec2(SIZE, 0.0), Align2::LEFT_CENTER, distance);
+    if apart > 5.0 * REACH {
+        axes::text_on_patch(painter, middle + vec2(FREE, 0.0), Align2::LEFT_CENTER, distance);
     }
 }
 
 fn label(painter: &Painter, at: Pos2, above: bool, text: &str) {
     let (off, align) = match above {
-        true => (-SIZE - 4.0, Align2::CENTER_BOTTOM),
-        false => (SIZE + 4.0, Align2::CENTER_TOP),
+        true => (-REACH - 3.0, Align2::CENTER_BOTTOM),
+        false => (REACH + 3.0, Align2::CENTER_TOP),
     };
     axes::text_on_patch(painter, at + vec2(0.0, off), align, text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::{MapView, Projection};
+    use crate::app::widgets::seen;
+    use crate::radar::Radar;
+    use eframe::egui::{Rect, Shape};
+    use egui_kittest::Harness;
+
+    #[test]
+    fn marks_leave_the_blob_free() {
+        let radar = Radar::default();
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(700.0, 350.0));
+        let frame = Frame::of(rect, MapView::default(), &radar, Projection::RangeAngle, 0.0);
+        let places = |column| Places {
+            guess: Cell { bin: 250.0, column },
+            truth: Cell { bin: 266.0, column: 512.0 },
+            distance: "1.2 m and 12 columns off".to_owned(),
+        };
+        for column in [500.0, 512.0, 200.0] {
+            let places = places(column);
+            let drawn = Harness::builder().with_size(rect.size()).build_ui(|ui| draw(ui.painter(), frame, &places));
+            let truth = frame.cell(theory::Cell { bin: 266.0, column: 512.0 });
+            for text in seen::texts(drawn.output()) {
+                assert!(text.rect.distance_to_pos(truth) > FREE, "{} lies over the blob", text.text);
+            }
+            let rings = drawn.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+                Shape::Circle(circle) => Some(circle.clone()),
+                _ => None,
+            });
+            for ring in rings {
+                assert!(ring.center == truth && ring.radius > FREE && ring.fill == Color32::TRANSPARENT, "{ring:?}");
+            }
+        }
+    }
 }

@@ -16,6 +16,8 @@ pub struct Caption {
     pub updating: bool,
     /// The method that is at work on the same scene, where another one's output is shown.
     pub running: Option<&'static str>,
+    /// What became of the objects in the output that is shown, in a few words.
+    pub verdict: Option<String>,
     /// Figures of the output that is shown, against the target of the same scene.
     pub metrics: Option<Metrics>,
     /// eta'.
@@ -39,22 +41,24 @@ pub fn caption(input: Caption) -> Option<String> {
         None if input.updating => "(updating) ",
         None => "",
     };
+    let verdict = input.verdict.as_deref().map_or_else(String::new, |verdict| format!("{verdict} · "));
     let text = match input.kind {
         MapKind::TargetAbove if let Some(cfar) = input.cfar => format!("{} {updating}", detector(cfar)),
         MapKind::TargetAbove => format!("η' = {} {updating}", threshold(&input, input.target_eta)),
         MapKind::OutputAbove | MapKind::SecondAbove => {
             let figures = input.metrics.map_or_else(String::new, |m| {
                 let detection = m.detection.map_or("–".to_owned(), percent);
-                format!("P_D {detection} · P_FA {} · ", percent(m.false_alarm))
+                format!("{verdict}P_D {detection} · P_FA {} · ", percent(m.false_alarm))
             });
             match input.cfar {
                 Some(cfar) => format!("{figures}{} {updating}", detector(cfar)),
                 None => format!("{figures}η = {} {updating}", threshold(&input, input.output_eta)),
             }
         }
-        MapKind::Output | MapKind::Second | MapKind::Doubt => {
-            format!("{} {updating}", input.method.unwrap_or_default())
+        MapKind::Output | MapKind::Second => {
+            format!("{verdict}{} {updating}", input.method.unwrap_or_default())
         }
+        MapKind::Doubt => format!("{} {updating}", input.method.unwrap_or_default()),
         MapKind::Difference | MapKind::SecondDifference => {
             let figures = input.metrics.map_or_else(String::new, |m| format!("SE {:.0} ", m.squared_error));
             format!("{figures}{updating}")
@@ -88,6 +92,29 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_verdict_of_objects_comes_before_that_of_cells() {
+        let of = |kind| {
+            let input = Caption {
+                kind,
+                method: Some("live"),
+                updating: false,
+                running: None,
+                verdict: Some("5 of 5 found, 0 false".to_owned()),
+                metrics: Some(Metrics { squared_error: 120.0, detection: Some(0.5), false_alarm: 0.01 }),
+                target_eta: 0.9,
+                cfar: None,
+                output_eta: 0.8,
+                explained: None,
+                units: Units::Lambda,
+                range_db: None,
+            };
+            caption(input).unwrap()
+        };
+        assert_eq!(of(MapKind::Output).trim(), "5 of 5 found, 0 false · live");
+        assert!(of(MapKind::OutputAbove).starts_with("5 of 5 found, 0 false · P_D "), "{}", of(MapKind::OutputAbove));
+    }
+
+    #[test]
     fn thresholds_are_told_in_the_chosen_units() {
         let of = |units, range_db| {
             let input = Caption {
@@ -95,6 +122,7 @@ mod tests {
                 method: None,
                 updating: false,
                 running: None,
+                verdict: None,
                 metrics: None,
                 target_eta: 0.9,
                 cfar: None,

@@ -11,6 +11,9 @@ const LEAST: f32 = 4.0;
 /// Between two lines of a hatch, points.
 const STEP: f32 = 7.0;
 
+/// How far around what the target shows an output has its rim, cells.
+const RIM_CELLS: usize = 3;
+
 /// What tells hits, misses and false alarms apart.
 #[derive(Clone, Copy)]
 pub struct ToldApart<'a> {
@@ -33,7 +36,18 @@ impl ToldApart<'_> {
         }
         let cell = (bin as usize, column);
         let above = |map: &RangeAngleMap, eta: f32| map.lambda.get(cell).is_some_and(|v| *v > eta);
-        Detection::of(above(self.target, self.etas[1]), above(self.output, self.etas[0]))
+        match Detection::of(above(self.target, self.etas[1]), above(self.output, self.etas[0])) {
+            Detection::FalseAlarm if self.is_near_target(cell) => Detection::Rim,
+            kind => kind,
+        }
+    }
+
+    /// Whether the target shows something near a cell.
+    fn is_near_target(&self, (bin, column): (usize, usize)) -> bool {
+        let (rows, columns) = self.target.lambda.dim();
+        let near = |at: usize, end: usize| at.saturating_sub(RIM_CELLS)..(at + RIM_CELLS + 1).min(end);
+        let mut cells = near(bin, rows).flat_map(|r| near(column, columns).map(move |c| (r, c)));
+        cells.any(|cell| self.target.lambda[cell] > self.etas[1])
     }
 
     /// Draws them over what is shown of the map: misses lean to the right, false alarms to the left, hits have none.
@@ -51,7 +65,7 @@ impl ToldApart<'_> {
             let ends = match kind {
                 Detection::Miss => [square.left_bottom(), square.right_top()],
                 Detection::FalseAlarm => [square.left_top(), pos2(square.right(), square.bottom())],
-                Detection::Hit | Detection::Nothing => return None,
+                Detection::Hit | Detection::Rim | Detection::Nothing => return None,
             };
             let [r, g, b] = kind.outline(dark);
             Some(Shape::line_segment(ends, Stroke::new(1.2, Color32::from_rgb(r, g, b))))

@@ -198,7 +198,11 @@ impl Kinds<'_> {
             format!("{kind} {}", index + 1)
         };
         let part = failures.covered.get(index).copied().unwrap_or(0.0);
-        let detected = format!("{:.0} % of its {cells} cells exceed η = {eta}", 100.0 * part);
+        let of_what = match scene.objects.get(index).is_some_and(|object| object.body().is_some()) {
+            true => "ends, corners and glints".to_owned(),
+            false => format!("{cells} cells"),
+        };
+        let detected = format!("{:.0} % of its {of_what} exceed η = {eta}", 100.0 * part);
         let reason = match failures.objects.get(index).copied().unwrap_or(Fate::Hidden) {
             Fate::Found => detected,
             Fate::Missed => format!("{detected}: less than half"),

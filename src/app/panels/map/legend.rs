@@ -12,6 +12,14 @@ const ROW: f32 = 18.0;
 /// Most rows: more would leave too little of the map.
 const ROWS: usize = 2;
 
+/// Lower panels have no room for marks above the map, points.
+const LEAST_HEIGHT: f32 = 150.0;
+
+/// What is kept for marks above every map of panels so high, points.
+pub fn reserved(panel_height: f32) -> f32 {
+    if panel_height > LEAST_HEIGHT { ROWS as f32 * ROW } else { 0.0 }
+}
+
 /// Width of a mark, what is between it and its name, and what is between entries, points.
 const SWATCH: f32 = 14.0;
 const GAPS: [f32; 2] = [5.0, 12.0];
@@ -85,8 +93,8 @@ impl Legend {
         Legend { fills, entries, current: kinds.is_none_or(|kinds| kinds.current) }
     }
 
-    /// What it needs above the map, points.
-    pub fn height(&self) -> f32 {
+    /// What it takes above the map, points.
+    fn height(&self) -> f32 {
         self.entries.last().map_or(0.0, |entry| (entry.at.1 + 1) as f32 * ROW)
     }
 

@@ -28,8 +28,8 @@ pub use swipe::Over;
 pub use theory::Theory;
 
 use crate::app::state::{
-    Command, Cursor, DifferenceView, ExportCommand, LessonCommand, MapKind, MapView, Panel, Projection, Units,
-    ViewCommand, WindowCommand,
+    Command, Cursor, DifferenceView, Directions, ExportCommand, LessonCommand, MapKind, MapView, Panel, Projection,
+    Units, ViewCommand, WindowCommand,
 };
 use crate::app::widgets::axes;
 use crate::app::widgets::colour_bar::Bar;
@@ -65,6 +65,8 @@ pub struct Input<'a> {
     pub colours: ColourMap,
     /// What the colour bar counts.
     pub units: Units,
+    /// What the axis of directions counts.
+    pub directions: Directions,
     /// How a difference is drawn.
     pub difference: DifferenceView,
     /// Its picture, if there is one.
@@ -141,6 +143,7 @@ impl<'a> Input<'a> {
             other_view: MapView::default(),
             colours: ColourMap::Grey,
             units: Units::Lambda,
+            directions: Directions::Cosine,
             difference: DifferenceView::default(),
             texture: None,
             pictured: projection,
@@ -178,7 +181,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     let is_told = !input.kind.is_above() && input.veil.is_none() && is_wide(area);
     let bar = is_told.then(|| bar_of(&input));
     let legend = legend_of(ui, &input, area);
-    let rect = rect_of(area, input.projection, legend.height());
+    // Kept in every map, also where nothing is marked: frames beside each other stay aligned.
+    let above = if input.shown.kinds { legend::reserved(area.height()) } else { 0.0 };
+    let rect = rect_of(area, input.projection, above);
     let response = ui.interact(rect, ui.scope_id().with(("map", input.kind)), Sense::click_and_drag());
     let label = format!("{} map", input.kind.title());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
@@ -191,7 +196,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
     if response.has_focus() && !input.selection.is_empty() {
         asked.extend(nudge(ui.ctx(), input.radar.range_resolution_metres()));
     }
-    let morph = morph::morph(ui, area, input.projection, input.other_view, legend.height());
+    let morph = morph::morph(ui, area, input.projection, input.other_view, above);
     // What the pointer does means the place where everything comes to rest.
     let frame = Frame { view: *view, ..frame };
     point(&input, frame, &response, &mut asked);
@@ -204,7 +209,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memo
         let free = bar.as_ref().map_or(0.0, |bar| bar.overhang(&painter, rect.width()));
         let mut appearing = painter.clone();
         appearing.multiply_opacity(rest);
-        draw_axes(ui, &appearing, frame, free);
+        draw_axes(ui, &appearing, frame, input.directions, free);
     }
     legend.draw(ui, &painter, frame.shown());
     draw_over(&inner, frame, &input, &response, is_drawn);
@@ -231,7 +236,7 @@ fn describe(ui: &Ui, input: &Input<'_>, id: egui::Id) {
 
 /// What fills and marks stand for, where there is room to say so.
 fn legend_of(ui: &Ui, input: &Input<'_>, area: Rect) -> Legend {
-    let has_room = input.veil.is_none() && area.height() > 150.0;
+    let has_room = input.veil.is_none() && legend::reserved(area.height()) > 0.0;
     let dark = ui.visuals().dark_mode;
     let fills = match &input.told_apart {
         _ if !(input.kind.is_above() && has_room && is_wide(area)) => Vec::new(),

@@ -1,8 +1,8 @@
 //! Where a map goes within its panel, its axes, and what moves it.
 
 use super::frame::Frame;
-use crate::app::state::{MapView, Projection};
-use crate::app::widgets::axes::{self, Axis};
+use crate::app::state::{Directions, MapView, Projection};
+use crate::app::widgets::axes::{self, Axis, Tick};
 use crate::app::widgets::nudge::{pan_keys, zoom_keys};
 use crate::radar::Radar;
 use eframe::egui::{Align2, Painter, Rect, Response, Ui, pos2, vec2};
@@ -58,6 +58,10 @@ pub fn navigate(ui: &Ui, rect: Rect, response: &Response, view: &mut MapView, pa
     }
 }
 
+/// What it is called where it counts degrees.
+const DEGREE_TITLES: &[&str] =
+    &["degrees from straight ahead: − is left, + is right", "degrees from straight ahead", "degrees"];
+
 /// Directions this far apart share a column where nearly all directions have one of their own, in cos(theta).
 const LEAST_PERIOD_COS: f64 = 1.9;
 
@@ -73,18 +77,66 @@ fn direction_titles(radar: &Radar) -> &'static [&'static str] {
     ]
 }
 
+/// Degrees between marks, the finest first.
+const DEGREES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0];
+
+/// Between the labels of two directions, points.
+const BETWEEN_DIRECTIONS: f32 = 8.0;
+
+/// Marks at round angles from straight ahead, where the axis counts cos θ from `low` to `high` over `length` points: the finest step whose
+/// labels have room. Directions bunch up towards the sides, where labels that have none are left out.
+fn degrees(painter: &Painter, low: f64, high: f64, length: f32) -> Vec<Tick> {
+    let text = |degrees: f64| format!("{degrees}°").replace('-', "−");
+    let part = |degrees: f64| ((degrees.to_radians().sin() - low) / (high - low)) as f32;
+    let of = |step: f64| -> Vec<f64> {
+        let last = (90.0 / step).floor() as i64;
+        let angles = (-last..=last).map(|i| i as f64 * step);
+        angles.filter(|degrees| (-1e-4..=1.0 + 1e-4).contains(&part(*degrees))).collect()
+    };
+    let room = |degrees: f64| axes::width(painter, &text(degrees)) + BETWEEN_DIRECTIONS;
+    // Straight ahead directions are farthest apart; the middle of what is shown decides.
+    let fits = |step: &&f64| {
+        let angles = of(**step);
+        let apart = |pair: &[f64]| (part(pair[1]) - part(pair[0])).abs() * length >= room(pair[1]).max(room(pair[0]));
+        angles.len() < 4 || angles.windows(2).filter(|pair| apart(pair)).count() * 2 > angles.len()
+    };
+    let step = DEGREES.iter().find(fits).copied().unwrap_or(30.0);
+    let mut free = f32::NEG_INFINITY;
+    let mut ticks = Vec::new();
+    for degrees in of(step) {
+        let (at, half) = (part(degrees) * length, room(degrees) / 2.0);
+        if at - half >= free {
+            ticks.push(Tick { value: degrees.to_radians().sin(), text: text(degrees) });
+            free = at + half;
+        }
+    }
+    ticks
+}
+
 /// Draws both axes of the part that is shown; the title below leaves `free` points at each end.
-pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, free: f32) {
+pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, directions: Directions, free: f32) {
     let Frame { rect, view, radar, projection, .. } = frame;
+    let marks;
     let (x, y) = match projection {
         Projection::RangeAngle => {
             let cos = |fraction: f32| radar.cos_of_column(radar.column_across(f64::from(fraction)));
             let range = |fraction: f32| radar.range_of_bin_metres(f64::from(fraction) * radar.samples as f64 - 0.5);
-            let title = axes::fitting(painter, rect.width() - 2.0 * free, direction_titles(radar));
+            let titles = match directions {
+                Directions::Cosine => direction_titles(radar),
+                Directions::Degrees => DEGREE_TITLES,
+            };
+            let title = axes::fitting(painter, rect.width() - 2.0 * free, titles);
             // A column stands for the direction in its middle: the ends of a whole map are half a column away from a round number.
             let column = cos(1.0 / radar.elements as f32) - cos(0.0);
             let slack = if view.high.x - view.low.x == 1.0 { 0.51 * column } else { 0.0 };
-            let x = Axis::new(cos(view.low.x), cos(view.high.x), title).with_slack(slack);
+            let (low, high) = (cos(view.low.x), cos(view.high.x));
+            let x = match directions {
+                Directions::Cosine => Axis::new(low, high, title).with_slack(slack),
+                Directions::Degrees => {
+                    marks = degrees(painter, low, high, rect.width());
+                    Axis { ticks: Some(&marks), ..Axis::new(low, high, title).with_slack(slack) }
+                }
+            };
             // The one row of a snapshot stands for no range.
             let y = match radar.samples {
                 1 => Axis { ticks: Some(&[]), ..Axis::new(0.0, 1.0, "one range") },
@@ -107,6 +159,23 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, free: f32) {
 mod tests {
     use super::*;
     use crate::radar::presets::RadarPreset;
+
+    #[test]
+    fn an_axis_in_degrees_has_round_angles_where_cos_theta_has_them() {
+        let draw = |ui: &mut Ui| {
+            for (low, high, length) in [(-1.0, 1.0, 700.0), (-1.0, 1.0, 160.0), (-0.1, 0.3, 400.0)] {
+                let ticks = degrees(ui.painter(), low, high, length);
+                assert!(ticks.len() >= 3, "{ticks:?}");
+                for tick in &ticks {
+                    let told: f64 = tick.text.trim_end_matches('°').replace('−', "-").parse().unwrap();
+                    assert!((told.to_radians().sin() - tick.value).abs() < 1e-9, "{tick:?}");
+                }
+                let places: Vec<f32> = ticks.iter().map(|t| ((t.value - low) / (high - low)) as f32 * length).collect();
+                assert!(places.windows(2).all(|pair| pair[1] - pair[0] > 16.0), "{ticks:?} at {places:?}");
+            }
+        };
+        _ = egui_kittest::Harness::new_ui(draw);
+    }
 
     #[test]
     fn only_radars_whose_directions_share_columns_are_called_folded() {

@@ -121,6 +121,21 @@ fn every_map_has_the_same_margins_whatever_stands_beside_it() {
 }
 
 #[test]
+fn maps_beside_each_other_stay_aligned_while_objects_are_marked() {
+    let rect = |kind: MapKind| {
+        let (radar, fates) = (Radar::default(), kinds::tests::fates());
+        let map = Harness::builder().with_size([500.0, 300.0]).build_ui(move |ui| {
+            let kinds = Some(Kinds { fates: &fates, current: true }).filter(|_| kind == MapKind::Output);
+            let shown = Shown { kinds: true, ..Shown::default() };
+            let input = Input { kind, kinds, shown, texture: Some(TextureId::default()), ..input(&radar, None) };
+            _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+        });
+        map.get_by_label(&format!("{} map", kind.title())).rect()
+    };
+    assert_eq!(rect(MapKind::Output), rect(MapKind::Input0));
+}
+
+#[test]
 fn directions_rise_from_left_to_right_with_either_carrier() {
     let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
     let map = Harness::builder().with_size([450.0, 270.0]).build_ui(move |ui| {
@@ -165,7 +180,8 @@ fn judged(size: [f32; 2]) -> Harness<'static> {
         let kinds = Some(Kinds { fates: &fates, current: true });
         let texture = Some(TextureId::default());
         let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9] });
-        let input = Input { kinds, texture, told_apart, kind: MapKind::OutputAbove, ..input(&radar, None) };
+        let shown = Shown { kinds: true, ..Shown::default() };
+        let input = Input { kinds, texture, told_apart, shown, kind: MapKind::OutputAbove, ..input(&radar, None) };
         _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
     });
     map.step();
@@ -175,7 +191,7 @@ fn judged(size: [f32; 2]) -> Harness<'static> {
 
 #[test]
 fn fates_of_objects_are_counted_above_the_map() {
-    let legend = "Legend: hit, false alarm, miss, 1 found, 1 missed, 1 merged, 1 wrong tooth, 1 ghost, 1 hidden";
+    let legend = "Legend: hit, rim, false alarm, miss, 1 found, 1 missed, 1 merged, 1 wrong tooth, 1 ghost, 1 hidden";
     assert!(judged([900.0, 500.0]).query_by_label(legend).is_some());
 }
 

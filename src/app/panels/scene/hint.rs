@@ -1,33 +1,30 @@
-//! One line over the scene that says what to do, and an arrow that shows it.
+//! One line over the scene that says what to do or what happened, and an arrow that shows the way.
 
 use super::canvas::Canvas;
 use crate::app::widgets::theme::{CAPTION, CAPTION_INK};
 use crate::interact::Place;
-use eframe::egui::{FontId, Painter, Rect, Stroke, Vec2, vec2};
+use eframe::egui::{FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 
-/// What to do.
+/// What to do, or what happened.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hint {
     /// In words.
     pub text: String,
-    /// From where to where something is to be dragged.
-    pub way: Option<[Place; 2]>,
+    /// Along which places something is to be dragged; empty where nothing is.
+    pub way: Vec<Place>,
 }
 
 /// Where the arrow begins and ends beside what it leads from and to, points.
 const APART: f32 = 12.0;
 
+/// Length of the arrow's head, points.
+const HEAD: f32 = 11.0;
+
 impl Hint {
     /// Draws it at the top of the scene, beneath its scale.
     pub fn draw(&self, painter: &Painter, canvas: Canvas<'_>) {
-        if let Some([from, to]) = self.way {
-            let (from, to) = (canvas.at(from), canvas.at(to));
-            let way = to - from;
-            if way.length() > 3.0 * APART {
-                let along = APART * way.normalized();
-                painter.arrow(from + along, way - 2.0 * along, Stroke::new(2.5, canvas.inks.selected));
-            }
-        }
+        let way: Vec<Pos2> = self.way.iter().map(|place| canvas.at(*place)).collect();
+        arrow(painter, &way, Stroke::new(2.5, canvas.inks.selected));
         let room = (canvas.rect.width() - 32.0).max(60.0);
         let galley = painter.layout(self.text.clone(), FontId::proportional(15.0), CAPTION_INK, room);
         let middle = canvas.rect.center_top() + vec2(0.0, 26.0 + galley.size().y / 2.0);
@@ -35,4 +32,17 @@ impl Hint {
         painter.rect_filled(patch, 6.0, CAPTION);
         painter.galley(patch.min + vec2(10.0, 5.0), galley, CAPTION_INK);
     }
+}
+
+/// An arrow along a curve, without what lies near its ends; none where the curve is short.
+fn arrow(painter: &Painter, way: &[Pos2], stroke: Stroke) {
+    let (Some(first), Some(last)) = (way.first(), way.last()) else { return };
+    let is_free = |at: &&Pos2| at.distance(*first) > APART && at.distance(*last) > APART;
+    let curve: Vec<Pos2> = way.iter().filter(is_free).copied().collect();
+    let [.., before, tip] = curve[..] else { return };
+    let along = HEAD * (tip - before).normalized();
+    for side in [0.5, -0.5] {
+        painter.line_segment([tip, tip - along + side * along.rot90()], stroke);
+    }
+    painter.add(Shape::line(curve, stroke));
 }

@@ -44,8 +44,10 @@ pub struct Input<'a> {
     pub numbers: bool,
     /// The scene at another time than 0, and that time in seconds: it is looked at, not edited.
     pub moved: Option<(&'a Scene, f64)>,
-    /// What to do here, at a first start.
+    /// What to do here at a first start, or what the first drag did.
     pub hint: Option<Hint>,
+    /// Whether it is told what the maps make of the scene: shadows, glints, and what they show elsewhere. Not while a lesson asks for it.
+    pub tells_maps: bool,
 }
 
 /// How strong marks are drawn that belong to an earlier scene.
@@ -80,7 +82,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let canvas = Canvas { rect, view: *view, radar: input.radar, extent_metres, inks: Inks::of(ui.visuals()) };
     canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
     let scene = input.moved.map_or(&**editor.scene(), |(scene, _)| scene);
-    objects(&painter, canvas, scene, editor, hovered.map(|h| h.object));
+    objects(&painter, canvas, scene, editor, hovered.map(|h| h.object), input.tells_maps);
     canvas::found(&dimmed(&painter, input.found_stale), canvas, input.found);
     trail::draw(&painter, canvas, input.trails);
     if input.moved.is_none() {
@@ -96,6 +98,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     }
     if input.numbers {
         canvas::scale_bar(&painter, canvas);
+    }
+    if input.numbers && input.tells_maps {
         elsewhere(ui, &painter, canvas, &input, editor.scene());
     }
     if let Some(hint) = &input.hint {
@@ -137,16 +141,27 @@ fn edit(
 }
 
 /// The objects with what they hide, where they shine and where they move to.
-fn objects(painter: &Painter, canvas: Canvas<'_>, scene: &Scene, editor: &Editor, hovered: Option<usize>) {
+fn objects(
+    painter: &Painter,
+    canvas: Canvas<'_>,
+    scene: &Scene,
+    editor: &Editor,
+    hovered: Option<usize>,
+    tells_maps: bool,
+) {
     disturbances::draw(painter, canvas, scene);
     let at = |place| canvas.at(place);
-    bodies::shadows(painter, &at, canvas.radar, scene, (canvas.extent_metres, canvas.inks.ends));
+    if tells_maps {
+        bodies::shadows(painter, &at, canvas.radar, scene, (canvas.extent_metres, canvas.inks.ends));
+    }
     for (index, object) in scene.objects.iter().enumerate() {
         let look = Look { selected: editor.selection().contains(index), hovered: hovered == Some(index) };
         canvas::object(painter, canvas, object, look);
         canvas::velocity(painter, canvas, object, look);
     }
-    bodies::glints(painter, &at, canvas.radar, scene, canvas.inks.ends);
+    if tells_maps {
+        bodies::glints(painter, &at, canvas.radar, scene, canvas.inks.ends);
+    }
 }
 
 /// What the maps show elsewhere than it stands.

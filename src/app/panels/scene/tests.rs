@@ -4,6 +4,8 @@ use crate::scene::Scene;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
+mod answers;
+
 struct Held {
     editor: Editor,
     view: SceneView,
@@ -25,6 +27,7 @@ fn panel(scene: Scene) -> Harness<'static, Held> {
             error: Some("too far"),
             numbers: true,
             hint: None,
+            tells_maps: true,
             moved: None,
         };
         let commands = show(ui, input, &mut held.editor, &mut held.view);
@@ -112,6 +115,7 @@ fn labels_stand_around_the_half_disc() {
                 error,
                 numbers: true,
                 hint: None,
+                tells_maps: true,
                 moved: None,
             };
             _ = show(ui, input, editor, view);
@@ -150,6 +154,7 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
             error,
             numbers: true,
             hint: None,
+            tells_maps: true,
             moved: None,
         };
         _ = show(ui, input, editor, view);

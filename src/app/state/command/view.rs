@@ -1,6 +1,8 @@
 //! Commands that change how the scene is looked at: which maps, by which method, and what is drawn over them.
 
-use crate::app::state::{BoundsSettings, ChirpSettings, Compare, Cursor, PhasorSettings, Projection, Several, Units};
+use crate::app::state::{
+    BoundsSettings, ChirpSettings, Compare, Cursor, Directions, PhasorSettings, Projection, Several, Units,
+};
 use crate::maps::Normalisation;
 use crate::maps::cfar::{Cfar, Statistic};
 use crate::picture::ColourMap;
@@ -23,6 +25,8 @@ pub enum ViewCommand {
     ToggleUnits,
     /// Lambda or decibels on colour bars, cuts, readouts and thresholds.
     SetUnits(Units),
+    /// cos θ or degrees along the axis of directions.
+    SetDirections(Directions),
     /// The difference with its sign or without, the other way round.
     ToggleAbsoluteDifference,
     /// The difference on a scale that just holds it or on one up to 1, the other way round.

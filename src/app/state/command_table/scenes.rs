@@ -74,7 +74,7 @@ pub(super) const COMMANDS: &[Entry] = {
         entry(
             Export(ExportCommand::Picture),
             "Export picture…",
-            "Save the window as PNG, or all panels as SVG",
+            "Save the maps of this scene with scene and figures, as PNG or SVG",
             command(Key::E),
         ),
         entry(Export(ExportCommand::Maps), "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None),

@@ -1,7 +1,7 @@
 //! Commands that choose what is shown: maps, scales, the floor, the detector, the radar's signal, colours, lessons and the window itself.
 
 use super::super::command::{Command, LessonCommand, RadarCommand, ViewCommand, WindowCommand, WorkCommand};
-use super::super::settings::{Projection, Units};
+use super::super::settings::{Directions, Projection, Units};
 use super::entry::{Entry, command, entry, key, shift};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Statistic;
@@ -72,6 +72,18 @@ pub(super) const COMMANDS: &[Entry] = {
             View(ViewCommand::SetUnits(Units::Decibels)),
             "Scale: dB",
             "Tell decibels relative to the peak on colour bars, cuts, readouts and thresholds",
+            None,
+        ),
+        entry(
+            View(ViewCommand::SetDirections(Directions::Cosine)),
+            "Directions: cos θ",
+            "Count cos θ along the axis of directions of every map",
+            None,
+        ),
+        entry(
+            View(ViewCommand::SetDirections(Directions::Degrees)),
+            "Directions: degrees",
+            "Count degrees from straight ahead along the axis of directions of every map",
             None,
         ),
         entry(

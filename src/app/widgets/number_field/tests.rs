@@ -50,6 +50,24 @@ fn says(panel: &Harness<'_, Shown>, what: &str) -> bool {
 }
 
 #[test]
+fn a_number_is_read_in_another_unit_of_its_quantity() {
+    let of = |unit: &str, text: &str| Wanted { unit: unit.to_owned(), ..Wanted::any() }.read(text);
+    for (unit, text, expected) in [
+        ("m", "7.5 cm", 0.075),
+        ("m", "75mm", 0.075),
+        ("m", "0,075", 0.075),
+        (" GHz", "200 MHz", 0.2),
+        ("m/s", "36 km/h", 10.0),
+        (" ms", "2 ms", 2.0),
+        (" mm", "2 cm", 20.0),
+    ] {
+        let read = of(unit, text).unwrap();
+        assert!((read - expected).abs() < 1e-9, "{text} in {unit}: {read}");
+    }
+    assert!(of("m", "7.5 dB").is_err() && of("dB", "7.5 cm").is_err());
+}
+
+#[test]
 fn a_decimal_comma_is_read() {
     let metres = Wanted { range: -1e4..=1e4, is_whole: false, unit: " m".to_owned() };
     for (text, value) in [("-3,5", -3.5), ("-3.5", -3.5), ("−3.5 m", -3.5), (" 1 000 ", 1000.0), ("+2e3", 2000.0)] {

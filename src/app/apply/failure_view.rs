@@ -1,0 +1,73 @@
+//! The part of the maps in which a scene's method fails, shown when a preset of failures is opened.
+
+use crate::app::jobs::{Fates, Jobs};
+use crate::app::state::{MapView, MethodSlot, State};
+use crate::evaluate::failure::Fate;
+use crate::maps::Aperture;
+use crate::radar::Radar;
+use crate::theory::blob_cell;
+use eframe::egui::{Pos2, Vec2, pos2, vec2};
+
+/// At least so much of a map is shown around a failure, to either side: parts of its width and height.
+const LEAST: Vec2 = vec2(0.12, 0.1);
+
+/// Shows the failure that was opened, once it is known; shows whole maps again when another document comes.
+pub fn follow(state: &mut State, jobs: &Jobs) {
+    let document = state.editor.document().id();
+    let shown = &mut state.map_views.range_angle;
+    if let Some((_, view)) = state.failures.view.shown.take_if(|(of, _)| *of != document)
+        && view == *shown
+    {
+        *shown = MapView::default();
+    }
+    if state.failures.view.wanted != Some(document) {
+        return;
+    }
+    let Some((fates, true)) = jobs.kinds.of(MethodSlot::First, &jobs.pipeline) else { return };
+    state.failures.view.wanted = None;
+    if let Some(view) = around(state.editor.radar(), fates) {
+        *shown = view;
+        state.failures.view.shown = Some((document, view));
+    }
+}
+
+/// The part of a map with all objects that are not found, and all ghosts.
+fn around(radar: &Radar, fates: &Fates) -> Option<MapView> {
+    let at = |bin: f64, column: f64| {
+        pos2(radar.across_of_column(column) as f32, ((bin + 0.5) / radar.samples as f64) as f32)
+    };
+    let place = |verdict: &crate::app::jobs::Verdict| match verdict.object {
+        Some(index) => {
+            let fate = fates.failures.objects.get(index)?;
+            let [x, y] = fates.scene.objects.get(index)?.centre_metres();
+            let cell = blob_cell(radar, x, y, Aperture::Full);
+            (!matches!(fate, Fate::Found | Fate::Hidden)).then(|| at(cell.bin, cell.column))
+        }
+        None => verdict.brightest.map(|[bin, column]| at(bin as f64, column as f64)),
+    };
+    let places: Vec<Pos2> = fates.verdicts.iter().filter_map(place).collect();
+    let (first, rest) = places.split_first()?;
+    let (low, high) = rest.iter().fold((*first, *first), |(low, high), at| (low.min(*at), high.max(*at)));
+    let half = ((high - low) / 2.0 + LEAST / 2.0).max(LEAST).min(Vec2::splat(0.5));
+    let middle = low + (high - low) / 2.0;
+    let low = (middle - half).clamp(Pos2::ZERO, pos2(1.0, 1.0) - 2.0 * half);
+    Some(MapView { low, high: low + 2.0 * half })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn the_part_holds_what_failed_and_little_else() {
+        let radar = Radar::default();
+        let scene = Scene::of_points([(-8.0, 12.0), (4.0, 16.0), (0.0, 30.0)]);
+        let fates = Fates::made_up(scene.clone(), &[Fate::Missed, Fate::Found, Fate::Found], &[]);
+        let view = around(&radar, &fates).unwrap();
+        let across = radar.across_of_column(radar.column_of_cos(-8.0 / 8f64.hypot(12.0))) as f32;
+        assert!(view.low.x < across && across < view.high.x && view.high.x - view.low.x < 0.3, "{view:?}");
+        let fates = Fates::made_up(scene, &[Fate::Found; 3], &[]);
+        assert_eq!(around(&radar, &fates), None, "nothing failed");
+    }
+}

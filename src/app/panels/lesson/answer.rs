@@ -1,0 +1,194 @@
+//! A question, what it is answered with, and what the answer was worth.
+
+use super::large::{LARGE, large};
+use super::memory::Memory;
+use crate::app::state::{Command, LessonCommand, LessonRun};
+use crate::app::widgets::inline::inline;
+use crate::app::widgets::number_field::{NumberField, Wanted};
+use crate::app::widgets::theme;
+use crate::lesson::question::{Answer, number_text};
+use crate::lesson::{Guess, Judgement, Question, Truth};
+use eframe::egui;
+use eframe::egui::{Color32, Id, Sense, Slider, Stroke, TextEdit, Ui, Vec2, pos2, vec2};
+
+/// What an open question is answered with.
+pub fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec<Command>) {
+    match &question.answer {
+        Answer::Click { map, .. } => {
+            ui.label(format!("Click in {}. The maps are hidden until you do.", map.words()));
+        }
+        Answer::Number { unit, .. } => {
+            ui.horizontal(|ui| {
+                let digits = stray_digits(ui);
+                memory.number.push_str(&digits);
+                let id = Id::unique("the number of an answer");
+                let text = TextEdit::singleline(&mut memory.number).id(id);
+                let field = ui.add(text.desired_width(90.0).hint_text("a number"));
+                if !std::mem::replace(&mut memory.focused, true) || !digits.is_empty() {
+                    field.request_focus();
+                }
+                field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Your number"));
+                ui.label(unit);
+                let read = Wanted { unit: unit.clone(), ..Wanted::any() }.read(&memory.number);
+                let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+                let clicked = ui.add_enabled(read.is_ok(), egui::Button::new("Answer")).clicked();
+                match read {
+                    Ok(number) if clicked || entered => {
+                        asked.push(LessonCommand::Predict(Guess::Number(number)).into())
+                    }
+                    Ok(_) => {}
+                    Err(_) if memory.number.trim().is_empty() => {}
+                    Err(message) => {
+                        _ = ui.colored_label(ui.visuals().error_fg_color, message);
+                        if entered {
+                            field.request_focus();
+                        }
+                    }
+                }
+            });
+        }
+        Answer::Choice { options, .. } => {
+            for (index, option) in options.iter().enumerate() {
+                if ui.button(option).clicked() {
+                    asked.push(LessonCommand::Predict(Guess::Choice(index + 1)).into());
+                }
+            }
+        }
+        Answer::Threshold { .. } => {
+            ui.horizontal(|ui| {
+                ui.add(Slider::new(&mut memory.eta, 0.0..=1.0).show_value(false).text("threshold"));
+                let field = NumberField::new(&mut memory.eta).range(0.0..=1.0).speed(0.005).max_decimals(2);
+                let field = ui.add(field);
+                ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("threshold in numbers"));
+                if ui.button("Answer").clicked() {
+                    asked.push(LessonCommand::Predict(Guess::Eta(memory.eta)).into());
+                }
+            });
+        }
+    }
+}
+
+/// Digits that were typed while no field had the focus: a question for a number means them.
+fn stray_digits(ui: &Ui) -> String {
+    if ui.ctx().text_edit_focused() {
+        return String::new();
+    }
+    let of_number = |text: &str| text.chars().all(|c| c.is_ascii_digit() || ".,-−".contains(c));
+    ui.input(|input| {
+        let typed = input.events.iter().filter_map(|event| match event {
+            egui::Event::Text(text) if of_number(text) => Some(text.as_str()),
+            _ => None,
+        });
+        typed.collect()
+    })
+}
+
+/// The guess beside the truth: places are drawn on their map instead.
+pub fn answered(ui: &mut Ui, question: &Question, guess: Guess, judged: Option<&Judgement>) {
+    let truth = judged.map(|j| j.truth);
+    match (&question.answer, guess) {
+        (Answer::Choice { options, .. }, Guess::Choice(chosen)) => {
+            let right = if let Some(Truth::Choice(right)) = truth { Some(right) } else { None };
+            for (option, number) in options.iter().zip(1..) {
+                let said = match (number == chosen, right == Some(number)) {
+                    (true, true) => "your answer, right",
+                    (true, false) if right.is_some() => "your answer, wrong",
+                    (true, false) => "your answer",
+                    (false, true) => "the right answer",
+                    (false, false) => "",
+                };
+                ui.horizontal(|ui| {
+                    ui.add_enabled(false, egui::Button::new(option));
+                    ui.label(said);
+                });
+            }
+        }
+        (Answer::Number { unit, .. }, Guess::Number(number)) => {
+            let exact =
+                if let Some(Truth::Number(exact)) = truth { number_text(exact, unit) } else { "…".to_owned() };
+            ui.label(format!("Your answer: {}. Exact: {exact}.", number_text(number, unit)));
+        }
+        (Answer::Threshold { .. }, Guess::Eta(eta)) => {
+            let right = if let Some(Truth::Etas { low, high }) = truth { Some((low, high)) } else { None };
+            threshold(ui, eta, right);
+        }
+        _ => {}
+    }
+}
+
+/// The threshold that was chosen on a scale from 0 to 1, and those that are right.
+fn threshold(ui: &mut Ui, eta: f32, right: Option<(f32, f32)>) {
+    let (scale, _) = ui.allocate_exact_size(vec2(ui.available_width().min(300.0), 14.0), Sense::hover());
+    let at = |value: f32| scale.left() + value.clamp(0.0, 1.0) * scale.width();
+    let painter = ui.painter();
+    painter.rect_filled(scale, 2.0, ui.visuals().extreme_bg_color);
+    if let Some((low, high)) = right.filter(|(low, high)| low < high) {
+        let band = egui::Rect::from_x_y_ranges(at(low)..=at(high), scale.y_range());
+        painter.rect_filled(band, 2.0, Color32::from_rgb(60, 140, 80));
+    }
+    let guess = [pos2(at(eta), scale.top()), pos2(at(eta), scale.bottom())];
+    painter.line_segment(guess, Stroke::new(3.0, Color32::from_rgb(255, 170, 60)));
+    let told = right.map_or_else(String::new, |_| " The green part of the scale is right.".to_owned());
+    ui.label(format!("Your answer: {eta:.2}.{told}"));
+}
+
+/// What the guess was worth; brought into sight once.
+pub fn judgement(ui: &mut Ui, run: &LessonRun, told: &mut bool) {
+    match &run.judgement {
+        None => _ = ui.weak("computing…"),
+        Some(Err(reason)) => _ = ui.label(format!("This can't be judged: {reason}")),
+        Some(Ok(judged)) => {
+            verdict(ui, judged.is_right, &judged.distance);
+            let sentence = ui.label(inline(ui, &judged.sentence, LARGE));
+            if !std::mem::replace(told, true) {
+                sentence.scroll_to_me(None);
+            }
+        }
+    }
+}
+
+/// A coloured line with a symbol: neither alone tells right from wrong.
+fn verdict(ui: &mut Ui, is_right: bool, distance: &str) {
+    let (said, symbol) = if is_right { ("Correct", Symbol::Tick) } else { ("Not quite", Symbol::Cross) };
+    let ink = theme::verdict(ui.visuals(), is_right);
+    let text = large(ui, format!("{said}: {distance}.")).strong().color(ink);
+    let frame = egui::Frame::NONE.inner_margin(egui::Margin { left: 8, right: 6, top: 4, bottom: 4 });
+    let line = frame.fill(ink.gamma_multiply(0.12)).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            let (place, _) = ui.allocate_exact_size(Vec2::splat(16.0), Sense::hover());
+            symbol.draw(ui.painter(), place.center(), 6.0, Stroke::new(2.4, ink));
+            ui.add(egui::Label::new(text).wrap());
+        });
+    });
+    let bar = line.response.rect;
+    ui.painter().line_segment([bar.left_top(), bar.left_bottom()], Stroke::new(3.0, ink));
+}
+
+/// What stands before a verdict or a criterion.
+#[derive(Clone, Copy)]
+pub enum Symbol {
+    /// Right, or met.
+    Tick,
+    /// Wrong.
+    Cross,
+    /// Not met yet.
+    Ring,
+}
+
+impl Symbol {
+    /// Draws it, `r` points to either side.
+    pub fn draw(self, painter: &egui::Painter, at: egui::Pos2, r: f32, stroke: Stroke) {
+        match self {
+            Symbol::Ring => _ = painter.circle_stroke(at, 0.8 * r, stroke),
+            Symbol::Tick => {
+                let points = [vec2(-r, 0.0), vec2(-0.3 * r, 0.7 * r), vec2(r, -0.7 * r)].map(|by| at + by);
+                painter.line(points.to_vec(), stroke);
+            }
+            Symbol::Cross => {
+                for by in [vec2(0.75 * r, 0.75 * r), vec2(0.75 * r, -0.75 * r)] {
+                    painter.line_segment([at - by, at + by], stroke);
+                }
+            }
+        }
+    }
+}

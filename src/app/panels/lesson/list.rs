@@ -1,0 +1,103 @@
+//! The list of lessons, with how far each was taken.
+
+use super::memory::Memory;
+use crate::app::state::{Command, LessonCommand};
+use crate::lesson::shipped::Shipped;
+use crate::lesson::{Lesson, Progress};
+use crate::radar::counted;
+use eframe::egui;
+use eframe::egui::{Color32, ProgressBar, RichText, TextEdit, Ui};
+use std::sync::OnceLock;
+
+/// Width of a bar that shows how far a lesson was taken, points.
+const BAR: f32 = 120.0;
+
+/// The shipped lessons, read once.
+fn shipped() -> &'static [(&'static Shipped, Lesson)] {
+    static READ: OnceLock<Vec<(&'static Shipped, Lesson)>> = OnceLock::new();
+    READ.get_or_init(|| crate::lesson::shipped::ALL.iter().filter_map(|s| Some((s, s.load().ok()?))).collect())
+}
+
+/// Draws the list.
+pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut Memory, asked: &mut Vec<Command>) {
+    ui.label(
+        "Each step asks a question before it shows the maps. Guess: a wrong guess teaches as much as a right one.",
+    );
+    ui.horizontal_wrapped(|ui| {
+        let name = ui.label("Learner");
+        let field =
+            ui.add(TextEdit::singleline(&mut memory.learner).desired_width(120.0).char_limit(60).hint_text("anybody"));
+        if field.labelled_by(name.id).lost_focus() && memory.learner.trim() != progress.learner() {
+            asked.push(LessonCommand::SetLearner(memory.learner.clone()).into());
+        }
+        let (made, right) = progress.score();
+        if made > 0 {
+            ui.weak(format!("{right} of {made} first guesses right"));
+            ui.menu_button("Progress", |ui| start_over(ui, progress, asked));
+        }
+    });
+    ui.add_space(6.0);
+    for (index, (file, lesson)) in shipped().iter().enumerate() {
+        if listed(ui, lesson, done(progress, file.id, lesson)) {
+            asked.push(LessonCommand::Begin(index).into());
+        }
+    }
+    ui.add_space(6.0);
+    if ui.button("Open a lesson file…").on_hover_text("A TOML file; docs/lessons.md says how to write one").clicked()
+    {
+        asked.push(LessonCommand::Open.into());
+    }
+}
+
+/// Asks before it forgets what the learner did.
+fn start_over(ui: &mut Ui, progress: &Progress, asked: &mut Vec<Command>) {
+    let whose = match progress.learner() {
+        "" => "Forget every answer that was given here?".to_owned(),
+        learner => format!("Forget every answer of {learner}?"),
+    };
+    ui.menu_button("Start over…", |ui| {
+        ui.label(whose);
+        ui.horizontal(|ui| {
+            if ui.button("Forget them").clicked() {
+                asked.push(LessonCommand::ForgetProgress.into());
+                ui.close();
+            }
+            if ui.button("Keep them").clicked() {
+                ui.close();
+            }
+        });
+    });
+}
+
+/// A line of the list: the title, how far the lesson was taken, and what it is about. Whether it was clicked.
+fn listed(ui: &mut Ui, lesson: &Lesson, done: usize) -> bool {
+    ui.separator();
+    let (steps, room) = (lesson.steps.len(), ui.available_width());
+    let bar = BAR.min(0.4 * room);
+    let clicked = ui.horizontal(|ui| {
+        let title = RichText::new(&lesson.title).strong();
+        let height = ui.spacing().interact_size.y;
+        let title = egui::Button::new(title).right_text("").frame_when_inactive(false).truncate();
+        let button = ui.add_sized([room - bar - 12.0, height], title);
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &lesson.title));
+        let clicked = button.on_hover_text("Begin this lesson").clicked();
+        let text = format!("{done} of {}", counted(steps, "step", "steps"));
+        let bar = ProgressBar::new(done as f32 / steps.max(1) as f32).desired_width(bar).text(text);
+        // A bar of nothing would still be drawn as a dot.
+        ui.add(if done == 0 { bar.fill(Color32::TRANSPARENT) } else { bar });
+        clicked
+    });
+    ui.label(RichText::new(&lesson.about).weak());
+    clicked.inner
+}
+
+/// How many steps of a lesson are done.
+fn done(progress: &Progress, id: &str, lesson: &Lesson) -> usize {
+    let steps = lesson.steps.iter().enumerate();
+    let done = steps.filter(|(i, step)| {
+        let record = progress.record(id, *i);
+        (step.predict.is_none() || record.first_guess_right.is_some())
+            && (step.challenge.is_none() || record.challenge_met)
+    });
+    done.count()
+}

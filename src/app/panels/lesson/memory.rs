@@ -1,0 +1,31 @@
+//! What the panel remembers from frame to frame.
+
+use crate::app::state::LessonRun;
+
+/// What was typed but not answered yet.
+#[derive(Default)]
+pub struct Memory {
+    pub(super) number: String,
+    pub(super) eta: f32,
+    pub(super) learner: String,
+    /// Whether the judgement was brought into sight.
+    pub(super) told: bool,
+    /// Whether the field of the answer had the focus since the step began.
+    pub(super) focused: bool,
+    /// Whether text and question are higher than the panel.
+    pub(super) overflows: bool,
+    /// Lesson and step these belong to.
+    pub(super) of: Option<(String, usize)>,
+}
+
+impl Memory {
+    /// Forgets what belongs to another step; whether a step begins.
+    pub(super) fn begin(&mut self, run: &LessonRun) -> bool {
+        let of = Some((run.id.clone(), run.step));
+        let begins = self.of != of;
+        if begins {
+            *self = Memory { of, eta: 0.5, learner: std::mem::take(&mut self.learner), ..Memory::default() };
+        }
+        begins
+    }
+}

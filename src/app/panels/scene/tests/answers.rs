@@ -1,0 +1,96 @@
+//! The scene while a lesson's question is open: nothing that is drawn gives the answer away.
+
+use super::super::*;
+use super::Held;
+use crate::lesson::question::Answer;
+use crate::lesson::{Stage, Step, Truth, shipped};
+use crate::scattering::{EchoKind, heard_in_the_middle};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+/// A step's scene as it is drawn with what the maps make of it, or without.
+fn step_drawn(step: &Step, tells_maps: bool) -> (Harness<'static, Held>, Vec<egui::Shape>) {
+    let (radar, scene) = (step.radar.clone(), step.scene());
+    let draw = move |ui: &mut Ui, held: &mut Held| {
+        let input = Input {
+            radar: &radar,
+            snapshot_range_metres: None,
+            snap: Snap::Off,
+            fields_of_view: false,
+            found: &[],
+            found_stale: false,
+            trails: &[],
+            cursor: None,
+            error: None,
+            numbers: true,
+            hint: None,
+            tells_maps,
+            moved: None,
+        };
+        _ = show(ui, input, &mut held.editor, &mut held.view);
+    };
+    let held = Held { editor: Editor::new(scene), view: SceneView::default(), asked: Vec::new() };
+    let panel = Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, held);
+    let shapes = panel.output().shapes.iter().map(|clipped| clipped.shape.clone()).collect();
+    (panel, shapes)
+}
+
+/// Where the answer to a step's question lies in the scene: the place that is asked for, and where bodies shine.
+fn answers(step: &Step) -> Vec<Place> {
+    let heard = heard_in_the_middle(&step.radar, &step.scene());
+    let mut places: Vec<Place> = heard
+        .iter()
+        .filter(|(_, e)| e.kind == EchoKind::Glint && e.is_heard())
+        .map(|(_, e)| e.place_metres.into())
+        .collect();
+    let asked = step.predict.as_ref().filter(|question| matches!(question.answer, Answer::Click { .. }));
+    if let Some(question) = asked.filter(|question| !question.needs_output()) {
+        let stage = Stage::new(&step.radar, &step.scene(), &step.view, false).unwrap();
+        if let Ok(Truth::Place(cell)) = question.truth(&stage) {
+            places.push(Cursor::at_cell(&step.radar, cell.bin, cell.column).place);
+        }
+    }
+    places
+}
+
+#[test]
+fn no_drawn_mark_lies_at_the_answer_of_an_open_question() {
+    let mut hidden = 0;
+    for file in shipped::ALL {
+        for (number, step) in file.load().unwrap().steps.iter().enumerate().filter(|(_, step)| step.predict.is_some()) {
+            let (panel, open) = step_drawn(step, false);
+            let rect = panel.get_by_label("Scene").rect();
+            let (view, radar) = (panel.state().view, step.radar.clone());
+            let canvas = Canvas {
+                rect,
+                view,
+                radar: &radar,
+                extent_metres: extent_metres(&radar, None),
+                inks: Inks::of(&panel.ctx.global_style().visuals),
+            };
+            // Ground and objects alone.
+            let scene = step.scene();
+            let bare = Harness::builder().with_size([600.0, 400.0]).build_ui(|ui| {
+                let painter = ui.painter();
+                canvas::ground(painter, canvas, false, true);
+                let look = Look { selected: false, hovered: false };
+                scene.objects.iter().for_each(|object| {
+                    canvas::object(painter, canvas, object, look);
+                    canvas::velocity(painter, canvas, object, look);
+                });
+            });
+            let near = |shape: &egui::Shape, place: &Place| {
+                let bounds = shape.visual_bounding_rect();
+                bounds.size().max_elem() < 40.0 && bounds.distance_to_pos(view.to_screen(rect, *place)) < 6.0
+            };
+            let count = |shapes: &[egui::Shape], place: &Place| shapes.iter().filter(|s| near(s, place)).count();
+            let bare: Vec<egui::Shape> = bare.output().shapes.iter().map(|clipped| clipped.shape.clone()).collect();
+            let (_, told) = step_drawn(step, true);
+            for place in answers(step) {
+                assert_eq!(count(&open, &place), count(&bare, &place), "{}, step {}: {place:?}", file.id, number + 1);
+                hidden += usize::from(count(&told, &place) > count(&open, &place));
+            }
+        }
+    }
+    assert!(hidden > 5, "only {hidden} answers would be marked once they are given");
+}

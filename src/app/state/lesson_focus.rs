@@ -1,0 +1,124 @@
+//! What a step of a lesson puts in front: the map that it asks about, the control that its challenge needs, the part of the map where it happens.
+
+use super::panel::{MapKind, Panel};
+use super::view::MapView;
+use crate::lesson::challenge::Measure;
+use crate::lesson::question::Answer;
+use crate::lesson::{Challenge, MapName, Step};
+use crate::radar::Radar;
+use crate::scene::{Object, Scene};
+use eframe::egui::{Pos2, Vec2, pos2, vec2};
+
+/// The least that is shown around two blobs: a part of all columns, and metres of range, to either side.
+const LEAST_ACROSS: f32 = 0.15;
+const LEAST_RANGE_METRES: f64 = 4.0;
+
+/// To either side of their middle, this many times as much is shown as two blobs are apart.
+const TIMES_APART: f32 = 2.0;
+
+/// The map that a lesson's file names.
+pub fn kind_of(map: MapName) -> MapKind {
+    match map {
+        MapName::Input0 => MapKind::Input0,
+        MapName::Input1 => MapKind::Input1,
+        MapName::Target => MapKind::Target,
+        MapName::Output => MapKind::Output,
+    }
+}
+
+/// The map that a step is about: the one that is asked for, or that its challenge measures.
+pub fn map_of(step: &Step) -> MapKind {
+    let asked = step.predict.as_ref().and_then(|question| match &question.answer {
+        Answer::Click { map, .. } | Answer::Threshold { map, .. } => Some(*map),
+        _ => None,
+    });
+    let measured = || {
+        step.challenge.as_ref()?.requirements.iter().find_map(|requirement| match &requirement.measure {
+            Measure::Lambda { map, .. } | Measure::Dip { map, .. } | Measure::BrightPart { map, .. } => Some(*map),
+            _ => None,
+        })
+    };
+    asked.or_else(measured).map_or(MapKind::Target, kind_of)
+}
+
+/// The panel with the control that a step's challenge needs, and the object that is to be changed there.
+pub fn control_of(step: &Step) -> Option<(Panel, Option<usize>)> {
+    let solution = &step.challenge.as_ref()?.solution;
+    if solution.radar.as_ref().is_some_and(|radar| *radar != step.radar) {
+        return Some((Panel::Radar, None));
+    }
+    let objects = step.scene().objects;
+    let is_same_but_for_its_place = |(before, after): (&Object, &Object)| {
+        let mut moved = before.clone();
+        moved.set_anchor(after.anchor_metres());
+        moved == *after
+    };
+    let changed = objects.iter().zip(&solution.objects).position(|pair| !is_same_but_for_its_place(pair));
+    Some(changed.map_or((Panel::Scene, None), |object| (Panel::Inspector, Some(object))))
+}
+
+/// The part of the maps in which a challenge tells two objects apart, as the scene and the radar are; nothing where all of a map counts.
+pub fn part_of(challenge: &Challenge, radar: &Radar, scene: &Scene) -> Option<MapView> {
+    let (map, pair) = challenge.requirements.iter().find_map(|requirement| match &requirement.measure {
+        Measure::Dip { map, objects } => Some((*map, *objects)),
+        _ => None,
+    })?;
+    let object = |index: usize| pair[index].index(scene.objects.len()).ok().map(|index| &scene.objects[index]);
+    let at = |object: &Object| {
+        let [x_metres, y_metres] = object.centre_metres();
+        let blob = radar.blob_of(0.0, x_metres, y_metres);
+        let bin = radar.bin_of_range(blob.range_metres).rem_euclid(radar.samples as f64);
+        let across = radar.across_of_column(radar.column_of_cos(blob.cos_theta));
+        pos2(across as f32, ((bin + 0.5) / radar.samples as f64) as f32)
+    };
+    let (a, b) = (at(object(0)?), at(object(1)?));
+    let apart = TIMES_APART * (a - b).abs();
+    let least_range = (LEAST_RANGE_METRES / radar.max_range_metres()) as f32;
+    // A beam of an end is as wide as a part of the map: all directions stay in sight.
+    let across = if matches!(map, MapName::Target | MapName::Output) { apart.x.max(LEAST_ACROSS) } else { 1.0 };
+    let half = vec2(across, apart.y.max(least_range)).min(Vec2::splat(0.5));
+    let middle = (a + b.to_vec2()) / 2.0;
+    let low = (middle - half).clamp(Pos2::ZERO, pos2(1.0, 1.0) - 2.0 * half);
+    Some(MapView { low, high: low + 2.0 * half })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lesson::shipped;
+
+    fn last_step(id: &str) -> Step {
+        let lesson = shipped::ALL.iter().find(|file| file.id == id).unwrap().load().unwrap();
+        lesson.steps.last().unwrap().clone()
+    }
+
+    #[test]
+    fn a_challenge_brings_the_control_that_its_solution_changes() {
+        for (id, panel) in [
+            ("range-and-bandwidth", (Panel::Radar, None)),
+            ("folding-and-wrapping", (Panel::Scene, None)),
+            ("smooth-and-rough", (Panel::Inspector, Some(0))),
+            ("the-floor", (Panel::Inspector, Some(1))),
+        ] {
+            assert_eq!(control_of(&last_step(id)), Some(panel), "{id}");
+        }
+    }
+
+    #[test]
+    fn a_challenge_about_two_blobs_shows_their_part_of_the_map() {
+        let step = last_step("range-and-bandwidth");
+        let challenge = step.challenge.as_ref().unwrap();
+        for bandwidth_hz in [0.2e9, 0.95e9] {
+            let radar = Radar { bandwidth_hz, ..step.radar.clone() };
+            let part = part_of(challenge, &radar, &step.scene()).unwrap();
+            let metres = |fraction: f32| f64::from(fraction) * radar.max_range_metres();
+            let (low, high) = (metres(part.low.y), metres(part.high.y));
+            assert!(low < 19.0 && high > 21.6 && high - low < 12.0, "{bandwidth_hz}: {low} to {high} m");
+            assert!(part.low.x < 0.5 && part.high.x > 0.5);
+        }
+        assert_eq!(map_of(&step), MapKind::Target);
+        assert_eq!(map_of(&last_step("angle-and-aperture")), MapKind::Input0);
+        let whole = last_step("near-field");
+        assert_eq!(part_of(whole.challenge.as_ref().unwrap(), &whole.radar, &whole.scene()), None);
+    }
+}

@@ -1,0 +1,160 @@
+//! Requirements of a challenge measured, and told as sentences: what is wanted, and what there is now.
+
+use super::challenge::{Challenge, Measure, Requirement};
+use super::object_number::ObjectNumber;
+use super::stage::Stage;
+use crate::scene::Scene;
+
+/// A requirement, measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// What is wanted, as a sentence without its full stop.
+    pub wanted: String,
+    /// What there is, with its unit.
+    pub found: String,
+    /// Whether it holds.
+    pub holds: bool,
+}
+
+impl Challenge {
+    /// Measures every requirement on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
+    ///
+    /// # Errors
+    /// A sentence when something can't be measured: an object is gone, the method refuses.
+    pub fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Vec<Measured>, String> {
+        self.requirements.iter().map(|r| r.measure(stage, hidden)).collect()
+    }
+}
+
+impl Requirement {
+    fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Measured, String> {
+        let value = self.measure.value(stage, hidden)?;
+        let holds = self.at_least.is_none_or(|b| value >= b) && self.at_most.is_none_or(|b| value <= b);
+        let (wanted, found) = (wanted(self, &stage.scene), found(&self.measure, value));
+        Ok(Measured { wanted, found, holds })
+    }
+}
+
+/// What a requirement wants of a scene, as a sentence without its full stop: "A dip of at least 0.06 between the two in the target".
+fn wanted(requirement: &Requirement, scene: &Scene) -> String {
+    let (times, unit) = requirement.measure.unit();
+    let bound = bound(requirement, times, unit);
+    let object = |number: &ObjectNumber| named(*number, scene);
+    let both = |pair: &[ObjectNumber; 2]| match scene.objects.len() {
+        2 => "the two".to_owned(),
+        _ => format!("{} and {}", object(&pair[0]), object(&pair[1])),
+    };
+    let text = match &requirement.measure {
+        Measure::Lambda { map, object: number } => format!("Λ of {bound} at {} in {}", object(number), map.words()),
+        Measure::Dip { map, objects } => format!("a dip of {bound} between {} in {}", both(objects), map.words()),
+        Measure::SquaredError => format!("a squared error of {bound} of the output"),
+        Measure::Unexplained => format!("a squared error of {bound} against the map to reproduce"),
+        Measure::UnexplainedOverMethod => format!("a squared error of {bound} times the method's"),
+        Measure::Objects if requirement.at_most == Some(1.0) => format!("{bound} object"),
+        Measure::Objects => format!("{bound} objects"),
+        Measure::Distance { objects } => format!("{bound} between {}", both(objects)),
+        Measure::BandwidthGigahertz => format!("a bandwidth of {bound}"),
+        Measure::Range { object: number } => format!("a range of {bound} for {}", object(number)),
+        Measure::BrightPart { map, above } => format!("{bound} of the cells of {} above Λ {above}", map.words()),
+        Measure::Quantity { quantity, object: None } => format!("{} of {bound}", quantity.name()),
+        Measure::Quantity { quantity, object: Some(number) } => {
+            format!("{} of {bound} for {}", quantity.name(), object(number))
+        }
+    };
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
+}
+
+/// What was measured, with its unit.
+fn found(measure: &Measure, value: f64) -> String {
+    let (times, unit) = measure.unit();
+    with_unit(&digits(times * value), unit)
+}
+
+impl Measure {
+    /// What a value is multiplied by before it is told, and the unit that it then has.
+    fn unit(&self) -> (f64, &'static str) {
+        match self {
+            Measure::Distance { .. } | Measure::Range { .. } => (1.0, "m"),
+            Measure::BandwidthGigahertz => (1.0, "GHz"),
+            Measure::BrightPart { .. } => (100.0, "%"),
+            Measure::Quantity { quantity, .. } => (1.0, quantity.unit()),
+            _ => (1.0, ""),
+        }
+    }
+}
+
+/// "at least 0.06", "9.5 to 10.5 m".
+fn bound(requirement: &Requirement, times: f64, unit: &str) -> String {
+    let told = |value: f64| plain(times * value);
+    let text = match (requirement.at_least, requirement.at_most) {
+        (Some(low), Some(high)) if low == high => format!("exactly {}", told(low)),
+        (Some(low), Some(high)) => format!("{} to {}", told(low), told(high)),
+        (Some(low), None) => format!("at least {}", told(low)),
+        (None, Some(high)) => format!("at most {}", told(high)),
+        (None, None) => "anything".to_owned(),
+    };
+    with_unit(&text, unit)
+}
+
+fn with_unit(text: &str, unit: &str) -> String {
+    format!("{text} {unit}").trim_end().to_owned()
+}
+
+/// A bound as its author wrote it: a product with 100 has no more digits than that.
+fn plain(value: f64) -> String {
+    format!("{}", (value * 1e9).round() / 1e9)
+}
+
+/// A number to three digits, with at most four decimals.
+fn digits(value: f64) -> String {
+    let decimals = match value.abs() {
+        v if v >= 100.0 || v == v.trunc() => 0,
+        v if v >= 10.0 => 1,
+        v if v >= 1.0 => 2,
+        v if v >= 0.1 => 3,
+        _ => 4,
+    };
+    format!("{value:.decimals$}").replace('-', "−")
+}
+
+fn named(number: ObjectNumber, scene: &Scene) -> String {
+    let noun = number.index(scene.objects.len()).map_or("object", |index| scene.objects[index].noun());
+    format!("{noun} {}", number.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lesson::shipped;
+
+    /// The criteria of a shipped lesson's last step.
+    fn of(id: &str) -> Vec<String> {
+        let lesson = shipped::ALL.iter().find(|file| file.id == id).unwrap().load().unwrap();
+        let step = lesson.steps.last().unwrap();
+        step.challenge.as_ref().unwrap().requirements.iter().map(|r| wanted(r, &step.scene())).collect()
+    }
+
+    #[test]
+    fn criteria_read_as_sentences() {
+        let expected = [
+            "A dip of at least 0.06 between the two in the target",
+            "A bandwidth of at most 1 GHz",
+            "At most 0.601 m between the two",
+        ];
+        assert_eq!(of("range-and-bandwidth"), expected);
+        assert_eq!(
+            of("smooth-and-rough"),
+            ["At least 0.3 % of the cells of the target above Λ 0.5", "At most 1 object"]
+        );
+        assert_eq!(of("folding-and-wrapping")[1], "An apparent range of 9.5 to 10.5 m for point 1");
+        assert_eq!(of("two-ends-and-the-comb")[1], "Exactly 1 object");
+    }
+
+    #[test]
+    fn what_was_measured_has_its_unit() {
+        assert_eq!(found(&Measure::BrightPart { map: crate::lesson::MapName::Target, above: 0.5 }, 0.00213), "0.213 %");
+        assert_eq!(found(&Measure::BandwidthGigahertz, 0.2), "0.200 GHz");
+        assert_eq!(found(&Measure::Objects, 2.0), "2");
+    }
+}

@@ -1,0 +1,48 @@
+//! The scene that the window opens with: a post is dragged along its ring to a wall.
+
+use apertura::evaluate::dip_between;
+use apertura::maps::{LogMaps, Normalisation};
+use apertura::radar::Radar;
+use apertura::scene::{Object, presets};
+use apertura::signal::{Floor, simulate};
+
+/// A dip of this much of Lambda parts two blobs.
+const PARTS: f32 = 0.05;
+
+/// How many blobs post and wall are in either input and in the target, with the post on its ring at an angle from straight ahead.
+fn blobs_at(degrees: f64) -> [usize; 3] {
+    let radar = Radar::default();
+    let mut scene = presets::default_scene().scene;
+    let post = scene.objects.iter_mut().find_map(|object| match object {
+        Object::Point(point) if point.y_metres < 20.0 => Some(point),
+        _ => None,
+    });
+    let post = post.expect("the street has a post");
+    let (range, (sin, cos)) = (post.x_metres.hypot(post.y_metres), degrees.to_radians().sin_cos());
+    let place = [range * sin, range * cos];
+    [post.x_metres, post.y_metres] = place;
+    // The wall stands at x = 9 m.
+    let wall = [9.0, (range * range - 81.0).sqrt()];
+    let maps = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 0).unwrap());
+    [&maps.first, &maps.last, &maps.full].map(|map| {
+        let dip = dip_between(&radar, &map.normalise(Normalisation::MinMax), [place, wall]);
+        if dip >= PARTS { 2 } else { 1 }
+    })
+}
+
+#[test]
+fn the_wall_reaches_over_the_range_of_the_post() {
+    let scene = presets::default_scene().scene;
+    let ranges = scene.objects[0].reflectors().into_iter().map(|r| r.x_metres.hypot(r.y_metres));
+    let (near, far) = ranges.fold((f64::INFINITY, 0.0f64), |(near, far), range| (near.min(range), far.max(range)));
+    let [x, y] = scene.objects[3].centre_metres();
+    assert!(near + 0.5 < x.hypot(y) && x.hypot(y) < far - 0.5, "{near} to {far} m");
+}
+
+#[test]
+fn a_drag_along_the_ring_merges_post_and_wall_in_both_inputs_alone() {
+    assert_eq!(blobs_at(5.4), [2, 2, 2], "as the scene opens");
+    for degrees in [26.0, 28.0] {
+        assert_eq!(blobs_at(degrees), [1, 1, 2], "the post at {degrees}°");
+    }
+}
