@@ -10,7 +10,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// Fewest and most elements, as for every radar.
-const FEWEST: usize = 6;
+const FEWEST: usize = 2;
 const MOST: usize = 65536;
 
 /// How far the elements that pairs make may stand off an even line, as a part of the spacing.
@@ -174,7 +174,7 @@ impl Antennas {
     /// Antennas at these places, metres along x. The middle of the line that their pairs make is moved to x = 0.
     ///
     /// # Errors
-    /// [`AntennasError`] where their pairs make no line of 6 to 65536 even places.
+    /// [`AntennasError`] where their pairs make no line of 2 to 65536 even places.
     pub fn new(transmitter_x_metres: &[f64], receiver_x_metres: &[f64]) -> Result<Self, AntennasError> {
         check_places("transmitter_x_metres", transmitter_x_metres)?;
         check_places("receiver_x_metres", receiver_x_metres)?;
@@ -397,12 +397,12 @@ mod tests {
         let told = |t: &[f64], r: &[f64]| Antennas::new(t, r).unwrap_err().to_string();
         assert!(told(&[], &[1.0]).contains("transmitter_x_metres has no numbers"));
         assert!(told(&[0.0], &[f64::NAN]).contains("receiver_x_metres has NaN"));
-        assert!(told(&[0.0, 1.0], &[0.0, 0.5]).contains("make 4 elements; expected 6 to 65536"));
+        assert!(told(&[0.0], &[0.5]).contains("make 1 elements; expected 2 to 65536"));
         let uneven = told(&[0.0, 1.0], &[0.0, 0.2, 0.437]);
         assert!(uneven.contains("off the even line"), "{uneven}");
         assert!(told(&[1.0, 1.0], &[2.0; 3]).contains("one midpoint"));
         let far = told(&[0.0, 1e3], &[0.0, 1e-3, 2e-3, 3e-3]);
-        assert!(far.contains("off the even line") || far.contains("expected 6 to 65536"), "{far}");
+        assert!(far.contains("off the even line") || far.contains("expected 2 to 65536"), "{far}");
     }
 
     #[test]

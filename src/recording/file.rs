@@ -1,7 +1,7 @@
 //! The TOML of a recording.
 //!
 //! ```toml
-//! format = 2                          # of this text; without it, signs and carrier are those of the thesis' formula
+//! format = 3                          # of this text; without it, signs and carrier are those of the thesis' formula
 //! name = "A post and a wall"
 //! notes = "Where it was measured, and what to look for."
 //!
@@ -45,11 +45,14 @@
 use super::doubts::doubts;
 use super::said_radar::said_radar;
 use super::said_recording::Table;
-use super::samples::{Open, read_samples};
+use super::raw::{self, config_text};
+use super::samples::{Open, read_loops, read_samples};
 use super::signs::{FORMAT, oldest};
 use super::{Fault, RadarProfile, Recording, RecordingError};
 use crate::platform::fs::File;
+use crate::radar::Radar;
 use crate::scene::file::SceneTextError;
+use crate::signal::ChirpSamples;
 use serde::Deserialize;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -75,8 +78,13 @@ pub fn is_recording(text: &str) -> bool {
     toml::de::DeTable::parse(text).is_ok_and(|table| table.get_ref().contains_key("recording"))
 }
 
-/// Whether the file `path` is the TOML of a recording; not where it can't be read or ends otherwise.
+/// Whether the file `path` is a recording: the TOML of one, or by its ending a raw capture or the `.cfg` of one.
 pub fn is_recording_at(path: &Path) -> bool {
+    raw::is_raw(path) || is_toml_at(path)
+}
+
+/// Whether the file `path` is the TOML of a recording; not where it can't be read or ends otherwise.
+fn is_toml_at(path: &Path) -> bool {
     let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     is_toml && open_file(path).is_ok_and(|file| read_text(file).is_ok_and(|text| is_recording(&text)))
 }
@@ -89,17 +97,20 @@ pub fn data_path(path: &Path) -> Option<PathBuf> {
     Some(path.parent().unwrap_or(Path::new("")).join(name))
 }
 
-/// Reads a recording: the TOML `path`, and what it names beside it.
+/// Reads a recording: the TOML `path` and what it names beside it, or a raw capture as it is ([`raw::open`]).
 ///
 /// # Errors
 /// [`RecordingError`] names the file, the key or the array, and what was expected of it.
 pub fn load(path: &Path) -> Result<Recording, RecordingError> {
+    if raw::is_raw(path) {
+        return raw::open(path, None);
+    }
     let folder = path.parent().unwrap_or(Path::new(""));
     let text = read_text(open_file(path).map_err(|e| Fault::from(e).of(path))?).map_err(|e| e.of(path))?;
     from_parts(&text, path, &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))))
 }
 
-fn open_file(path: &Path) -> io::Result<File> {
+pub(super) fn open_file(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     if file.metadata()?.is_file() {
         Ok(file)
@@ -130,14 +141,55 @@ fn check_format(text: &str) -> Result<(), Fault> {
     }
     match toml::from_str(text) {
         Ok(Said { format: later }) if later > FORMAT => {
-            Err(Fault::key("format", format!("is {later}, of a later version of apertura"), "1 or 2"))
+            Err(Fault::key("format", format!("is {later}, of a later version of apertura"), "1, 2 or 3"))
         }
         _ => Ok(()),
     }
 }
 
-/// Reads a recording from the text of its TOML, which stands at `path`, and what `open` opens.
-pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Recording, RecordingError> {
+/// Every loop of a recording's frame, for a range-Doppler map: the radar with their number and interval, and the samples,
+/// `[loops, elements, samples]`. The recording is a raw capture, or the TOML of one.
+///
+/// # Errors
+/// As [`load`]; [`Fault::Key`] where the recording is no capture with a `.cfg`.
+pub fn load_loops(path: &Path, config: Option<&Path>) -> Result<(Radar, ChirpSamples), RecordingError> {
+    let (text, path) = match raw::is_raw(path) {
+        true => {
+            let imported = raw::import(path, config, None)?;
+            (imported.toml, imported.data)
+        }
+        false => {
+            let text = read_text(open_file(path).map_err(|e| Fault::from(e).of(path))?).map_err(|e| e.of(path))?;
+            (text, path.to_owned())
+        }
+    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let open: Open<'_> = &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)));
+    let Parts { table, mut radar, profile, signs, .. } = parts(&text, &path, open)?;
+    let Some(profile) = profile else {
+        let expected = "it: without a .cfg nothing says the interval of chirps";
+        return Err(Fault::key("recording.capture.config", "is missing", expected).of(&path));
+    };
+    let samples = read_loops(&table, open, Some(&profile), signs).map_err(|fault| fault.of(&path))?;
+    radar.chirps = samples.dim().0;
+    radar.chirp_interval_seconds =
+        (profile.chirp_interval_seconds * profile.chirp_transmitters.len() as f64).max(radar.chirp_seconds);
+    radar.validate().map_err(|e| Fault::from(e).of(&path))?;
+    Ok((radar, ChirpSamples { samples }))
+}
+
+/// What a recording's text says, before its samples are read.
+struct Parts {
+    format: u32,
+    name: String,
+    notes: String,
+    table: Table,
+    radar: Radar,
+    profile: Option<RadarProfile>,
+    signs: super::signs::Signs,
+}
+
+fn parts(text: &str, path: &Path, open: Open<'_>) -> Result<Parts, RecordingError> {
     check_format(text).map_err(|fault| fault.of(path))?;
     let document: Document = toml::from_str(text).map_err(|error| {
         let start = error.span().map_or(0, |span| span.start);
@@ -145,12 +197,13 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
     })?;
     let mut table = document.recording;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let profile = match &table.capture {
+    let profile = match table.capture.as_ref().and_then(|capture| Some((capture, capture.config.as_ref()?))) {
         None => None,
-        Some(capture) => {
-            let beside = folder.join(&capture.config);
-            let read =
-                || -> Result<RadarProfile, Fault> { Ok(RadarProfile::parse(&read_text(open(&capture.config)?)?)?) };
+        Some((capture, config)) => {
+            let beside = folder.join(config);
+            let read = || -> Result<RadarProfile, Fault> {
+                Ok(RadarProfile::of_sub_frame(&config_text(open(config)?)?, capture.sub_frame)?)
+            };
             Some(read().map_err(|fault| fault.of(&beside))?)
         }
     };
@@ -163,19 +216,27 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
     let signs = table.signs(document.format, &radar, profile.is_some()).map_err(|fault| fault.of(path))?;
     radar.carrier_hz = signs.carrier_hz;
     radar.validate().map_err(|e| Fault::from(e).of(path))?;
+    Ok(Parts { format: document.format, name: document.name, notes: document.notes, table, radar, profile, signs })
+}
+
+/// Reads a recording from the text of its TOML, which stands at `path`, and what `open` opens.
+pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Recording, RecordingError> {
+    let Parts { format, name, notes, table, radar, profile, signs } = parts(text, path, open)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
     let data = folder.join(&table.file);
     // Keys stand in the TOML, whatever file they are about.
     let place = |fault: Fault| match fault {
         Fault::Key { .. } | Fault::Calibration(_) => fault.of(path),
         fault => fault.of(&data),
     };
-    let samples = read_samples(&table, &radar, open, profile.as_ref(), signs).map_err(place)?;
+    let (samples, found) = read_samples(&table, &radar, open, profile.as_ref(), signs).map_err(place)?;
     let Table { mut missing, range_metres, .. } = table;
     missing.extend((0..radar.elements).filter(|n| radar.is_gap(*n)));
     missing.sort_unstable();
     missing.dedup();
-    let doubts = doubts(&radar, &samples, document.format > oldest());
-    Ok(Recording { name: document.name, notes: document.notes, radar, samples, missing, range_metres, doubts })
+    let mut doubts = doubts(&radar, &samples, format > oldest());
+    doubts.extend(found);
+    Ok(Recording { name, notes, radar, samples, missing, range_metres, doubts })
 }
 
 #[cfg(test)]

@@ -87,6 +87,11 @@ impl Table {
         Said { format, carrier_at, beat_sign, sweep, conjugate }.signs(radar)
     }
 
+    /// Whether the phase of an echo rises from sample to sample of the file.
+    pub fn beat_rises(&self) -> bool {
+        self.beat_sign != Some(BeatSign::Negative)
+    }
+
     /// Elements of the whole array that the file is to hold, in its order.
     pub fn covered(&self, radar: &Radar) -> Vec<usize> {
         match self.covers() {

@@ -17,7 +17,7 @@ use crate::radar::{Carrier, Radar};
 use serde::Deserialize;
 
 /// The format that is written down today; texts that name none are of format 1.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 
 /// The format of a text that names none.
 pub(super) fn oldest() -> u32 {
@@ -100,8 +100,8 @@ impl Said {
                 let conjugates = self.conjugate.unwrap_or(false);
                 return Ok(Signs { conjugates, reverses_samples: false, carrier_hz: radar.carrier_hz });
             }
-            FORMAT => {}
-            other => return Err(Fault::key("format", format!("is {other}"), "1 or 2")),
+            2 | FORMAT => {}
+            other => return Err(Fault::key("format", format!("is {other}"), "1, 2 or 3")),
         }
         if self.conjugate.is_some() {
             return is_there("conjugate", "beat_sign in its place: below format = 2 signs follow from it");

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod baseline_tables;
+mod captures;
 mod conventions;
 mod damage;
 mod disturbances;
