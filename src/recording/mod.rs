@@ -11,13 +11,14 @@
 //! | `capture`, `profile` | samples of a capture card, and the `.cfg` that set the radar up |
 //! | [`layout`] | how the bytes of a raw capture stand for samples, by evidence |
 //! | [`raw`] | raw captures as they are: the text that describes them is made |
-//! | `axes` | an array of any shape to `[elements, samples]` |
+//! | `axes`, `analytic` | an array of any shape, of real samples too, to `[elements, samples]` |
 //! | `calibration` | what is taken off each element |
 //! | `signs` | which way phases turn, and where on the chirp the carrier lies |
 //! | `doubts` | what looks wrong and can't be known from the samples |
 //!
 //! [`presets`] come with the program. [`explain`] tells what reflectors leave unexplained.
 
+mod analytic;
 mod axes;
 mod calibration;
 mod capture;

@@ -16,6 +16,7 @@ pub(super) struct Table {
     pub last: Option<String>,
     pub axes: Option<Vec<AxisKind>>,
     pub chirp: Option<Chirp>,
+    pub frame: Option<usize>,
     #[serde(default)]
     elements: Covers,
     #[serde(default)]

@@ -1,6 +1,6 @@
 //! Samples in the data files of a recording, brought into the order of the array's elements.
 
-use super::axes::arrange;
+use super::axes::{arrange, one_frame};
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
 use super::said_recording::{Covers, Table};
@@ -11,6 +11,7 @@ use crate::radar::Radar;
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array2, Array3, Axis, concatenate};
 use num_complex::Complex64;
+use std::cell::RefCell;
 use std::collections::HashSet;
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -96,7 +97,7 @@ fn read(
 ) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
     let (mut rows, notes) = match &table.capture {
         Some(capture) => read_capture(table, radar, open, capture, profile)?,
-        None => (read_arrays(table, open)?, Vec::new()),
+        None => read_arrays(table, open)?,
     };
     if let Some(((element, sample), _)) = rows.indexed_iter().find(|(_, v)| !v.is_finite()) {
         return Err(Fault::NotFinite { element, sample });
@@ -197,7 +198,8 @@ fn check_capture(table: &Table) -> Result<(), Fault> {
         return Err(Fault::key("[recording.capture]", "is there", "it only beside a raw capture, such as a .bin file"));
     }
     let arrays = [("array", table.array.is_some()), ("first", table.first.is_some()), ("last", table.last.is_some())];
-    let others = [("axes", table.axes.is_some()), ("chirp", table.chirp.is_some())];
+    let others =
+        [("axes", table.axes.is_some()), ("chirp", table.chirp.is_some()), ("frame", table.frame.is_some())];
     if let Some((key, _)) = arrays.iter().chain(&others).find(|(_, said)| *said) {
         return Err(Fault::key(
             &format!("recording.{key}"),
@@ -208,13 +210,21 @@ fn check_capture(table: &Table) -> Result<(), Fault> {
     Ok(())
 }
 
-fn read_arrays(table: &Table, open: Open<'_>) -> Result<Array2<Complex64>, Fault> {
+fn read_arrays(table: &Table, open: Open<'_>) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
     let Some(axes) = &table.axes else {
         let kinds = "a list of \"element\", \"sample\", \"chirp\" and so on, one for each axis of the array";
         return Err(Fault::key("recording.axes", "is missing", kinds));
     };
-    let array = |key: Option<&str>| Ok::<_, Fault>(arrange(numbers(table, open, key)?, axes, table.chirp)?);
-    match (&table.array, &table.first, &table.last) {
+    let notes = RefCell::new(Vec::new());
+    let array = |key: Option<&str>| {
+        let mut numbers = numbers(table, open, key)?;
+        let mut kinds = axes.clone();
+        notes.borrow_mut().extend(numbers.mend_signs());
+        let numbers = one_frame(numbers, &mut kinds, table.frame)?;
+        notes.borrow_mut().extend(told_of_real(&numbers, &kinds));
+        Ok::<_, Fault>(arrange(numbers, &kinds, table.chirp)?)
+    };
+    let rows = match (&table.array, &table.first, &table.last) {
         (array_key, None, None) => array(array_key.as_deref()),
         (None, Some(first), Some(last)) => {
             let (first, last) = (array(Some(first))?, array(Some(last))?);
@@ -228,7 +238,26 @@ fn read_arrays(table: &Table, open: Open<'_>) -> Result<Array2<Complex64>, Fault
                 .map_err(|e| Fault::key("recording.last", format!("does not join ({e})"), "the shape of \"first\""))
         }
         _ => Err(Fault::key("recording.array", "stands beside half a pair", "either array, or both first and last")),
-    }
+    }?;
+    let mut notes = notes.into_inner();
+    notes.dedup();
+    Ok((rows, notes))
+}
+
+/// What real samples are taken for, and complex ones that are real.
+fn told_of_real(numbers: &Numbers, kinds: &[AxisKind]) -> Option<String> {
+    let stored = match numbers {
+        Numbers::Real(_) if !kinds.contains(&AxisKind::Iq) => {
+            return Some("Samples are real: the positive half of their spectrum is taken (the analytic signal).".to_owned());
+        }
+        Numbers::Complex(values) => !values.is_empty() && values.iter().all(|v| v.im == 0.0) && values.iter().any(|v| v.re != 0.0),
+        Numbers::Real(_) => false,
+    };
+    stored.then(|| {
+        "Every imaginary part is zero: these are real samples, stored as complex ones. Each echo has a mirror image in the far half of the range \
+         axis."
+            .to_owned()
+    })
 }
 
 fn numbers(table: &Table, open: Open<'_>, key: Option<&str>) -> Result<Numbers, Fault> {

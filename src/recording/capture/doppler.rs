@@ -34,6 +34,7 @@ pub(super) fn strongest(
     }
     let profiles = transformed(frame);
     let cells = Cells::new(frame.weights(true));
+    let array = Array::new(chosen, receivers, turns);
     let mut out = Array3::zeros((chirps, receivers, samples));
     let (mut moving, mut ambiguous) = (0usize, 0usize);
     for bin in 0..samples {
@@ -45,7 +46,7 @@ pub(super) fn strongest(
         let found = cells.strongest(&windowed);
         let turn = if found.ratio >= STANDS_OUT { found } else { cells.strongest(&plain.to_owned()) };
         let value = |of: &Array2<Complex64>, whole: f64| cells.value(of, turn.turns, whole, [chirps, receivers], channels);
-        let whole = whole_turns(chirps, |whole| sharpness(&value(&windowed, whole), chosen, turns));
+        let whole = whole_turns(chirps, |whole| array.sharpness(&value(&windowed, whole)));
         out.slice_mut(s![.., .., bin]).assign(&value(&plain.to_owned(), whole).slice(s![.., .., 0]));
         if found.ratio >= STANDS_OUT * STANDS_OUT {
             moving += usize::from((turn.turns * loops as f64).abs() > MOVES);
@@ -168,17 +169,30 @@ fn whole_turns(chirps: usize, sharpness: impl Fn(f64) -> f64) -> f64 {
     .0
 }
 
-/// Power of the strongest direction.
-fn sharpness(value: &Array3<Complex64>, chosen: &[usize], turns: &[f64]) -> f64 {
-    let receivers = value.dim().1;
-    if turns.len() < chosen.len() * receivers {
-        return 0.0;
+/// Directions that the array is turned to.
+struct Array<'a> {
+    chosen: &'a [usize],
+    /// Factors of the pairs, a list for each direction; none where the pairs' places are not known.
+    directions: Vec<Vec<Complex64>>,
+}
+
+impl<'a> Array<'a> {
+    fn new(chosen: &'a [usize], receivers: usize, turns: &[f64]) -> Self {
+        let half = (COSINES / 2) as f64;
+        let factor = |turns: f64, n: usize| Complex64::from_polar(1.0, -TAU * turns * (n as f64 - half) / half);
+        let known = turns.len() >= chosen.len() * receivers;
+        let directions = (0..COSINES).filter(|_| known).map(|n| turns.iter().map(|t| factor(*t, n)).collect()).collect();
+        Array { chosen, directions }
     }
-    let power = |cosine: f64| {
-        let pairs = chosen.iter().flat_map(|chirp| (0..receivers).map(move |r| value[[*chirp, r, 0]]));
-        let sum: Complex64 = pairs.zip(turns).map(|(v, t)| v * Complex64::from_polar(1.0, -TAU * t * cosine)).sum();
-        sum.norm_sqr()
-    };
-    let half = (COSINES / 2) as f64;
-    (0..COSINES).map(|n| power((n as f64 - half) / half)).fold(0.0, f64::max)
+
+    /// Power of the strongest direction.
+    fn sharpness(&self, value: &Array3<Complex64>) -> f64 {
+        let receivers = value.dim().1;
+        let heard: Vec<Complex64> =
+            self.chosen.iter().flat_map(|chirp| (0..receivers).map(move |r| value[[*chirp, r, 0]])).collect();
+        let power = |direction: &Vec<Complex64>| {
+            heard.iter().zip(direction).map(|(v, factor)| v * factor).sum::<Complex64>().norm_sqr()
+        };
+        self.directions.iter().map(power).fold(0.0, f64::max)
+    }
 }

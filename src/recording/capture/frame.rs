@@ -3,9 +3,9 @@
 use super::plan::Plan;
 use super::quality::Quality;
 use super::{Capture, CaptureError};
+use crate::recording::analytic::analytic;
 use crate::recording::layout::Parts;
 use crate::recording::layout::stream::Stream;
-use crate::signal::simd::Simd;
 use ndarray::{Array3, Array4, Axis, s};
 use num_complex::Complex64;
 use std::io::{Read, Seek};
@@ -42,9 +42,9 @@ impl Frame {
             all.outer_iter_mut().for_each(|mut turn| turn -= &mean);
         }
         if layout.parts == Parts::Real {
-            all = analytic(&all, samples.div_ceil(2));
+            all = all_analytic(&all, samples.div_ceil(2));
         } else if quality.is_real() {
-            all = analytic(&all, samples);
+            all = all_analytic(&all, samples);
         }
         Ok(Frame { samples: all, quality })
     }
@@ -96,22 +96,12 @@ fn take_out_constant(all: &mut Array4<Complex64>) {
     }
 }
 
-/// The analytic signal of real samples, of `len` samples, half as many at least: the positive half of their spectrum, transformed back.
-fn analytic(all: &Array4<Complex64>, len: usize) -> Array4<Complex64> {
-    let (loops, chirps, receivers, samples) = all.dim();
-    let half = samples.div_ceil(2);
-    let (forward, back) = (Simd::chosen().forward_fft::<f64>(samples), Simd::chosen().forward_fft::<f64>(len));
+/// The analytic signals of real samples, of `len` samples.
+fn all_analytic(all: &Array4<Complex64>, len: usize) -> Array4<Complex64> {
+    let (loops, chirps, receivers, _) = all.dim();
     let mut out = Array4::zeros((loops, chirps, receivers, len));
-    let scale = (samples as f64).recip();
     for (row, mut found) in all.lanes(Axis(3)).into_iter().zip(out.lanes_mut(Axis(3))) {
-        let mut line: Vec<Complex64> = row.to_vec();
-        forward.process(&mut line);
-        // Back by the conjugate of the forward transform of the conjugate; half the amplitude stands in the other half of the spectrum.
-        let mut positive = vec![Complex64::default(); len];
-        positive.iter_mut().zip(&line[..half]).for_each(|(to, v)| *to = 2.0 * scale * v.conj());
-        positive[0] /= 2.0;
-        back.process(&mut positive);
-        found.iter_mut().zip(positive).for_each(|(to, v)| *to = v.conj());
+        found.iter_mut().zip(analytic(&row.to_vec(), len)).for_each(|(to, v)| *to = v);
     }
     out
 }

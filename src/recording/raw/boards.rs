@@ -47,7 +47,7 @@ pub const ALL: &[Board] = &[
     },
     Board {
         name: "cascade",
-        guide: "AWRx Cascaded Radar RF Evaluation Module (MMWCAS-RF-EVM), SWRU553",
+        guide: "Imaging Radar Using Cascaded mmWave Sensor Reference Design (TIDEP-01012), TIDUEN5",
         transmitters: &[
             [0.0, 0.0],
             [4.0, 0.0],

@@ -109,6 +109,6 @@ fn boards_have_the_places_of_their_guides() {
     let flat: Vec<f64> = cascade.transmitters.iter().filter(|[_, up]| *up == 0.0).map(|[x, _]| *x).collect();
     let antennas = crate::radar::Antennas::new(&flat, cascade.receivers).unwrap();
     assert_eq!((antennas.pairs().len(), antennas.gaps()), (86, 0));
-    assert!(boards::ALL.iter().all(|b| b.guide.contains("SWRU") || b.guide.contains("SPRUI")));
+    assert!(boards::ALL.iter().all(|b| ["SWRU", "SPRUI", "TIDU"].iter().any(|of| b.guide.contains(of))));
     assert_eq!(boards::by_name("another"), None);
 }
