@@ -57,7 +57,11 @@ impl Args {
             print(&described(&imported, &recording.doubts).to_string())?;
         } else {
             imported.sentences.iter().try_for_each(|sentence| print(sentence))?;
-            recording.doubts.iter().filter(|d| !imported.sentences.contains(d)).try_for_each(|doubt| print(&format!("note: {doubt}")))?;
+            recording
+                .doubts
+                .iter()
+                .filter(|d| !imported.sentences.contains(d))
+                .try_for_each(|doubt| print(&format!("note: {doubt}")))?;
         }
         let Some(output) = &self.output else { return Ok(()) };
         let failed = |source| CommandError::File { path: output.clone(), source };
@@ -84,7 +88,8 @@ fn check_output(output: &Path, data: &Path) -> Result<(), CommandError> {
     }
     if folder(output) != folder(data) {
         let place = folder(data);
-        let message = format!("{}: the TOML stands beside the capture; expected a name in {}", output.display(), place.display());
+        let message =
+            format!("{}: the TOML stands beside the capture; expected a name in {}", output.display(), place.display());
         return Err(CommandError::Usage(message));
     }
     Ok(())
@@ -113,8 +118,10 @@ fn described(imported: &Imported, doubts: &[String]) -> Value {
 
 fn layout(candidate: &Candidate) -> Value {
     let Candidate { layout, counts, evidence, .. } = candidate;
-    let evidence: Vec<Value> =
-        evidence.iter().map(|e| json!({ "kind": kind(e.kind), "log_odds": e.log_odds, "sentence": e.sentence })).collect();
+    let evidence: Vec<Value> = evidence
+        .iter()
+        .map(|e| json!({ "kind": kind(e.kind), "log_odds": e.log_odds, "sentence": e.sentence }))
+        .collect();
     json!({
         "words": layout.words.name(),
         "parts": layout.parts.name(),

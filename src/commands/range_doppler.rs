@@ -106,7 +106,11 @@ impl Args {
 
     /// The map of the loops of a recording's frame.
     fn of_recording(&self, format: Option<Format>) -> Result<(), CommandError> {
-        let told = [("--chirps", self.chirps.is_some()), ("--interval", self.interval.is_some()), ("--time", self.time != 0.0)];
+        let told = [
+            ("--chirps", self.chirps.is_some()),
+            ("--interval", self.interval.is_some()),
+            ("--time", self.time != 0.0),
+        ];
         if let Some((name, _)) = told.into_iter().find(|(_, said)| *said) {
             let message = format!("{name} is a scene's; a recording has chirps of its own");
             return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));

@@ -74,7 +74,9 @@ pub enum AxesError {
     #[error("recording.axes: {0}")]
     Kinds(String),
     /// The numbers are real and no chirps.
-    #[error("the array holds real numbers; expected complex ones, an axis \"iq\" of length 2, or real samples of an axis \"sample\"")]
+    #[error(
+        "the array holds real numbers; expected complex ones, an axis \"iq\" of length 2, or real samples of an axis \"sample\""
+    )]
     Real,
     /// There is no such frame.
     #[error("recording.frame is {asked}; expected 0 to {last}, the array has {frames} frames", last = frames.saturating_sub(1))]
@@ -107,7 +109,11 @@ pub enum AxesError {
 ///
 /// # Errors
 /// [`AxesError`] where `kinds` are not the array's axes, or there is no such frame.
-pub(super) fn one_frame(numbers: Numbers, kinds: &mut Vec<AxisKind>, frame: Option<usize>) -> Result<Numbers, AxesError> {
+pub(super) fn one_frame(
+    numbers: Numbers,
+    kinds: &mut Vec<AxisKind>,
+    frame: Option<usize>,
+) -> Result<Numbers, AxesError> {
     let Some(place) = kinds.iter().position(|k| *k == AxisKind::Frame) else {
         return match frame {
             None => Ok(numbers),

@@ -43,9 +43,9 @@
 //! ```
 
 use super::doubts::doubts;
+use super::raw::{self, config_text};
 use super::said_radar::said_radar;
 use super::said_recording::Table;
-use super::raw::{self, config_text};
 use super::samples::{Open, read_loops, read_samples};
 use super::signs::{FORMAT, oldest};
 use super::{Fault, RadarProfile, Recording, RecordingError};

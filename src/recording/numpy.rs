@@ -44,7 +44,9 @@ pub enum NumpyError {
         shape: Vec<usize>,
     },
     /// Numbers of another type.
-    #[error("{what} holds {found}; expected complex or real numbers, integers of 16 or more bits or int8, or pairs of int16")]
+    #[error(
+        "{what} holds {found}; expected complex or real numbers, integers of 16 or more bits or int8, or pairs of int16"
+    )]
     Type {
         /// Which array.
         what: String,

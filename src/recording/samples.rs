@@ -1,11 +1,11 @@
 //! Samples in the data files of a recording, brought into the order of the array's elements.
 
 use super::axes::{arrange, one_frame};
+use super::capture::Meaning;
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
 use super::said_recording::{Covers, Table};
 use super::signs::Signs;
-use super::capture::Meaning;
 use super::{AxisKind, Capture, Fault, RadarProfile, Recorded, matlab};
 use crate::radar::Radar;
 use crate::signal::{BeatSignal, TwoEnds};
@@ -160,7 +160,8 @@ pub(super) fn read_loops(
     signs: Signs,
 ) -> Result<Array3<Complex64>, Fault> {
     let Some(capture) = &table.capture else {
-        let expected = "it: range-Doppler maps of recordings are made of raw captures, whose .cfg says the interval of chirps";
+        let expected =
+            "it: range-Doppler maps of recordings are made of raw captures, whose .cfg says the interval of chirps";
         return Err(Fault::key("[recording.capture]", "is missing", expected));
     };
     check_capture(table)?;
@@ -198,8 +199,7 @@ fn check_capture(table: &Table) -> Result<(), Fault> {
         return Err(Fault::key("[recording.capture]", "is there", "it only beside a raw capture, such as a .bin file"));
     }
     let arrays = [("array", table.array.is_some()), ("first", table.first.is_some()), ("last", table.last.is_some())];
-    let others =
-        [("axes", table.axes.is_some()), ("chirp", table.chirp.is_some()), ("frame", table.frame.is_some())];
+    let others = [("axes", table.axes.is_some()), ("chirp", table.chirp.is_some()), ("frame", table.frame.is_some())];
     if let Some((key, _)) = arrays.iter().chain(&others).find(|(_, said)| *said) {
         return Err(Fault::key(
             &format!("recording.{key}"),
@@ -248,9 +248,13 @@ fn read_arrays(table: &Table, open: Open<'_>) -> Result<(Array2<Complex64>, Vec<
 fn told_of_real(numbers: &Numbers, kinds: &[AxisKind]) -> Option<String> {
     let stored = match numbers {
         Numbers::Real(_) if !kinds.contains(&AxisKind::Iq) => {
-            return Some("Samples are real: the positive half of their spectrum is taken (the analytic signal).".to_owned());
+            return Some(
+                "Samples are real: the positive half of their spectrum is taken (the analytic signal).".to_owned(),
+            );
         }
-        Numbers::Complex(values) => !values.is_empty() && values.iter().all(|v| v.im == 0.0) && values.iter().any(|v| v.re != 0.0),
+        Numbers::Complex(values) => {
+            !values.is_empty() && values.iter().all(|v| v.im == 0.0) && values.iter().any(|v| v.re != 0.0)
+        }
         Numbers::Real(_) => false,
     };
     stored.then(|| {

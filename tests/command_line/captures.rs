@@ -32,11 +32,13 @@ fn capture() -> Vec<u8> {
         let path = way(4.0 * (chirp % 2) as f64) + way(receiver as f64);
         Complex64::from_polar(400.0, TAU * frequency(n) * path / C) + Complex64::new(noise(), noise())
     };
-    let all: Vec<Complex64> = (0..LOOPS * 2 * 4 * SAMPLES)
-        .map(|n| sample(n / (4 * SAMPLES), n / SAMPLES % 4, n % SAMPLES))
-        .collect();
+    let all: Vec<Complex64> =
+        (0..LOOPS * 2 * 4 * SAMPLES).map(|n| sample(n / (4 * SAMPLES), n / SAMPLES % 4, n % SAMPLES)).collect();
     let part = |v: f64| (v.round() as i16).to_le_bytes();
-    all.chunks(2).flat_map(|b| b.iter().map(|v| part(v.re)).chain(b.iter().map(|v| part(v.im))).collect::<Vec<_>>()).flatten().collect()
+    all.chunks(2)
+        .flat_map(|b| b.iter().map(|v| part(v.re)).chain(b.iter().map(|v| part(v.im))).collect::<Vec<_>>())
+        .flatten()
+        .collect()
 }
 
 fn with_capture() -> TempDir {
@@ -52,13 +54,14 @@ fn an_import_says_what_it_found_with_why() {
     let mut command = apertura(&folder);
     let told = contains("I I Q Q as two lanes send them, 4 receivers one after another, 128 samples a chirp")
         .and(contains("Every receiver sees the same echoes"))
-        .and(contains("1 whole frames fill the file"))
+        .and(contains("One whole frame fills the file"))
         .and(contains("the choice is sure"))
         .and(contains("xWR1843"))
         .and(contains("wrote room.toml"));
     command.args(["import", "room.bin", "-o", "room.toml"]).assert().success().stdout(told);
     apertura(&folder).args(["maps", "room.toml", "-o", "m.npz"]).assert().success();
-    let output = apertura(&folder).args(["import", "room.bin", "--json"]).assert().success().get_output().stdout.clone();
+    let output =
+        apertura(&folder).args(["import", "room.bin", "--json"]).assert().success().get_output().stdout.clone();
     let found: serde_json::Value = serde_json::from_slice(&output).unwrap();
     assert_eq!((&found["certainty"], &found["layouts"][0]["parts"]), (&"sure".into(), &"two-lanes".into()));
     assert!(found["toml"].as_str().unwrap().contains("format = 3"));

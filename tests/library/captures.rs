@@ -1,8 +1,8 @@
 //! Raw captures, written by the physics of a stretch receiver: each opened as it is, its echo stands where it was put.
 
-use apertura::recording::{Recording, raw};
 use apertura::reconstruct::found::reconstruct_and_find;
 use apertura::reconstruct::{NoisePrior, Request};
+use apertura::recording::{Recording, raw};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::fs;
@@ -63,7 +63,11 @@ fn samples(chirps: &Chirps, echo: Echo, transmitters: usize, loops: usize) -> Ve
         Complex64::from_polar(400.0, TAU * chirps.frequency_hz(n) * path / C) + Complex64::new(noise(), noise())
     };
     (0..loops)
-        .map(|l| (0..transmitters).map(|t| (0..4).map(|r| (0..chirps.samples).map(|n| one(l, t, r, n)).collect()).collect()).collect())
+        .map(|l| {
+            (0..transmitters)
+                .map(|t| (0..4).map(|r| (0..chirps.samples).map(|n| one(l, t, r, n)).collect()).collect())
+                .collect()
+        })
         .collect()
 }
 
@@ -71,13 +75,18 @@ fn samples(chirps: &Chirps, echo: Echo, transmitters: usize, loops: usize) -> Ve
 fn two_lanes(chirps: impl IntoIterator<Item = Vec<Vec<Complex64>>>) -> Vec<u8> {
     let rows: Vec<Complex64> = chirps.into_iter().flatten().flatten().collect();
     let part = |v: f64| (v.round() as i16).to_le_bytes();
-    rows.chunks(2).flat_map(|b| b.iter().map(|v| part(v.re)).chain(b.iter().map(|v| part(v.im))).collect::<Vec<_>>()).flatten().collect()
+    rows.chunks(2)
+        .flat_map(|b| b.iter().map(|v| part(v.re)).chain(b.iter().map(|v| part(v.im))).collect::<Vec<_>>())
+        .flatten()
+        .collect()
 }
 
 fn cfg(chirps: &Chirps, masks: &[u32], loops: usize, more: &str) -> String {
     let Chirps { start, slope, samples, rate } = chirps;
     let all = masks.iter().fold(0, |a, b| a | b);
-    let mut text = format!("channelCfg 15 {all} 0\nadcCfg 2 1\nprofileCfg 0 {start} {IDLE_US} {ADC_US} {RAMP_US} 0 0 {slope} 1 {samples} {rate} 0 0 30\n");
+    let mut text = format!(
+        "channelCfg 15 {all} 0\nadcCfg 2 1\nprofileCfg 0 {start} {IDLE_US} {ADC_US} {RAMP_US} 0 0 {slope} 1 {samples} {rate} 0 0 30\n"
+    );
     for (n, mask) in masks.iter().enumerate() {
         text += &format!("chirpCfg {n} {n} 0 0 0 0 0 {mask}\n");
     }
@@ -99,7 +108,12 @@ fn assert_found(recording: &Recording, chirps: &Chirps, echo: Echo) {
     let range = echo.x.hypot(echo.y);
     let first = found.first().unwrap_or_else(|| panic!("nothing found: {:?}", recording.doubts));
     assert!((first.range_metres - range).abs() < chirps.bin_metres(), "{first:?}, {:?}", recording.doubts);
-    assert!((first.cos_theta - echo.x / range).abs() < 0.03, "{first:?} for {}, {:?}", echo.x / range, recording.doubts);
+    assert!(
+        (first.cos_theta - echo.x / range).abs() < 0.03,
+        "{first:?} for {}, {:?}",
+        echo.x / range,
+        recording.doubts
+    );
 }
 
 #[test]

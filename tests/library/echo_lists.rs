@@ -33,7 +33,12 @@ fn every_list_of_echoes_begins_with_the_true_one() {
                 let is_there = (first.cos_theta - cosine).abs() < within
                     && (first.range_metres - range).abs() < radar.range_resolution_metres();
                 if !is_there {
-                    wrong.push(format!("{} on {elements}: {:.3} for {cosine} at {:.2} m", method.name(), first.cos_theta, first.range_metres));
+                    wrong.push(format!(
+                        "{} on {elements}: {:.3} for {cosine} at {:.2} m",
+                        method.name(),
+                        first.cos_theta,
+                        first.range_metres
+                    ));
                 }
             }
         }
@@ -44,9 +49,11 @@ fn every_list_of_echoes_begins_with_the_true_one() {
 #[test]
 fn two_to_five_elements_are_answered_or_refused() {
     for elements in 2..=5 {
-        let radar = Radar { elements, end_elements: elements / 2, samples: 32, ..Radar::default() }.in_convention(Convention::Physical);
+        let radar = Radar { elements, end_elements: elements / 2, samples: 32, ..Radar::default() }
+            .in_convention(Convention::Physical);
         radar.validate().unwrap();
-        let ends = simulate(&radar, &Scene::of_points([(0.1, 1.0)]), Floor::Snr(Decibels(30.0)), 3).unwrap().two_ends(&radar);
+        let ends =
+            simulate(&radar, &Scene::of_points([(0.1, 1.0)]), Floor::Snr(Decibels(30.0)), 3).unwrap().two_ends(&radar);
         let mut answers = 0;
         for method in methods::all() {
             match method.reconstruct(&radar, &ends, &Request::default()) {

@@ -78,7 +78,9 @@ fn capture(bytes: usize) -> Vec<u8> {
             let (sample, receiver) = (n % SAMPLES, n / SAMPLES % RECEIVERS);
             let phase = |bin: f64, across: f64| TAU * (bin * sample as f64 / SAMPLES as f64 + across * receiver as f64);
             let echoes = [(800.0, 20.3, 0.1), (400.0, 47.8, -0.3), (200.0, 90.1, 0.22)];
-            let sum = |part: fn(f64) -> f64| echoes.iter().map(|(a, bin, across)| a * part(phase(*bin, *across))).sum::<f64>();
+            let sum = |part: fn(f64) -> f64| {
+                echoes.iter().map(|(a, bin, across)| a * part(phase(*bin, *across))).sum::<f64>()
+            };
             block[lane] = (sum(f64::cos) + noise()) as i16;
             block[lane + 2] = (sum(f64::sin) + noise()) as i16;
         }
@@ -97,7 +99,10 @@ mod tests {
         for profile in [Some(&profile), None] {
             let found = find(&mut Stream::new(Cursor::new(capture(WITH_CONFIG))).unwrap(), profile).unwrap();
             let best = found.best();
-            assert_eq!((best.layout.parts.name(), best.counts.samples, best.counts.receivers), ("two-lanes", SAMPLES, RECEIVERS));
+            assert_eq!(
+                (best.layout.parts.name(), best.counts.samples, best.counts.receivers),
+                ("two-lanes", SAMPLES, RECEIVERS)
+            );
         }
     }
 }

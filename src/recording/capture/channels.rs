@@ -47,7 +47,10 @@ impl Channels {
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.both {
-            notes.push("Both transmitters send in both chirps of a loop (bpmCfg): sum and difference tell them apart.".to_owned());
+            notes.push(
+                "Both transmitters send in both chirps of a loop (bpmCfg): sum and difference tell them apart."
+                    .to_owned(),
+            );
         }
         if self.together > 0 {
             notes.push(format!(
@@ -57,7 +60,8 @@ impl Channels {
             ));
         }
         if !self.factors.is_empty() {
-            notes.push("Channels are multiplied with the factors of the .cfg's compRangeBiasAndRxChanPhase.".to_owned());
+            notes
+                .push("Channels are multiplied with the factors of the .cfg's compRangeBiasAndRxChanPhase.".to_owned());
         }
         if let Some((found, expected)) = self.unfitting {
             notes.push(format!(

@@ -45,7 +45,8 @@ pub(super) fn strongest(
             - (&profiles.slice(s![.., .., before]) + &profiles.slice(s![.., .., after])) * Complex64::from(0.25);
         let found = cells.strongest(&windowed);
         let turn = if found.ratio >= STANDS_OUT { found } else { cells.strongest(&plain.to_owned()) };
-        let value = |of: &Array2<Complex64>, whole: f64| cells.value(of, turn.turns, whole, [chirps, receivers], channels);
+        let value =
+            |of: &Array2<Complex64>, whole: f64| cells.value(of, turn.turns, whole, [chirps, receivers], channels);
         let whole = whole_turns(chirps, |whole| array.sharpness(&value(&windowed, whole)));
         out.slice_mut(s![.., .., bin]).assign(&value(&plain.to_owned(), whole).slice(s![.., .., 0]));
         if found.ratio >= STANDS_OUT * STANDS_OUT {
@@ -57,7 +58,9 @@ pub(super) fn strongest(
     let several = if chirps > 1 { ", chirps of transmitters in time division turned back by its velocity" } else { "" };
     let faster = match ambiguous {
         0 => String::new(),
-        bins => format!(" In {bins} of them it moves faster than the loops tell: the sharper spectrum over the array says which velocity."),
+        bins => format!(
+            " In {bins} of them it moves faster than the loops tell: the sharper spectrum over the array says which velocity."
+        ),
     };
     let note = format!(
         "The {loops} loops of the frame are joined: of each range bin the strongest Doppler cell{several}. {moving} bins hold an echo that moves.{faster}"
@@ -119,7 +122,8 @@ impl Cells {
             (self.transform)(&mut line);
             powers.iter_mut().zip(line).for_each(|(p, v)| *p += v.norm_sqr());
         }
-        let (best, peak) = powers.iter().copied().enumerate().fold((0, 0.0), |best, v| if v.1 > best.1 { v } else { best });
+        let (best, peak) =
+            powers.iter().copied().enumerate().fold((0, 0.0), |best, v| if v.1 > best.1 { v } else { best });
         let mut sorted = powers.clone();
         sorted.sort_by(f64::total_cmp);
         let ratio = peak / sorted[loops / 2].max(f64::MIN_POSITIVE);
@@ -162,11 +166,12 @@ fn vertex(powers: [f64; 3]) -> f64 {
 fn whole_turns(chirps: usize, sharpness: impl Fn(f64) -> f64) -> f64 {
     let none = sharpness(0.0) * SHARPER;
     let candidates = (1..chirps).map(|n| if 2 * n > chirps { n as f64 - chirps as f64 } else { n as f64 });
-    candidates.fold((0.0, none), |best, whole| {
-        let found = sharpness(whole);
-        if found > best.1 { (whole, found) } else { best }
-    })
-    .0
+    candidates
+        .fold((0.0, none), |best, whole| {
+            let found = sharpness(whole);
+            if found > best.1 { (whole, found) } else { best }
+        })
+        .0
 }
 
 /// Directions that the array is turned to.
@@ -181,7 +186,8 @@ impl<'a> Array<'a> {
         let half = (COSINES / 2) as f64;
         let factor = |turns: f64, n: usize| Complex64::from_polar(1.0, -TAU * turns * (n as f64 - half) / half);
         let known = turns.len() >= chosen.len() * receivers;
-        let directions = (0..COSINES).filter(|_| known).map(|n| turns.iter().map(|t| factor(*t, n)).collect()).collect();
+        let directions =
+            (0..COSINES).filter(|_| known).map(|n| turns.iter().map(|t| factor(*t, n)).collect()).collect();
         Array { chosen, directions }
     }
 

@@ -151,7 +151,9 @@ impl Capture {
         let channels = Channels::of(meaning.profile, &plan);
         notes.extend(channels.notes());
         let rows = match self.turn {
-            Turn::Number(turn) => channels.of_loop(&frame.samples.index_axis(ndarray::Axis(0), turn.min(frame.loops() - 1))),
+            Turn::Number(turn) => {
+                channels.of_loop(&frame.samples.index_axis(ndarray::Axis(0), turn.min(frame.loops() - 1)))
+            }
             Turn::All(Together::Mean) => channels.of_loop(&frame.mean().view()),
             Turn::All(Together::Strongest) => {
                 let (rows, note) = doppler::strongest(&frame, &channels, &chosen, meaning.turns);

@@ -47,8 +47,17 @@ impl Plan {
         let frame_numbers = profile.map_or(0, |p| p.frame_numbers as u64).max(numbers as u64 * all_loops as u64);
         let before = size(profile.map_or(0, |p| p.numbers_before as u64));
         let frame_bytes = size(frame_numbers);
-        let mut plan =
-            Plan { layout, samples, receivers, chirps, loops: 0, start: 0, frames: bytes / frame_bytes, all_loops, notes: Vec::new() };
+        let mut plan = Plan {
+            layout,
+            samples,
+            receivers,
+            chirps,
+            loops: 0,
+            start: 0,
+            frames: bytes / frame_bytes,
+            all_loops,
+            notes: Vec::new(),
+        };
         plan.take_frame(capture, bytes, [loop_bytes, frame_bytes, before])?;
         plan.note_size(bytes, frame_bytes, profile.map_or(0, |p| p.frames));
         if let Turn::Number(asked) = capture.turn
@@ -76,7 +85,10 @@ impl Plan {
         let held = MOST_FRAME_NUMBERS / (self.samples * self.receivers * self.chirps).max(1);
         self.loops = whole.min(held.max(1));
         if self.loops < whole {
-            self.notes.push(format!("A frame has {whole} loops, more than are held at once: the first {} are read.", self.loops));
+            self.notes.push(format!(
+                "A frame has {whole} loops, more than are held at once: the first {} are read.",
+                self.loops
+            ));
         }
         Ok(())
     }
@@ -155,7 +167,8 @@ fn layout(capture: &Capture) -> Result<Layout, CaptureError> {
 /// Samples, receivers, chirps and loops.
 fn counts(capture: &Capture, profile: Option<&RadarProfile>) -> Result<[usize; 4], CaptureError> {
     let Capture { samples, receiver_count, loop_chirps, loops, .. } = *capture;
-    let said = [("samples", samples), ("receiver_count", receiver_count), ("loop_chirps", loop_chirps), ("loops", loops)];
+    let said =
+        [("samples", samples), ("receiver_count", receiver_count), ("loop_chirps", loop_chirps), ("loops", loops)];
     if let Some(profile) = profile {
         if let Some((key, Some(value))) = said.into_iter().find(|(_, value)| value.is_some()) {
             let expected = "it not beside a .cfg, which says it";
@@ -168,9 +181,19 @@ fn counts(capture: &Capture, profile: Option<&RadarProfile>) -> Result<[usize; 4
         *count = match value {
             Some(value) if (1..=MOST_COUNT).contains(&value) => value,
             None if ["loop_chirps", "loops"].contains(&key) => 1,
-            None => return Err(CaptureError::Count { key, found: "is missing".to_owned(), expected: "it where no .cfg says it" }),
+            None => {
+                return Err(CaptureError::Count {
+                    key,
+                    found: "is missing".to_owned(),
+                    expected: "it where no .cfg says it",
+                });
+            }
             Some(value) => {
-                return Err(CaptureError::Count { key, found: format!("is {value}"), expected: "a number from 1 to 65536" });
+                return Err(CaptureError::Count {
+                    key,
+                    found: format!("is {value}"),
+                    expected: "a number from 1 to 65536",
+                });
             }
         };
     }

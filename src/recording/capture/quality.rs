@@ -103,7 +103,9 @@ impl Quality {
             );
         }
         if plan.layout.parts == Parts::Real {
-            all.push("Samples are real: the positive half of their spectrum is taken (the analytic signal).".to_owned());
+            all.push(
+                "Samples are real: the positive half of their spectrum is taken (the analytic signal).".to_owned(),
+            );
         } else if self.tells_constant() && !is_out {
             all.push(format!(
                 "A constant part (leakage or offset) stands {:.0} dB over all else: recording.capture.constant = \"out\" takes it out.",

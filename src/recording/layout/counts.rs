@@ -1,31 +1,31 @@
 //! Samples and receivers of a file that no text describes: the length of rows that makes the sharpest spectrum, and after how many rows
 //! they repeat.
 
-use super::evidence::OF_LEVEL;
 use super::marks::{HEADER_BYTES, Marks};
-use super::spectrum::Spectrum;
+use super::spectrum::{Spectrum, correlation};
 use super::stream::Stream;
 use super::{Counts, Layout, Parts, ReceiverOrder, Words, parts};
 use ndarray::{Array2, ArrayView1, s};
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
 
+/// Numbers before it that each is predicted from.
+const ORDER: usize = 12;
 /// Samples of a chirp that are tried.
 const SAMPLES: [usize; 50] = [
-    32, 40, 48, 50, 60, 64, 80, 90, 96, 100, 112, 120, 125, 128, 144, 150, 160, 180, 192, 200, 224, 225, 240, 250, 256, 280, 288, 300, 320,
-    360, 384, 400, 448, 480, 500, 512, 600, 640, 720, 768, 800, 896, 960, 1000, 1024, 1200, 1280, 1536, 2048, 4096,
+    32, 40, 48, 50, 60, 64, 80, 90, 96, 100, 112, 120, 125, 128, 144, 150, 160, 180, 192, 200, 224, 225, 240, 250, 256,
+    280, 288, 300, 320, 360, 384, 400, 448, 480, 500, 512, 600, 640, 720, 768, 800, 896, 960, 1000, 1024, 1200, 1280,
+    1536, 2048, 4096,
 ];
-/// Receivers that may stand sample by sample.
-const INTERLEAVED: [usize; 5] = [2, 3, 4, 8, 16];
+/// Receivers that may stand sample by sample, the most first.
+const INTERLEAVED: [usize; 5] = [16, 8, 4, 3, 2];
+/// Rows of receivers sample by sample repeat their spectrum so much alike, as a correlation of logarithms.
+const COMB: f64 = 0.6;
 /// Receivers that radars usually have.
 const USUAL_RECEIVERS: usize = 4;
-/// Samples that a length is judged by at first, and then.
+/// Samples by which the parts are judged, and then the length of rows.
 const FIRST_NUMBERS: usize = 1 << 14;
-const THEN_NUMBERS: usize = 1 << 16;
-/// How many lengths are judged again.
-const AGAIN: usize = 12;
-/// How many sets of counts are answered.
-const ANSWERED: usize = 2;
+const THEN_NUMBERS: usize = 1 << 15;
 /// Rows after which rows may repeat.
 const MOST_PERIOD: usize = 64;
 /// Rows are the same again where they are so much alike, as a part of the most alike; and at least so much.
@@ -47,49 +47,103 @@ struct Cut {
     samples: usize,
     /// Receivers that stand sample by sample; 1 where they stand one after another.
     mixed: usize,
-    level: f64,
 }
 
-/// Searches the lengths of rows.
+/// Searches the lengths of rows: the order of parts that makes the sharpest spectrum of any length, and then the length at whose multiples
+/// samples don't follow from those before.
 pub(super) fn search<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>) -> io::Result<Searched> {
     let bytes = samples_of(stream, marks, 4 * THEN_NUMBERS)?;
     let marked = marks.filter(|m| m.apart > 0).map(|m| m.apart - HEADER_BYTES);
     let words = likely_words(&bytes);
-    let mut cuts = Vec::new();
+    let numbers =
+        |layout: &Layout, most: usize| parts::numbers(layout, &bytes, (bytes.len() / layout.parts.bytes()).min(most));
+    let mut best: Option<(f64, Layout)> = None;
     for parts in Parts::ALL {
         let layout = layout(words, parts);
-        let numbers = parts::numbers(&layout, &bytes, (bytes.len() / parts.bytes()).min(FIRST_NUMBERS));
-        for samples in SAMPLES {
-            for mixed in std::iter::once(1).chain(INTERLEAVED) {
-                let fits = marked.is_none_or(|held| held.is_multiple_of(samples * mixed * parts.bytes()));
-                if fits && numbers.len() >= 2 * samples * mixed {
-                    cuts.push(judged(layout, &numbers, samples, mixed));
-                }
-            }
+        let numbers = numbers(&layout, FIRST_NUMBERS);
+        let levels = SAMPLES.into_iter().filter(|samples| numbers.len() >= 2 * samples).map(|samples| {
+            let spectrum = Spectrum::of(&rows(&numbers, samples, 1), 1);
+            if parts == Parts::Real { spectrum.of_real().level } else { spectrum.level }
+        });
+        if let Some(level) = levels.min_by(f64::total_cmp).filter(|level| best.is_none_or(|(least, _)| *level < least))
+        {
+            best = Some((level, layout));
         }
     }
-    cuts.sort_by(|a, b| a.level.total_cmp(&b.level));
-    cuts.truncate(AGAIN);
-    let rows = |cut: &Cut| {
-        let count = (bytes.len() / cut.layout.parts.bytes()).min(THEN_NUMBERS);
-        parts::numbers(&cut.layout, &bytes, count)
-    };
-    let mut again: Vec<Cut> = cuts.iter().map(|cut| judged(cut.layout, &rows(cut), cut.samples, cut.mixed)).collect();
-    again.sort_by(|a, b| a.level.total_cmp(&b.level));
-    let Some(best) = again.first() else { return Ok(Searched { counts: Vec::new(), note: None }) };
+    let Some((_, layout)) = best else { return Ok(Searched { counts: Vec::new(), note: None }) };
+    let numbers = numbers(&layout, THEN_NUMBERS);
+    let residual = residual(&numbers);
+    let fits = |length: &usize| marked.is_none_or(|held| held.is_multiple_of(length * layout.parts.bytes()));
+    let longer = SAMPLES.into_iter().flat_map(|samples| [samples, 4 * samples]).filter(fits);
+    let broken = longer.map(|length| (broken(&residual, length), length));
+    let length = broken.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(SAMPLES[0], |(_, length)| length);
+    let mixed = interleaved(&numbers, length);
+    let cut = Cut { layout, samples: length / mixed, mixed };
     let note = Some(
         "No .cfg says samples and receivers: they are those that make the sharpest spectrum and repeat. Carrier, slope and rate are not \
          known: a bin of range is shown as one metre, and directions are those of elements half a wavelength apart."
             .to_owned(),
     );
-    let mut counts: Vec<Counts> = Vec::new();
-    for cut in again.iter().filter(|c| OF_LEVEL * (c.level - best.level) < 20.0) {
-        let found = counted(cut, &rows(cut), stream.bytes(), marks, marked);
-        if counts.len() < ANSWERED && !counts.contains(&found) {
-            counts.push(found);
+    Ok(Searched { counts: vec![counted(&cut, &numbers, stream.bytes(), marks, marked)], note })
+}
+
+/// How much of each number does not follow from the [`ORDER`] before it, as a power: linear prediction by least squares.
+fn residual(numbers: &[Complex64]) -> Vec<f64> {
+    let mean = numbers.iter().sum::<Complex64>() / numbers.len().max(1) as f64;
+    let centred: Vec<Complex64> = numbers.iter().map(|v| v - mean).collect();
+    let mut normal = [[Complex64::default(); ORDER + 1]; ORDER];
+    for window in centred.windows(ORDER + 1) {
+        for (row, a) in normal.iter_mut().zip(window) {
+            row.iter_mut().zip(window).for_each(|(sum, b)| *sum += a.conj() * b);
         }
     }
-    Ok(Searched { counts, note })
+    let ridge = 1e-6 * (0..ORDER).map(|n| normal[n][n].re).sum::<f64>() / ORDER as f64;
+    (0..ORDER).for_each(|n| normal[n][n] += ridge.max(f64::MIN_POSITIVE));
+    let weights = solved(normal);
+    let predicted = |before: &[Complex64]| before.iter().zip(weights).map(|(v, w)| v * w).sum::<Complex64>();
+    let errors = centred.windows(ORDER + 1).map(|window| (window[ORDER] - predicted(&window[..ORDER])).norm_sqr());
+    std::iter::repeat_n(0.0, ORDER.min(centred.len())).chain(errors).collect()
+}
+
+/// The solution of a positive definite system whose right side stands in its last column.
+fn solved(mut system: [[Complex64; ORDER + 1]; ORDER]) -> [Complex64; ORDER] {
+    for pivot in 0..ORDER {
+        let top = system[pivot];
+        for (_, row) in system.iter_mut().enumerate().filter(|(n, _)| *n != pivot) {
+            let factor = row[pivot] / top[pivot];
+            row.iter_mut().zip(top).for_each(|(v, t)| *v -= factor * t);
+        }
+    }
+    std::array::from_fn(|n| system[n][ORDER] / system[n][n])
+}
+
+/// How much less the first numbers of rows of this length follow from those before them than all others.
+fn broken(residual: &[f64], length: usize) -> f64 {
+    if residual.len() < 3 * length || length <= 2 * ORDER {
+        return 0.0;
+    }
+    let (mut first, mut other) = (0.0, 0.0);
+    let rows = residual.chunks_exact(length).skip(1);
+    let count = rows.len() as f64;
+    for row in rows {
+        first += row[..ORDER].iter().sum::<f64>();
+        other += row[ORDER..].iter().sum::<f64>();
+    }
+    let (first, other) = (first / (count * ORDER as f64), other / (count * (length - ORDER) as f64));
+    // Rounding alone leaves as much.
+    first / (other + 0.2)
+}
+
+/// How many receivers stand sample by sample in rows of this length: their spectrum repeats as often.
+fn interleaved(numbers: &[Complex64], length: usize) -> usize {
+    let power = Spectrum::of(&rows(numbers, length, 1), 1).power;
+    let logs: Vec<f64> = power.iter().map(|p| p.ln()).collect();
+    let repeats = |receivers: &usize| {
+        let shift = length / receivers;
+        let turned = logs.iter().cycle().skip(shift).take(length).copied();
+        length.is_multiple_of(*receivers) && shift >= SAMPLES[0] && correlation(logs.iter().copied(), turned) > COMB
+    };
+    INTERLEAVED.into_iter().find(repeats).unwrap_or(1)
 }
 
 fn layout(words: Words, parts: Parts) -> Layout {
@@ -129,12 +183,6 @@ fn likely_words(bytes: &[u8]) -> Words {
     } else {
         Words::Int16
     }
-}
-
-fn judged(layout: Layout, numbers: &[Complex64], samples: usize, mixed: usize) -> Cut {
-    let spectrum = Spectrum::of(&rows(numbers, samples, mixed), 1);
-    let spectrum = if layout.parts == Parts::Real { spectrum.of_real() } else { spectrum };
-    Cut { layout, samples, mixed, level: spectrum.level }
 }
 
 /// The numbers as rows of `samples`, of `mixed` receivers sample by sample.

@@ -70,15 +70,16 @@ pub(super) fn evidence(layout: &Layout, counts: Counts, spectrum: &Spectrum, kno
 
 fn sharp(spectrum: &Spectrum) -> Evidence {
     let sentence = format!(
-        "{} echoes stand out, and between them the spectrum lies {:.1} dB below a flat one",
-        spectrum.echoes,
+        "{} out, and between echoes the spectrum lies {:.1} dB below a flat one",
+        if spectrum.echoes == 1 { "one echo stands".to_owned() } else { format!("{} echoes stand", spectrum.echoes) },
         spectrum.flatness_db()
     );
     Evidence { kind: Kind::Sharp, log_odds: -OF_LEVEL * spectrum.level, sentence }
 }
 
 fn receivers(spectrum: &Spectrum) -> Evidence {
-    let said = if spectrum.alike > 0.7 { "every receiver sees the same echoes" } else { "receivers see different echoes" };
+    let said =
+        if spectrum.alike > 0.7 { "every receiver sees the same echoes" } else { "receivers see different echoes" };
     let sentence = format!("{said} (correlation {:.2})", spectrum.alike);
     Evidence { kind: Kind::Receivers, log_odds: OF_ALIKE * spectrum.alike, sentence }
 }
@@ -96,11 +97,13 @@ fn filling(layout: &Layout, counts: Counts, known: Known<'_>) -> Evidence {
     let frame = frame_bytes(layout, counts, known.profile);
     let (frames, rest) = (known.bytes / frame, known.bytes % frame);
     let said = known.profile.map_or(0, |p| p.frames as u64);
+    let whole = if frames == 1 { "one whole frame".to_owned() } else { format!("{frames} whole frames") };
+    let fill = if frames == 1 { "fills" } else { "fill" };
     let (log_odds, sentence) = match (frames, rest) {
         (0, _) => (-3.0, format!("the file is smaller than one frame ({} of {frame} bytes)", known.bytes)),
-        (_, 0) if said == 0 || said == frames => (3.0, format!("{frames} whole frames fill the file")),
-        (_, 0) => (1.5, format!("{frames} whole frames fill the file, not the {said} that were asked for")),
-        _ => (0.0, format!("{frames} whole frames and a part of one fill the file")),
+        (_, 0) if said == 0 || said == frames => (3.0, format!("{whole} {fill} the file")),
+        (_, 0) => (1.5, format!("{whole} {fill} the file, not the {said} that were asked for")),
+        _ => (0.0, format!("{whole} and a part of one fill the file")),
     };
     Evidence { kind: Kind::Counts, log_odds, sentence }
 }
@@ -125,15 +128,29 @@ fn config(layout: &Layout, profile: &RadarProfile) -> Evidence {
             agrees.extend((said == is).then_some(what));
         }
     };
-    say(Some(profile.real), layout.parts == Parts::Real, OF_REAL, if profile.real { "real samples" } else { "complex samples" });
+    say(
+        Some(profile.real),
+        layout.parts == Parts::Real,
+        OF_REAL,
+        if profile.real { "real samples" } else { "complex samples" },
+    );
     if layout.parts != Parts::Real {
         say(profile.q_first, layout.q_first, OF_ORDER, if layout.q_first { "Q first" } else { "I first" });
     }
     if profile.receivers > 1 {
         let interleaved = layout.receivers == ReceiverOrder::Interleaved;
-        say(profile.interleaved, interleaved, OF_RECEIVERS, if interleaved { "receivers sample by sample" } else { "receivers one after another" });
+        say(
+            profile.interleaved,
+            interleaved,
+            OF_RECEIVERS,
+            if interleaved { "receivers sample by sample" } else { "receivers one after another" },
+        );
     }
-    let sentence = if agrees.is_empty() { "the .cfg says otherwise".to_owned() } else { format!("the .cfg says {}", agrees.join(", ")) };
+    let sentence = if agrees.is_empty() {
+        "the .cfg says otherwise".to_owned()
+    } else {
+        format!("the .cfg says {}", agrees.join(", "))
+    };
     Evidence { kind: Kind::Config, log_odds, sentence }
 }
 

@@ -95,7 +95,12 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     let mut notes = Vec::new();
     let searched: Vec<Counts> = match profile {
         Some(p) => {
-            vec![Counts { samples: p.samples, receivers: p.receivers, chirps: p.chirp_transmitters.len(), loops: p.loops }]
+            vec![Counts {
+                samples: p.samples,
+                receivers: p.receivers,
+                chirps: p.chirp_transmitters.len(),
+                loops: p.loops,
+            }]
         }
         None => {
             let Searched { counts, note } = counts::search(stream, marks)?;

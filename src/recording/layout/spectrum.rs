@@ -117,7 +117,7 @@ fn alike(power: ArrayView2<'_, f64>) -> f64 {
 }
 
 /// Correlation of two sequences; 0 where one is constant.
-fn correlation(a: impl Iterator<Item = f64> + Clone, b: impl Iterator<Item = f64> + Clone) -> f64 {
+pub(super) fn correlation(a: impl Iterator<Item = f64> + Clone, b: impl Iterator<Item = f64> + Clone) -> f64 {
     let mean = |of: &mut dyn Iterator<Item = f64>| {
         let (count, sum) = of.fold((0.0, 0.0), |(n, sum), v| (n + 1.0, sum + v));
         sum / f64::max(count, 1.0)

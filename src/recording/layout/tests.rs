@@ -22,7 +22,9 @@ fn chirps() -> Vec<Vec<Complex64>> {
         f64::from(state >> 16) / 65536.0 - 0.5
     };
     let mut sample = move |receiver: usize, n: usize| {
-        let turns = |bin: f64, phase: f64| Complex64::from_polar(1.0, TAU * (bin * n as f64 / SAMPLES as f64 + phase * receiver as f64));
+        let turns = |bin: f64, phase: f64| {
+            Complex64::from_polar(1.0, TAU * (bin * n as f64 / SAMPLES as f64 + phase * receiver as f64))
+        };
         900.0 * turns(13.3, 0.21) + 300.0 * turns(29.7, -0.13) + 8.0 * Complex64::new(noise(), noise())
     };
     (0..8).map(|_| (0..3 * SAMPLES).map(|n| sample(n / SAMPLES, n % SAMPLES)).collect()).collect()
@@ -86,14 +88,23 @@ fn the_evidence_says_what_decided() {
     let plain = found(bytes.clone(), Some(&profile("")));
     assert_eq!(plain.decided_by(), Kind::Half, "I and Q alone are near: {:#?}", plain.sentences());
     let said = found(bytes, Some(&profile("adcbufCfg -1 0 1 1 1\n")));
-    assert!(said.best().layout.q_first && said.best().of_kind(Kind::Half) < 0.0, "the .cfg weighs more: {:#?}", said.sentences());
+    assert!(
+        said.best().layout.q_first && said.best().of_kind(Kind::Half) < 0.0,
+        "the .cfg weighs more: {:#?}",
+        said.sentences()
+    );
     assert_eq!(said.decided_by(), Kind::Config);
-    assert!(said.sentences().iter().any(|s| s.contains("every receiver sees the same echoes") || s.contains("Every receiver")));
+    assert!(
+        said.sentences()
+            .iter()
+            .any(|s| s.contains("every receiver sees the same echoes") || s.contains("Every receiver"))
+    );
 }
 
 #[test]
 fn headers_before_chirps_are_found() {
-    let right = Layout { header_bytes: 64, ..layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother) };
+    let right =
+        Layout { header_bytes: 64, ..layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother) };
     let found = found(written(&right, &chirps()), Some(&profile("lvdsStreamCfg -1 1 1 1\n")));
     assert_eq!(found.best().layout, right);
     assert!(found.notes.iter().any(|n| n.contains("header of 64 bytes: 8 were found")), "{:?}", found.notes);
@@ -130,7 +141,8 @@ fn packets_are_read_with_zeros_for_those_lost() {
     let mut all = vec![1; bytes.len()];
     stream.read_at(0, &mut all).unwrap();
     for (n, part) in all.chunks(1456).enumerate() {
-        let expected = if [2, 5, 6].contains(&n) { vec![0; part.len()] } else { bytes[n * 1456..n * 1456 + part.len()].to_vec() };
+        let expected =
+            if [2, 5, 6].contains(&n) { vec![0; part.len()] } else { bytes[n * 1456..n * 1456 + part.len()].to_vec() };
         assert_eq!(part, expected, "packet {n}");
     }
     assert!(!Stream::new(Cursor::new(bytes)).unwrap().has_packets());
@@ -143,7 +155,12 @@ fn samples_with_receivers_are_found_without_a_cfg() {
         let right = layout(Words::Int16, Parts::TwoLanes, false, receivers);
         let found = found(written(&right, &three), None);
         let Candidate { layout, counts, .. } = found.best();
-        assert_eq!((layout, counts.samples, counts.receivers, counts.chirps), (&right, SAMPLES, 3, 1), "{:#?}", found.sentences());
+        assert_eq!(
+            (layout, counts.samples, counts.receivers, counts.chirps),
+            (&right, SAMPLES, 3, 1),
+            "{:#?}",
+            found.sentences()
+        );
     }
 }
 
@@ -161,7 +178,10 @@ fn what_makes_no_echo_is_refused() {
     assert!(refused(&random, None).contains("spectrum is flat"));
     assert!(refused(&random, Some(&profile(""))).contains("spectrum is flat"));
     assert!(refused(&[0; 100_000], Some(&profile(""))).contains("nothing but zeros"));
-    assert!(refused(&random[..100], Some(&profile(""))).contains("has 100 bytes; expected at least one chirp, 1152 bytes as the .cfg says"));
+    assert!(
+        refused(&random[..100], Some(&profile("")))
+            .contains("has 100 bytes; expected at least one chirp, 1152 bytes as the .cfg says")
+    );
     assert!(refused(&[], None).contains("has 0 bytes"));
 }
 

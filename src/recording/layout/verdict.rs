@@ -50,7 +50,8 @@ impl Found {
     pub fn sentences(&self) -> Vec<String> {
         let best = self.best();
         let mut all = vec![format!("{}.", capital(&best.described()))];
-        let told = best.evidence.iter().filter(|e| !e.sentence.is_empty() && !(e.kind == Kind::Config && e.log_odds < 0.0));
+        let told =
+            best.evidence.iter().filter(|e| !e.sentence.is_empty() && !(e.kind == Kind::Config && e.log_odds < 0.0));
         all.extend(told.map(|e| format!("{}.", capital(&e.sentence))));
         all.push(self.decision());
         all.extend(self.notes.iter().cloned());
@@ -77,7 +78,10 @@ impl Found {
             Certainty::Likely => "likely",
             Certainty::Open => "open: look at both",
         };
-        format!("What decided against the next ({}) is {decided}; the choice is {sure} (log-odds {margin:.1}).", next.described())
+        format!(
+            "What decided against the next ({}) is {decided}; the choice is {sure} (log-odds {margin:.1}).",
+            next.described()
+        )
     }
 }
 

@@ -25,11 +25,17 @@ pub(super) fn frames(commands: &Commands<'_>) -> Result<Vec<Frame>, ProfileError
         (_, Some(advanced)) => {
             let count = advanced.count(0, "the number of sub-frames", 4)?;
             let frames = advanced.count(2, "the number of frames", 1 << 24)?;
-            let sub_frames: Vec<Frame> =
-                commands.sub_frames.values().take(count).map(|line| sub_frame(line, frames)).collect::<Result<_, _>>()?;
+            let sub_frames: Vec<Frame> = commands
+                .sub_frames
+                .values()
+                .take(count)
+                .map(|line| sub_frame(line, frames))
+                .collect::<Result<_, _>>()?;
             if sub_frames.is_empty() || sub_frames.len() < count {
                 let found = sub_frames.len();
-                return Err(advanced.fault(format!("names {count} sub-frames, but {found} lines \"subFrameCfg\" stand there")));
+                return Err(
+                    advanced.fault(format!("names {count} sub-frames, but {found} lines \"subFrameCfg\" stand there"))
+                );
             }
             Ok(sub_frames)
         }

@@ -145,7 +145,9 @@ impl RadarProfile {
         profile.numbers_before = numbers.iter().take(chosen).sum();
         profile.frame_numbers = numbers.iter().sum();
         profile.notes.extend((found > 1).then(|| {
-            format!("The .cfg has {found} sub-frames: number {chosen} is read (recording.capture.sub_frame names another).")
+            format!(
+                "The .cfg has {found} sub-frames: number {chosen} is read (recording.capture.sub_frame names another)."
+            )
         }));
         profile.notes.extend(part.note.clone());
         profile.said_of_data(&commands)?;
@@ -172,11 +174,15 @@ impl RadarProfile {
                 return Err(phases.fault(format!("the range bias is {bias}; expected metres")));
             }
             self.range_bias_metres = bias;
-            self.channel_factors =
-                phases.values[1..].chunks_exact(2).map(|v| Complex64::new(v[0], v[1])).filter(|v| v.is_finite()).collect();
+            self.channel_factors = phases.values[1..]
+                .chunks_exact(2)
+                .map(|v| Complex64::new(v[0], v[1]))
+                .filter(|v| v.is_finite())
+                .collect();
         }
         for (places, line) in self.element_places.iter_mut().zip(&commands.geometry) {
-            *places = line.as_ref().map_or(Vec::new(), |l| l.values.iter().copied().filter(|v| v.is_finite()).collect());
+            *places =
+                line.as_ref().map_or(Vec::new(), |l| l.values.iter().copied().filter(|v| v.is_finite()).collect());
         }
         Ok(())
     }
@@ -236,7 +242,10 @@ impl<'a> Part<'a> {
             chirps.push(chirp);
         }
         let line = |number: usize| {
-            commands.profiles.get(&number).or_else(|| commands.profiles.values().next().filter(|_| commands.profiles.len() == 1))
+            commands
+                .profiles
+                .get(&number)
+                .or_else(|| commands.profiles.values().next().filter(|_| commands.profiles.len() == 1))
         };
         let first = line(chirps[0].profile).ok_or(ProfileError::Missing("profileCfg"))?;
         for chirp in &chirps[1..] {
@@ -249,7 +258,8 @@ impl<'a> Part<'a> {
             }
         }
         let used: std::collections::BTreeSet<usize> = chirps.iter().map(|c| c.profile).collect();
-        let note = (used.len() > 1).then(|| format!("The .cfg has {} profiles that are alike: they are one.", used.len()));
+        let note =
+            (used.len() > 1).then(|| format!("The .cfg has {} profiles that are alike: they are one.", used.len()));
         let transmitters = chirps.iter().map(|c| c.transmitters).collect();
         Ok(Part { profile: first, transmitters, loops: frame.loops, note })
     }

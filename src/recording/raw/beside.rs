@@ -46,7 +46,9 @@ fn ends(path: &Path, end: &str) -> bool {
 
 /// Files that go on from the first, where its name ends with `_0`: `_1` and so on, as capture programs split at a gigabyte.
 pub(super) fn more_files(data: &Path) -> Vec<PathBuf> {
-    let Some(stem) = data.file_stem().and_then(|s| s.to_str()).and_then(|s| s.strip_suffix("_0")) else { return Vec::new() };
+    let Some(stem) = data.file_stem().and_then(|s| s.to_str()).and_then(|s| s.strip_suffix("_0")) else {
+        return Vec::new();
+    };
     let end = data.extension().and_then(|e| e.to_str()).unwrap_or("bin");
     let part = |n: usize| data.with_file_name(format!("{stem}_{n}.{end}"));
     (1..MOST_PARTS).map(part).take_while(|path| fs::exists(path)).collect()

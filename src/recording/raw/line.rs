@@ -34,12 +34,16 @@ struct Sender {
 pub(super) fn line(best: &Candidate, profile: Option<&RadarProfile>, board: Option<&Board>) -> Line {
     let counts = best.counts;
     let Some(profile) = profile else {
+        let apart = match counts.chirps {
+            1 => String::new(),
+            chirps => format!("{chirps} transmitters {} half wavelengths apart and ", counts.receivers),
+        };
         let doubt = format!(
-            "Nothing says where the antennas stand: {} transmitters {} half wavelengths apart and {} receivers half a wavelength apart are \
-             taken for granted.",
-            counts.chirps, counts.receivers, counts.receivers
+            "Nothing says where the antennas stand: {apart}{} receivers half a wavelength apart are taken for granted.",
+            counts.receivers
         );
-        let senders = (0..counts.chirps).map(|chirp| Sender { chirp, across: (chirp * counts.receivers) as f64, up: 0.0 });
+        let senders =
+            (0..counts.chirps).map(|chirp| Sender { chirp, across: (chirp * counts.receivers) as f64, up: 0.0 });
         let receivers: Vec<f64> = (0..counts.receivers).map(|n| n as f64).collect();
         return metres(&senders.collect::<Vec<_>>(), &receivers, None, USUAL_CARRIER_HZ, vec![doubt]);
     };
@@ -47,10 +51,12 @@ pub(super) fn line(best: &Candidate, profile: Option<&RadarProfile>, board: Opti
     if board.is_none()
         && let Some((senders, taken, receivers)) = of_geometry(profile)
     {
-        let doubt = "Elements stand where the .cfg's antGeometry lines say; those of the longest row form the line.".to_owned();
+        let doubt =
+            "Elements stand where the .cfg's antGeometry lines say; those of the longest row form the line.".to_owned();
         return metres(&senders, &receivers, Some(taken), carrier_hz, vec![doubt]);
     }
-    let bits: Vec<usize> = profile.chirp_transmitters.iter().flat_map(|mask| (0..32).filter(move |b| mask >> b & 1 == 1)).collect();
+    let bits: Vec<usize> =
+        profile.chirp_transmitters.iter().flat_map(|mask| (0..32).filter(move |b| mask >> b & 1 == 1)).collect();
     let taken_board = board.unwrap_or_else(|| boards::likely(&bits));
     let mut doubts = Vec::new();
     if board.is_none() {
@@ -68,7 +74,13 @@ pub(super) fn line(best: &Candidate, profile: Option<&RadarProfile>, board: Opti
     metres(&senders, &receivers, None, carrier_hz, doubts)
 }
 
-fn metres(senders: &[Sender], receivers: &[f64], taken: Option<Vec<usize>>, carrier_hz: f64, doubts: Vec<String>) -> Line {
+fn metres(
+    senders: &[Sender],
+    receivers: &[f64],
+    taken: Option<Vec<usize>>,
+    carrier_hz: f64,
+    doubts: Vec<String>,
+) -> Line {
     let half_wave = SPEED_OF_LIGHT / carrier_hz / 2.0;
     Line {
         chirps: senders.iter().map(|s| s.chirp).collect(),
@@ -109,9 +121,13 @@ fn one_height(senders: &[Sender]) -> (Vec<Sender>, Option<String>) {
             best = found;
         }
     }
-    let higher: Vec<String> = senders.iter().filter(|s| best.first().is_some_and(|b| b.up != s.up)).map(|s| s.chirp.to_string()).collect();
+    let higher: Vec<String> =
+        senders.iter().filter(|s| best.first().is_some_and(|b| b.up != s.up)).map(|s| s.chirp.to_string()).collect();
     let note = (!higher.is_empty()).then(|| {
-        format!("Chirps {} of a loop are sent at another height than the others: they are left out of the line.", higher.join(", "))
+        format!(
+            "Chirps {} of a loop are sent at another height than the others: they are left out of the line.",
+            higher.join(", ")
+        )
     });
     (best, note)
 }
@@ -122,7 +138,8 @@ fn of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f
     let receivers = profile.receivers;
     let bits: Vec<usize> = profile.chirp_transmitters.iter().map(|mask| mask.trailing_zeros() as usize).collect();
     let at = |chirp: usize, r: usize| bits[chirp] * 4 + profile.receiver_numbers.get(r).copied().unwrap_or(r);
-    let is_known = bits.iter().enumerate().all(|(chirp, _)| (0..receivers).all(|r| at(chirp, r) < across.len().min(up.len())));
+    let is_known =
+        bits.iter().enumerate().all(|(chirp, _)| (0..receivers).all(|r| at(chirp, r) < across.len().min(up.len())));
     if bits.is_empty() || !is_known {
         return None;
     }
@@ -133,7 +150,10 @@ fn of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f
             let places: Vec<f64> = taken.iter().map(|r| across[at(first, *r)]).collect();
             let same = |chirp: &usize| {
                 let shift = across[at(*chirp, taken[0])] - places[0];
-                taken.iter().zip(&places).all(|(r, x)| up[at(*chirp, *r)] == height && across[at(*chirp, *r)] - x == shift)
+                taken
+                    .iter()
+                    .zip(&places)
+                    .all(|(r, x)| up[at(*chirp, *r)] == height && across[at(*chirp, *r)] - x == shift)
             };
             let sender = |chirp: usize| Sender { chirp, across: across[at(chirp, taken[0])] - places[0], up: height };
             let (senders, _) = one_height(&(0..bits.len()).filter(same).map(sender).collect::<Vec<_>>());

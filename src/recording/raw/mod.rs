@@ -79,7 +79,8 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&Board>) -> Resu
     let line = line::line(best, profile.as_ref(), board);
     let mut doubts = doubts_of(&found, profile.as_ref());
     doubts.extend(line.doubts.iter().cloned());
-    doubts.extend((!more.is_empty()).then(|| format!("The capture goes on in {} more files, read as one.", more.len())));
+    doubts
+        .extend((!more.is_empty()).then(|| format!("The capture goes on in {} more files, read as one.", more.len())));
     let constant = constant_of(&mut stream, best, profile.as_ref());
     doubts.extend(constant.map(|db| {
         format!(
@@ -142,7 +143,8 @@ fn open_all(data: &Path, more: &[PathBuf]) -> io::Result<Box<dyn Source>> {
     if more.is_empty() {
         return open(data);
     }
-    let all = std::iter::once(data).chain(more.iter().map(PathBuf::as_path)).map(open).collect::<io::Result<Vec<_>>>()?;
+    let all =
+        std::iter::once(data).chain(more.iter().map(PathBuf::as_path)).map(open).collect::<io::Result<Vec<_>>>()?;
     Ok(Box::new(Chain::new(all)?))
 }
 
@@ -161,9 +163,13 @@ fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     }
     let against = |kind: Kind| found.best().of_kind(kind) < 0.0;
     if profile.is_some() && against(Kind::Config) {
-        doubts.push("The samples speak against what the .cfg says of their order: the layout follows the samples.".to_owned());
+        doubts.push(
+            "The samples speak against what the .cfg says of their order: the layout follows the samples.".to_owned(),
+        );
     } else if profile.is_some() && against(Kind::Half) {
-        doubts.push("The .cfg decides between I first and Q first; the samples alone would have it the other way.".to_owned());
+        doubts.push(
+            "The .cfg decides between I first and Q first; the samples alone would have it the other way.".to_owned(),
+        );
     }
     doubts
 }
@@ -187,7 +193,11 @@ fn said(profile: &RadarProfile) -> Vec<String> {
 }
 
 /// How far the constant part stands above all else in the first frame, decibels, where it does.
-fn constant_of<R: Read + io::Seek>(stream: &mut Stream<R>, best: &Candidate, profile: Option<&RadarProfile>) -> Option<f64> {
+fn constant_of<R: Read + io::Seek>(
+    stream: &mut Stream<R>,
+    best: &Candidate,
+    profile: Option<&RadarProfile>,
+) -> Option<f64> {
     let capture = capture(best, profile);
     let plan = Plan::new(&capture, profile, stream.bytes()).ok()?;
     let quality = Frame::read(stream, &capture, &plan).ok()?.quality;

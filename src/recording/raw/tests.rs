@@ -29,7 +29,9 @@ fn a_capture_is_opened_with_the_cfg_beside_it() {
         let recording = super::super::file::load(&folder.path().join(name)).unwrap();
         assert_eq!((recording.name.as_str(), recording.radar.elements, recording.radar.samples), ("a", 8, 64));
         assert_eq!(recording.radar.end_elements, 4);
-        assert!((recording.radar.element_spacing_metres * 4.0 / recording.radar.wavelength_metres() - 1.0).abs() < 0.01);
+        assert!(
+            (recording.radar.element_spacing_metres * 4.0 / recording.radar.wavelength_metres() - 1.0).abs() < 0.01
+        );
         assert!(recording.notes.contains("I Q in pairs"), "{}", recording.notes);
         assert!(recording.doubts.iter().any(|d| d.contains("as on the xWR1843")), "{:?}", recording.doubts);
     }
@@ -42,7 +44,11 @@ fn the_text_that_is_written_reads_the_same_samples() {
     fs::write(folder.path().join("r.toml"), &imported.toml).unwrap();
     let read = super::super::file::load(&folder.path().join("r.toml")).unwrap();
     assert_eq!(read.samples, imported.recording().unwrap().samples);
-    assert!(imported.toml.contains("config = \"a.cfg\"") && imported.toml.contains("parts = \"pairs\""), "{}", imported.toml);
+    assert!(
+        imported.toml.contains("config = \"a.cfg\"") && imported.toml.contains("parts = \"pairs\""),
+        "{}",
+        imported.toml
+    );
 }
 
 #[test]
@@ -74,7 +80,11 @@ fn transmitters_at_another_height_are_left_out_of_the_line() {
     let folder = folder(&[("a.bin", &bytes), ("a.cfg", three.as_bytes())]);
     let imported = import(&folder.path().join("a.bin"), None, None).unwrap();
     assert!(imported.toml.contains("chirps = [0, 1]"), "{}", imported.toml);
-    assert!(imported.doubts.iter().any(|d| d.contains("Chirps 2 of a loop are sent at another height")), "{:?}", imported.doubts);
+    assert!(
+        imported.doubts.iter().any(|d| d.contains("Chirps 2 of a loop are sent at another height")),
+        "{:?}",
+        imported.doubts
+    );
 }
 
 #[test]
@@ -89,13 +99,21 @@ fn the_longest_row_of_a_planar_board_is_the_line() {
 
 #[test]
 fn what_is_no_capture_is_told() {
-    let folder = folder(&[("a.cfg", CFG.as_bytes()), ("b.cfg", b"{ \"mmWaveDevices\": [] }"), ("empty.bin", b""), ("odd.dat", &[7; 999])]);
+    let folder = folder(&[
+        ("a.cfg", CFG.as_bytes()),
+        ("b.cfg", b"{ \"mmWaveDevices\": [] }"),
+        ("empty.bin", b""),
+        ("odd.dat", &[7; 999]),
+    ]);
     let told = |path: &str, config: Option<&str>| {
         let config = config.map(|c| folder.path().join(c));
         open(&folder.path().join(path), config.as_deref()).unwrap_err().to_string()
     };
     assert!(told("a.cfg", None).contains("a.cfg: the .cfg sets a radar up and holds no samples"));
-    assert!(told("empty.bin", Some("a.cfg")).contains("empty.bin: has 0 bytes; expected at least one chirp, 1024 bytes as the .cfg says"));
+    assert!(
+        told("empty.bin", Some("a.cfg"))
+            .contains("empty.bin: has 0 bytes; expected at least one chirp, 1024 bytes as the .cfg says")
+    );
     assert!(told("empty.bin", None).contains("has 0 bytes"));
     assert!(told("odd.dat", Some("b.cfg")).contains("b.cfg: is a text of another dialect, mmWave Studio's JSON"));
     assert!(told("no.bin", Some("a.cfg")).contains("no.bin: No such file"));

@@ -111,7 +111,8 @@ fn quoted(text: &str) -> String {
 fn beside(path: &Path, data: &Path) -> String {
     let whole = |path: &Path| crate::platform::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let (path_whole, data_whole) = (whole(path), whole(data));
-    let name = path.file_name().filter(|_| path.parent() == data.parent() || path_whole.parent() == data_whole.parent());
+    let name =
+        path.file_name().filter(|_| path.parent() == data.parent() || path_whole.parent() == data_whole.parent());
     name.map_or_else(|| path_whole.to_string_lossy().into_owned(), |name| name.to_string_lossy().into_owned())
 }
 
