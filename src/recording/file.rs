@@ -42,36 +42,14 @@
 //! loop = 0
 //! ```
 
-use super::doubts::doubts;
-use super::raw::{self, config_text};
-use super::said_radar::said_radar;
-use super::said_recording::Table;
-use super::samples::{Open, read_loops, read_samples};
-use super::signs::{FORMAT, oldest};
-use super::{Fault, RadarProfile, Recording, RecordingError};
-use crate::platform::fs::File;
+use super::described::{Parts, from_parts, open_file, parts, read_text};
+use super::raw;
+use super::samples::{Open, read_loops};
+use super::{Fault, Recording, RecordingError};
 use crate::radar::Radar;
-use crate::scene::file::SceneTextError;
 use crate::signal::ChirpSamples;
-use serde::Deserialize;
-use std::io::{self, BufReader, Read};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
-
-/// Longest text that is read, bytes.
-const MAX_TEXT_BYTES: u64 = 1 << 20;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Document {
-    #[serde(default = "oldest")]
-    format: u32,
-    #[serde(default)]
-    name: String,
-    #[serde(default)]
-    notes: String,
-    radar: toml::Table,
-    recording: Table,
-}
 
 /// Whether a TOML is that of a recording: whether it has a table `[recording]`.
 pub fn is_recording(text: &str) -> bool {
@@ -110,43 +88,6 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
     from_parts(&text, path, &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))))
 }
 
-pub(super) fn open_file(path: &Path) -> io::Result<File> {
-    let file = File::open(path)?;
-    if file.metadata()?.is_file() {
-        Ok(file)
-    } else {
-        Err(io::Error::new(io::ErrorKind::InvalidInput, "is a folder, device or pipe; expected a file"))
-    }
-}
-
-fn read_text(file: impl Read) -> Result<String, Fault> {
-    let mut text = Vec::new();
-    file.take(MAX_TEXT_BYTES + 1).read_to_end(&mut text)?;
-    if text.len() as u64 > MAX_TEXT_BYTES {
-        return Err(Fault::key(
-            "the text",
-            "is longer than 1 MiB",
-            "a description; samples stand in a file of their own",
-        ));
-    }
-    String::from_utf8(text).map_err(|_| Fault::key("the text", "is not UTF-8", "text in UTF-8"))
-}
-
-/// Refuses a text of a later format before its unknown keys are.
-fn check_format(text: &str) -> Result<(), Fault> {
-    #[derive(Deserialize)]
-    struct Said {
-        #[serde(default = "oldest")]
-        format: u32,
-    }
-    match toml::from_str(text) {
-        Ok(Said { format: later }) if later > FORMAT => {
-            Err(Fault::key("format", format!("is {later}, of a later version of apertura"), "1, 2 or 3"))
-        }
-        _ => Ok(()),
-    }
-}
-
 /// Every loop of a recording's frame, for a range-Doppler map: the radar with their number and interval, and the samples,
 /// `[loops, elements, samples]`. The recording is a raw capture, or the TOML of one.
 ///
@@ -176,67 +117,6 @@ pub fn load_loops(path: &Path, config: Option<&Path>) -> Result<(Radar, ChirpSam
         (profile.chirp_interval_seconds * profile.chirp_transmitters.len() as f64).max(radar.chirp_seconds);
     radar.validate().map_err(|e| Fault::from(e).of(&path))?;
     Ok((radar, ChirpSamples { samples }))
-}
-
-/// What a recording's text says, before its samples are read.
-struct Parts {
-    format: u32,
-    name: String,
-    notes: String,
-    table: Table,
-    radar: Radar,
-    profile: Option<RadarProfile>,
-    signs: super::signs::Signs,
-}
-
-fn parts(text: &str, path: &Path, open: Open<'_>) -> Result<Parts, RecordingError> {
-    check_format(text).map_err(|fault| fault.of(path))?;
-    let document: Document = toml::from_str(text).map_err(|error| {
-        let start = error.span().map_or(0, |span| span.start);
-        Fault::Text(SceneTextError::at(text, start, error.message().lines().collect::<Vec<_>>().join(", "))).of(path)
-    })?;
-    let mut table = document.recording;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let profile = match table.capture.as_ref().and_then(|capture| Some((capture, capture.config.as_ref()?))) {
-        None => None,
-        Some((capture, config)) => {
-            let beside = folder.join(config);
-            let read = || -> Result<RadarProfile, Fault> {
-                Ok(RadarProfile::of_sub_frame(&config_text(open(config)?)?, capture.sub_frame)?)
-            };
-            Some(read().map_err(|fault| fault.of(&beside))?)
-        }
-    };
-    let mut radar = said_radar(document.radar, profile.as_ref()).map_err(|fault| fault.of(path))?;
-    table.has_places = !radar.is_monostatic();
-    if table.reverse_elements {
-        radar.antennas = radar.antennas.map(|antennas| antennas.mirrored());
-    }
-    table.check(&radar).map_err(|fault| fault.of(path))?;
-    let signs = table.signs(document.format, &radar, profile.is_some()).map_err(|fault| fault.of(path))?;
-    radar.carrier_hz = signs.carrier_hz;
-    radar.validate().map_err(|e| Fault::from(e).of(path))?;
-    Ok(Parts { format: document.format, name: document.name, notes: document.notes, table, radar, profile, signs })
-}
-
-/// Reads a recording from the text of its TOML, which stands at `path`, and what `open` opens.
-pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Recording, RecordingError> {
-    let Parts { format, name, notes, table, radar, profile, signs } = parts(text, path, open)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let data = folder.join(&table.file);
-    // Keys stand in the TOML, whatever file they are about.
-    let place = |fault: Fault| match fault {
-        Fault::Key { .. } | Fault::Calibration(_) => fault.of(path),
-        fault => fault.of(&data),
-    };
-    let (samples, found) = read_samples(&table, &radar, open, profile.as_ref(), signs).map_err(place)?;
-    let Table { mut missing, range_metres, .. } = table;
-    missing.extend((0..radar.elements).filter(|n| radar.is_gap(*n)));
-    missing.sort_unstable();
-    missing.dedup();
-    let mut doubts = doubts(&radar, &samples, format > oldest());
-    doubts.extend(found);
-    Ok(Recording { name, notes, radar, samples, missing, range_metres, doubts })
 }
 
 #[cfg(test)]

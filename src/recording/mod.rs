@@ -4,7 +4,7 @@
 //!
 //! | file | what it reads |
 //! |---|---|
-//! | [`file`], `said_radar`, `said_recording` | the TOML: `[radar]` and `[recording]` |
+//! | [`file`], `described`, `said_radar`, `said_recording` | the TOML: `[radar]` and `[recording]` |
 //! | `samples` | what the data files hold, in the order of the elements |
 //! | `numpy` | `.npy` and `.npz` |
 //! | `matlab` | `.mat`, versions 5 and 7 |
@@ -22,6 +22,7 @@ mod analytic;
 mod axes;
 mod calibration;
 mod capture;
+mod described;
 mod doubts;
 mod error;
 pub mod explain;

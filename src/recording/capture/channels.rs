@@ -1,6 +1,6 @@
 //! What a `.cfg` says of channels: transmitters that send together, factors of channels, and the bias of ranges.
 
-use super::Plan;
+use super::plan::Plan;
 use crate::radar::SPEED_OF_LIGHT;
 use crate::recording::profile::RadarProfile;
 use ndarray::{Array3, ArrayView3, Axis};

@@ -4,8 +4,8 @@
 //! transmitter. The cell tells `f` up to whole turns; each whole number turns the transmitters against each other, and the one whose
 //! spectrum over the array is sharpest is taken.
 
-use super::Frame;
 use super::channels::Channels;
+use super::frame::Frame;
 use crate::signal::simd::Simd;
 use ndarray::{Array2, Array3, ArrayView3, Axis, s};
 use num_complex::Complex64;

@@ -1,8 +1,9 @@
 //! One frame of a capture.
 
+use super::error::CaptureError;
 use super::plan::Plan;
 use super::quality::Quality;
-use super::{Capture, CaptureError};
+use super::table::Capture;
 use crate::recording::analytic::analytic;
 use crate::recording::layout::Parts;
 use crate::recording::layout::stream::Stream;

@@ -1,6 +1,7 @@
 //! What stands where in a capture: counts, sizes, and how many frames there are.
 
-use super::{Capture, CaptureError, Part, Turn};
+use super::error::CaptureError;
+use super::table::{Capture, Part, Turn};
 use crate::recording::layout::{Layout, Parts};
 use crate::recording::numbers::bounded_count;
 use crate::recording::profile::RadarProfile;

@@ -1,6 +1,6 @@
 //! What is doubtful about a frame: zeros of lost packets, saturation, constant parts, real samples stored as complex.
 
-use super::Plan;
+use super::plan::Plan;
 use crate::recording::layout::{Layout, Parts};
 use ndarray::{Array4, Axis};
 use num_complex::Complex64;

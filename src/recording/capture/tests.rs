@@ -1,3 +1,4 @@
+use super::super::layout::Parts;
 use super::super::profile::tests::CFG;
 use super::*;
 use proptest::prelude::*;

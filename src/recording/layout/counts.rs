@@ -4,7 +4,7 @@
 use super::marks::{HEADER_BYTES, Marks};
 use super::spectrum::{Spectrum, correlation};
 use super::stream::Stream;
-use super::{Counts, Layout, Parts, ReceiverOrder, Words, parts};
+use super::{Counts, Layout, Parts, ReceiverOrder, Words, decode};
 use ndarray::{Array2, ArrayView1, s};
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
@@ -56,7 +56,7 @@ pub(super) fn search<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks
     let marked = marks.filter(|m| m.apart > 0).map(|m| m.apart - HEADER_BYTES);
     let words = likely_words(&bytes);
     let numbers =
-        |layout: &Layout, most: usize| parts::numbers(layout, &bytes, (bytes.len() / layout.parts.bytes()).min(most));
+        |layout: &Layout, most: usize| decode::numbers(layout, &bytes, (bytes.len() / layout.parts.bytes()).min(most));
     let mut best: Option<(f64, Layout)> = None;
     for parts in Parts::ALL {
         let layout = layout(words, parts);

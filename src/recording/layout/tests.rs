@@ -1,6 +1,7 @@
 use super::stream::Stream;
 use super::*;
 use crate::recording::RadarProfile;
+use num_complex::Complex64;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 use std::io::Cursor;

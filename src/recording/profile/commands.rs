@@ -1,7 +1,7 @@
 //! The commands of a `.cfg` that matter. A command that stands twice holds as it stands last, as on the radar's command line.
 
+use super::error::{MOST_CHIRPS, ProfileError};
 use super::lines::{Line, lines};
-use super::{MOST_CHIRPS, ProfileError};
 use std::collections::BTreeMap;
 
 /// What one chirp is.

@@ -1,6 +1,6 @@
 //! Texts that set up other radars, or the same by another program: told by name.
 
-use super::ProfileError;
+use super::error::ProfileError;
 
 /// Refuses a text of another dialect by its name.
 pub(super) fn check(text: &str) -> Result<(), ProfileError> {

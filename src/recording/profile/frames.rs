@@ -1,8 +1,8 @@
 //! Frames of a `.cfg`: one kind of chirps that repeats, or sub-frames of several kinds.
 
 use super::commands::Commands;
+use super::error::{MOST_CHIRPS, MOST_LOOPS, ProfileError};
 use super::lines::Line;
-use super::{MOST_CHIRPS, MOST_LOOPS, ProfileError};
 
 /// Chirps that repeat.
 #[derive(Debug, Clone, PartialEq)]

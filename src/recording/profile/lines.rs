@@ -1,6 +1,6 @@
 //! The lines of a `.cfg`: commands with their numbers, out of whatever stands around them.
 
-use super::ProfileError;
+use super::error::ProfileError;
 
 /// Numbers of one command, and where it stands.
 #[derive(Debug, Clone)]

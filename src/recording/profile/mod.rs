@@ -4,6 +4,7 @@
 
 mod commands;
 mod dialect;
+mod error;
 mod frames;
 pub(super) mod lines;
 #[cfg(test)]
@@ -11,6 +12,8 @@ pub(super) mod tests;
 
 use crate::radar::Radar;
 use commands::Commands;
+pub use error::ProfileError;
+use error::{MOST_CHIRPS, MOST_LOOPS, MOST_SAMPLES};
 use frames::{Frame, frames};
 use lines::Line;
 use num_complex::Complex64;
@@ -63,44 +66,6 @@ pub struct RadarProfile {
     /// Sentences on what of the text was chosen among several.
     pub notes: Vec<String>,
 }
-
-/// Why a `.cfg` could not be read.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ProfileError {
-    /// A line can't be understood.
-    #[error("line {line}: {message}")]
-    Line {
-        /// Which line, from 1.
-        line: usize,
-        /// What is wrong and what was expected.
-        message: String,
-    },
-    /// A command is missing.
-    #[error("has no line \"{0}\"; expected profileCfg, channelCfg, chirpCfg and frameCfg")]
-    Missing(&'static str),
-    /// A frame uses a chirp that no line defines.
-    #[error("frameCfg uses chirp {0}, which no chirpCfg defines")]
-    UndefinedChirp(usize),
-    /// The text is of another dialect.
-    #[error("is a text of another dialect, {name}, which is not read; what would help is {helps}")]
-    Dialect {
-        /// Its name.
-        name: &'static str,
-        /// What would help.
-        helps: &'static str,
-    },
-    /// There is no such sub-frame.
-    #[error("has {found} sub-frames; expected recording.capture.sub_frame = 0 to {}", found - 1)]
-    NoSubFrame {
-        /// How many there are.
-        found: usize,
-    },
-}
-
-/// Most chirps in a loop, samples in a chirp and loops in a frame that the hardware knows, with room to spare.
-const MOST_CHIRPS: usize = 512;
-const MOST_SAMPLES: usize = 65536;
-const MOST_LOOPS: usize = 65536;
 
 /// A bias of more metres is none.
 const MOST_BIAS_METRES: f64 = 1000.0;

@@ -17,18 +17,15 @@ mod tests;
 mod text;
 
 use super::capture::{Capture, Frame, Part, Plan, ReceiverOrder, Together, Turn};
-use super::file::{from_parts, open_file};
+use super::described::{config_text, from_parts, open_file};
 use super::layout::stream::Stream;
 use super::layout::{Candidate, Certainty, Found, Kind, find};
-use super::profile::{RadarProfile, lines::text_of};
+use super::profile::RadarProfile;
 use super::samples::{Chain, Source};
 use super::{Fault, Recording, RecordingError};
 use boards::Board;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
-
-/// Longest `.cfg` that is read, bytes.
-const MOST_CONFIG_BYTES: u64 = 1 << 20;
 
 /// What was found of a capture, and the text that describes it.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,16 +122,6 @@ pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
         Ok(RadarProfile::parse(&config_text(file)?)?)
     };
     read().map_err(|fault| fault.of(path))
-}
-
-/// The text of a `.cfg`.
-pub(super) fn config_text(file: impl Read) -> Result<String, Fault> {
-    let mut bytes = Vec::new();
-    file.take(MOST_CONFIG_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MOST_CONFIG_BYTES {
-        return Err(Fault::key("the .cfg", "is longer than 1 MiB", "the commands that set a radar up"));
-    }
-    Ok(text_of(&bytes))
 }
 
 /// The files as one.
