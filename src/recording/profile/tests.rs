@@ -37,7 +37,7 @@ fn a_profile_is_read_in_si_units() {
 fn faults_name_line_with_command() {
     for (from, to, parts) in [
         ("frameCfg 0 1 2 0 100 1 0\n", "", ["\"frameCfg\"", "expected profileCfg"]),
-        ("profileCfg 0 77", "profileCfg 0 x", ["line 6", "\"x\" is no number; expected the start frequency"]),
+        ("profileCfg 0 77", "profileCfg 0 x", ["line 6", "\"x\" is no number; expected"]),
         (" 8 5209 0 0 30", "", ["line 6: profileCfg", "the number of samples as number 10"]),
         (" 8 5209", " 8.5 5209", ["line 6", "8.5"]),
         (" 8 5209", " 1e99 5209", ["line 6", "up to 65536"]),
