@@ -196,7 +196,7 @@ mod tests {
     fn keys_that_do_not_go_together_are_told() {
         for (said, part) in [
             (Said { format: 1, ..said() }, "recording.carrier_at is there"),
-            (Said { format: 3, ..said() }, "format is 3; expected 1 or 2"),
+            (Said { format: 4, ..said() }, "format is 4; expected 1, 2 or 3"),
             (Said { conjugate: Some(true), ..said() }, "beat_sign in its place"),
             (Said { beat_sign: None, ..said() }, "recording.beat_sign is missing"),
             (Said { carrier_at: None, ..said() }, "recording.carrier_at is missing"),
