@@ -112,7 +112,9 @@ pub enum AntennasError {
     #[error("all pairs have one midpoint; expected a line of them")]
     OnePlace,
     /// The places that pairs leave free make the line too long.
-    #[error("the pairs stand on a line of {elements} places; expected {FEWEST} to {MOST}")]
+    #[error(
+        "the pairs stand on a line of {elements} places; expected as many as such antennas make, {FEWEST} to {MOST}"
+    )]
     Line {
         /// Places of the line, gaps too.
         elements: usize,
@@ -185,7 +187,9 @@ impl Antennas {
         let midpoints = Midpoints::of(transmitter_x_metres, receiver_x_metres);
         let spacing_metres = midpoints.spacing_metres()?;
         let elements = (midpoints.length_metres() / spacing_metres).round() + 1.0;
-        if !(FEWEST as f64..=MOST as f64).contains(&elements) {
+        // Antennas that stand apart make one place more at least than there are others beside the first; fewer are taken for one.
+        let fewest = (apart(transmitter_x_metres) + apart(receiver_x_metres) - 1).max(FEWEST);
+        if !(fewest as f64..=MOST as f64).contains(&elements) {
             return Err(AntennasError::Line { elements: elements as usize });
         }
         let mut pairs = vec![None; elements as usize];
@@ -288,6 +292,14 @@ impl Antennas {
             ..self.clone()
         }
     }
+}
+
+/// How many places of the list differ.
+fn apart(places: &[f64]) -> usize {
+    let mut sorted = places.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    sorted.len()
 }
 
 fn check_places(list: &'static str, places: &[f64]) -> Result<(), AntennasError> {

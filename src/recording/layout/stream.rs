@@ -113,7 +113,9 @@ impl<R: Read + Seek> Stream<R> {
         let mut last = (first_number, begins);
         for index in (1..count.min(LOOKED_AT)).chain([count - 1]) {
             match self.header(index)? {
-                Some((number, at)) if follows(number, at) && (index == 1 || number >= last.0) => last = (number, at),
+                Some((number, at)) if follows(number, at) && number > first_number && number >= last.0 => {
+                    last = (number, at)
+                }
                 None if index == count - 1 => {}
                 _ => return Ok(None),
             }
