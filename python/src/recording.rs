@@ -30,6 +30,28 @@ impl Recording {
         load(&path).map(Recording).map_err(errors::recording)
     }
 
+    /// Opens a raw capture as it is, its layout found by evidence, or reads a recording's TOML. `doubts` say what is taken for granted.
+    ///
+    /// Args:
+    ///     path: The capture (.bin, .dat, .raw), its .cfg, or a recording's TOML.
+    ///     config: The .cfg of a capture; the one of the same name beside it, or the only one there, where none is given.
+    ///
+    /// Raises:
+    ///     OSError: A file can't be read.
+    ///     ValueError: A file is not what it should be; the message names it and what would help.
+    #[staticmethod]
+    #[pyo3(signature = (path, config=None))]
+    fn open(path: PathBuf, config: Option<PathBuf>) -> PyResult<Self> {
+        if config.is_some() && !recording::raw::is_raw(&path) {
+            return Err(errors::value("config is the .cfg of a raw capture; expected one (.bin, .dat or .raw) as path"));
+        }
+        let opened = match config {
+            Some(config) => recording::raw::open(&path, Some(&config)),
+            None => load(&path),
+        };
+        opened.map(Recording).map_err(errors::recording)
+    }
+
     /// A recording that comes with the library.
     ///
     /// Raises:

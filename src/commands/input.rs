@@ -4,7 +4,7 @@ use super::CommandError;
 use crate::recording::{self, Recording};
 use crate::scene::file::{self, SceneFile};
 use crate::share::{Shared, is_shared};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A scene or a recording, as the file says.
 #[derive(Debug, Clone)]
@@ -16,21 +16,43 @@ pub enum Input {
 }
 
 impl Input {
-    /// Reads what another copy of the program shared as text, a `.toml` with a table `[recording]` as a recording, anything else as a scene.
+    /// Reads what another copy of the program shared as text, a `.toml` with a table `[recording]` or a raw capture as a recording, anything
+    /// else as a scene.
     pub fn load(path: &Path) -> Result<Input, CommandError> {
+        Input::load_with(path, None)
+    }
+
+    /// The same; `config` is the `.cfg` of a raw capture.
+    pub fn load_with(path: &Path, config: Option<&Path>) -> Result<Input, CommandError> {
         if let Some(text) = shared_text(path) {
             return Ok(Input::Scene(Box::new(Shared::from_text(text).map_err(CommandError::failed)?.file)));
         }
         if recording::file::is_recording_at(path) {
-            return Ok(Input::Recording(Box::new(load_recording(path)?)));
+            return Ok(Input::Recording(Box::new(load_recording(path, config)?)));
         }
         Ok(Input::Scene(Box::new(file::load(path).map_err(CommandError::failed)?)))
     }
 }
 
-/// Reads a recording, and says on standard error what looks wrong about it.
-pub fn load_recording(path: &Path) -> Result<Recording, CommandError> {
-    let recording = recording::file::load(path).map_err(CommandError::failed)?;
+/// The `.cfg` of a raw capture.
+#[derive(Debug, clap::Args)]
+pub struct ConfigArg {
+    /// Raw capture: the .cfg that set the radar up [default: the one of the same name beside it, or the only one there]
+    #[arg(long, value_name = "CFG")]
+    pub config: Option<PathBuf>,
+}
+
+/// Reads a recording, and says on standard error what looks wrong about it; `config` is the `.cfg` of a raw capture.
+pub fn load_recording(path: &Path, config: Option<&Path>) -> Result<Recording, CommandError> {
+    let recording = match config {
+        None => recording::file::load(path),
+        Some(_) if !recording::raw::is_raw(path) => {
+            let message = "--config is that of a raw capture; expected one as input";
+            return Err(CommandError::Usage(format!("{}: {message}", path.display())));
+        }
+        Some(config) => recording::raw::open(path, Some(config)),
+    }
+    .map_err(CommandError::failed)?;
     recording.doubts.iter().for_each(|doubt| eprintln!("note: {}: {doubt}", path.display()));
     Ok(recording)
 }

@@ -1,7 +1,7 @@
 //! `apertura maps`: the maps of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs};
-use super::input::Input;
+use super::input::{ConfigArg, Input};
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::files::write_bytes;
@@ -35,8 +35,11 @@ use std::sync::Arc;
 /// budget. format_version is 2; archives of version 1 have neither axes nor constants and are still read.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Scene (.toml or .npz) or recording (.toml with [recording]) to look at
+    /// Scene (.toml or .npz) or recording (.toml with [recording], or a raw capture) to look at
     input: PathBuf,
+
+    #[command(flatten)]
+    capture: ConfigArg,
 
     /// File to write (.npz, .png or .svg)
     #[arg(short, long, value_name = "OUT")]
@@ -82,7 +85,7 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let output = Output::of_path(&self.output)?;
         self.own.start()?;
-        match Input::load(&self.input)? {
+        match Input::load_with(&self.input, self.capture.config.as_deref())? {
             Input::Scene(_) if self.explain.is_some() => {
                 return Err(CommandError::Usage(
                     "--explain takes reflectors off a recording; expected one as input".into(),

@@ -14,6 +14,7 @@ mod evaluate;
 mod figure;
 #[cfg(feature = "network")]
 mod figures;
+mod import;
 mod input;
 mod layouts;
 #[cfg(feature = "app")]
@@ -74,6 +75,7 @@ enum Command {
     Evaluate(evaluate::Args),
     #[cfg(feature = "network")]
     Figures(figures::Args),
+    Import(import::Args),
     Layouts(layouts::Args),
     #[cfg(feature = "app")]
     Lesson(lesson::Args),
@@ -101,6 +103,7 @@ impl Command {
             Command::Evaluate(args) => args.run(),
             #[cfg(feature = "network")]
             Command::Figures(args) => args.run(),
+            Command::Import(args) => args.run(),
             Command::Layouts(args) => args.run(),
             #[cfg(feature = "app")]
             Command::Lesson(args) => args.run(),

@@ -1,30 +1,37 @@
-//! `apertura range-doppler`: range against radial velocity of one scene, as numbers or as a picture.
+//! `apertura range-doppler`: range against radial velocity of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs, real, whole};
-use super::input::Input;
+use super::input::{ConfigArg, Input};
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::maps::Normalisation;
-use crate::maps::doppler::{range_doppler, write_range_doppler};
+use crate::maps::doppler::{RangeDopplerMap, range_doppler, write_range_doppler};
 use crate::picture::{ColourMap, Format, compose_range_doppler};
-use crate::radar::{Decibels, MAX_CHIRPS};
+use crate::radar::{Decibels, MAX_CHIRPS, Radar};
+use crate::recording::file::{is_recording_at, load_loops};
+use crate::scene::Scene;
 use crate::scene::file::SceneFile;
 use crate::theory::doppler::folded;
 use std::path::PathBuf;
 
-/// Compute the range-Doppler map of a scene whose objects move, to an .npz archive or a .png or .svg picture
+/// Compute the range-Doppler map of a scene whose objects move, or of a raw capture, to an .npz archive or a .png or .svg picture
 ///
 /// The radar sends several chirps. An object's velocity (velocity_x_metres_per_second and velocity_y_metres_per_second in the scene)
 /// turns its phase from chirp to chirp. Powers are averaged over up to 4 elements of each end. A velocity
 /// shifts the range by v f T / B within a chirp of duration T.
+///
+/// Of a recording it is the map of the loops of a frame, mean over the elements; the strongest cell is printed.
 ///
 /// The archive has power (f64 [512, chirps]), range_metres (f64 [512]), velocity_metres_per_second (f64 [chirps], away from the radar is
 /// positive), unambiguous_velocity_metres_per_second (f64), chirps (i64), chirp_interval_seconds (f64), and all_point_x and all_point_y
 /// (f64 [L], metres).
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Scene (.toml or .npz) to look at
+    /// Scene (.toml or .npz) or raw capture (.bin, or a recording's .toml that names one) to look at
     input: PathBuf,
+
+    #[command(flatten)]
+    capture: ConfigArg,
 
     /// File to write (.npz, .png or .svg)
     #[arg(short, long, value_name = "OUT")]
@@ -41,6 +48,10 @@ pub struct Args {
     /// Time at which the scene is looked at, seconds: every object has moved by its velocity
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = real(-1e3..=1e3))]
     time: f64,
+
+    /// Recording: take out what stands still, the mean of all loops
+    #[arg(long)]
+    static_clutter_out: bool,
 
     #[command(flatten)]
     floor: FloorArgs,
@@ -72,10 +83,11 @@ impl Args {
                 "{name}: can't tell what to write from this name; expected one ending in .npz, .png or .svg"
             )));
         }
+        if is_recording_at(&self.input) {
+            return self.of_recording(format);
+        }
         let Input::Scene(file) = Input::load(&self.input)? else {
-            return Err(CommandError::Usage(
-                "a recording has one chirp, which tells no velocity; expected a scene".into(),
-            ));
+            return Err(CommandError::Usage(format!("{}: expected a scene or a raw capture", self.input.display())));
         };
         let SceneFile { scene, mut radar } = *file;
         if let Some(microseconds) = self.interval {
@@ -89,10 +101,48 @@ impl Args {
         if let Some(sentence) = folded(&radar, &scene) {
             eprintln!("note: {sentence}");
         }
+        self.write(&radar, &scene, &map, format)
+    }
+
+    /// The map of the loops of a recording's frame.
+    fn of_recording(&self, format: Option<Format>) -> Result<(), CommandError> {
+        let told = [
+            ("--chirps", self.chirps.is_some()),
+            ("--interval", self.interval.is_some()),
+            ("--time", self.time != 0.0),
+        ];
+        if let Some((name, _)) = told.into_iter().find(|(_, said)| *said) {
+            let message = format!("{name} is a scene's; a recording has chirps of its own");
+            return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
+        }
+        let (radar, mut samples) =
+            load_loops(&self.input, self.capture.config.as_deref()).map_err(CommandError::failed)?;
+        if self.static_clutter_out {
+            samples.take_out_static();
+        }
+        let map = RangeDopplerMap::of(&radar, samples);
+        let (bin, column) = map.peak();
+        print(&format!(
+            "strongest: {:.2} m, {:.2} m/s away, of {} velocities up to {:.2} m/s either way",
+            radar.range_of_bin_metres(bin as f64),
+            radar.velocity_of_column_metres_per_second(column as f64),
+            radar.chirps,
+            radar.unambiguous_velocity_metres_per_second()
+        ))?;
+        self.write(&radar, &Scene::default(), &map, format)
+    }
+
+    fn write(
+        &self,
+        radar: &Radar,
+        scene: &Scene,
+        map: &RangeDopplerMap,
+        format: Option<Format>,
+    ) -> Result<(), CommandError> {
         match format {
-            None => write_range_doppler(&self.output, &radar, &scene, &map).map_err(CommandError::on(&self.output))?,
+            None => write_range_doppler(&self.output, radar, scene, map).map_err(CommandError::on(&self.output))?,
             Some(format) => {
-                let bytes = compose_range_doppler(&radar, &map, self.normalisation, self.colours, format);
+                let bytes = compose_range_doppler(radar, map, self.normalisation, self.colours, format);
                 let bytes = bytes.map_err(CommandError::failed)?;
                 let failed = |source| CommandError::File { path: self.output.clone(), source };
                 write_bytes(&self.output, &bytes).map_err(failed)?;

@@ -1,7 +1,7 @@
 //! `apertura reconstruct`: an estimate of the whole array's map from the samples of the two ends.
 
 use super::arguments::FloorArgs;
-use super::input::{load_recording, shared_text};
+use super::input::{ConfigArg, load_recording, shared_text};
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
 use super::{CommandError, print};
@@ -33,8 +33,11 @@ use std::time::Instant;
 /// printed.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Archive with the samples (.npz), or a recording (.toml)
+    /// Archive with the samples (.npz), or a recording (.toml, or a raw capture)
     input: PathBuf,
+
+    #[command(flatten)]
+    capture: ConfigArg,
 
     /// Archive to write (.npz)
     #[arg(short, long, value_name = "OUT")]
@@ -101,7 +104,7 @@ impl Args {
                 let message = "a recording says which radar made it; leave --radar out";
                 return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
             }
-            let recording = load_recording(&self.input)?;
+            let recording = load_recording(&self.input, self.capture.config.as_deref())?;
             let samples = Samples::Ends(recording.two_ends());
             let (radar, range_metres) = (recording.radar, recording.range_metres);
             return Ok(Input { radar, range_metres, noise: NoisePrior::UNKNOWN, samples });

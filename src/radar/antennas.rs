@@ -10,7 +10,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// Fewest and most elements, as for every radar.
-const FEWEST: usize = 6;
+const FEWEST: usize = 2;
 const MOST: usize = 65536;
 
 /// How far the elements that pairs make may stand off an even line, as a part of the spacing.
@@ -112,7 +112,9 @@ pub enum AntennasError {
     #[error("all pairs have one midpoint; expected a line of them")]
     OnePlace,
     /// The places that pairs leave free make the line too long.
-    #[error("the pairs stand on a line of {elements} places; expected {FEWEST} to {MOST}")]
+    #[error(
+        "the pairs stand on a line of {elements} places; expected as many as such antennas make, {FEWEST} to {MOST}"
+    )]
     Line {
         /// Places of the line, gaps too.
         elements: usize,
@@ -174,7 +176,7 @@ impl Antennas {
     /// Antennas at these places, metres along x. The middle of the line that their pairs make is moved to x = 0.
     ///
     /// # Errors
-    /// [`AntennasError`] where their pairs make no line of 6 to 65536 even places.
+    /// [`AntennasError`] where their pairs make no line of 2 to 65536 even places.
     pub fn new(transmitter_x_metres: &[f64], receiver_x_metres: &[f64]) -> Result<Self, AntennasError> {
         check_places("transmitter_x_metres", transmitter_x_metres)?;
         check_places("receiver_x_metres", receiver_x_metres)?;
@@ -185,7 +187,9 @@ impl Antennas {
         let midpoints = Midpoints::of(transmitter_x_metres, receiver_x_metres);
         let spacing_metres = midpoints.spacing_metres()?;
         let elements = (midpoints.length_metres() / spacing_metres).round() + 1.0;
-        if !(FEWEST as f64..=MOST as f64).contains(&elements) {
+        // Antennas that stand apart make one place more at least than there are others beside the first; fewer are taken for one.
+        let fewest = (apart(transmitter_x_metres) + apart(receiver_x_metres) - 1).max(FEWEST);
+        if !(fewest as f64..=MOST as f64).contains(&elements) {
             return Err(AntennasError::Line { elements: elements as usize });
         }
         let mut pairs = vec![None; elements as usize];
@@ -288,6 +292,14 @@ impl Antennas {
             ..self.clone()
         }
     }
+}
+
+/// How many places of the list differ.
+fn apart(places: &[f64]) -> usize {
+    let mut sorted = places.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    sorted.len()
 }
 
 fn check_places(list: &'static str, places: &[f64]) -> Result<(), AntennasError> {
@@ -397,12 +409,12 @@ mod tests {
         let told = |t: &[f64], r: &[f64]| Antennas::new(t, r).unwrap_err().to_string();
         assert!(told(&[], &[1.0]).contains("transmitter_x_metres has no numbers"));
         assert!(told(&[0.0], &[f64::NAN]).contains("receiver_x_metres has NaN"));
-        assert!(told(&[0.0, 1.0], &[0.0, 0.5]).contains("make 4 elements; expected 6 to 65536"));
+        assert!(told(&[0.0], &[0.5]).contains("make 1 elements; expected 2 to 65536"));
         let uneven = told(&[0.0, 1.0], &[0.0, 0.2, 0.437]);
         assert!(uneven.contains("off the even line"), "{uneven}");
         assert!(told(&[1.0, 1.0], &[2.0; 3]).contains("one midpoint"));
         let far = told(&[0.0, 1e3], &[0.0, 1e-3, 2e-3, 3e-3]);
-        assert!(far.contains("off the even line") || far.contains("expected 6 to 65536"), "{far}");
+        assert!(far.contains("off the even line") || far.contains("expected 2 to 65536"), "{far}");
     }
 
     #[test]

@@ -256,7 +256,7 @@ impl Radar {
     ///
     /// # Errors
     /// [`RadarError`] names the first field that is not finite and positive, or a count out of range
-    /// (1 to 65536 samples, 6 to 65536 elements, each end between 3 elements and half the array, 1 to 4096 chirps), elements or a spacing
+    /// (1 to 65536 samples, 2 to 65536 elements, each end between 1 element and half the array, 1 to 4096 chirps), elements or a spacing
     /// other than those that the pairs of antennas make, a budget that can't be, or counts that together ask for more than
     /// [`MAX_MEMORY_BYTES`].
     pub fn validate(&self) -> Result<(), RadarError> {
@@ -274,8 +274,8 @@ impl Radar {
         }
         for (field, value, min, max) in [
             ("samples", self.samples, 1, 65536),
-            ("elements", self.elements, 6, 65536),
-            ("end_elements", self.end_elements, 3, self.elements / 2),
+            ("elements", self.elements, 2, 65536),
+            ("end_elements", self.end_elements, 1, self.elements / 2),
             ("chirps", self.chirps, 1, MAX_CHIRPS),
         ] {
             if !(min..=max).contains(&value) {

@@ -1,5 +1,6 @@
 //! What a method found, as a list: its reflectors, or the peaks of its map.
 
+use super::beam::Beam;
 use super::{Detection, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::maps::Normalisation;
 use crate::maps::peaks::peaks;
@@ -14,6 +15,13 @@ const MAP_RANGE: Decibels = Decibels(60.0);
 
 /// Most peaks of a map that are listed.
 const MOST_PEAKS: usize = 256;
+
+/// Arrays of at most so many elements have columns so wide that the fringes of their two ends fall between them: a peak's direction is
+/// looked for between the columns.
+const FEW_ELEMENTS: usize = 128;
+
+/// Peaks of one range bin that lie nearer than a column are one, as a part of it.
+const ONE_PEAK: f64 = 0.5;
 
 /// Reconstructs, and lists what was found as [`find`] does.
 ///
@@ -47,28 +55,44 @@ pub fn find(
     if !answer.reflectors.is_empty() {
         Ok(answer.detections(radar))
     } else if request.normalisation == normalisation {
-        Ok(found_in_map(radar, answer))
+        Ok(found_in_map(radar, ends, answer))
     } else {
         let in_decibels = Request { normalisation, ..request.clone() };
-        Ok(found_in_map(radar, &method.reconstruct(radar, ends, &in_decibels)?))
+        Ok(found_in_map(radar, ends, &method.reconstruct(radar, ends, &in_decibels)?))
     }
 }
 
 /// The peaks of a map whose Lambda spans [`MAP_RANGE`].
-fn found_in_map(radar: &Radar, answer: &Reconstruction) -> Vec<Detection> {
+fn found_in_map(radar: &Radar, ends: &TwoEnds, answer: &Reconstruction) -> Vec<Detection> {
     let decibels = answer.lambda.lambda.mapv(|v| (f64::from(v) - 1.0) * MAP_RANGE.0);
     let peaks = peaks(decibels.view(), SPAN.0, MOST_PEAKS);
     let strongest = peaks.first().map_or(0.0, |p| p.value);
     let place = |column: f64| radar.cos_of_column(column).clamp(-1.0, 1.0);
-    peaks
-        .into_iter()
-        .map(|p| Detection {
-            cos_theta: place(p.column),
-            range_metres: radar.range_of_bin_metres(p.range_bin.rem_euclid(radar.samples as f64)),
-            relative_power: Decibels(p.value - strongest),
-            confidence: None,
-        })
-        .collect()
+    let found = peaks.into_iter().map(|p| Detection {
+        cos_theta: place(p.column),
+        range_metres: radar.range_of_bin_metres(p.range_bin.rem_euclid(radar.samples as f64)),
+        relative_power: Decibels(p.value - strongest),
+        confidence: None,
+    });
+    if radar.elements > FEW_ELEMENTS { found.collect() } else { between_columns(radar, ends, found) }
+}
+
+/// The peaks with the directions from which both ends together hear most near them, peaks that are then one once.
+fn between_columns(radar: &Radar, ends: &TwoEnds, peaks: impl Iterator<Item = Detection>) -> Vec<Detection> {
+    let beam = Beam::new(radar, ends);
+    let column = (radar.cos_of_column(1.0) - radar.cos_of_column(0.0)).abs();
+    let mut found: Vec<Detection> = Vec::new();
+    for peak in peaks {
+        let cos_theta = beam.strongest_near(peak.range_metres, peak.cos_theta, 1.5 * column);
+        let is_new = |f: &Detection| {
+            let bins = (f.range_metres - peak.range_metres).abs() / radar.range_resolution_metres();
+            bins > 1.5 || (f.cos_theta - cos_theta).abs() > ONE_PEAK * column
+        };
+        if found.iter().all(is_new) {
+            found.push(Detection { cos_theta, ..peak });
+        }
+    }
+    found
 }
 
 #[cfg(test)]

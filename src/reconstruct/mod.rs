@@ -14,6 +14,7 @@
 mod answer;
 mod attempt;
 mod baseline;
+mod beam;
 mod coherent;
 mod confidence;
 mod echoes;

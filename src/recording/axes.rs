@@ -1,5 +1,6 @@
 //! Axes: from an array of any shape to `[elements, samples]`.
 
+use super::analytic::analytic;
 use super::numbers::Numbers;
 use ndarray::{Array2, ArrayD, Axis, IxDyn};
 use num_complex::Complex64;
@@ -18,8 +19,10 @@ pub enum AxisKind {
     Receiver,
     /// Samples of one chirp.
     Sample,
-    /// Chirps, frames or anything else that repeats: [`Chirp`] picks.
+    /// Chirps or anything else that repeats: [`Chirp`] picks.
     Chirp,
+    /// Frames, of which one is looked at.
+    Frame,
     /// Real and imaginary part, in this order.
     Iq,
 }
@@ -32,6 +35,7 @@ impl fmt::Display for AxisKind {
             AxisKind::Receiver => "receiver",
             AxisKind::Sample => "sample",
             AxisKind::Chirp => "chirp",
+            AxisKind::Frame => "frame",
             AxisKind::Iq => "iq",
         })
     }
@@ -69,9 +73,19 @@ pub enum AxesError {
     /// An axis stands twice, or too many or too few say what the elements are.
     #[error("recording.axes: {0}")]
     Kinds(String),
-    /// The numbers are real.
-    #[error("the array holds real numbers; expected complex ones, or an axis \"iq\" of length 2")]
+    /// The numbers are real and no chirps.
+    #[error(
+        "the array holds real numbers; expected complex ones, an axis \"iq\" of length 2, or real samples of an axis \"sample\""
+    )]
     Real,
+    /// There is no such frame.
+    #[error("recording.frame is {asked}; expected 0 to {last}, the array has {frames} frames", last = frames.saturating_sub(1))]
+    NoFrame {
+        /// The frame asked for.
+        asked: usize,
+        /// Frames there are.
+        frames: usize,
+    },
     /// The numbers are complex already.
     #[error("the array holds complex numbers; expected no axis \"iq\"")]
     Complex,
@@ -91,7 +105,35 @@ pub enum AxesError {
     },
 }
 
-/// Sorts `numbers` into `[elements, samples]`.
+/// Takes one frame of `numbers`, whose axis is then gone from `kinds`; the first where none is asked for.
+///
+/// # Errors
+/// [`AxesError`] where `kinds` are not the array's axes, or there is no such frame.
+pub(super) fn one_frame(
+    numbers: Numbers,
+    kinds: &mut Vec<AxisKind>,
+    frame: Option<usize>,
+) -> Result<Numbers, AxesError> {
+    let Some(place) = kinds.iter().position(|k| *k == AxisKind::Frame) else {
+        return match frame {
+            None => Ok(numbers),
+            Some(_) => Err(AxesError::Kinds("recording.frame picks, but no axis is \"frame\"".to_owned())),
+        };
+    };
+    check(kinds, numbers.shape())?;
+    let (frames, asked) = (numbers.shape()[place], frame.unwrap_or(0));
+    if asked >= frames {
+        return Err(AxesError::NoFrame { asked, frames });
+    }
+    kinds.remove(place);
+    Ok(match numbers {
+        Numbers::Real(values) => Numbers::Real(values.index_axis_move(Axis(place), asked)),
+        Numbers::Complex(values) => Numbers::Complex(values.index_axis_move(Axis(place), asked)),
+    })
+}
+
+/// Sorts `numbers` into `[elements, samples]`. Real samples become the analytic signal of as many samples: the far half of the range axis is
+/// empty then.
 ///
 /// # Errors
 /// [`AxesError`] where `kinds` are not the array's axes, or `chirp` none of its chirps.
@@ -141,7 +183,15 @@ fn complex(numbers: Numbers, kinds: &mut Vec<AxisKind>) -> Result<ArrayD<Complex
     match (numbers, place) {
         (Numbers::Complex(values), None) => Ok(values),
         (Numbers::Complex(_), Some(_)) => Err(AxesError::Complex),
-        (Numbers::Real(_), None) => Err(AxesError::Real),
+        (Numbers::Real(values), None) => {
+            let samples = kinds.iter().position(|k| *k == AxisKind::Sample).ok_or(AxesError::Real)?;
+            let mut values = values.mapv(Complex64::from);
+            for mut line in values.lanes_mut(Axis(samples)) {
+                let signal = analytic(&line.to_vec(), line.len());
+                line.iter_mut().zip(signal).for_each(|(to, v)| *to = v);
+            }
+            Ok(values)
+        }
         (Numbers::Real(values), Some(place)) => {
             let parts = values.shape()[place];
             if parts != 2 {
@@ -231,10 +281,33 @@ mod tests {
         let parts = array![[[1.0, 2.0]], [[3.0, 4.0]]].into_dyn();
         let found = arrange(Numbers::Real(parts.clone()), &[Element, Sample, Iq], None).unwrap();
         assert_eq!(found, array![[Complex64::new(1.0, 2.0)], [Complex64::new(3.0, 4.0)]]);
-        let without = arrange(Numbers::Real(parts.clone()), &[Element, Sample, AxisKind::Chirp], None).unwrap_err();
+        let without = arrange(Numbers::Real(array![1.0, 2.0].into_dyn()), &[Element], None).unwrap_err();
         assert!(without.to_string().contains("axis \"iq\""), "{without}");
         assert_eq!(arrange(Numbers::Real(parts), &[Element, Iq, Sample], None), Err(AxesError::Iq(1)));
         assert_eq!(arrange(numbered(&[1, 2]), &[Element, Iq], None), Err(AxesError::Complex));
+    }
+
+    #[test]
+    fn one_frame_is_picked() {
+        let of = |frame| {
+            let mut kinds = vec![AxisKind::Frame, Element, Sample];
+            let numbers = one_frame(numbered(&[2, 2, 1]), &mut kinds, frame)?;
+            arrange(numbers, &kinds, None).map(reals)
+        };
+        assert_eq!((of(None).unwrap(), of(Some(1)).unwrap()), (array![[0.0], [1.0]], array![[2.0], [3.0]]));
+        assert!(of(Some(2)).unwrap_err().to_string().contains("recording.frame is 2; expected 0 to 1"));
+        let needless = one_frame(numbered(&[2, 1]), &mut vec![Element, Sample], Some(0));
+        assert!(needless.unwrap_err().to_string().contains("no axis is \"frame\""));
+    }
+
+    #[test]
+    fn real_samples_become_the_positive_half_of_their_spectrum() {
+        let turn = |n: usize| std::f64::consts::TAU * 3.0 * n as f64 / 16.0;
+        let waves = Array2::from_shape_fn((1, 16), |(_, n)| turn(n).cos());
+        let found = arrange(Numbers::Real(waves.into_dyn()), &[Element, Sample], None).unwrap();
+        for (n, v) in found.iter().enumerate() {
+            assert!((v - Complex64::from_polar(1.0, turn(n))).norm() < 1e-12, "{n}: {v}");
+        }
     }
 
     #[test]

@@ -6,6 +6,8 @@ use crate::radar::{Carrier, Radar};
 
 /// Part of the power in the far half of the range axis above which the beat's sign is doubted.
 const FAR_PART: f64 = 0.9;
+/// Spacing from which directions fold in the two-way reading, wavelengths: a quarter, and what a carrier off the middle of the band adds.
+const FOLDS_FROM: f64 = 0.26;
 /// Least samples that tell one half of the range axis from the other.
 const LEAST_SAMPLES: usize = 8;
 
@@ -18,9 +20,10 @@ pub(super) fn doubts(radar: &Radar, samples: &Recorded, physical: bool) -> Vec<S
     }
     let spacing = radar.element_spacing_metres / radar.wavelength_metres();
     match radar.carrier {
-        Carrier::TwoWay if spacing > 0.4 => doubts.push(format!(
-            "Elements stand {spacing:.2} wavelengths apart, and the carrier is two-way: directions fold. In the two-way reading an \
-             element stands halfway between its transmitter and its receiver, so a filled array has a quarter of a wavelength."
+        Carrier::TwoWay if spacing > FOLDS_FROM => doubts.push(format!(
+            "Elements stand {spacing:.2} wavelengths apart, and the carrier is two-way: directions beyond cos θ = {:.2} fold to the other side. In \
+             the two-way reading an element stands halfway between its transmitter and its receiver, so a filled array has a quarter of a wavelength.",
+            0.25 / spacing
         )),
         Carrier::OneWay if spacing < 0.3 => doubts.push(format!(
             "Elements stand {spacing:.2} wavelengths apart, and the carrier is one-way. A filled array of virtual elements has half a \

@@ -1,5 +1,6 @@
 //! Errors of recordings, with the file they are in.
 
+use super::layout::LayoutError;
 use super::{AxesError, CalibrationError, CaptureError, MatError, NumpyError, ProfileError};
 use crate::radar::RadarError;
 use crate::scene::file::SceneTextError;
@@ -50,6 +51,9 @@ pub enum Fault {
     /// The `.cfg` can't be read.
     #[error("{0}")]
     Profile(#[from] ProfileError),
+    /// No layout of the capture was found.
+    #[error("{0}")]
+    Layout(#[from] LayoutError),
     /// The array is not what its axes say.
     #[error("{0}")]
     Axes(#[from] AxesError),

@@ -1,7 +1,7 @@
 //! The TOML of a recording.
 //!
 //! ```toml
-//! format = 2                          # of this text; without it, signs and carrier are those of the thesis' formula
+//! format = 3                          # of this text; without it, signs and carrier are those of the thesis' formula
 //! name = "A post and a wall"
 //! notes = "Where it was measured, and what to look for."
 //!
@@ -42,41 +42,27 @@
 //! loop = 0
 //! ```
 
-use super::doubts::doubts;
-use super::said_radar::said_radar;
-use super::said_recording::Table;
-use super::samples::{Open, read_samples};
-use super::signs::{FORMAT, oldest};
-use super::{Fault, RadarProfile, Recording, RecordingError};
-use crate::platform::fs::File;
-use crate::scene::file::SceneTextError;
-use serde::Deserialize;
-use std::io::{self, BufReader, Read};
+use super::described::{Parts, from_parts, open_file, parts, read_text};
+use super::raw;
+use super::samples::{Open, read_loops};
+use super::{Fault, Recording, RecordingError};
+use crate::radar::Radar;
+use crate::signal::ChirpSamples;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
-
-/// Longest text that is read, bytes.
-const MAX_TEXT_BYTES: u64 = 1 << 20;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Document {
-    #[serde(default = "oldest")]
-    format: u32,
-    #[serde(default)]
-    name: String,
-    #[serde(default)]
-    notes: String,
-    radar: toml::Table,
-    recording: Table,
-}
 
 /// Whether a TOML is that of a recording: whether it has a table `[recording]`.
 pub fn is_recording(text: &str) -> bool {
     toml::de::DeTable::parse(text).is_ok_and(|table| table.get_ref().contains_key("recording"))
 }
 
-/// Whether the file `path` is the TOML of a recording; not where it can't be read or ends otherwise.
+/// Whether the file `path` is a recording: the TOML of one, or by its ending a raw capture or the `.cfg` of one.
 pub fn is_recording_at(path: &Path) -> bool {
+    raw::is_raw(path) || is_toml_at(path)
+}
+
+/// Whether the file `path` is the TOML of a recording; not where it can't be read or ends otherwise.
+fn is_toml_at(path: &Path) -> bool {
     let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     is_toml && open_file(path).is_ok_and(|file| read_text(file).is_ok_and(|text| is_recording(&text)))
 }
@@ -89,93 +75,48 @@ pub fn data_path(path: &Path) -> Option<PathBuf> {
     Some(path.parent().unwrap_or(Path::new("")).join(name))
 }
 
-/// Reads a recording: the TOML `path`, and what it names beside it.
+/// Reads a recording: the TOML `path` and what it names beside it, or a raw capture as it is ([`raw::open`]).
 ///
 /// # Errors
 /// [`RecordingError`] names the file, the key or the array, and what was expected of it.
 pub fn load(path: &Path) -> Result<Recording, RecordingError> {
+    if raw::is_raw(path) {
+        return raw::open(path, None);
+    }
     let folder = path.parent().unwrap_or(Path::new(""));
     let text = read_text(open_file(path).map_err(|e| Fault::from(e).of(path))?).map_err(|e| e.of(path))?;
     from_parts(&text, path, &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))))
 }
 
-fn open_file(path: &Path) -> io::Result<File> {
-    let file = File::open(path)?;
-    if file.metadata()?.is_file() {
-        Ok(file)
-    } else {
-        Err(io::Error::new(io::ErrorKind::InvalidInput, "is a folder, device or pipe; expected a file"))
-    }
-}
-
-fn read_text(file: impl Read) -> Result<String, Fault> {
-    let mut text = Vec::new();
-    file.take(MAX_TEXT_BYTES + 1).read_to_end(&mut text)?;
-    if text.len() as u64 > MAX_TEXT_BYTES {
-        return Err(Fault::key(
-            "the text",
-            "is longer than 1 MiB",
-            "a description; samples stand in a file of their own",
-        ));
-    }
-    String::from_utf8(text).map_err(|_| Fault::key("the text", "is not UTF-8", "text in UTF-8"))
-}
-
-/// Refuses a text of a later format before its unknown keys are.
-fn check_format(text: &str) -> Result<(), Fault> {
-    #[derive(Deserialize)]
-    struct Said {
-        #[serde(default = "oldest")]
-        format: u32,
-    }
-    match toml::from_str(text) {
-        Ok(Said { format: later }) if later > FORMAT => {
-            Err(Fault::key("format", format!("is {later}, of a later version of apertura"), "1 or 2"))
+/// Every loop of a recording's frame, for a range-Doppler map: the radar with their number and interval, and the samples,
+/// `[loops, elements, samples]`. The recording is a raw capture, or the TOML of one.
+///
+/// # Errors
+/// As [`load`]; [`Fault::Key`] where the recording is no capture with a `.cfg`.
+pub fn load_loops(path: &Path, config: Option<&Path>) -> Result<(Radar, ChirpSamples), RecordingError> {
+    let (text, path) = match raw::is_raw(path) {
+        true => {
+            let imported = raw::import(path, config, None)?;
+            (imported.toml, imported.data)
         }
-        _ => Ok(()),
-    }
-}
-
-/// Reads a recording from the text of its TOML, which stands at `path`, and what `open` opens.
-pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Recording, RecordingError> {
-    check_format(text).map_err(|fault| fault.of(path))?;
-    let document: Document = toml::from_str(text).map_err(|error| {
-        let start = error.span().map_or(0, |span| span.start);
-        Fault::Text(SceneTextError::at(text, start, error.message().lines().collect::<Vec<_>>().join(", "))).of(path)
-    })?;
-    let mut table = document.recording;
+        false => {
+            let text = read_text(open_file(path).map_err(|e| Fault::from(e).of(path))?).map_err(|e| e.of(path))?;
+            (text, path.to_owned())
+        }
+    };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let profile = match &table.capture {
-        None => None,
-        Some(capture) => {
-            let beside = folder.join(&capture.config);
-            let read =
-                || -> Result<RadarProfile, Fault> { Ok(RadarProfile::parse(&read_text(open(&capture.config)?)?)?) };
-            Some(read().map_err(|fault| fault.of(&beside))?)
-        }
+    let open: Open<'_> = &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)));
+    let Parts { table, mut radar, profile, signs, .. } = parts(&text, &path, open)?;
+    let Some(profile) = profile else {
+        let expected = "it: without a .cfg nothing says the interval of chirps";
+        return Err(Fault::key("recording.capture.config", "is missing", expected).of(&path));
     };
-    let mut radar = said_radar(document.radar, profile.as_ref()).map_err(|fault| fault.of(path))?;
-    table.has_places = !radar.is_monostatic();
-    if table.reverse_elements {
-        radar.antennas = radar.antennas.map(|antennas| antennas.mirrored());
-    }
-    table.check(&radar).map_err(|fault| fault.of(path))?;
-    let signs = table.signs(document.format, &radar, profile.is_some()).map_err(|fault| fault.of(path))?;
-    radar.carrier_hz = signs.carrier_hz;
-    radar.validate().map_err(|e| Fault::from(e).of(path))?;
-    let data = folder.join(&table.file);
-    // Keys stand in the TOML, whatever file they are about.
-    let place = |fault: Fault| match fault {
-        Fault::Key { .. } | Fault::Calibration(_) => fault.of(path),
-        fault => fault.of(&data),
-    };
-    let samples = read_samples(&table, &radar, open, profile.as_ref(), signs).map_err(place)?;
-    let Table { mut missing, range_metres, .. } = table;
-    missing.extend((0..radar.elements).filter(|n| radar.is_gap(*n)));
-    missing.sort_unstable();
-    missing.dedup();
-    let doubts = doubts(&radar, &samples, document.format > oldest());
-    Ok(Recording { name: document.name, notes: document.notes, radar, samples, missing, range_metres, doubts })
+    let samples = read_loops(&table, open, Some(&profile), signs).map_err(|fault| fault.of(&path))?;
+    radar.chirps = samples.dim().0;
+    radar.chirp_interval_seconds =
+        (profile.chirp_interval_seconds * profile.chirp_transmitters.len() as f64).max(radar.chirp_seconds);
+    radar.validate().map_err(|e| Fault::from(e).of(&path))?;
+    Ok((radar, ChirpSamples { samples }))
 }
 
 #[cfg(test)]

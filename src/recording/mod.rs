@@ -1,33 +1,39 @@
 //! Recordings: samples that a radar measured, with the radar that measured them.
 //!
-//! A recording is a data file and a TOML beside it that says what the data are; nothing about them is guessed.
+//! A recording is a data file and a TOML beside it that says what the data are. Of a raw capture without one the layout is found by evidence.
 //!
 //! | file | what it reads |
 //! |---|---|
-//! | [`file`], `said_radar`, `said_recording` | the TOML: `[radar]` and `[recording]` |
+//! | [`file`], `described`, `said_radar`, `said_recording` | the TOML: `[radar]` and `[recording]` |
 //! | `samples` | what the data files hold, in the order of the elements |
 //! | `numpy` | `.npy` and `.npz` |
 //! | `matlab` | `.mat`, versions 5 and 7 |
-//! | `capture`, `profile` | int16 samples of a capture card, and the `.cfg` that set the radar up |
-//! | `axes` | an array of any shape to `[elements, samples]` |
+//! | `capture`, `profile` | samples of a capture card, and the `.cfg` that set the radar up |
+//! | [`layout`] | how the bytes of a raw capture stand for samples, by evidence |
+//! | [`raw`] | raw captures as they are: the text that describes them is made |
+//! | `axes`, `analytic` | an array of any shape, of real samples too, to `[elements, samples]` |
 //! | `calibration` | what is taken off each element |
 //! | `signs` | which way phases turn, and where on the chirp the carrier lies |
 //! | `doubts` | what looks wrong and can't be known from the samples |
 //!
 //! [`presets`] come with the program. [`explain`] tells what reflectors leave unexplained.
 
+mod analytic;
 mod axes;
 mod calibration;
 mod capture;
+mod described;
 mod doubts;
 mod error;
 pub mod explain;
 pub mod file;
+pub mod layout;
 mod matlab;
 mod numbers;
 mod numpy;
 pub mod presets;
 mod profile;
+pub mod raw;
 mod said_radar;
 mod said_recording;
 mod samples;
@@ -40,6 +46,7 @@ pub use error::{Fault, RecordingError};
 pub use matlab::MatError;
 pub use numbers::MAX_NUMBERS;
 pub use numpy::NumpyError;
+pub use profile::lines::text_of as config_text;
 pub use profile::{ProfileError, RadarProfile};
 pub use signs::FORMAT;
 

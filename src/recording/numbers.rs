@@ -15,7 +15,32 @@ pub(super) enum Numbers {
     Complex(ArrayD<Complex64>),
 }
 
+/// The largest number of 16 bits that has a sign.
+const MOST_SIGNED: f64 = i16::MAX as f64;
+
 impl Numbers {
+    /// Takes 16-bit integers whose sign was lost back to what they were: 65535 is -1. Those are told by whole parts from 0 to 65535 of
+    /// which some lie beyond 32767. A sentence says so where it was done.
+    pub fn mend_signs(&mut self) -> Option<String> {
+        let is_word = |v: f64| v.fract() == 0.0 && (0.0..=65535.0).contains(&v);
+        let signed = |v: f64| if v > MOST_SIGNED { v - 65536.0 } else { v };
+        let lost = match self {
+            Numbers::Real(values) => values.iter().all(|v| is_word(*v)) && values.iter().any(|v| *v > MOST_SIGNED),
+            Numbers::Complex(values) => {
+                values.iter().all(|v| is_word(v.re) && is_word(v.im))
+                    && values.iter().any(|v| v.re > MOST_SIGNED || v.im > MOST_SIGNED)
+            }
+        };
+        if !lost {
+            return None;
+        }
+        match self {
+            Numbers::Real(values) => values.mapv_inplace(signed),
+            Numbers::Complex(values) => values.mapv_inplace(|v| Complex64::new(signed(v.re), signed(v.im))),
+        }
+        Some("The array's integers have lost their sign: those beyond 32767 are taken less 65536, as int16 would have them.".to_owned())
+    }
+
     /// Its shape.
     pub fn shape(&self) -> &[usize] {
         match self {
@@ -28,4 +53,25 @@ impl Numbers {
 /// How many numbers an array of `shape` holds; `None` where they are more than [`MAX_NUMBERS`].
 pub(super) fn bounded_count(shape: &[usize]) -> Option<usize> {
     shape.iter().try_fold(1usize, |n, len| n.checked_mul(*len)).filter(|n| *n <= MAX_NUMBERS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn integers_that_lost_their_sign_get_it_back() {
+        let mut complex =
+            Numbers::Complex(array![Complex64::new(3.0, 65535.0), Complex64::new(40000.0, 0.0)].into_dyn());
+        assert!(complex.mend_signs().unwrap().contains("lost their sign"));
+        assert_eq!(
+            complex,
+            Numbers::Complex(array![Complex64::new(3.0, -1.0), Complex64::new(-25536.0, 0.0)].into_dyn())
+        );
+        for whole in [vec![-1.0, 40000.0], vec![0.5, 40000.0], vec![1.0, 32767.0], vec![1.0, 70000.0]] {
+            let mut numbers = Numbers::Real(ndarray::Array1::from(whole).into_dyn());
+            assert_eq!((numbers.clone(), None), (numbers.clone(), numbers.mend_signs()));
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
 use crate::files::entries::check_entries;
 use crate::files::npy::header_bytes;
-use ndarray::ArrayD;
+use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 use ndarray_npy::npy::header::Header;
 use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement};
 use num_complex::{Complex32, Complex64};
@@ -44,7 +44,9 @@ pub enum NumpyError {
         shape: Vec<usize>,
     },
     /// Numbers of another type.
-    #[error("{what} holds {found}; expected complex or real numbers, or signed integers of 16 or more bits")]
+    #[error(
+        "{what} holds {found}; expected complex or real numbers, integers of 16 or more bits or int8, or pairs of int16"
+    )]
     Type {
         /// Which array.
         what: String,
@@ -89,6 +91,7 @@ fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, NumpyError> {
         return Err(NumpyError::TooLarge { what: what.to_owned(), shape: header.shape });
     }
     let found = header.type_descriptor.to_string();
+    let header_length = header_bytes.len();
     let whole = Cursor::new(header_bytes).chain(file);
     let numbers = match found.trim_matches(['\'', '"']) {
         "<c16" | ">c16" => Numbers::Complex(array::<Complex64>(whole).map_err(|e| damaged(e.to_string()))?),
@@ -101,9 +104,57 @@ fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, NumpyError> {
         "<i2" | ">i2" => Numbers::Real(array::<i16>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
         "<i4" | ">i4" => Numbers::Real(array::<i32>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
         "<i8" | ">i8" => Numbers::Real(array::<i64>(whole).map_err(|e| damaged(e.to_string()))?.mapv(|v| v as f64)),
+        "<u2" | ">u2" => Numbers::Real(array::<u16>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
+        "|i1" => Numbers::Real(array::<i8>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
+        "<f2" => Numbers::Real(words(whole, header_length, &header, 1, half).map_err(damaged)?.remove(0)),
+        _ if is_pair(&found) => {
+            let mut parts = words(whole, header_length, &header, 2, |word| f64::from(word as i16)).map_err(damaged)?;
+            let (second, first) = (parts.remove(1), parts.remove(0));
+            Numbers::Complex(ndarray::Zip::from(&first).and(&second).map_collect(|re, im| Complex64::new(*re, *im)))
+        }
         _ => return Err(NumpyError::Type { what: what.to_owned(), found }),
     };
     Ok(numbers)
+}
+
+/// Whether a structure of two 16-bit integers, low byte first, is meant: real and imaginary part.
+fn is_pair(found: &str) -> bool {
+    found.starts_with('[') && found.matches("'<i2'").count() == 2 && found.matches('\'').count() == 8
+}
+
+/// `parts` arrays of the header's shape, of 16-bit words that stand in turn.
+fn words(
+    mut file: impl Read,
+    header_length: usize,
+    header: &Header,
+    parts: usize,
+    number: fn(u16) -> f64,
+) -> Result<Vec<ArrayD<f64>>, String> {
+    let count = bounded_count(&header.shape).ok_or("too many numbers")?;
+    let mut bytes = Vec::new();
+    let length = header_length + 2 * parts * count;
+    file.by_ref().take(length as u64).read_to_end(&mut bytes).map_err(|e| e.to_string())?;
+    let data = bytes.get(header_length..).filter(|data| data.len() == 2 * parts * count).ok_or("it ends too early")?;
+    let words: Vec<f64> = data.chunks_exact(2).map(|b| number(u16::from_le_bytes([b[0], b[1]]))).collect();
+    let in_columns = matches!(header.layout, ndarray_npy::npy::header::Layout::Fortran);
+    let shape = IxDyn(&header.shape).set_f(in_columns);
+    let part = |n: usize| {
+        let values = words.iter().skip(n).step_by(parts).copied().collect();
+        ArrayD::from_shape_vec(shape.clone(), values).map_err(|e| e.to_string())
+    };
+    (0..parts).map(part).collect()
+}
+
+/// A number of half precision (IEEE 754 binary16).
+fn half(word: u16) -> f64 {
+    let sign = if word >> 15 == 1 { -1.0 } else { 1.0 };
+    let (exponent, fraction) = (i32::from(word >> 10 & 0x1f), f64::from(word & 0x3ff));
+    match exponent {
+        0 => sign * fraction * 2f64.powi(-24),
+        0x1f if fraction == 0.0 => sign * f64::INFINITY,
+        0x1f => f64::NAN,
+        _ => sign * (1.0 + fraction / 1024.0) * 2f64.powi(exponent - 15),
+    }
 }
 
 fn array<T: ReadableElement>(file: impl Read) -> Result<ArrayD<T>, ReadNpyError> {
@@ -147,8 +198,30 @@ mod tests {
         ] {
             assert_eq!(read_npy(bytes.as_slice()).unwrap(), real);
         }
+        assert_eq!(read_npy(npy(&array![1i8, -2]).as_slice()).unwrap(), real);
+        let unsigned = Numbers::Real(array![1.0, 65534.0].into_dyn());
+        assert_eq!(read_npy(npy(&array![1u16, 65534]).as_slice()).unwrap(), unsigned);
         let turned = array![[1.0, 2.0], [3.0, 4.0]].reversed_axes();
         assert_eq!(read_npy(npy(&turned).as_slice()).unwrap(), Numbers::Real(turned.into_dyn()), "Fortran order");
+    }
+
+    #[test]
+    fn halves_with_pairs_of_integers_are_read() {
+        let file = |kind: &str, order: &str, shape: &str, words: &[u16]| {
+            let mut bytes = with_header(&format!("{{'descr': {kind}, 'fortran_order': {order}, 'shape': {shape}, }}"));
+            bytes.extend(words.iter().flat_map(|w| w.to_le_bytes()));
+            read_npy(bytes.as_slice())
+        };
+        // 1, -2, the smallest above 0, and 65504.
+        let halves = file("'<f2'", "False", "(4,)", &[0x3c00, 0xc000, 0x0001, 0x7bff]).unwrap();
+        assert_eq!(halves, Numbers::Real(array![1.0, -2.0, 2f64.powi(-24), 65504.0].into_dyn()));
+        let pairs = "[('re', '<i2'), ('im', '<i2')]";
+        let complex = |re: i16, im: i16| Complex64::new(re.into(), im.into());
+        let found = file(pairs, "False", "(1, 2)", &[1, 2, 0xffff, 4]).unwrap();
+        assert_eq!(found, Numbers::Complex(array![[complex(1, 2), complex(-1, 4)]].into_dyn()));
+        let found = file("'<f2'", "True", "(2, 2)", &[0x3c00, 0xc000, 0, 0]).unwrap();
+        assert_eq!(found, Numbers::Real(array![[1.0, 0.0], [-2.0, 0.0]].into_dyn()), "Fortran order");
+        assert!(file(pairs, "False", "(2,)", &[1, 2, 3]).unwrap_err().to_string().contains("ends too early"));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Recordings that come with the program: the files of `assets/recordings`, embedded in it.
 
-use super::file::from_parts;
+use super::described::from_parts;
 use super::samples::Source;
 use super::{Recording, RecordingError};
 use std::io::{self, Cursor};

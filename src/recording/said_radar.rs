@@ -18,12 +18,13 @@ pub(super) fn said_radar(mut table: toml::Table, profile: Option<&RadarProfile>)
             }
         }
         table.entry("chirp_seconds").or_insert(profile.chirp_seconds().into());
-        let said = table.entry("samples").or_insert((profile.samples as i64).into());
-        if said.as_integer() != Some(profile.samples as i64) {
+        let samples = profile.complex_samples();
+        let said = table.entry("samples").or_insert((samples as i64).into());
+        if said.as_integer() != Some(samples as i64) {
             return Err(Fault::key(
                 "radar.samples",
                 format!("is {said}"),
-                format!("{}, as the .cfg says, or no such key", profile.samples),
+                format!("{samples}, as the .cfg says, or no such key"),
             ));
         }
     }

@@ -16,6 +16,7 @@ pub(super) struct Table {
     pub last: Option<String>,
     pub axes: Option<Vec<AxisKind>>,
     pub chirp: Option<Chirp>,
+    pub frame: Option<usize>,
     #[serde(default)]
     elements: Covers,
     #[serde(default)]
@@ -85,6 +86,11 @@ impl Table {
             said => said,
         };
         Said { format, carrier_at, beat_sign, sweep, conjugate }.signs(radar)
+    }
+
+    /// Whether the phase of an echo rises from sample to sample of the file.
+    pub fn beat_rises(&self) -> bool {
+        self.beat_sign != Some(BeatSign::Negative)
     }
 
     /// Elements of the whole array that the file is to hold, in its order.

@@ -1,6 +1,7 @@
 //! Samples in the data files of a recording, brought into the order of the array's elements.
 
-use super::axes::arrange;
+use super::axes::{arrange, one_frame};
+use super::capture::Meaning;
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
 use super::said_recording::{Covers, Table};
@@ -8,20 +9,69 @@ use super::signs::Signs;
 use super::{AxisKind, Capture, Fault, RadarProfile, Recorded, matlab};
 use crate::radar::Radar;
 use crate::signal::{BeatSignal, TwoEnds};
-use ndarray::{Array2, Axis, concatenate};
+use ndarray::{Array2, Array3, Axis, concatenate};
 use num_complex::Complex64;
+use std::cell::RefCell;
 use std::collections::HashSet;
-use std::io::{self, Read, Seek};
+use std::io::{self, Read, Seek, SeekFrom};
 
 /// Something to read a data file from.
 pub(super) trait Source: Read + Seek {}
 
 impl<T: Read + Seek> Source for T {}
 
+/// Files that are read as one, one after another.
+pub(super) struct Chain {
+    files: Vec<(Box<dyn Source>, u64)>,
+    at: u64,
+}
+
+impl Chain {
+    /// The files in order.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn new(files: Vec<Box<dyn Source>>) -> io::Result<Self> {
+        let sized = |mut file: Box<dyn Source>| file.seek(SeekFrom::End(0)).map(|bytes| (file, bytes));
+        Ok(Chain { files: files.into_iter().map(sized).collect::<io::Result<_>>()?, at: 0 })
+    }
+}
+
+impl Read for Chain {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let mut start = 0;
+        for (file, bytes) in &mut self.files {
+            if self.at < start + *bytes {
+                file.seek(SeekFrom::Start(self.at - start))?;
+                let here = buffer.len().min((start + *bytes - self.at) as usize);
+                let read = file.read(&mut buffer[..here])?;
+                self.at += read as u64;
+                return Ok(read);
+            }
+            start += *bytes;
+        }
+        Ok(0)
+    }
+}
+
+impl Seek for Chain {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let all: u64 = self.files.iter().map(|(_, bytes)| bytes).sum();
+        let place = match to {
+            SeekFrom::Start(at) => Some(at),
+            SeekFrom::End(by) => all.checked_add_signed(by),
+            SeekFrom::Current(by) => self.at.checked_add_signed(by),
+        };
+        self.at = place.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "a place before the first byte"))?;
+        Ok(self.at)
+    }
+}
+
 /// Opens a data file by the name that the TOML gives it.
 pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
 
-/// Reads what the table names, with all that it says done; the radar says how many elements and samples there are to be.
+/// Reads what the table names, with all that it says done, and sentences on what is doubtful of a capture; the radar says how many elements
+/// and samples there are to be.
 ///
 /// # Errors
 /// [`Fault`] names the key or the array, and what was expected of it.
@@ -31,21 +81,22 @@ pub(super) fn read_samples(
     open: Open<'_>,
     profile: Option<&RadarProfile>,
     signs: Signs,
-) -> Result<Recorded, Fault> {
-    let rows = read(table, open, profile, signs)?;
+) -> Result<(Recorded, Vec<String>), Fault> {
+    let (rows, notes) = read(table, radar, open, profile, signs)?;
     let rows = in_element_order(table, radar, rows)?;
-    sorted(table, radar, rows)
+    Ok((sorted(table, radar, rows)?, notes))
 }
 
 /// The file's samples as `[elements, samples]`, with all that was said of them done.
 fn read(
     table: &Table,
+    radar: &Radar,
     open: Open<'_>,
     profile: Option<&RadarProfile>,
     signs: Signs,
-) -> Result<Array2<Complex64>, Fault> {
-    let mut rows = match profile.zip(table.capture.as_ref()) {
-        Some((profile, capture)) => read_capture(table, open, capture, profile)?,
+) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+    let (mut rows, notes) = match &table.capture {
+        Some(capture) => read_capture(table, radar, open, capture, profile)?,
         None => read_arrays(table, open)?,
     };
     if let Some(((element, sample), _)) = rows.indexed_iter().find(|(_, v)| !v.is_finite()) {
@@ -61,7 +112,7 @@ fn read(
     if table.reverse_elements && !table.counts_pairs() {
         rows.invert_axis(Axis(0));
     }
-    Ok(rows)
+    Ok((rows, notes))
 }
 
 /// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text says where they stand;
@@ -85,15 +136,70 @@ fn in_element_order(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Re
 
 fn read_capture(
     table: &Table,
+    radar: &Radar,
     open: Open<'_>,
     capture: &Capture,
-    profile: &RadarProfile,
-) -> Result<Array2<Complex64>, Fault> {
-    if table.extension() != "bin" {
-        return Err(Fault::key("[recording.capture]", "is there", "it only beside a .bin file"));
+    profile: Option<&RadarProfile>,
+) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+    check_capture(table)?;
+    let turns = turns(radar);
+    let meaning = Meaning { profile, turns: &turns, beat_rises: table.beat_rises() };
+    let (rows, notes) = capture.read(open_capture(table, open, capture)?, &meaning)?;
+    let kinds = [AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Sample];
+    Ok((arrange(Numbers::Complex(rows.into_dyn()), &kinds, None)?, notes))
+}
+
+/// Every loop of the capture's frame, `[loops, elements, samples]`, with the signs of the maps' formula.
+///
+/// # Errors
+/// [`Fault`] names the key.
+pub(super) fn read_loops(
+    table: &Table,
+    open: Open<'_>,
+    profile: Option<&RadarProfile>,
+    signs: Signs,
+) -> Result<Array3<Complex64>, Fault> {
+    let Some(capture) = &table.capture else {
+        let expected =
+            "it: range-Doppler maps of recordings are made of raw captures, whose .cfg says the interval of chirps";
+        return Err(Fault::key("[recording.capture]", "is missing", expected));
+    };
+    check_capture(table)?;
+    let mut loops = capture.loops(open_capture(table, open, capture)?, profile)?;
+    if signs.conjugates {
+        loops.mapv_inplace(|v| v.conj());
+    }
+    if signs.reverses_samples {
+        loops.invert_axis(Axis(2));
+    }
+    Ok(loops)
+}
+
+/// The file of a capture, with those that go on from it.
+fn open_capture(table: &Table, open: Open<'_>, capture: &Capture) -> Result<Box<dyn Source>, Fault> {
+    let first = open(&table.file)?;
+    if capture.more_files.is_empty() {
+        return Ok(first);
+    }
+    let more = capture.more_files.iter().map(|name| open(name)).collect::<io::Result<Vec<_>>>()?;
+    Ok(Box::new(Chain::new(std::iter::once(first).chain(more).collect())?))
+}
+
+/// Turns of phase across the array of each pair at a cosine of 1, transmitter by transmitter.
+fn turns(radar: &Radar) -> Vec<f64> {
+    let Some(antennas) = &radar.antennas else {
+        return (0..radar.elements).map(|n| 2.0 * radar.element_x_metres(n) / radar.wavelength_metres()).collect();
+    };
+    let of = |t: &f64| antennas.receiver_x_metres().iter().map(move |r| t + r).collect::<Vec<f64>>();
+    antennas.transmitter_x_metres().iter().flat_map(of).map(|sum| sum / radar.wavelength_metres()).collect()
+}
+
+fn check_capture(table: &Table) -> Result<(), Fault> {
+    if ["npz", "npy", "mat"].contains(&table.extension().as_str()) {
+        return Err(Fault::key("[recording.capture]", "is there", "it only beside a raw capture, such as a .bin file"));
     }
     let arrays = [("array", table.array.is_some()), ("first", table.first.is_some()), ("last", table.last.is_some())];
-    let others = [("axes", table.axes.is_some()), ("chirp", table.chirp.is_some())];
+    let others = [("axes", table.axes.is_some()), ("chirp", table.chirp.is_some()), ("frame", table.frame.is_some())];
     if let Some((key, _)) = arrays.iter().chain(&others).find(|(_, said)| *said) {
         return Err(Fault::key(
             &format!("recording.{key}"),
@@ -101,18 +207,24 @@ fn read_capture(
             "it not beside a .bin file: [recording.capture] says it all",
         ));
     }
-    let loops = capture.read(open(&table.file)?, profile)?;
-    let kinds = [AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Sample];
-    Ok(arrange(Numbers::Complex(loops.into_dyn()), &kinds, None)?)
+    Ok(())
 }
 
-fn read_arrays(table: &Table, open: Open<'_>) -> Result<Array2<Complex64>, Fault> {
+fn read_arrays(table: &Table, open: Open<'_>) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
     let Some(axes) = &table.axes else {
         let kinds = "a list of \"element\", \"sample\", \"chirp\" and so on, one for each axis of the array";
         return Err(Fault::key("recording.axes", "is missing", kinds));
     };
-    let array = |key: Option<&str>| Ok::<_, Fault>(arrange(numbers(table, open, key)?, axes, table.chirp)?);
-    match (&table.array, &table.first, &table.last) {
+    let notes = RefCell::new(Vec::new());
+    let array = |key: Option<&str>| {
+        let mut numbers = numbers(table, open, key)?;
+        let mut kinds = axes.clone();
+        notes.borrow_mut().extend(numbers.mend_signs());
+        let numbers = one_frame(numbers, &mut kinds, table.frame)?;
+        notes.borrow_mut().extend(told_of_real(&numbers, &kinds));
+        Ok::<_, Fault>(arrange(numbers, &kinds, table.chirp)?)
+    };
+    let rows = match (&table.array, &table.first, &table.last) {
         (array_key, None, None) => array(array_key.as_deref()),
         (None, Some(first), Some(last)) => {
             let (first, last) = (array(Some(first))?, array(Some(last))?);
@@ -126,7 +238,30 @@ fn read_arrays(table: &Table, open: Open<'_>) -> Result<Array2<Complex64>, Fault
                 .map_err(|e| Fault::key("recording.last", format!("does not join ({e})"), "the shape of \"first\""))
         }
         _ => Err(Fault::key("recording.array", "stands beside half a pair", "either array, or both first and last")),
-    }
+    }?;
+    let mut notes = notes.into_inner();
+    notes.dedup();
+    Ok((rows, notes))
+}
+
+/// What real samples are taken for, and complex ones that are real.
+fn told_of_real(numbers: &Numbers, kinds: &[AxisKind]) -> Option<String> {
+    let stored = match numbers {
+        Numbers::Real(_) if !kinds.contains(&AxisKind::Iq) => {
+            return Some(
+                "Samples are real: the positive half of their spectrum is taken (the analytic signal).".to_owned(),
+            );
+        }
+        Numbers::Complex(values) => {
+            !values.is_empty() && values.iter().all(|v| v.im == 0.0) && values.iter().any(|v| v.re != 0.0)
+        }
+        Numbers::Real(_) => false,
+    };
+    stored.then(|| {
+        "Every imaginary part is zero: these are real samples, stored as complex ones. Each echo has a mirror image in the far half of the range \
+         axis."
+            .to_owned()
+    })
 }
 
 fn numbers(table: &Table, open: Open<'_>, key: Option<&str>) -> Result<Numbers, Fault> {

@@ -17,7 +17,7 @@ use crate::radar::{Carrier, Radar};
 use serde::Deserialize;
 
 /// The format that is written down today; texts that name none are of format 1.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 
 /// The format of a text that names none.
 pub(super) fn oldest() -> u32 {
@@ -100,8 +100,8 @@ impl Said {
                 let conjugates = self.conjugate.unwrap_or(false);
                 return Ok(Signs { conjugates, reverses_samples: false, carrier_hz: radar.carrier_hz });
             }
-            FORMAT => {}
-            other => return Err(Fault::key("format", format!("is {other}"), "1 or 2")),
+            2 | FORMAT => {}
+            other => return Err(Fault::key("format", format!("is {other}"), "1, 2 or 3")),
         }
         if self.conjugate.is_some() {
             return is_there("conjugate", "beat_sign in its place: below format = 2 signs follow from it");
@@ -196,7 +196,7 @@ mod tests {
     fn keys_that_do_not_go_together_are_told() {
         for (said, part) in [
             (Said { format: 1, ..said() }, "recording.carrier_at is there"),
-            (Said { format: 3, ..said() }, "format is 3; expected 1 or 2"),
+            (Said { format: 4, ..said() }, "format is 4; expected 1, 2 or 3"),
             (Said { conjugate: Some(true), ..said() }, "beat_sign in its place"),
             (Said { beat_sign: None, ..said() }, "recording.beat_sign is missing"),
             (Said { carrier_at: None, ..said() }, "recording.carrier_at is missing"),

@@ -48,6 +48,15 @@ pub struct ChirpSamples {
     pub samples: Array3<Complex64>,
 }
 
+impl ChirpSamples {
+    /// Takes out what stands still: of every element and sample the mean of all chirps.
+    pub fn take_out_static(&mut self) {
+        if let Some(mean) = self.samples.mean_axis(Axis(0)) {
+            self.samples.outer_iter_mut().for_each(|mut chirp| chirp -= &mean);
+        }
+    }
+}
+
 /// The elements that are evaluated: up to [`MAX_END_ELEMENTS`] of each end, those farthest out.
 pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
     let count = radar.end_elements.min(MAX_END_ELEMENTS);

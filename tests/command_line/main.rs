@@ -1,6 +1,7 @@
 //! The program as a user runs it: standard output, standard error, exit status and files.
 
 mod bounds;
+mod captures;
 mod cli;
 mod documents;
 mod kept_rows;

@@ -2,9 +2,11 @@
 
 mod accuracy;
 mod baseline_tables;
+mod captures;
 mod conventions;
 mod damage;
 mod disturbances;
+mod echo_lists;
 mod failures;
 mod house;
 mod lessons;

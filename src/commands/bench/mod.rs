@@ -1,6 +1,7 @@
 //! `apertura bench`: run time against error, for every algorithm, precision and tolerance.
 
 mod bodies;
+mod captures;
 mod chart;
 mod doppler;
 mod following;
@@ -85,6 +86,12 @@ pub struct Args {
     /// does by ?measure. With --json a list of name and milliseconds (median)
     #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "bodies", "every_simd", "output"])]
     one_thread: bool,
+
+    /// Measure how long the layouts of a raw capture take to find instead: of 1 MiB with a .cfg and of 4 MiB without. With --json a list of
+    /// name, bytes, layouts and median_ms
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "bodies", "every_simd", "output"])]
+    captures: bool,
+
     #[command(flatten)]
     own: OwnMethodArgs,
 
@@ -125,6 +132,9 @@ impl Args {
         }
         if self.one_thread {
             return one_thread(self.json);
+        }
+        if self.captures {
+            return captures::run(self.json);
         }
         if self.every_simd {
             return instructions::run(&self.reflectors, self.repeats, self.json);

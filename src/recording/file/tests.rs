@@ -153,7 +153,7 @@ fn a_raw_capture_takes_its_radar_from_the_cfg() {
         let message = write(&radar, key, more).unwrap_err().to_string();
         assert!(parts.iter().all(|p| message.contains(p)), "{message}");
     }
-    fs::write(folder.path().join("p.cfg"), "frameCfg x").unwrap();
+    fs::write(folder.path().join("p.cfg"), "chirpCfg x").unwrap();
     let message = write(radar, "", "").unwrap_err().to_string();
     assert!(message.contains("p.cfg: line 1"), "{message}");
 }

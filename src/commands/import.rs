@@ -1,0 +1,150 @@
+//! `apertura import`: what a raw capture holds, and the TOML that says so.
+
+use super::{CommandError, print};
+use crate::files::write_bytes;
+use crate::recording::layout::{Candidate, Certainty, Kind};
+use crate::recording::raw::{self, Imported, boards};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// Say what a raw capture holds, found by evidence, and write the TOML that describes it
+///
+/// FILE is a capture of 16-bit samples as radars and capture cards write them, or the .cfg that set the radar up. The .cfg is the one that --config
+/// names, or the one of the same name beside the capture, or the only one there; without any the samples and receivers of a chirp are searched
+/// too. Candidates are judged by the spectrum that each makes, by receivers that see the same, by the count of frames that fill the file, by the
+/// half of the range axis that is empty, and by what the .cfg says.
+///
+/// `apertura maps`, `reconstruct` and `range-doppler`, and the window, open FILE as it is: a TOML is needed only to change what it says.
+///
+/// --json prints one object: data, config, certainty (sure, likely or open), decided_by, log_odds_to_the_next, layouts (the four best: words, parts,
+/// q_first, receivers, header_bytes, packets, samples, receiver_count, loop_chirps, loops, log_odds, evidence), sentences, doubts and toml.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Raw capture, or the .cfg beside it
+    file: PathBuf,
+
+    /// The .cfg that set the radar up
+    #[arg(long, value_name = "CFG")]
+    config: Option<PathBuf>,
+
+    /// The board that measured: where its antennas stand [default: as the transmitters of the .cfg make likely]
+    #[arg(long, value_name = "xWR1642|xWR1443|xWR1843|xWR6843ISK|cascade")]
+    board: Option<String>,
+
+    /// TOML to write, in the folder of the capture
+    #[arg(short, long, value_name = "REC.toml")]
+    output: Option<PathBuf>,
+
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Layouts that are listed.
+const LISTED: usize = 4;
+
+impl Args {
+    /// Finds the layout, tells it, and writes the TOML.
+    pub fn run(self) -> Result<(), CommandError> {
+        let board = self.board.as_deref().map(board).transpose()?;
+        let imported = raw::import(&self.file, self.config.as_deref(), board).map_err(CommandError::failed)?;
+        if let Some(output) = &self.output {
+            check_output(output, &imported.data)?;
+        }
+        // What can't be read in the end is no import.
+        let recording = imported.recording().map_err(CommandError::failed)?;
+        if self.json {
+            print(&described(&imported, &recording.doubts).to_string())?;
+        } else {
+            imported.sentences.iter().try_for_each(|sentence| print(sentence))?;
+            recording
+                .doubts
+                .iter()
+                .filter(|d| !imported.sentences.contains(d))
+                .try_for_each(|doubt| print(&format!("note: {doubt}")))?;
+        }
+        let Some(output) = &self.output else { return Ok(()) };
+        let failed = |source| CommandError::File { path: output.clone(), source };
+        write_bytes(output, imported.toml.as_bytes()).map_err(failed)?;
+        if self.json { Ok(()) } else { print(&format!("wrote {}", output.display())) }
+    }
+}
+
+fn board(name: &str) -> Result<&'static boards::Board, CommandError> {
+    boards::by_name(name).ok_or_else(|| {
+        let names: Vec<&str> = boards::ALL.iter().map(|b| b.name).collect();
+        CommandError::Usage(format!("--board {name}: no such board is known; expected {}", names.join(", ")))
+    })
+}
+
+/// The TOML names the capture by its place beside it.
+fn check_output(output: &Path, data: &Path) -> Result<(), CommandError> {
+    let folder = |path: &Path| {
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        std::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
+    };
+    if output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) {
+        return Err(CommandError::Usage(format!("{}: expected a name ending in .toml", output.display())));
+    }
+    if folder(output) != folder(data) {
+        let place = folder(data);
+        let message =
+            format!("{}: the TOML stands beside the capture; expected a name in {}", output.display(), place.display());
+        return Err(CommandError::Usage(message));
+    }
+    Ok(())
+}
+
+fn described(imported: &Imported, doubts: &[String]) -> Value {
+    let Imported { data, config, found, toml, sentences, .. } = imported;
+    let certainty = match found.certainty() {
+        Certainty::Sure => "sure",
+        Certainty::Likely => "likely",
+        Certainty::Open => "open",
+    };
+    let layouts: Vec<Value> = found.candidates.iter().take(LISTED).map(layout).collect();
+    json!({
+        "data": data.display().to_string(),
+        "config": config.as_ref().map(|c| c.display().to_string()),
+        "certainty": certainty,
+        "decided_by": kind(found.decided_by()),
+        "log_odds_to_the_next": found.margin(),
+        "layouts": layouts,
+        "sentences": sentences,
+        "doubts": doubts,
+        "toml": toml,
+    })
+}
+
+fn layout(candidate: &Candidate) -> Value {
+    let Candidate { layout, counts, evidence, .. } = candidate;
+    let evidence: Vec<Value> = evidence
+        .iter()
+        .map(|e| json!({ "kind": kind(e.kind), "log_odds": e.log_odds, "sentence": e.sentence }))
+        .collect();
+    json!({
+        "words": layout.words.name(),
+        "parts": layout.parts.name(),
+        "q_first": layout.q_first,
+        "receivers": layout.receivers.name(),
+        "header_bytes": layout.header_bytes,
+        "packets": layout.packets,
+        "samples": counts.samples,
+        "receiver_count": counts.receivers,
+        "loop_chirps": counts.chirps,
+        "loops": counts.loops,
+        "log_odds": candidate.log_odds(),
+        "evidence": evidence,
+    })
+}
+
+fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Sharp => "spectrum",
+        Kind::Receivers => "receivers",
+        Kind::Counts => "counts",
+        Kind::Half => "half",
+        Kind::Config => "config",
+        Kind::Usual => "usual",
+    }
+}

@@ -1,0 +1,108 @@
+//! One frame of a capture.
+
+use super::error::CaptureError;
+use super::plan::Plan;
+use super::quality::Quality;
+use super::table::Capture;
+use crate::recording::analytic::analytic;
+use crate::recording::layout::Parts;
+use crate::recording::layout::stream::Stream;
+use ndarray::{Array3, Array4, Axis, s};
+use num_complex::Complex64;
+use std::io::{Read, Seek};
+
+/// The samples of a frame.
+#[derive(Debug, Clone)]
+pub(in crate::recording) struct Frame {
+    /// `[loops, chirps, receivers, samples]`: complex, real ones as analytic signals of half as many samples.
+    pub samples: Array4<Complex64>,
+    /// What is doubtful about them.
+    pub quality: Quality,
+}
+
+impl Frame {
+    /// Reads the loops of the plan; what the capture says is taken out is out.
+    pub fn read<R: Read + Seek>(stream: &mut Stream<R>, capture: &Capture, plan: &Plan) -> Result<Frame, CaptureError> {
+        let Plan { samples, receivers, chirps, loops, layout, .. } = *plan;
+        let size = layout.chirp_bytes(samples, receivers);
+        let mut all = Array4::zeros((loops, chirps, receivers, samples));
+        let mut quality = Quality::new(loops * chirps);
+        let mut bytes = vec![0; size - layout.header_bytes];
+        for n in 0..loops * chirps {
+            let at = plan.start + n as u64 * size as u64 + layout.header_bytes as u64;
+            stream.read_at(at, &mut bytes)?;
+            quality.look_at_bytes(n, &bytes, layout);
+            all.slice_mut(s![n / chirps, n % chirps, .., ..]).assign(&layout.decode(&bytes, samples, receivers));
+        }
+        quality.look_at_samples(&all);
+        if Plan::is_out(capture.constant) {
+            take_out_constant(&mut all);
+        }
+        if Plan::is_out(capture.static_clutter) && loops > 1 {
+            let mean = mean_over_loops(&all);
+            all.outer_iter_mut().for_each(|mut turn| turn -= &mean);
+        }
+        if layout.parts == Parts::Real {
+            all = all_analytic(&all, samples.div_ceil(2));
+        } else if quality.is_real() {
+            all = all_analytic(&all, samples);
+        }
+        Ok(Frame { samples: all, quality })
+    }
+
+    /// How many loops it has.
+    pub fn loops(&self) -> usize {
+        self.samples.dim().0
+    }
+
+    /// The mean of the loops that lack nothing, `[chirps, receivers, samples]`.
+    pub fn mean(&self) -> Array3<Complex64> {
+        let weights = self.weights(false);
+        let mut mean = Array3::zeros(self.samples.index_axis(Axis(0), 0).raw_dim());
+        for (turn, weight) in self.samples.outer_iter().zip(weights) {
+            mean.scaled_add(Complex64::from(weight), &turn);
+        }
+        mean
+    }
+
+    /// What each loop counts, all together 1; those with zeros of lost packets count nothing where others are left.
+    pub fn weights(&self, tapered: bool) -> Vec<f64> {
+        let loops = self.loops();
+        let chirps = self.samples.dim().1;
+        let window = match tapered {
+            true => crate::radar::WindowFunction::Hann.weights(loops + 2)[1..=loops].to_vec(),
+            false => vec![1.0; loops],
+        };
+        let whole = |n: usize| (n * chirps..(n + 1) * chirps).all(|chirp| !self.quality.has_zeros(chirp));
+        let mut weights: Vec<f64> = (0..loops).map(|n| if whole(n) { window[n] } else { 0.0 }).collect();
+        if weights.iter().all(|w| *w == 0.0) {
+            weights = window;
+        }
+        let sum: f64 = weights.iter().sum();
+        weights.into_iter().map(|w| w / sum).collect()
+    }
+}
+
+fn mean_over_loops(all: &Array4<Complex64>) -> Array3<Complex64> {
+    let mut mean = all.sum_axis(Axis(0));
+    let loops = all.dim().0.max(1) as f64;
+    mean.mapv_inplace(|v| v / loops);
+    mean
+}
+
+fn take_out_constant(all: &mut Array4<Complex64>) {
+    for mut row in all.lanes_mut(Axis(3)) {
+        let mean = row.sum() / row.len().max(1) as f64;
+        row.iter_mut().for_each(|v| *v -= mean);
+    }
+}
+
+/// The analytic signals of real samples, of `len` samples.
+fn all_analytic(all: &Array4<Complex64>, len: usize) -> Array4<Complex64> {
+    let (loops, chirps, receivers, _) = all.dim();
+    let mut out = Array4::zeros((loops, chirps, receivers, len));
+    for (row, mut found) in all.lanes(Axis(3)).into_iter().zip(out.lanes_mut(Axis(3))) {
+        found.iter_mut().zip(analytic(&row.to_vec(), len)).for_each(|(to, v)| *to = v);
+    }
+    out
+}

@@ -1,0 +1,104 @@
+//! Raw captures: 16-bit samples as a capture card writes them, one layout or another ([`layout`](super::layout)).
+//!
+//! The layout of TI's card (DCA1000) is that of "Mmwave Radar Device ADC Raw Data Capture" (SWRA581).
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `table` | what the TOML says of a capture |
+//! | `plan` | what stands where in the file |
+//! | `frame` | reads a frame, `[loops, chirps, receivers, samples]` |
+//! | `quality` | zeros of lost packets, saturation, constant parts, real samples |
+//! | `doppler` | the strongest Doppler cell of each range bin, chirps in time division compensated |
+//! | `channels` | transmitters that send together, phases and range bias that a `.cfg` says |
+
+mod channels;
+mod doppler;
+mod error;
+mod frame;
+mod plan;
+mod quality;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use super::layout::ReceiverOrder;
+pub use error::CaptureError;
+pub(super) use frame::Frame;
+pub(super) use plan::Plan;
+pub use table::{Capture, Part, Together, Turn};
+
+use super::layout::stream::Stream;
+use super::profile::RadarProfile;
+use channels::Channels;
+use ndarray::Array3;
+use num_complex::Complex64;
+use std::io::{Read, Seek};
+
+/// What the samples of a capture mean.
+pub(super) struct Meaning<'a> {
+    /// The `.cfg`, where there is one.
+    pub profile: Option<&'a RadarProfile>,
+    /// Turns of phase across the array for each pair at a cosine of 1, transmitter by transmitter; fewer than pairs where unknown.
+    pub turns: &'a [f64],
+    /// The beat's phase rises from sample to sample.
+    pub beat_rises: bool,
+}
+
+impl Capture {
+    /// Reads what is looked at: `[chirps, receivers, samples]`, and sentences on what is doubtful. No other frame is read.
+    ///
+    /// # Errors
+    /// [`CaptureError`] where the layout, the `.cfg` and the file don't fit each other.
+    pub(super) fn read(
+        &self,
+        file: impl Read + Seek,
+        meaning: &Meaning<'_>,
+    ) -> Result<(Array3<Complex64>, Vec<String>), CaptureError> {
+        let mut stream = Stream::new(file)?;
+        let plan = Plan::new(self, meaning.profile, stream.bytes())?;
+        let chosen = plan.chosen_chirps(self)?;
+        let frame = Frame::read(&mut stream, self, &plan)?;
+        let mut notes = plan.notes.clone();
+        notes.extend(frame.quality.sentences(&plan, self.constant == Part::Out));
+        let channels = Channels::of(meaning.profile, &plan);
+        notes.extend(channels.notes());
+        let rows = match self.turn {
+            Turn::Number(turn) => {
+                channels.of_loop(&frame.samples.index_axis(ndarray::Axis(0), turn.min(frame.loops() - 1)))
+            }
+            Turn::All(Together::Mean) => channels.of_loop(&frame.mean().view()),
+            Turn::All(Together::Strongest) => {
+                let (rows, note) = doppler::strongest(&frame, &channels, &chosen, meaning.turns);
+                notes.extend(note);
+                rows
+            }
+        };
+        let mut rows = rows.select(ndarray::Axis(0), &chosen);
+        if let Some(taken) = &self.receivers_taken {
+            rows = rows.select(ndarray::Axis(1), &plan.taken(taken)?);
+        }
+        if let Some(profile) = meaning.profile {
+            channels::take_off_bias(&mut rows, profile, meaning.beat_rises);
+        }
+        Ok((rows, notes))
+    }
+
+    /// Reads every loop of the frame, `[loops, elements, samples]`: the elements are the chosen chirps' receivers.
+    ///
+    /// # Errors
+    /// As [`Capture::read`].
+    pub(super) fn loops(
+        &self,
+        file: impl Read + Seek,
+        profile: Option<&RadarProfile>,
+    ) -> Result<Array3<Complex64>, CaptureError> {
+        let mut stream = Stream::new(file)?;
+        let plan = Plan::new(self, profile, stream.bytes())?;
+        let chosen = plan.chosen_chirps(self)?;
+        let samples = Frame::read(&mut stream, self, &plan)?.samples.select(ndarray::Axis(1), &chosen);
+        let (loops, chirps, receivers, len) = samples.dim();
+        let whole = samples.as_standard_layout().into_owned();
+        // The same numbers in the same order: the shape can't fail to fit.
+        whole.into_shape_with_order((loops, chirps * receivers, len)).map_err(|_| CaptureError::TooLarge)
+    }
+}

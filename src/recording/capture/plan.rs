@@ -1,0 +1,202 @@
+//! What stands where in a capture: counts, sizes, and how many frames there are.
+
+use super::error::CaptureError;
+use super::table::{Capture, Part, Turn};
+use crate::recording::layout::{Layout, Parts};
+use crate::recording::numbers::bounded_count;
+use crate::recording::profile::RadarProfile;
+
+/// Most samples of a frame that are held at once: a frame of more is read up to there.
+const MOST_FRAME_NUMBERS: usize = 1 << 23;
+/// Most of each count that a text may say.
+const MOST_COUNT: usize = 1 << 16;
+
+/// Counts and sizes of a capture.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::recording) struct Plan {
+    pub layout: Layout,
+    /// Samples of a chirp in the file.
+    pub samples: usize,
+    pub receivers: usize,
+    /// Chirps of a loop.
+    pub chirps: usize,
+    /// Loops that are read.
+    pub loops: usize,
+    /// Byte at which they begin.
+    pub start: u64,
+    /// Whole frames of the file.
+    pub frames: u64,
+    /// Loops of a frame.
+    pub all_loops: usize,
+    /// Sentences on what the file lacks.
+    pub notes: Vec<String>,
+}
+
+impl Plan {
+    pub fn new(capture: &Capture, profile: Option<&RadarProfile>, bytes: u64) -> Result<Plan, CaptureError> {
+        let layout = layout(capture)?;
+        let [samples, receivers, chirps, all_loops] = counts(capture, profile)?;
+        let lanes = layout.parts.group();
+        let numbers = bounded_count(&[chirps, receivers, samples]).ok_or(CaptureError::TooLarge)?;
+        if !(samples * receivers).is_multiple_of(lanes) {
+            return Err(CaptureError::Unfilled { receivers, samples, lanes });
+        }
+        let header = layout.header_bytes.min(MOST_COUNT) as u64;
+        let chirp_numbers = (samples * receivers) as u64;
+        let size = |numbers: u64| numbers * layout.parts.bytes() as u64 + numbers / chirp_numbers.max(1) * header;
+        let loop_bytes = size(numbers as u64);
+        let frame_numbers = profile.map_or(0, |p| p.frame_numbers as u64).max(numbers as u64 * all_loops as u64);
+        let before = size(profile.map_or(0, |p| p.numbers_before as u64));
+        let frame_bytes = size(frame_numbers);
+        let mut plan = Plan {
+            layout,
+            samples,
+            receivers,
+            chirps,
+            loops: 0,
+            start: 0,
+            frames: bytes / frame_bytes,
+            all_loops,
+            notes: Vec::new(),
+        };
+        plan.take_frame(capture, bytes, [loop_bytes, frame_bytes, before])?;
+        plan.note_size(bytes, frame_bytes, profile.map_or(0, |p| p.frames));
+        if let Turn::Number(asked) = capture.turn
+            && asked >= plan.loops
+        {
+            return Err(CaptureError::NoLoop { asked, loops: plan.loops.max(1) });
+        }
+        Ok(plan)
+    }
+
+    /// Which loops are read of the frame asked for.
+    fn take_frame(&mut self, capture: &Capture, bytes: u64, sizes: [u64; 3]) -> Result<(), CaptureError> {
+        let [loop_bytes, frame_bytes, before] = sizes;
+        let there = bytes.saturating_sub(before) / loop_bytes.max(1);
+        if there == 0 {
+            let Plan { chirps, receivers, samples, .. } = *self;
+            return Err(CaptureError::Size { bytes, expected: before + loop_bytes, chirps, receivers, samples });
+        }
+        let partial = self.frames == 0;
+        if capture.frame as u64 >= self.frames.max(1) {
+            return Err(CaptureError::NoFrame { asked: capture.frame, frames: self.frames });
+        }
+        self.start = before + capture.frame as u64 * frame_bytes;
+        let whole = if partial { there.min(self.all_loops as u64) as usize } else { self.all_loops };
+        let held = MOST_FRAME_NUMBERS / (self.samples * self.receivers * self.chirps).max(1);
+        self.loops = whole.min(held.max(1));
+        if self.loops < whole {
+            self.notes.push(format!(
+                "A frame has {whole} loops, more than are held at once: the first {} are read.",
+                self.loops
+            ));
+        }
+        Ok(())
+    }
+
+    fn note_size(&mut self, bytes: u64, frame_bytes: u64, said: usize) {
+        let rest = bytes % frame_bytes;
+        let parts = |frames: u64| format!("{frames} whole frame{}", if frames == 1 { "" } else { "s" });
+        match self.frames {
+            0 => self.notes.push(format!(
+                "The file is cut: it holds {bytes} of the {frame_bytes} bytes of a frame, of which {} whole loops are read.",
+                self.loops
+            )),
+            frames if rest > 0 => self.notes.push(format!(
+                "The file holds {} and {rest} bytes of another ({:.0} %), which are left out.",
+                parts(frames),
+                100.0 * rest as f64 / frame_bytes as f64
+            )),
+            frames if said > 0 && frames != said as u64 => {
+                self.notes.push(format!("The file holds {}, not the {said} that the .cfg asks for.", parts(frames)));
+            }
+            _ => {}
+        }
+    }
+
+    /// The chirps that form the line of elements.
+    pub fn chosen_chirps(&self, capture: &Capture) -> Result<Vec<usize>, CaptureError> {
+        let last = self.chirps - 1;
+        match &capture.chirps {
+            None if last == 0 => Ok(vec![0]),
+            None => Err(CaptureError::Chirps { found: "missing".to_owned(), last }),
+            Some(chirps) if is_choice(chirps, last) => Ok(chirps.clone()),
+            Some(chirps) => Err(CaptureError::Chirps { found: format!("{chirps:?}"), last }),
+        }
+    }
+
+    /// The receivers that form it.
+    pub fn taken(&self, taken: &[usize]) -> Result<Vec<usize>, CaptureError> {
+        if is_choice(taken, self.receivers - 1) {
+            return Ok(taken.to_vec());
+        }
+        let expected = "some of the receivers that are on, by place from 0, each once";
+        Err(CaptureError::Count { key: "receivers_taken", found: format!("is {taken:?}"), expected })
+    }
+
+    /// Whether a part is taken out.
+    pub fn is_out(part: Part) -> bool {
+        part == Part::Out
+    }
+}
+
+/// Whether the numbers are some of 0 to `last`, each once.
+fn is_choice(numbers: &[usize], last: usize) -> bool {
+    let mut sorted = numbers.to_vec();
+    sorted.sort_unstable();
+    sorted.dedup();
+    !sorted.is_empty() && sorted.len() == numbers.len() && sorted.iter().all(|n| *n <= last)
+}
+
+fn layout(capture: &Capture) -> Result<Layout, CaptureError> {
+    let parts = match (capture.parts, capture.lanes) {
+        (Some(parts), None) => parts,
+        (None, Some(2)) => Parts::TwoLanes,
+        (None, Some(4)) => Parts::FourLanes,
+        (None, Some(lanes)) => return Err(CaptureError::Lanes(lanes)),
+        (None, None) => return Err(CaptureError::Parts("parts is missing")),
+        (Some(_), Some(_)) => return Err(CaptureError::Parts("lanes stands beside parts")),
+    };
+    let Capture { words, q_first, receivers, header_bytes, .. } = *capture;
+    if header_bytes > MOST_COUNT {
+        let found = format!("is {header_bytes}");
+        return Err(CaptureError::Count { key: "header_bytes", found, expected: "at most 65536" });
+    }
+    Ok(Layout { words, parts, q_first, receivers, header_bytes, packets: false })
+}
+
+/// Samples, receivers, chirps and loops.
+fn counts(capture: &Capture, profile: Option<&RadarProfile>) -> Result<[usize; 4], CaptureError> {
+    let Capture { samples, receiver_count, loop_chirps, loops, .. } = *capture;
+    let said =
+        [("samples", samples), ("receiver_count", receiver_count), ("loop_chirps", loop_chirps), ("loops", loops)];
+    if let Some(profile) = profile {
+        if let Some((key, Some(value))) = said.into_iter().find(|(_, value)| value.is_some()) {
+            let expected = "it not beside a .cfg, which says it";
+            return Err(CaptureError::Count { key, found: format!("is {value}"), expected });
+        }
+        return Ok([profile.samples, profile.receivers, profile.chirp_transmitters.len(), profile.loops]);
+    }
+    let mut counts = [1; 4];
+    for (count, (key, value)) in counts.iter_mut().zip(said) {
+        *count = match value {
+            Some(value) if (1..=MOST_COUNT).contains(&value) => value,
+            None if ["loop_chirps", "loops"].contains(&key) => 1,
+            None => {
+                return Err(CaptureError::Count {
+                    key,
+                    found: "is missing".to_owned(),
+                    expected: "it where no .cfg says it",
+                });
+            }
+            Some(value) => {
+                return Err(CaptureError::Count {
+                    key,
+                    found: format!("is {value}"),
+                    expected: "a number from 1 to 65536",
+                });
+            }
+        };
+    }
+    Ok(counts)
+}

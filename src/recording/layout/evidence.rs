@@ -1,0 +1,170 @@
+//! Evidence for a layout: log-odds of several kinds, which add up.
+//!
+//! The level of a spectrum is the one that decides most: twice the negative logarithm of the likelihood of Gaussian samples with this
+//! spectrum is the mean of its logarithm (Whittle, 1953), and every layout holds the same bytes.
+
+use super::spectrum::Spectrum;
+use super::{Counts, Layout, Parts, ReceiverOrder, Words};
+use crate::recording::RadarProfile;
+
+/// Which kind of evidence it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// Echoes stand in few bins over a low floor, without images.
+    Sharp,
+    /// Receivers see the same echoes.
+    Receivers,
+    /// Whole frames fill the file.
+    Counts,
+    /// One half of the range axis is empty: I before Q, or Q before I.
+    Half,
+    /// What the `.cfg` says of the data.
+    Config,
+    /// How usual a layout is.
+    Usual,
+}
+
+/// One piece of evidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evidence {
+    /// Its kind.
+    pub kind: Kind,
+    /// Natural logarithm of the odds that it gives the layout.
+    pub log_odds: f64,
+    /// What was found.
+    pub sentence: String,
+}
+
+/// Log-odds of a nat of the spectrum's level.
+pub(super) const OF_LEVEL: f64 = 300.0;
+/// Log-odds of receivers whose profiles are alike.
+const OF_ALIKE: f64 = 10.0;
+/// Log-odds of an empty half for each echo that stands out, and most echoes that count.
+const OF_HALF: f64 = 2.0;
+const MOST_ECHOES: usize = 6;
+/// Log-odds of what the `.cfg` says: of I and Q, of the receivers' order, and of real samples.
+const OF_ORDER: f64 = 5.0;
+const OF_RECEIVERS: f64 = 2.0;
+const OF_REAL: f64 = 12.0;
+
+/// What is known of a file beside its samples.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Known<'a> {
+    pub profile: Option<&'a RadarProfile>,
+    /// Bytes of data.
+    pub bytes: u64,
+}
+
+/// All evidence for `layout`, whose bytes have this spectrum.
+pub(super) fn evidence(layout: &Layout, counts: Counts, spectrum: &Spectrum, known: Known<'_>) -> Vec<Evidence> {
+    let mut all = vec![sharp(spectrum)];
+    all.extend((counts.receivers > 1).then(|| receivers(spectrum)));
+    all.push(filling(layout, counts, known));
+    if layout.parts != Parts::Real {
+        all.push(half(spectrum, known));
+    }
+    all.extend(known.profile.map(|profile| config(layout, profile)));
+    all.push(Evidence { kind: Kind::Usual, log_odds: usual(layout), sentence: String::new() });
+    all
+}
+
+fn sharp(spectrum: &Spectrum) -> Evidence {
+    let sentence = format!(
+        "{} out, and between echoes the spectrum lies {:.1} dB below a flat one",
+        if spectrum.echoes == 1 { "one echo stands".to_owned() } else { format!("{} echoes stand", spectrum.echoes) },
+        spectrum.flatness_db()
+    );
+    Evidence { kind: Kind::Sharp, log_odds: -OF_LEVEL * spectrum.level, sentence }
+}
+
+fn receivers(spectrum: &Spectrum) -> Evidence {
+    let said =
+        if spectrum.alike > 0.7 { "every receiver sees the same echoes" } else { "receivers see different echoes" };
+    let sentence = format!("{said} (correlation {:.2})", spectrum.alike);
+    Evidence { kind: Kind::Receivers, log_odds: OF_ALIKE * spectrum.alike, sentence }
+}
+
+/// Bytes of a frame.
+pub(super) fn frame_bytes(layout: &Layout, counts: Counts, profile: Option<&RadarProfile>) -> u64 {
+    let numbers = counts.samples as u64 * counts.receivers as u64;
+    let chirps = counts.chirps as u64 * counts.loops as u64;
+    let all_numbers = profile.map_or(0, |p| p.frame_numbers as u64).max(numbers.saturating_mul(chirps));
+    let headers = all_numbers.checked_div(numbers).unwrap_or(0).saturating_mul(layout.header_bytes as u64);
+    all_numbers.saturating_mul(layout.parts.bytes() as u64).saturating_add(headers).max(1)
+}
+
+fn filling(layout: &Layout, counts: Counts, known: Known<'_>) -> Evidence {
+    let frame = frame_bytes(layout, counts, known.profile);
+    let (frames, rest) = (known.bytes / frame, known.bytes % frame);
+    let said = known.profile.map_or(0, |p| p.frames as u64);
+    let whole = if frames == 1 { "one whole frame".to_owned() } else { format!("{frames} whole frames") };
+    let fill = if frames == 1 { "fills" } else { "fill" };
+    let (log_odds, sentence) = match (frames, rest) {
+        (0, _) => (-3.0, format!("the file is smaller than one frame ({} of {frame} bytes)", known.bytes)),
+        (_, 0) if said == 0 || said == frames => (3.0, format!("{whole} {fill} the file")),
+        (_, 0) => (1.5, format!("{whole} {fill} the file, not the {said} that were asked for")),
+        _ => (0.0, format!("{whole} and a part of one fill the file")),
+    };
+    Evidence { kind: Kind::Counts, log_odds, sentence }
+}
+
+/// Echoes stand at positive frequencies where the chirp rises.
+fn half(spectrum: &Spectrum, known: Known<'_>) -> Evidence {
+    let rises = known.profile.is_none_or(RadarProfile::rises);
+    let near = if rises { spectrum.near } else { -spectrum.near };
+    let part = 100.0 * (1.0 + near.abs()) / 2.0;
+    let which = if near >= 0.0 { "near" } else { "far" };
+    let sentence = format!("{part:.0} % of the power stands in the {which} half of the range axis");
+    let echoes = spectrum.echoes.clamp(1, MOST_ECHOES) as f64;
+    Evidence { kind: Kind::Half, log_odds: OF_HALF * echoes * near, sentence }
+}
+
+fn config(layout: &Layout, profile: &RadarProfile) -> Evidence {
+    let mut log_odds = 0.0;
+    let mut agrees = Vec::new();
+    let mut say = |said: Option<bool>, is: bool, odds: f64, what: &'static str| {
+        if let Some(said) = said {
+            log_odds += if said == is { odds } else { -odds };
+            agrees.extend((said == is).then_some(what));
+        }
+    };
+    say(
+        Some(profile.real),
+        layout.parts == Parts::Real,
+        OF_REAL,
+        if profile.real { "real samples" } else { "complex samples" },
+    );
+    if layout.parts != Parts::Real {
+        say(profile.q_first, layout.q_first, OF_ORDER, if layout.q_first { "Q first" } else { "I first" });
+    }
+    if profile.receivers > 1 {
+        let interleaved = layout.receivers == ReceiverOrder::Interleaved;
+        say(
+            profile.interleaved,
+            interleaved,
+            OF_RECEIVERS,
+            if interleaved { "receivers sample by sample" } else { "receivers one after another" },
+        );
+    }
+    let sentence = if agrees.is_empty() {
+        "the .cfg says otherwise".to_owned()
+    } else {
+        format!("the .cfg says {}", agrees.join(", "))
+    };
+    Evidence { kind: Kind::Config, log_odds, sentence }
+}
+
+fn usual(layout: &Layout) -> f64 {
+    let words = match layout.words {
+        Words::Int16 => 0.0,
+        Words::OffsetBinary | Words::TwelveBits => -1.0,
+        Words::BigEndian => -2.0,
+    };
+    let parts = match layout.parts {
+        Parts::Pairs | Parts::TwoLanes => 0.0,
+        Parts::FourLanes => -0.5,
+        Parts::Real => -2.0,
+    };
+    let order = if layout.q_first { -0.5 } else { 0.0 };
+    words + parts + order
+}

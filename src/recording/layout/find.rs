@@ -1,0 +1,244 @@
+//! The candidates, and the best of them.
+
+use super::counts::{self, Searched};
+use super::evidence::{Evidence, Kind, Known, evidence};
+use super::marks::{HEADER_BYTES, Marks, marks};
+use super::spectrum::Spectrum;
+use super::stream::Stream;
+use super::{Counts, Layout, Parts, ReceiverOrder, Words};
+use crate::recording::RadarProfile;
+use ndarray::Array2;
+use num_complex::Complex64;
+use std::io::{self, Read, Seek};
+
+/// Most chirps that a candidate is judged by.
+const CHIRPS: usize = 16;
+/// Most bytes that a candidate is judged by.
+const MOST_BYTES: usize = 1 << 20;
+/// A run of so many zero bytes is no sample of a radar: its chirp is left out.
+const ZERO_RUN: usize = 128;
+/// A spectrum whose level lies no farther below a flat one has no echo, decibels; fewer profiles scatter more.
+const FLAT_DB: f64 = 0.35;
+
+/// A layout with what speaks for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// The layout.
+    pub layout: Layout,
+    /// Samples, receivers, chirps and loops.
+    pub counts: Counts,
+    /// What speaks for it, and against it.
+    pub evidence: Vec<Evidence>,
+    /// Mean power of each range bin, in the square of the file's unit.
+    pub power: Vec<f64>,
+    /// Mean level below a flat spectrum, decibels.
+    pub flatness_db: f64,
+}
+
+impl Candidate {
+    /// Natural logarithm of its odds, up to a constant that all candidates share.
+    pub fn log_odds(&self) -> f64 {
+        self.evidence.iter().map(|e| e.log_odds).sum()
+    }
+
+    /// The log-odds of one kind.
+    pub fn of_kind(&self, kind: Kind) -> f64 {
+        self.evidence.iter().filter(|e| e.kind == kind).map(|e| e.log_odds).sum()
+    }
+}
+
+/// What was found of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// The candidates, the best first; there is one at least.
+    pub candidates: Vec<Candidate>,
+    /// Sentences on headers, packets and counts.
+    pub notes: Vec<String>,
+}
+
+/// Why a file has no layout.
+#[derive(Debug, thiserror::Error)]
+pub enum LayoutError {
+    /// The system could not read.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// The file holds less than a chirp.
+    #[error("has {bytes} bytes; expected at least one chirp, {expected} bytes{whose}")]
+    Short {
+        /// Size found.
+        bytes: u64,
+        /// Bytes of a chirp.
+        expected: u64,
+        /// Who says so.
+        whose: &'static str,
+    },
+    /// Whatever the layout, the bytes make no echo.
+    #[error(
+        "is no capture of a kind that is known: in every layout its spectrum is flat, as of random bytes ({tried} were tried); expected \
+         16-bit samples, with the .cfg that set the radar up beside them where there is one"
+    )]
+    NoEcho {
+        /// How many layouts were tried.
+        tried: usize,
+    },
+    /// Every sample is zero.
+    #[error("holds nothing but zeros")]
+    Zeros,
+}
+
+/// Finds the layout of a capture: `profile` says what is known of it.
+///
+/// # Errors
+/// [`LayoutError`] where the file is too short, or no layout makes echoes of it.
+pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfile>) -> Result<Found, LayoutError> {
+    let marks = marks(stream)?;
+    let mut notes = Vec::new();
+    let searched: Vec<Counts> = match profile {
+        Some(p) => {
+            vec![Counts {
+                samples: p.samples,
+                receivers: p.receivers,
+                chirps: p.chirp_transmitters.len(),
+                loops: p.loops,
+            }]
+        }
+        None => {
+            let Searched { counts, note } = counts::search(stream, marks)?;
+            notes.extend(note);
+            counts
+        }
+    };
+    let header_bytes = headers(marks, &searched, profile, &mut notes);
+    let packets = stream.has_packets();
+    let mut candidates = Vec::new();
+    for counts in searched {
+        let job = Job { counts, header_bytes, packets, known: Known { profile, bytes: stream.bytes() } };
+        candidates.extend(job.candidates(stream)?);
+    }
+    candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
+    let Some(best) = candidates.first() else {
+        return Err(LayoutError::Short { bytes: stream.bytes(), expected: 1024, whose: "" });
+    };
+    if best.power.iter().all(|p| *p < 0.5) {
+        return Err(LayoutError::Zeros);
+    }
+    if best.flatness_db < FLAT_DB {
+        return Err(LayoutError::NoEcho { tried: candidates.len() });
+    }
+    if packets {
+        let lost = match stream.lost_packets() {
+            0 => "none is lost".to_owned(),
+            1 => "one is lost and read as zeros".to_owned(),
+            lost => format!("{lost} are lost and read as zeros"),
+        };
+        notes.push(format!("The file holds network packets with headers of 10 bytes: {lost}."));
+    }
+    Ok(Found { candidates, notes })
+}
+
+/// Bytes of the headers before chirps.
+fn headers(marks: Option<Marks>, counts: &[Counts], profile: Option<&RadarProfile>, notes: &mut Vec<String>) -> usize {
+    let Some(Marks { found, apart }) = marks else {
+        if profile.is_some_and(|p| p.headers) {
+            notes.push("The .cfg asks for a header before each chirp, but none stands there.".to_owned());
+        }
+        return 0;
+    };
+    let fits = |c: &Counts| Parts::ALL.iter().any(|p| c.samples * c.receivers * p.bytes() + HEADER_BYTES == apart);
+    if !counts.iter().any(fits) && found > 1 {
+        let held = (apart - HEADER_BYTES) / 4;
+        notes.push(format!(
+            "Headers stand {apart} bytes apart, so a chirp holds {held} complex samples of all receivers: the .cfg says otherwise."
+        ));
+    }
+    notes.push(format!("Each chirp begins with a header of {HEADER_BYTES} bytes: {found} were found."));
+    HEADER_BYTES
+}
+
+/// One set of counts to judge every layout by.
+struct Job<'a> {
+    counts: Counts,
+    header_bytes: usize,
+    packets: bool,
+    known: Known<'a>,
+}
+
+impl Job<'_> {
+    fn candidates<R: Read + Seek>(&self, stream: &mut Stream<R>) -> Result<Vec<Candidate>, LayoutError> {
+        let Counts { samples, receivers, .. } = self.counts;
+        let mut all = Vec::new();
+        for parts in Parts::ALL {
+            let numbers = samples.saturating_mul(receivers);
+            if numbers == 0 || !numbers.is_multiple_of(parts.group()) {
+                continue;
+            }
+            let size = numbers.saturating_mul(parts.bytes()).saturating_add(self.header_bytes);
+            let chirps = self.chirps(stream, size, numbers)?;
+            if chirps.is_empty() {
+                continue;
+            }
+            let short = fits_twelve(&chirps);
+            for words in Words::ALL.into_iter().filter(|w| *w != Words::TwelveBits || short) {
+                for order in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
+                    if order == ReceiverOrder::OneAfterAnother || receivers > 1 {
+                        self.judge(parts, words, order, &chirps, &mut all);
+                    }
+                }
+            }
+        }
+        if all.is_empty() {
+            let expected = (samples * receivers * 4 + self.header_bytes) as u64;
+            let whose = if self.known.profile.is_some() { " as the .cfg says" } else { "" };
+            return Err(LayoutError::Short { bytes: self.known.bytes, expected, whose });
+        }
+        Ok(all)
+    }
+
+    /// The first chirps without their headers; those with runs of zeros are left out where others are left.
+    fn chirps<R: Read + Seek>(&self, stream: &mut Stream<R>, size: usize, numbers: usize) -> io::Result<Vec<Vec<u8>>> {
+        let before = self.known.profile.map_or(0, |p| p.numbers_before) / numbers * size;
+        let most = (MOST_BYTES / size).clamp(1, CHIRPS);
+        let there = stream.bytes().saturating_sub(before as u64) / size as u64;
+        let mut chirps = Vec::new();
+        for n in 0..there.min(most as u64) {
+            let mut bytes = vec![0; size - self.header_bytes];
+            stream.read_at(before as u64 + n * size as u64 + self.header_bytes as u64, &mut bytes)?;
+            chirps.push(bytes);
+        }
+        let whole = |bytes: &Vec<u8>| bytes.chunks(ZERO_RUN).all(|part| part.iter().any(|b| *b != 0));
+        if chirps.iter().any(whole) {
+            chirps.retain(whole);
+        }
+        Ok(chirps)
+    }
+
+    fn judge(&self, parts: Parts, words: Words, order: ReceiverOrder, chirps: &[Vec<u8>], all: &mut Vec<Candidate>) {
+        let Counts { samples, receivers, .. } = self.counts;
+        let Job { header_bytes, packets, .. } = *self;
+        let layout = Layout { words, parts, q_first: false, receivers: order, header_bytes, packets };
+        let mut rows = Array2::<Complex64>::zeros((chirps.len() * receivers, samples));
+        for (n, bytes) in chirps.iter().enumerate() {
+            let chirp = layout.decode(bytes, samples, receivers);
+            rows.slice_mut(ndarray::s![n * receivers..(n + 1) * receivers, ..]).assign(&chirp);
+        }
+        let spectrum = Spectrum::of(&rows, receivers);
+        if parts == Parts::Real {
+            all.push(self.candidate(layout, spectrum.of_real()));
+        } else {
+            all.push(self.candidate(Layout { q_first: true, ..layout }, spectrum.mirrored()));
+            all.push(self.candidate(layout, spectrum));
+        }
+    }
+
+    fn candidate(&self, layout: Layout, spectrum: Spectrum) -> Candidate {
+        let evidence = evidence(&layout, self.counts, &spectrum, self.known);
+        let flatness_db = spectrum.flatness_db();
+        Candidate { layout, counts: self.counts, evidence, power: spectrum.power, flatness_db }
+    }
+}
+
+/// Whether every word is one of 12 bits whose sign was not carried into the upper four.
+fn fits_twelve(chirps: &[Vec<u8>]) -> bool {
+    let words = || chirps.iter().flat_map(|bytes| bytes.chunks_exact(2)).map(|b| u16::from_le_bytes([b[0], b[1]]));
+    words().all(|word| word < 0x1000) && words().any(|word| word >= 0x0800)
+}

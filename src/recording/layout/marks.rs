@@ -1,0 +1,35 @@
+//! Headers before chirps, found by the bytes that each begins with.
+
+use super::stream::Stream;
+use std::io::{self, Read, Seek};
+
+/// What the header of a chirp begins with: 0x0CDA0ADC twice, high half word first.
+pub(super) const MAGIC: [u8; 8] = [0xdc, 0x0a, 0xda, 0x0c, 0xdc, 0x0a, 0xda, 0x0c];
+
+/// Bytes of such a header.
+pub const HEADER_BYTES: usize = 64;
+
+/// How far headers are looked for, bytes.
+const LOOKED_THROUGH: u64 = 1 << 20;
+
+/// Headers that were found before chirps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Marks {
+    /// How many.
+    pub found: usize,
+    /// Bytes from one to the next; 0 where there is one.
+    pub apart: usize,
+}
+
+/// Looks for headers at even distances from the first byte on.
+pub(super) fn marks<R: Read + Seek>(stream: &mut Stream<R>) -> io::Result<Option<Marks>> {
+    let mut start = vec![0; stream.bytes().min(LOOKED_THROUGH) as usize];
+    stream.read_at(0, &mut start)?;
+    if !start.starts_with(&MAGIC) {
+        return Ok(None);
+    }
+    let next = start.windows(MAGIC.len()).skip(1).position(|bytes| bytes == MAGIC).map(|at| at + 1);
+    let Some(apart) = next.filter(|apart| *apart > HEADER_BYTES) else { return Ok(Some(Marks { found: 1, apart: 0 })) };
+    let found = start.chunks(apart).take_while(|chunk| chunk.starts_with(&MAGIC)).count();
+    Ok(Some(Marks { found, apart }))
+}

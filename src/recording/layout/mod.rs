@@ -1,0 +1,36 @@
+//! How the bytes of a raw capture stand for samples, and which of many ways is the right one, by evidence.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `words` | 16 bits to a number |
+//! | `parts` | orders of real and imaginary parts, and of receivers |
+//! | `shape` | a layout, and counts |
+//! | `decode` | bytes to samples of receivers |
+//! | [`stream`] | bytes by seeking, without the headers of packets |
+//! | `marks` | headers of chirps and of packets |
+//! | `spectrum` | what a layout makes of the bytes: range profiles |
+//! | `evidence` | log-odds of a layout, of several kinds |
+//! | `find` | the candidates and the best of them |
+//! | `counts` | samples and receivers where no text says them |
+//! | `verdict` | why, in sentences |
+
+mod counts;
+mod decode;
+mod evidence;
+mod find;
+mod marks;
+mod parts;
+mod shape;
+mod spectrum;
+pub mod stream;
+#[cfg(test)]
+mod tests;
+mod verdict;
+mod words;
+
+pub use evidence::{Evidence, Kind};
+pub use find::{Candidate, Found, LayoutError, find};
+pub use parts::{Parts, ReceiverOrder};
+pub use shape::{Counts, Layout};
+pub use verdict::Certainty;
+pub use words::Words;

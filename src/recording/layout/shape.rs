@@ -1,0 +1,41 @@
+//! A layout: how bytes stand for samples; and how many of each there are.
+
+use super::parts::{Parts, ReceiverOrder};
+use super::words::Words;
+
+/// How the bytes of a chirp stand for samples of its receivers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Layout {
+    /// 16 bits to a number.
+    pub words: Words,
+    /// Order of real and imaginary parts.
+    pub parts: Parts,
+    /// Imaginary parts come first.
+    pub q_first: bool,
+    /// Order of the receivers.
+    pub receivers: ReceiverOrder,
+    /// Bytes before each chirp that are no samples.
+    pub header_bytes: usize,
+    /// Whether the file holds network packets, each of [`PACKET_BYTES`](super::stream::PACKET_BYTES).
+    pub packets: bool,
+}
+
+/// How many of each a capture holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Counts {
+    /// Samples of a chirp, as the converter takes them.
+    pub samples: usize,
+    /// Receivers.
+    pub receivers: usize,
+    /// Chirps of a loop.
+    pub chirps: usize,
+    /// Loops of a frame.
+    pub loops: usize,
+}
+
+impl Layout {
+    /// Bytes of one chirp of all receivers, with its header.
+    pub fn chirp_bytes(&self, samples: usize, receivers: usize) -> usize {
+        self.header_bytes + samples * receivers * self.parts.bytes()
+    }
+}

@@ -1,0 +1,134 @@
+//! What a layout makes of the bytes: range profiles of many chirps and receivers, and figures on them.
+
+use crate::maps::windowed_range_transform;
+use crate::radar::{Radar, WindowFunction};
+use ndarray::{Array2, ArrayView2, Axis};
+use num_complex::Complex64;
+
+/// Power that rounding to whole numbers leaves in a bin: a twelfth for each part.
+const ROUNDING: f64 = 1.0 / 6.0;
+
+/// An echo stands so far above the middle of all bins, decibels, and no farther below the strongest.
+const ABOVE_MEDIAN_DB: f64 = 15.0;
+const BELOW_PEAK_DB: f64 = 40.0;
+
+/// Mean powers of range profiles, and figures on them.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Spectrum {
+    /// Power of each range bin, mean over chirps and receivers.
+    pub power: Vec<f64>,
+    /// Mean over the bins of the natural logarithm of `power`: low where the layout is right, since then echoes stand in few bins.
+    pub level: f64,
+    /// Mean correlation of the receivers' logarithmic range profiles with their mean, -1 to 1; 1 for one receiver.
+    pub alike: f64,
+    /// Power of the near half of the bins less that of the far half, over both: -1 to 1.
+    pub near: f64,
+    /// How many echoes stand out.
+    pub echoes: usize,
+}
+
+impl Spectrum {
+    /// Of rows of `receivers` in turn, `[chirps * receivers, samples]`. The mean of each row is taken out.
+    pub fn of(rows: &Array2<Complex64>, receivers: usize) -> Spectrum {
+        let (count, samples) = rows.dim();
+        let mut centred = rows.clone();
+        for mut row in centred.outer_iter_mut() {
+            let mean = row.sum() / samples.max(1) as f64;
+            row.mapv_inplace(|v| v - mean);
+        }
+        let radar = Radar { samples, ..Radar::default() };
+        let window = WindowFunction::Hann.weights(samples);
+        let gain = window.iter().map(|w| w * w).sum::<f64>() / samples.max(1) as f64;
+        let profiles = windowed_range_transform(&radar, centred.view(), &window).profiles;
+        let mut of_receivers = Array2::<f64>::zeros((receivers, samples));
+        let each = (count / receivers).max(1) as f64 * gain.max(f64::MIN_POSITIVE);
+        for (n, row) in profiles.outer_iter().enumerate() {
+            let mut power = of_receivers.row_mut(n % receivers);
+            power.iter_mut().zip(row).for_each(|(p, v)| *p += v.norm_sqr() / each);
+        }
+        of_receivers.mapv_inplace(|p| p + ROUNDING);
+        let power: Vec<f64> = of_receivers.mean_axis(Axis(0)).map_or_else(Vec::new, |mean| mean.to_vec());
+        let spectrum = Spectrum::of_power(power, alike(of_receivers.view()));
+        // The logarithm of a mean of few powers lies below that of the mean of many, by half of one over their number.
+        Spectrum { level: spectrum.level + 0.5 / count.max(1) as f64, ..spectrum }
+    }
+
+    fn of_power(power: Vec<f64>, alike: f64) -> Spectrum {
+        let bins = power.len().max(1);
+        let level = power.iter().map(|p| p.ln()).sum::<f64>() / bins as f64;
+        let echoes = echoes(&power);
+        let half = |range: std::ops::Range<usize>| power.get(range).map_or(0.0, |part| part.iter().sum::<f64>());
+        // A constant stands in bin 0 and, by the window, beside it.
+        let (near, far) = (half(2..bins / 2), half(bins / 2 + 1..bins.saturating_sub(1)));
+        let near = if near + far > 0.0 { (near - far) / (near + far) } else { 0.0 };
+        Spectrum { power, level, alike, near, echoes }
+    }
+
+    /// The spectrum of the conjugate samples: I and Q in the other order.
+    pub fn mirrored(&self) -> Spectrum {
+        let bins = self.power.len();
+        let power = (0..bins).map(|bin| self.power[(bins - bin) % bins]).collect();
+        Spectrum { power, near: -self.near, ..self.clone() }
+    }
+
+    /// Of real samples: the half of it that tells, at twice the power, as complex samples of the same words would have it.
+    pub fn of_real(self) -> Spectrum {
+        let bins = self.power.len();
+        let power: Vec<f64> = self.power[..bins.div_ceil(2)].iter().map(|p| 2.0 * p).collect();
+        let level = self.level + std::f64::consts::LN_2;
+        Spectrum { near: 0.0, level, ..Spectrum::of_power(power, self.alike) }
+    }
+
+    /// How far the mean level lies below that of a flat spectrum of the same power, decibels.
+    pub fn flatness_db(&self) -> f64 {
+        let mean = self.power.iter().sum::<f64>() / self.power.len().max(1) as f64;
+        10.0 * (mean.ln() - self.level) / std::f64::consts::LN_10
+    }
+}
+
+/// Peaks that stand out of the spectrum.
+fn echoes(power: &[f64]) -> usize {
+    let mut sorted = power.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(peak), Some(median)) = (sorted.last(), sorted.get(sorted.len() / 2)) else { return 0 };
+    let least = (median * 10f64.powf(ABOVE_MEDIAN_DB / 10.0)).max(peak * 10f64.powf(-BELOW_PEAK_DB / 10.0));
+    let bins = power.len();
+    let is_peak = |n: &usize| {
+        let at = power[*n];
+        at >= least && at >= power[(n + 1) % bins] && at > power[(n + bins - 1) % bins]
+    };
+    (0..bins).filter(is_peak).count()
+}
+
+/// Mean correlation of logarithmic rows with the mean of the others.
+fn alike(power: ArrayView2<'_, f64>) -> f64 {
+    let receivers = power.nrows();
+    if receivers < 2 {
+        return 1.0;
+    }
+    let logs = power.mapv(f64::ln);
+    let total = logs.sum_axis(Axis(0));
+    let one = |n: usize| {
+        let row = logs.row(n);
+        let others = (&total - &row) / (receivers - 1) as f64;
+        correlation(row.iter().copied(), others.iter().copied())
+    };
+    (0..receivers).map(one).sum::<f64>() / receivers as f64
+}
+
+/// Correlation of two sequences; 0 where one is constant.
+pub(super) fn correlation(a: impl Iterator<Item = f64> + Clone, b: impl Iterator<Item = f64> + Clone) -> f64 {
+    let mean = |of: &mut dyn Iterator<Item = f64>| {
+        let (count, sum) = of.fold((0.0, 0.0), |(n, sum), v| (n + 1.0, sum + v));
+        sum / f64::max(count, 1.0)
+    };
+    let (mean_a, mean_b) = (mean(&mut a.clone()), mean(&mut b.clone()));
+    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+    for (x, y) in a.zip(b) {
+        let (x, y) = (x - mean_a, y - mean_b);
+        ab += x * y;
+        aa += x * x;
+        bb += y * y;
+    }
+    if aa * bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
+}

@@ -1,0 +1,199 @@
+use super::stream::Stream;
+use super::*;
+use crate::recording::RadarProfile;
+use num_complex::Complex64;
+use proptest::prelude::*;
+use std::f64::consts::TAU;
+use std::io::Cursor;
+
+const SAMPLES: usize = 96;
+
+/// 96 samples, three receivers, one transmitter, eight loops.
+const CFG: &str = "channelCfg 7 1 0\nprofileCfg 0 77 10 6 60 0 0 50 1 96 4000 0 0 30\nchirpCfg 0 0 0 0 0 0 0 1\nframeCfg 0 0 8 0 100 1 0\n";
+
+fn profile(more: &str) -> RadarProfile {
+    RadarProfile::parse(&format!("{CFG}{more}")).unwrap()
+}
+
+/// Eight chirps of three receivers that see two echoes, over a little noise.
+fn chirps() -> Vec<Vec<Complex64>> {
+    seen(300.0)
+}
+
+/// The same with this amplitude of the second echo.
+fn seen(second: f64) -> Vec<Vec<Complex64>> {
+    let mut state = 7u32;
+    let mut noise = move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state >> 16) / 65536.0 - 0.5
+    };
+    let mut sample = move |receiver: usize, n: usize| {
+        let turns = |bin: f64, phase: f64| {
+            Complex64::from_polar(1.0, TAU * (bin * n as f64 / SAMPLES as f64 + phase * receiver as f64))
+        };
+        900.0 * turns(13.3, 0.21) + second * turns(29.7, -0.13) + 8.0 * Complex64::new(noise(), noise())
+    };
+    (0..8).map(|_| (0..3 * SAMPLES).map(|n| sample(n / SAMPLES, n % SAMPLES)).collect()).collect()
+}
+
+/// The chirps as bytes of `layout`.
+fn written(layout: &Layout, chirps: &[Vec<Complex64>]) -> Vec<u8> {
+    let mut out = Vec::new();
+    let word = |v: f64| match layout.words {
+        Words::Int16 => (v.round() as i16).to_le_bytes(),
+        Words::OffsetBinary => ((v.round() as i16) as u16 ^ 0x8000).to_le_bytes(),
+        Words::BigEndian => (v.round() as i16).to_be_bytes(),
+        Words::TwelveBits => ((v.round() as i16) as u16 & 0x0fff).to_le_bytes(),
+    };
+    for chirp in chirps {
+        out.extend(marks::MAGIC.iter().chain(&[0; 56]).take(layout.header_bytes));
+        let sorted: Vec<Complex64> = match layout.receivers {
+            ReceiverOrder::OneAfterAnother => chirp.clone(),
+            ReceiverOrder::Interleaved => (0..chirp.len()).map(|n| chirp[n % 3 * SAMPLES + n / 3]).collect(),
+        };
+        for block in sorted.chunks(layout.parts.group()) {
+            let (first, second): (Vec<f64>, Vec<f64>) =
+                block.iter().map(|v| if layout.q_first { (v.im, v.re) } else { (v.re, v.im) }).unzip();
+            out.extend(first.iter().flat_map(|v| word(*v)));
+            if layout.parts != Parts::Real {
+                out.extend(second.iter().flat_map(|v| word(*v)));
+            }
+        }
+    }
+    out
+}
+
+fn layout(words: Words, parts: Parts, q_first: bool, receivers: ReceiverOrder) -> Layout {
+    Layout { words, parts, q_first, receivers, header_bytes: 0, packets: false }
+}
+
+fn found(bytes: Vec<u8>, profile: Option<&RadarProfile>) -> Found {
+    find(&mut Stream::new(Cursor::new(bytes)).unwrap(), profile).unwrap()
+}
+
+#[test]
+fn every_layout_is_found_by_the_spectrum_alone() {
+    for words in Words::ALL {
+        for parts in [Parts::Pairs, Parts::TwoLanes, Parts::FourLanes] {
+            for q_first in [false, true] {
+                for receivers in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
+                    let right = layout(words, parts, q_first, receivers);
+                    let found = found(written(&right, &chirps()), Some(&profile("")));
+                    assert_eq!(found.best().layout, right, "{:#?}", found.sentences());
+                    assert_ne!(found.certainty(), Certainty::Open, "{:#?}", found.sentences());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_evidence_says_what_decided() {
+    let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
+    let plain = found(written(&right, &chirps()), Some(&profile("")));
+    assert_eq!(plain.decided_by(), Kind::Half, "I and Q alone are near: {:#?}", plain.sentences());
+    assert!(plain.sentences().iter().any(|s| s.starts_with("Every receiver sees the same echoes")));
+    // One echo may stand in the far half; several weigh more than what the .cfg says.
+    let swapped = profile("adcbufCfg -1 0 1 1 1\n");
+    let one = found(written(&right, &seen(0.0)), Some(&swapped));
+    assert!(one.best().layout.q_first && one.best().of_kind(Kind::Half) < 0.0, "{:#?}", one.sentences());
+    assert_eq!(one.decided_by(), Kind::Config);
+    let several = found(written(&right, &chirps()), Some(&swapped));
+    assert_eq!((several.best().layout, several.decided_by()), (right, Kind::Half), "{:#?}", several.sentences());
+}
+
+#[test]
+fn headers_before_chirps_are_found() {
+    let right =
+        Layout { header_bytes: 64, ..layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother) };
+    let found = found(written(&right, &chirps()), Some(&profile("lvdsStreamCfg -1 1 1 1\n")));
+    assert_eq!(found.best().layout, right);
+    assert!(found.notes.iter().any(|n| n.contains("header of 64 bytes: 8 were found")), "{:?}", found.notes);
+}
+
+#[test]
+fn real_samples_are_told_from_complex_ones() {
+    let right = layout(Words::Int16, Parts::Real, false, ReceiverOrder::OneAfterAnother);
+    let bytes = written(&right, &chirps());
+    let found = found(bytes, Some(&profile("adcCfg 2 0\n")));
+    assert_eq!(found.best().layout, right, "{:#?}", found.sentences());
+}
+
+/// The bytes in packets, without those of `lost`.
+fn packets(bytes: &[u8], lost: &[usize]) -> Vec<u8> {
+    let mut out = Vec::new();
+    for (n, data) in bytes.chunks(1456).enumerate().filter(|(n, _)| !lost.contains(n)) {
+        out.extend((n as u32 + 1).to_le_bytes());
+        out.extend(&(n as u64 * 1456).to_le_bytes()[..6]);
+        out.extend(data);
+    }
+    out
+}
+
+#[test]
+fn packets_are_read_with_zeros_for_those_lost() {
+    let bytes: Vec<u8> = (0..20_000u32).map(|n| (n % 251) as u8).collect();
+    let mut stream = Stream::new(Cursor::new(packets(&bytes, &[]))).unwrap();
+    let mut read = vec![0; 5000];
+    stream.read_at(1000, &mut read).unwrap();
+    assert!(stream.has_packets() && read == bytes[1000..6000] && stream.lost_packets() == 0);
+    let mut stream = Stream::new(Cursor::new(packets(&bytes, &[2, 5, 6]))).unwrap();
+    assert_eq!((stream.bytes(), stream.lost_packets()), (20_000, 3));
+    let mut all = vec![1; bytes.len()];
+    stream.read_at(0, &mut all).unwrap();
+    for (n, part) in all.chunks(1456).enumerate() {
+        let expected =
+            if [2, 5, 6].contains(&n) { vec![0; part.len()] } else { bytes[n * 1456..n * 1456 + part.len()].to_vec() };
+        assert_eq!(part, expected, "packet {n}");
+    }
+    assert!(!Stream::new(Cursor::new(bytes)).unwrap().has_packets());
+}
+
+#[test]
+fn samples_with_receivers_are_found_without_a_cfg() {
+    let three: Vec<Vec<Complex64>> = (0..5).flat_map(|_| chirps()).collect();
+    for receivers in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
+        let right = layout(Words::Int16, Parts::TwoLanes, false, receivers);
+        let found = found(written(&right, &three), None);
+        let Candidate { layout, counts, .. } = found.best();
+        assert_eq!(
+            (layout, counts.samples, counts.receivers, counts.chirps),
+            (&right, SAMPLES, 3, 1),
+            "{:#?}",
+            found.sentences()
+        );
+    }
+}
+
+#[test]
+fn what_makes_no_echo_is_refused() {
+    let mut state = 1u64;
+    let mut byte = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 56) as u8
+    };
+    let random: Vec<u8> = (0..300_000).map(|_| byte()).collect();
+    let refused = |bytes: &[u8], profile: Option<&RadarProfile>| {
+        find(&mut Stream::new(Cursor::new(bytes)).unwrap(), profile).unwrap_err().to_string()
+    };
+    assert!(refused(&random, None).contains("spectrum is flat"));
+    assert!(refused(&random, Some(&profile(""))).contains("spectrum is flat"));
+    assert!(refused(&[0; 100_000], Some(&profile(""))).contains("nothing but zeros"));
+    assert!(
+        refused(&random[..100], Some(&profile("")))
+            .contains("has 100 bytes; expected at least one chirp, 1152 bytes as the .cfg says")
+    );
+    assert!(refused(&[], None).contains("has 0 bytes"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn any_bytes_have_a_layout_or_none(bytes in proptest::collection::vec(any::<u8>(), 0..5000), has_profile: bool) {
+        let profile = profile("");
+        if let Ok(found) = find(&mut Stream::new(Cursor::new(&bytes)).unwrap(), has_profile.then_some(&profile)) {
+            prop_assert!(found.best().log_odds().is_finite() && !found.sentences().is_empty());
+        }
+    }
+}

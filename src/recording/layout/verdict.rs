@@ -1,0 +1,106 @@
+//! Why a layout was chosen, in sentences.
+
+use super::evidence::OF_LEVEL;
+use super::{Candidate, Counts, Found, Kind, Parts, ReceiverOrder};
+
+/// How sure the choice of a layout is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Certainty {
+    /// Nothing else comes near.
+    Sure,
+    /// It is likely, but the next might be right.
+    Likely,
+    /// The two best are as good as each other.
+    Open,
+}
+
+/// Log-odds to the next from which a choice is sure, and likely.
+const SURE: f64 = 5.0;
+const LIKELY: f64 = 1.0;
+
+impl Found {
+    /// The best candidate.
+    pub fn best(&self) -> &Candidate {
+        &self.candidates[0]
+    }
+
+    /// By how much the best has more log-odds than the next; none where there is no other.
+    pub fn margin(&self) -> Option<f64> {
+        Some(self.best().log_odds() - self.candidates.get(1)?.log_odds())
+    }
+
+    /// How sure the choice is.
+    pub fn certainty(&self) -> Certainty {
+        match self.margin() {
+            Some(margin) if margin < LIKELY => Certainty::Open,
+            Some(margin) if margin < SURE => Certainty::Likely,
+            _ => Certainty::Sure,
+        }
+    }
+
+    /// The kind of evidence that parts the best from the next.
+    pub fn decided_by(&self) -> Kind {
+        let (best, next) = (self.best(), self.candidates.get(1));
+        let more = |kind: Kind| best.of_kind(kind) - next.map_or(0.0, |next| next.of_kind(kind));
+        let kinds = best.evidence.iter().map(|e| e.kind);
+        kinds.max_by(|a, b| more(*a).total_cmp(&more(*b))).unwrap_or(Kind::Usual)
+    }
+
+    /// What was found and why, a sentence each.
+    pub fn sentences(&self) -> Vec<String> {
+        let best = self.best();
+        let mut all = vec![format!("{}.", capital(&best.described()))];
+        let told =
+            best.evidence.iter().filter(|e| !e.sentence.is_empty() && !(e.kind == Kind::Config && e.log_odds < 0.0));
+        all.extend(told.map(|e| format!("{}.", capital(&e.sentence))));
+        all.push(self.decision());
+        all.extend(self.notes.iter().cloned());
+        all
+    }
+
+    /// What decided, and how sure it is.
+    fn decision(&self) -> String {
+        let Some(next) = self.candidates.get(1) else { return "No other layout fits.".to_owned() };
+        let decided = match self.decided_by() {
+            Kind::Sharp => {
+                let lower = (self.best().of_kind(Kind::Sharp) - next.of_kind(Kind::Sharp)) / OF_LEVEL;
+                format!("the spectrum, whose level is {:.1} dB lower", 10.0 * lower / std::f64::consts::LN_10)
+            }
+            Kind::Receivers => "the receivers, which see the same echoes".to_owned(),
+            Kind::Counts => "the count of frames that fill the file".to_owned(),
+            Kind::Half => "the empty half of the range axis".to_owned(),
+            Kind::Config => "the .cfg".to_owned(),
+            Kind::Usual => "no more than what is usual".to_owned(),
+        };
+        let margin = self.margin().unwrap_or_default();
+        let sure = match self.certainty() {
+            Certainty::Sure => "sure",
+            Certainty::Likely => "likely",
+            Certainty::Open => "open: look at both",
+        };
+        format!(
+            "What decided against the next ({}) is {decided}; the choice is {sure} (log-odds {margin:.1}).",
+            next.described()
+        )
+    }
+}
+
+impl Candidate {
+    /// The layout and its counts in a sentence's words.
+    pub fn described(&self) -> String {
+        let Counts { samples, receivers, .. } = self.counts;
+        let parts = self.layout.parts.described(self.layout.q_first);
+        let order = match (receivers, self.layout.receivers) {
+            (1, _) => "1 receiver".to_owned(),
+            (_, ReceiverOrder::OneAfterAnother) => format!("{receivers} receivers one after another"),
+            (_, ReceiverOrder::Interleaved) => format!("{receivers} receivers sample by sample"),
+        };
+        let real = if self.layout.parts == Parts::Real { "real " } else { "" };
+        format!("{}, {parts}, {order}, {samples} {real}samples a chirp", self.layout.words.described())
+    }
+}
+
+fn capital(sentence: &str) -> String {
+    let mut characters = sentence.chars();
+    characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
+}

@@ -1,0 +1,89 @@
+//! The commands of a `.cfg` that matter. A command that stands twice holds as it stands last, as on the radar's command line.
+
+use super::error::{MOST_CHIRPS, ProfileError};
+use super::lines::{Line, lines};
+use std::collections::BTreeMap;
+
+/// What one chirp is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct ChirpLine {
+    /// Number of its profile.
+    pub profile: usize,
+    /// Its transmitters, as bits.
+    pub transmitters: u32,
+    /// Line that says so.
+    pub line: usize,
+    /// What is not 0 of its changes of frequency, slope and start.
+    pub differs: Option<&'static str>,
+}
+
+/// The commands that matter, as they stand in the file.
+#[derive(Default)]
+pub(super) struct Commands<'a> {
+    pub profiles: BTreeMap<usize, Line<'a>>,
+    pub channels: Option<Line<'a>>,
+    pub frame: Option<Line<'a>>,
+    pub advanced: Option<Line<'a>>,
+    pub sub_frames: BTreeMap<usize, Line<'a>>,
+    pub adc: Option<Line<'a>>,
+    pub buffer: Option<Line<'a>>,
+    pub stream: Option<Line<'a>>,
+    pub phases: Option<Line<'a>>,
+    pub both: Vec<Line<'a>>,
+    pub geometry: [Option<Line<'a>>; 2],
+    pub chirps: Vec<Option<ChirpLine>>,
+}
+
+impl<'a> Commands<'a> {
+    pub fn read(text: &'a str) -> Result<Self, ProfileError> {
+        let mut all = Commands { chirps: vec![None; MOST_CHIRPS], ..Commands::default() };
+        for line in lines(text) {
+            all.take(line)?;
+        }
+        Ok(all)
+    }
+
+    fn take(&mut self, line: Line<'a>) -> Result<(), ProfileError> {
+        match line.command {
+            "flushCfg" => *self = Commands { chirps: vec![None; MOST_CHIRPS], ..Commands::default() },
+            "profileCfg" => {
+                self.profiles.insert(line.count(0, "the profile's number", MOST_CHIRPS)?, line);
+            }
+            "subFrameCfg" => {
+                self.sub_frames.insert(line.count(0, "the sub-frame's number", 3)?, line);
+            }
+            "channelCfg" => self.channels = Some(line),
+            "frameCfg" => self.frame = Some(line),
+            "advFrameCfg" => self.advanced = Some(line),
+            "adcCfg" => self.adc = Some(line),
+            "adcbufCfg" => self.buffer = Some(line),
+            "lvdsStreamCfg" => self.stream = Some(line),
+            "compRangeBiasAndRxChanPhase" => self.phases = Some(line),
+            "bpmCfg" => self.both.push(line),
+            "antGeometry0" => self.geometry[0] = Some(line),
+            "antGeometry1" => self.geometry[1] = Some(line),
+            "chirpCfg" => self.define_chirps(&line)?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// `chirpCfg start end profile dFrequency dSlope dIdle dAdcStart txMask`.
+    fn define_chirps(&mut self, line: &Line<'_>) -> Result<(), ProfileError> {
+        let (first, last) =
+            (line.count(0, "the first chirp", MOST_CHIRPS - 1)?, line.count(1, "the last chirp", MOST_CHIRPS - 1)?);
+        let profile = line.count(2, "the profile's number", MOST_CHIRPS)?;
+        let mut differs = None;
+        for (index, name) in
+            [(3, "the change of frequency"), (4, "the change of slope"), (6, "the change of the ADC's start")]
+        {
+            if line.real(index, name)? != 0.0 {
+                differs = differs.or(Some(name));
+            }
+        }
+        let transmitters = line.count(7, "the mask of transmitters", 0xffff)? as u32;
+        let chirp = ChirpLine { profile, transmitters, line: line.number, differs };
+        self.chirps.iter_mut().take(last + 1).skip(first).for_each(|c| *c = Some(chirp));
+        Ok(())
+    }
+}

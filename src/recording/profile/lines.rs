@@ -1,0 +1,118 @@
+//! The lines of a `.cfg`: commands with their numbers, out of whatever stands around them.
+
+use super::error::ProfileError;
+
+/// Numbers of one command, and where it stands.
+#[derive(Debug, Clone)]
+pub(super) struct Line<'a> {
+    /// Which line of the text, from 1.
+    pub number: usize,
+    /// Its name.
+    pub command: &'a str,
+    /// The numbers behind it, up to the first word that is none.
+    pub values: Vec<f64>,
+    /// The word that is none.
+    bad: Option<&'a str>,
+}
+
+impl Line<'_> {
+    /// The error of this line.
+    pub fn fault(&self, message: impl Into<String>) -> ProfileError {
+        ProfileError::Line { line: self.number, message: format!("{}: {}", self.command, message.into()) }
+    }
+
+    /// Number `index` of the command.
+    pub fn real(&self, index: usize, name: &str) -> Result<f64, ProfileError> {
+        let missing = || match self.bad {
+            Some(word) => self.fault(format!("\"{word}\" is no number; expected {name} as number {}", index + 1)),
+            None => self.fault(format!("has {} numbers; expected {name} as number {}", self.values.len(), index + 1)),
+        };
+        self.values.get(index).copied().ok_or_else(missing)
+    }
+
+    /// A number above 0.
+    pub fn positive(&self, index: usize, name: &str) -> Result<f64, ProfileError> {
+        let value = self.real(index, name)?;
+        if value.is_finite() && value > 0.0 {
+            Ok(value)
+        } else {
+            Err(self.fault(format!("{name} is {value}; expected a number above 0")))
+        }
+    }
+
+    /// A finite number other than 0.
+    pub fn not_zero(&self, index: usize, name: &str) -> Result<f64, ProfileError> {
+        let value = self.real(index, name)?;
+        if value.is_finite() && value != 0.0 {
+            Ok(value)
+        } else {
+            Err(self.fault(format!("{name} is {value}; expected a number other than 0")))
+        }
+    }
+
+    /// A whole number from 0 to `most`.
+    pub fn count(&self, index: usize, name: &str, most: usize) -> Result<usize, ProfileError> {
+        let value = self.real(index, name)?;
+        if value.fract() == 0.0 && (0.0..=most as f64).contains(&value) {
+            return Ok(value as usize);
+        }
+        Err(self.fault(format!("{name} is {value}; expected a whole number up to {most}")))
+    }
+
+    /// A whole number that may be missing.
+    pub fn may_count(&self, index: usize, most: usize) -> Option<usize> {
+        self.count(index, "", most).ok()
+    }
+}
+
+/// The text of a `.cfg` in any encoding: UTF-8, UTF-16 with its mark, or one byte a character, of which only comments have others
+/// than ASCII.
+pub fn text_of(bytes: &[u8]) -> String {
+    let wide = |of: fn([u8; 2]) -> u16, rest: &[u8]| {
+        let units: Vec<u16> = rest.chunks_exact(2).map(|b| of([b[0], b[1]])).collect();
+        String::from_utf16_lossy(&units)
+    };
+    match bytes {
+        [0xff, 0xfe, rest @ ..] => wide(u16::from_le_bytes, rest),
+        [0xfe, 0xff, rest @ ..] => wide(u16::from_be_bytes, rest),
+        [0xef, 0xbb, 0xbf, rest @ ..] => String::from_utf8_lossy(rest).into_owned(),
+        _ => String::from_utf8_lossy(bytes).into_owned(),
+    }
+}
+
+/// The command and its numbers, where the line has one: comments and what a terminal writes before a command are left out.
+fn line(number: usize, text: &str) -> Option<Line<'_>> {
+    let text = ["%", "#", "//"].iter().fold(text, |rest, sign| rest.split(sign).next().unwrap_or(rest));
+    // A prompt such as "mmwDemo:/>" ends with the last ">".
+    let text = text.rsplit('>').next().unwrap_or(text);
+    let trimmed = |word: &'_ str| -> bool { !word.is_empty() };
+    let mut words = text.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '"')).filter(|w| trimmed(w));
+    let command = words.next().filter(|w| w.starts_with(|c: char| c.is_ascii_alphabetic()))?;
+    let (mut values, mut bad) = (Vec::new(), None);
+    for word in words {
+        match word.parse::<f64>() {
+            Ok(value) => values.push(value),
+            Err(_) => {
+                bad = Some(word);
+                break;
+            }
+        }
+    }
+    Some(Line { number, command, values, bad })
+}
+
+/// Every command of the text, in order. Lines end with LF, CR or both.
+pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+    let text = text.trim_start_matches('\u{feff}');
+    let mut number = 0;
+    let mut after_cr = false;
+    text.split_inclusive(['\n', '\r']).filter_map(move |part| {
+        let joins = after_cr && part == "\n";
+        after_cr = part.ends_with('\r');
+        if joins {
+            return None;
+        }
+        number += 1;
+        line(number, part)
+    })
+}

@@ -1,0 +1,275 @@
+//! The `.cfg` that sets a TI radar up over its command line ("mmWave SDK User Guide", configuration file format).
+//!
+//! `lines` finds the commands, `commands` keeps those that matter, `frames` says what repeats, `dialect` names other texts.
+
+mod commands;
+mod dialect;
+mod error;
+mod frames;
+pub(super) mod lines;
+#[cfg(test)]
+pub(super) mod tests;
+
+use crate::radar::Radar;
+use commands::Commands;
+pub use error::ProfileError;
+use error::{MOST_CHIRPS, MOST_SAMPLES};
+use frames::{Frame, frames};
+use lines::Line;
+use num_complex::Complex64;
+
+/// What a `.cfg` says of the radar and of the data it sends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RadarProfile {
+    /// Frequency at the start of the ramp, hertz.
+    pub start_hz: f64,
+    /// Slope of the ramp, hertz a second; below 0 where it falls.
+    pub slope_hz_per_second: f64,
+    /// From the start of the ramp to the first sample, seconds.
+    pub sampling_delay_seconds: f64,
+    /// Samples a second.
+    pub samples_per_second: f64,
+    /// Samples of a chirp, as the converter takes them.
+    pub samples: usize,
+    /// Whether the converter takes real samples (`adcCfg`'s format 0).
+    pub real: bool,
+    /// Receivers that are on, by number from 0.
+    pub receiver_numbers: Vec<usize>,
+    /// Receivers that are on.
+    pub receivers: usize,
+    /// Transmitters that each chirp of a loop sends with, as bits.
+    pub chirp_transmitters: Vec<u32>,
+    /// From the beginning of a chirp to that of the next, seconds.
+    pub chirp_interval_seconds: f64,
+    /// Loops of a frame.
+    pub loops: usize,
+    /// Frames; 0 where they go on until stopped.
+    pub frames: usize,
+    /// Q before I (`adcbufCfg`), where it says so.
+    pub q_first: Option<bool>,
+    /// Receivers sample by sample (`adcbufCfg`), where it says so.
+    pub interleaved: Option<bool>,
+    /// Whether each chirp begins with a header (`lvdsStreamCfg`).
+    pub headers: bool,
+    /// Whether the two chirps of a loop are sent by both transmitters, S1 + S2 and then S1 - S2 (`bpmCfg`).
+    pub both_transmitters: bool,
+    /// What ranges are too long by, metres (`compRangeBiasAndRxChanPhase`).
+    pub range_bias_metres: f64,
+    /// What channels are multiplied with, transmitter by transmitter; empty where nothing is said.
+    pub channel_factors: Vec<Complex64>,
+    /// Places of the virtual elements in half wavelengths, across and up (`antGeometry0`, `antGeometry1`); empty where nothing is said.
+    pub element_places: [Vec<f64>; 2],
+    /// Samples of all receivers and chirps that stand before these in every frame: sub-frames, as numbers of samples.
+    pub numbers_before: usize,
+    /// Samples of a whole frame, all sub-frames.
+    pub frame_numbers: usize,
+    /// Sentences on what of the text was chosen among several.
+    pub notes: Vec<String>,
+}
+
+/// A bias of more metres is none.
+const MOST_BIAS_METRES: f64 = 1000.0;
+
+impl RadarProfile {
+    /// Reads a `.cfg`: profileCfg, channelCfg, chirpCfg and a frame are needed, other commands where they stand there.
+    ///
+    /// # Errors
+    /// [`ProfileError`] names the line, the command and what was expected, or the dialect.
+    pub fn parse(text: &str) -> Result<RadarProfile, ProfileError> {
+        RadarProfile::of_sub_frame(text, None)
+    }
+
+    /// The same for one sub-frame of an advanced frame, from 0; the first where none is said.
+    ///
+    /// # Errors
+    /// As [`RadarProfile::parse`].
+    pub fn of_sub_frame(text: &str, sub_frame: Option<usize>) -> Result<RadarProfile, ProfileError> {
+        dialect::check(text)?;
+        let commands = Commands::read(text)?;
+        if commands.profiles.is_empty() {
+            return Err(ProfileError::Missing("profileCfg"));
+        }
+        let channels = commands.channels.as_ref().ok_or(ProfileError::Missing("channelCfg"))?;
+        let mask = channels.count(0, "the mask of receivers", 0xffff)?;
+        if mask == 0 {
+            return Err(channels.fault("no receiver is on"));
+        }
+        let receiver_numbers: Vec<usize> = (0..16).filter(|bit| mask >> bit & 1 == 1).collect();
+        let all = frames(&commands)?;
+        let found = all.len();
+        let chosen = sub_frame.unwrap_or(0);
+        let frame = all.get(chosen).ok_or(ProfileError::NoSubFrame { found })?;
+        let mut parts = Vec::new();
+        for frame in &all {
+            parts.push(Part::of(&commands, frame)?);
+        }
+        let numbers: Vec<usize> =
+            parts.iter().map(|p| p.numbers(receiver_numbers.len())).collect::<Option<_>>().unwrap_or_default();
+        let part = &parts[chosen];
+        let mut profile = part.profile(frame, receiver_numbers)?;
+        profile.numbers_before = numbers.iter().take(chosen).sum();
+        profile.frame_numbers = numbers.iter().sum();
+        profile.notes.extend((found > 1).then(|| {
+            format!(
+                "The .cfg has {found} sub-frames: number {chosen} is read (recording.capture.sub_frame names another)."
+            )
+        }));
+        profile.notes.extend(part.note.clone());
+        profile.said_of_data(&commands)?;
+        Ok(profile)
+    }
+
+    /// What other commands say of the data.
+    fn said_of_data(&mut self, commands: &Commands<'_>) -> Result<(), ProfileError> {
+        if let Some(adc) = &commands.adc {
+            adc.count(0, "the number of bits", 2)?;
+            self.real = adc.count(1, "the format", 3)? == 0;
+        }
+        if let Some(buffer) = &commands.buffer {
+            self.q_first = buffer.may_count(2, 1).map(|v| v == 1);
+            self.interleaved = buffer.may_count(3, 1).map(|v| v == 0);
+        }
+        self.headers = commands.stream.as_ref().is_some_and(|s| s.may_count(1, 1) == Some(1));
+        self.both_transmitters = commands.both.iter().any(|b| b.may_count(1, 1) == Some(1))
+            && self.chirp_transmitters.len() == 2
+            && self.chirp_transmitters.iter().all(|m| m.count_ones() == 2 && *m == self.chirp_transmitters[0]);
+        if let Some(phases) = &commands.phases {
+            let bias = phases.real(0, "the range bias in metres")?;
+            if !(bias.abs() <= MOST_BIAS_METRES) {
+                return Err(phases.fault(format!("the range bias is {bias}; expected metres")));
+            }
+            self.range_bias_metres = bias;
+            self.channel_factors = phases.values[1..]
+                .chunks_exact(2)
+                .map(|v| Complex64::new(v[0], v[1]))
+                .filter(|v| v.is_finite())
+                .collect();
+        }
+        for (places, line) in self.element_places.iter_mut().zip(&commands.geometry) {
+            *places =
+                line.as_ref().map_or(Vec::new(), |l| l.values.iter().copied().filter(|v| v.is_finite()).collect());
+        }
+        Ok(())
+    }
+
+    /// Bandwidth that the samples span, hertz.
+    pub fn bandwidth_hz(&self) -> f64 {
+        self.slope_hz_per_second.abs() * self.samples as f64 / self.samples_per_second
+    }
+
+    /// Frequency at the middle of the samples, hertz: the one that directions follow.
+    pub fn carrier_hz(&self) -> f64 {
+        let middle_seconds = self.sampling_delay_seconds + self.samples as f64 / self.samples_per_second / 2.0;
+        self.start_hz + self.slope_hz_per_second * middle_seconds
+    }
+
+    /// Time that the samples span, seconds.
+    pub fn chirp_seconds(&self) -> f64 {
+        self.samples as f64 / self.samples_per_second
+    }
+
+    /// Samples of a chirp as a recording has them: of real ones half as many complex ones, which hold the same.
+    pub fn complex_samples(&self) -> usize {
+        if self.real { self.samples.div_ceil(2) } else { self.samples }
+    }
+
+    /// Whether the frequency rises from sample to sample.
+    pub fn rises(&self) -> bool {
+        self.slope_hz_per_second > 0.0
+    }
+
+    /// Writes carrier, bandwidth, samples and their duration into `radar`.
+    pub fn set(&self, radar: &mut Radar) {
+        radar.carrier_hz = self.carrier_hz();
+        radar.bandwidth_hz = self.bandwidth_hz();
+        radar.samples = self.complex_samples();
+        radar.chirp_seconds = self.chirp_seconds();
+    }
+}
+
+/// The chirps of one frame, with the profile they share.
+struct Part<'a> {
+    profile: &'a Line<'a>,
+    transmitters: Vec<u32>,
+    loops: usize,
+    note: Option<String>,
+}
+
+impl<'a> Part<'a> {
+    fn of(commands: &'a Commands<'a>, frame: &Frame) -> Result<Self, ProfileError> {
+        let mut chirps = Vec::new();
+        for n in frame.first..=frame.last {
+            let chirp = commands.chirps[n].ok_or(ProfileError::UndefinedChirp(n))?;
+            if let Some(differs) = chirp.differs {
+                let message = format!("chirpCfg: {differs} is not 0; expected chirps that are all alike");
+                return Err(ProfileError::Line { line: chirp.line, message });
+            }
+            chirps.push(chirp);
+        }
+        let line = |number: usize| {
+            commands
+                .profiles
+                .get(&number)
+                .or_else(|| commands.profiles.values().next().filter(|_| commands.profiles.len() == 1))
+        };
+        let first = line(chirps[0].profile).ok_or(ProfileError::Missing("profileCfg"))?;
+        for chirp in &chirps[1..] {
+            let other = line(chirp.profile).ok_or(ProfileError::Missing("profileCfg"))?;
+            // The number itself differs; powers and gains (4 and 5, 11 on) may.
+            let same = |i: usize| other.values.get(i) == first.values.get(i);
+            if ![1, 2, 3, 4, 7, 9, 10].into_iter().all(same) {
+                let message = "the chirps of a frame follow profiles that differ; expected one profile for all of them";
+                return Err(ProfileError::Line { line: chirp.line, message: message.to_owned() });
+            }
+        }
+        let used: std::collections::BTreeSet<usize> = chirps.iter().map(|c| c.profile).collect();
+        let note =
+            (used.len() > 1).then(|| format!("The .cfg has {} profiles that are alike: they are one.", used.len()));
+        let transmitters = chirps.iter().map(|c| c.transmitters).collect();
+        Ok(Part { profile: first, transmitters, loops: frame.loops, note })
+    }
+
+    /// Samples of all receivers of a frame; `None` where there are too many.
+    fn numbers(&self, receivers: usize) -> Option<usize> {
+        let samples = self.profile.count(9, "", MOST_SAMPLES).ok()?;
+        samples.checked_mul(receivers)?.checked_mul(self.transmitters.len())?.checked_mul(self.loops)
+    }
+
+    /// `profileCfg id start idle adc-start ramp-end power phase slope tx-start samples rate ...`.
+    fn profile(&self, frame: &Frame, receiver_numbers: Vec<usize>) -> Result<RadarProfile, ProfileError> {
+        let line = self.profile;
+        let samples = line.count(9, "the number of samples", MOST_SAMPLES)?;
+        if frame.loops == 0 || samples == 0 {
+            let message = "a frame without loops or samples holds nothing".to_owned();
+            return Err(ProfileError::Line { line: frame.line, message });
+        }
+        let (idle, ramp) = (line.real(2, "the idle time in us")?, line.real(4, "the ramp's end in us")?);
+        let mut profile = RadarProfile {
+            start_hz: 1e9 * line.positive(1, "the start frequency in GHz")?,
+            sampling_delay_seconds: 1e-6 * line.real(3, "the ADC's start time in us")?,
+            slope_hz_per_second: 1e12 * line.not_zero(7, "the slope in MHz/us")?,
+            samples_per_second: 1e3 * line.positive(10, "the sampling rate in ksps")?,
+            samples,
+            real: false,
+            receivers: receiver_numbers.len(),
+            receiver_numbers,
+            chirp_transmitters: self.transmitters.clone(),
+            chirp_interval_seconds: 0.0,
+            loops: frame.loops,
+            frames: frame.frames,
+            q_first: None,
+            interleaved: None,
+            headers: false,
+            both_transmitters: false,
+            range_bias_metres: 0.0,
+            channel_factors: Vec::new(),
+            element_places: [Vec::new(), Vec::new()],
+            numbers_before: 0,
+            frame_numbers: 0,
+            notes: Vec::new(),
+        };
+        // A ramp that ends before its samples do is a slip of the text: chirps can't overlap.
+        profile.chirp_interval_seconds = (1e-6 * (idle + ramp)).max(profile.chirp_seconds());
+        Ok(profile)
+    }
+}

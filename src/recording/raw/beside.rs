@@ -1,0 +1,55 @@
+//! Files beside a capture: its `.cfg`, and the files that go on from it.
+
+use crate::platform::fs;
+use crate::recording::{Fault, RecordingError};
+use std::path::{Path, PathBuf};
+
+/// Most files of a folder that are looked at.
+const MOST_FILES: usize = 10_000;
+/// Most files that a capture goes on in.
+const MOST_PARTS: usize = 64;
+
+/// The capture itself: `path`, or where that is a `.cfg`, what lies beside it.
+pub(super) fn data_of(path: &Path) -> Result<PathBuf, RecordingError> {
+    if !ends(path, "cfg") {
+        return Ok(path.to_owned());
+    }
+    let same = path.with_extension("bin");
+    if fs::exists(&same) {
+        return Ok(same);
+    }
+    only(path, &["bin", "dat", "raw"]).ok_or_else(|| {
+        let expected = "a capture beside it, of the same name (.bin) or the only one there";
+        Fault::key("the .cfg", "sets a radar up and holds no samples", expected).of(path)
+    })
+}
+
+/// The `.cfg` of the same name beside the capture, or the only one there.
+pub(super) fn config_of(data: &Path) -> Option<PathBuf> {
+    let same = data.with_extension("cfg");
+    if fs::exists(&same) { Some(same) } else { only(data, &["cfg"]) }
+}
+
+/// The only file of these endings beside `path`.
+fn only(path: &Path, endings: &[&str]) -> Option<PathBuf> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = fs::read_dir(folder).ok()?;
+    let names = entries.take(MOST_FILES).filter_map(Result::ok).map(|entry| PathBuf::from(entry.file_name()));
+    let mut found = names.filter(|name| endings.iter().any(|end| ends(name, end)));
+    let first = found.next()?;
+    found.next().is_none().then(|| path.with_file_name(first))
+}
+
+fn ends(path: &Path, end: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end))
+}
+
+/// Files that go on from the first, where its name ends with `_0`: `_1` and so on, as capture programs split at a gigabyte.
+pub(super) fn more_files(data: &Path) -> Vec<PathBuf> {
+    let Some(stem) = data.file_stem().and_then(|s| s.to_str()).and_then(|s| s.strip_suffix("_0")) else {
+        return Vec::new();
+    };
+    let end = data.extension().and_then(|e| e.to_str()).unwrap_or("bin");
+    let part = |n: usize| data.with_file_name(format!("{stem}_{n}.{end}"));
+    (1..MOST_PARTS).map(part).take_while(|path| fs::exists(path)).collect()
+}

@@ -1,0 +1,166 @@
+//! The antennas of a capture that form one line of elements.
+
+use super::boards::{self, Board};
+use crate::radar::SPEED_OF_LIGHT;
+use crate::recording::layout::Candidate;
+use crate::recording::profile::RadarProfile;
+
+/// Carrier where nothing says one, hertz.
+pub(super) const USUAL_CARRIER_HZ: f64 = 77e9;
+
+/// A line of elements.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Line {
+    /// Chirps of a loop whose transmitters form it.
+    pub chirps: Vec<usize>,
+    /// Receivers that form it, where not all do.
+    pub receivers: Option<Vec<usize>>,
+    /// Places along it, metres.
+    pub transmitter_x_metres: Vec<f64>,
+    pub receiver_x_metres: Vec<f64>,
+    /// What was taken for granted or left out.
+    pub doubts: Vec<String>,
+}
+
+/// A transmitter of the line: the chirp that it sends, its place across and up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Sender {
+    chirp: usize,
+    across: f64,
+    up: f64,
+}
+
+/// The line of a candidate: by the places that the `.cfg` says, by `board`, or by the board that the transmitters make likely.
+pub(super) fn line(best: &Candidate, profile: Option<&RadarProfile>, board: Option<&Board>) -> Line {
+    let counts = best.counts;
+    let Some(profile) = profile else {
+        let apart = match counts.chirps {
+            1 => String::new(),
+            chirps => format!("{chirps} transmitters {} half wavelengths apart and ", counts.receivers),
+        };
+        let doubt = format!(
+            "Nothing says where the antennas stand: {apart}{} receivers half a wavelength apart are taken for granted.",
+            counts.receivers
+        );
+        let senders =
+            (0..counts.chirps).map(|chirp| Sender { chirp, across: (chirp * counts.receivers) as f64, up: 0.0 });
+        let receivers: Vec<f64> = (0..counts.receivers).map(|n| n as f64).collect();
+        return metres(&senders.collect::<Vec<_>>(), &receivers, None, USUAL_CARRIER_HZ, vec![doubt]);
+    };
+    let carrier_hz = profile.carrier_hz();
+    if board.is_none()
+        && let Some((senders, taken, receivers)) = of_geometry(profile)
+    {
+        let doubt =
+            "Elements stand where the .cfg's antGeometry lines say; those of the longest row form the line.".to_owned();
+        return metres(&senders, &receivers, Some(taken), carrier_hz, vec![doubt]);
+    }
+    let bits: Vec<usize> =
+        profile.chirp_transmitters.iter().flat_map(|mask| (0..32).filter(move |b| mask >> b & 1 == 1)).collect();
+    let taken_board = board.unwrap_or_else(|| boards::likely(&bits));
+    let mut doubts = Vec::new();
+    if board.is_none() {
+        let all: Vec<&str> = boards::ALL.iter().map(|b| b.name).collect();
+        doubts.push(format!(
+            "Antennas are taken to stand as on the {}; apertura import --board names another ({}).",
+            taken_board.name,
+            all.join(", ")
+        ));
+    }
+    let (senders, note) = one_height(&senders(profile, taken_board));
+    doubts.extend(note);
+    let place = |n: &usize| taken_board.receivers.get(*n).copied().unwrap_or(*n as f64);
+    let receivers: Vec<f64> = profile.receiver_numbers.iter().map(place).collect();
+    metres(&senders, &receivers, None, carrier_hz, doubts)
+}
+
+fn metres(
+    senders: &[Sender],
+    receivers: &[f64],
+    taken: Option<Vec<usize>>,
+    carrier_hz: f64,
+    doubts: Vec<String>,
+) -> Line {
+    let half_wave = SPEED_OF_LIGHT / carrier_hz / 2.0;
+    Line {
+        chirps: senders.iter().map(|s| s.chirp).collect(),
+        receivers: taken,
+        transmitter_x_metres: senders.iter().map(|s| s.across * half_wave).collect(),
+        receiver_x_metres: receivers.iter().map(|x| x * half_wave).collect(),
+        doubts,
+    }
+}
+
+/// Who sends each chirp of a loop: where several send at once and nothing tells them apart, their middle.
+fn senders(profile: &RadarProfile, board: &Board) -> Vec<Sender> {
+    let place = |bit: usize| board.transmitters.get(bit).copied().unwrap_or([4.0 * bit as f64, 0.0]);
+    let bits = |mask: u32| (0..32usize).filter(move |bit| mask >> bit & 1 == 1);
+    if profile.both_transmitters {
+        let all = profile.chirp_transmitters.first().map_or(0, |mask| *mask);
+        return bits(all).map(place).enumerate().map(|(chirp, [across, up])| Sender { chirp, across, up }).collect();
+    }
+    let mean = |chirp: usize, mask: u32| {
+        let count = f64::from(mask.count_ones().max(1));
+        let sum = bits(mask).map(place).fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+        Sender { chirp, across: sum[0] / count, up: sum[1] / count }
+    };
+    profile.chirp_transmitters.iter().enumerate().map(|(chirp, mask)| mean(chirp, *mask)).collect()
+}
+
+/// The senders at the height that most places have, each place once.
+fn one_height(senders: &[Sender]) -> (Vec<Sender>, Option<String>) {
+    let mut best: Vec<Sender> = Vec::new();
+    for height in senders {
+        let mut found: Vec<Sender> = Vec::new();
+        for sender in senders.iter().filter(|s| s.up == height.up) {
+            if found.iter().all(|f| f.across != sender.across) {
+                found.push(*sender);
+            }
+        }
+        if found.len() > best.len() {
+            best = found;
+        }
+    }
+    let higher: Vec<String> =
+        senders.iter().filter(|s| best.first().is_some_and(|b| b.up != s.up)).map(|s| s.chirp.to_string()).collect();
+    let note = (!higher.is_empty()).then(|| {
+        format!(
+            "Chirps {} of a loop are sent at another height than the others: they are left out of the line.",
+            higher.join(", ")
+        )
+    });
+    (best, note)
+}
+
+/// The longest row of elements at one height by the `.cfg`'s antGeometry lines: senders, receivers taken and their places.
+fn of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f64>)> {
+    let [across, up] = &profile.element_places;
+    let receivers = profile.receivers;
+    let bits: Vec<usize> = profile.chirp_transmitters.iter().map(|mask| mask.trailing_zeros() as usize).collect();
+    let at = |chirp: usize, r: usize| bits[chirp] * 4 + profile.receiver_numbers.get(r).copied().unwrap_or(r);
+    let is_known =
+        bits.iter().enumerate().all(|(chirp, _)| (0..receivers).all(|r| at(chirp, r) < across.len().min(up.len())));
+    if bits.is_empty() || !is_known {
+        return None;
+    }
+    let mut best: Option<(Vec<Sender>, Vec<usize>, Vec<f64>)> = None;
+    for first in 0..bits.len() {
+        for height in (0..receivers).map(|r| up[at(first, r)]) {
+            let taken: Vec<usize> = (0..receivers).filter(|r| up[at(first, *r)] == height).collect();
+            let places: Vec<f64> = taken.iter().map(|r| across[at(first, *r)]).collect();
+            let same = |chirp: &usize| {
+                let shift = across[at(*chirp, taken[0])] - places[0];
+                taken
+                    .iter()
+                    .zip(&places)
+                    .all(|(r, x)| up[at(*chirp, *r)] == height && across[at(*chirp, *r)] - x == shift)
+            };
+            let sender = |chirp: usize| Sender { chirp, across: across[at(chirp, taken[0])] - places[0], up: height };
+            let (senders, _) = one_height(&(0..bits.len()).filter(same).map(sender).collect::<Vec<_>>());
+            if best.as_ref().is_none_or(|(s, t, _)| senders.len() * taken.len() > s.len() * t.len()) {
+                best = Some((senders, taken, places));
+            }
+        }
+    }
+    best
+}

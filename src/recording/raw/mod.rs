@@ -1,0 +1,219 @@
+//! Raw captures as they are: the layout found by evidence, the antennas of a board, and the TOML that says so.
+//!
+//! A capture that is opened goes the way of every recording: the text that describes it is made, and read.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | [`boards`] | places of antennas by a board's name |
+//! | `line` | the antennas of a `.cfg` that form one line |
+//! | `beside` | the `.cfg` beside a capture, and the files that go on from it |
+//! | `text` | the TOML |
+
+mod beside;
+pub mod boards;
+mod line;
+#[cfg(test)]
+mod tests;
+mod text;
+
+use super::capture::{Capture, Frame, Part, Plan, ReceiverOrder, Together, Turn};
+use super::described::{config_text, from_parts, open_file};
+use super::layout::stream::Stream;
+use super::layout::{Candidate, Certainty, Found, Kind, find};
+use super::profile::RadarProfile;
+use super::samples::{Chain, Source};
+use super::{Fault, Recording, RecordingError};
+use boards::Board;
+use std::io::{self, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+/// What was found of a capture, and the text that describes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// The file with the samples.
+    pub data: PathBuf,
+    /// The `.cfg`, where there is one.
+    pub config: Option<PathBuf>,
+    /// The layouts, the best first.
+    pub found: Found,
+    /// The TOML of the recording, to stand in the folder of `data`.
+    pub toml: String,
+    /// What was found, a sentence each.
+    pub sentences: Vec<String>,
+    /// What is doubtful, a sentence each.
+    pub doubts: Vec<String>,
+}
+
+/// Whether `path` names a raw capture, or the `.cfg` of one, by how it ends.
+pub fn is_raw(path: &Path) -> bool {
+    let ends = |end: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end));
+    ["bin", "dat", "raw", "cfg"].into_iter().any(ends)
+}
+
+/// Opens a raw capture as it is: the best layout, the antennas that its `.cfg` makes likely. `config` is its `.cfg`; where none is said,
+/// the one of the same name beside it, or the only one there.
+///
+/// # Errors
+/// [`RecordingError`] names the file and what would help.
+pub fn open(path: &Path, config: Option<&Path>) -> Result<Recording, RecordingError> {
+    import(path, config, None)?.recording()
+}
+
+/// Finds out what a raw capture holds, by the antennas of `board` or of those that its `.cfg` makes likely.
+///
+/// # Errors
+/// [`RecordingError`] names the file and what would help.
+pub fn import(path: &Path, config: Option<&Path>, board: Option<&Board>) -> Result<Imported, RecordingError> {
+    let data = beside::data_of(path)?;
+    let own = (data != path).then(|| path.to_owned());
+    let config = config.map(Path::to_owned).or(own).or_else(|| beside::config_of(&data));
+    let profile = config.as_deref().map(read_config).transpose()?;
+    let more = beside::more_files(&data);
+    let source = open_all(&data, &more).map_err(|e| Fault::from(e).of(&data))?;
+    let mut stream = Stream::new(source).map_err(|e| Fault::from(e).of(&data))?;
+    let found = find(&mut stream, profile.as_ref()).map_err(|e| Fault::from(e).of(&data))?;
+    let best = found.best();
+    let line = line::line(best, profile.as_ref(), board);
+    let mut doubts = doubts_of(&found, profile.as_ref());
+    doubts.extend(line.doubts.iter().cloned());
+    doubts
+        .extend((!more.is_empty()).then(|| format!("The capture goes on in {} more files, read as one.", more.len())));
+    let constant = constant_of(&mut stream, best, profile.as_ref());
+    doubts.extend(constant.map(|db| {
+        format!(
+            "A constant part (leakage or offset) stands {db:.0} dB over all else and is taken out: recording.capture.constant = \"keep\" keeps it."
+        )
+    }));
+    let mut sentences = found.sentences();
+    sentences.extend(profile.iter().flat_map(|p| said(p)));
+    let about = text::About {
+        data: &data,
+        config: config.as_deref(),
+        more: &more,
+        profile: profile.as_ref(),
+        line: &line,
+        takes_constant_out: constant.is_some(),
+        sentences: &sentences,
+    };
+    let toml = text::text(best, &about);
+    Ok(Imported { data, config, found, toml, sentences, doubts })
+}
+
+impl Imported {
+    /// The recording as its text describes it.
+    ///
+    /// # Errors
+    /// [`RecordingError`] names the file, the key or the array.
+    pub fn recording(&self) -> Result<Recording, RecordingError> {
+        let folder = self.data.parent().unwrap_or(Path::new("")).to_owned();
+        let mut recording = from_parts(&self.toml, &self.data.with_extension("toml"), &|name| {
+            Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)) as Box<dyn Source>)
+        })?;
+        let known = recording.doubts.clone();
+        recording.doubts.splice(0..0, self.doubts.iter().filter(|d| !known.contains(d)).cloned());
+        Ok(recording)
+    }
+}
+
+/// Reads a `.cfg` in any encoding.
+pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
+    let read = || -> Result<RadarProfile, Fault> {
+        let file = open_file(path)?;
+        Ok(RadarProfile::parse(&config_text(file)?)?)
+    };
+    read().map_err(|fault| fault.of(path))
+}
+
+/// The files as one.
+fn open_all(data: &Path, more: &[PathBuf]) -> io::Result<Box<dyn Source>> {
+    let open = |path: &Path| Ok::<_, io::Error>(Box::new(BufReader::new(open_file(path)?)) as Box<dyn Source>);
+    if more.is_empty() {
+        return open(data);
+    }
+    let all =
+        std::iter::once(data).chain(more.iter().map(PathBuf::as_path)).map(open).collect::<io::Result<Vec<_>>>()?;
+    Ok(Box::new(Chain::new(all)?))
+}
+
+/// What is doubtful of the layout.
+fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
+    let mut doubts = found.notes.clone();
+    if found.certainty() != Certainty::Sure
+        && let Some(next) = found.candidates.get(1)
+    {
+        doubts.push(format!(
+            "The layout is {}: {}. As likely is: {}.",
+            if found.certainty() == Certainty::Open { "open" } else { "likely, not sure" },
+            found.best().described(),
+            next.described()
+        ));
+    }
+    let against = |kind: Kind| found.best().of_kind(kind) < 0.0;
+    if profile.is_some() && against(Kind::Config) {
+        doubts.push(
+            "The samples speak against what the .cfg says of their order: the layout follows the samples.".to_owned(),
+        );
+    } else if profile.is_some() && against(Kind::Half) {
+        doubts.push(
+            "The .cfg decides between I first and Q first; the samples alone would have it the other way.".to_owned(),
+        );
+    }
+    doubts
+}
+
+/// What the `.cfg` said, a sentence each.
+fn said(profile: &RadarProfile) -> Vec<String> {
+    let RadarProfile { samples, receivers, loops, frames, .. } = *profile;
+    let frames = if frames == 0 { "frames until stopped".to_owned() } else { format!("{frames} frames") };
+    let mut said = vec![format!(
+        "The .cfg says: carrier {:.3} GHz in the middle of the samples, bandwidth {:.1} MHz, {samples} samples, {receivers} receivers, {} chirps \
+         in each of {loops} loops, {frames}.",
+        1e-9 * profile.carrier_hz(),
+        1e-6 * profile.bandwidth_hz(),
+        profile.chirp_transmitters.len()
+    )];
+    said.extend((!profile.rises()).then(|| "The chirp falls.".to_owned()));
+    let bias = profile.range_bias_metres;
+    said.extend((bias != 0.0).then(|| format!("Ranges are {bias} m too long by the .cfg: that is taken off.")));
+    said.extend(profile.notes.iter().cloned());
+    said
+}
+
+/// How far the constant part stands above all else in the first frame, decibels, where it does.
+fn constant_of<R: Read + io::Seek>(
+    stream: &mut Stream<R>,
+    best: &Candidate,
+    profile: Option<&RadarProfile>,
+) -> Option<f64> {
+    let capture = capture(best, profile);
+    let plan = Plan::new(&capture, profile, stream.bytes()).ok()?;
+    let quality = Frame::read(stream, &capture, &plan).ok()?.quality;
+    (quality.tells_constant()).then_some(quality.constant_db)
+}
+
+/// A candidate's layout as it would stand in a text.
+fn capture(best: &Candidate, profile: Option<&RadarProfile>) -> Capture {
+    let Candidate { layout, counts, .. } = best;
+    let said = |value: usize| profile.is_none().then_some(value);
+    Capture {
+        config: None,
+        sub_frame: None,
+        more_files: Vec::new(),
+        words: layout.words,
+        parts: Some(layout.parts),
+        lanes: None,
+        q_first: layout.q_first,
+        receivers: if counts.receivers == 1 { ReceiverOrder::OneAfterAnother } else { layout.receivers },
+        header_bytes: layout.header_bytes,
+        samples: said(counts.samples),
+        receiver_count: said(counts.receivers),
+        loop_chirps: said(counts.chirps),
+        loops: said(counts.loops),
+        chirps: None,
+        receivers_taken: None,
+        frame: 0,
+        turn: Turn::All(Together::Strongest),
+        constant: Part::Keep,
+        static_clutter: Part::Keep,
+    }
+}

@@ -1,0 +1,132 @@
+use super::*;
+use std::f64::consts::TAU;
+use std::fs;
+
+/// Two transmitters, four receivers, 64 samples, four loops.
+const CFG: &str = "channelCfg 15 5 0\nadcCfg 2 1\nadcbufCfg -1 0 0 1 1\nprofileCfg 0 77 30 6 60 0 0 50 1 64 4000 0 0 30\n\
+                   chirpCfg 0 0 0 0 0 0 0 1\nchirpCfg 1 1 0 0 0 0 0 4\nframeCfg 0 1 4 0 100 1 0\n";
+
+/// One frame of I Q pairs: an echo in range bin 11.4, at broadside.
+fn frame() -> Vec<u8> {
+    let sample = |n: usize| {
+        let turns = TAU * 11.4 * (n % 64) as f64 / 64.0;
+        let noise = |of: usize| ((n * of) % 23) as f64 / 4.0;
+        [(900.0 * turns.cos() + noise(7)) as i16, (900.0 * turns.sin() + noise(13)) as i16]
+    };
+    (0..4 * 2 * 4 * 64).flat_map(sample).flat_map(i16::to_le_bytes).collect()
+}
+
+fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    files.iter().for_each(|(name, bytes)| fs::write(folder.path().join(name), bytes).unwrap());
+    folder
+}
+
+#[test]
+fn a_capture_is_opened_with_the_cfg_beside_it() {
+    let folder = folder(&[("a.bin", &frame()), ("setup.cfg", CFG.as_bytes())]);
+    for name in ["a.bin", "setup.cfg"] {
+        let recording = super::super::file::load(&folder.path().join(name)).unwrap();
+        assert_eq!((recording.name.as_str(), recording.radar.elements, recording.radar.samples), ("a", 8, 64));
+        assert_eq!(recording.radar.end_elements, 4);
+        assert!(
+            (recording.radar.element_spacing_metres * 4.0 / recording.radar.wavelength_metres() - 1.0).abs() < 0.01
+        );
+        assert!(recording.notes.contains("I Q in pairs"), "{}", recording.notes);
+        assert!(recording.doubts.iter().any(|d| d.contains("as on the xWR1843")), "{:?}", recording.doubts);
+    }
+}
+
+#[test]
+fn the_text_that_is_written_reads_the_same_samples() {
+    let folder = folder(&[("a.bin", &frame()), ("a.cfg", CFG.as_bytes())]);
+    let imported = import(&folder.path().join("a.bin"), None, None).unwrap();
+    fs::write(folder.path().join("r.toml"), &imported.toml).unwrap();
+    let read = super::super::file::load(&folder.path().join("r.toml")).unwrap();
+    assert_eq!(read.samples, imported.recording().unwrap().samples);
+    assert!(
+        imported.toml.contains("config = \"a.cfg\"") && imported.toml.contains("parts = \"pairs\""),
+        "{}",
+        imported.toml
+    );
+}
+
+#[test]
+fn a_capture_without_cfg_counts_bins() {
+    let folder = folder(&[("a.bin", &frame())]);
+    let recording = open(&folder.path().join("a.bin"), None).unwrap();
+    assert_eq!((recording.radar.samples, recording.radar.range_resolution_metres()), (64, 1.0));
+    let told = recording.doubts.join(" ");
+    assert!(told.contains("No .cfg says") && told.contains("Nothing says where the antennas stand"), "{told}");
+}
+
+#[test]
+fn parts_of_a_split_capture_are_read_as_one() {
+    let bytes = frame();
+    let (first, second) = bytes.split_at(bytes.len() / 2 + 100);
+    let folder = folder(&[("adc_Raw_0.bin", first), ("adc_Raw_1.bin", second), ("c.cfg", CFG.as_bytes())]);
+    let recording = open(&folder.path().join("adc_Raw_0.bin"), None).unwrap();
+    assert!(recording.doubts.iter().any(|d| d.contains("goes on in 1 more")), "{:?}", recording.doubts);
+    let whole = tempfile::tempdir().unwrap();
+    fs::write(whole.path().join("w.bin"), &bytes).unwrap();
+    fs::write(whole.path().join("w.cfg"), CFG).unwrap();
+    assert_eq!(recording.samples, open(&whole.path().join("w.bin"), None).unwrap().samples);
+}
+
+#[test]
+fn transmitters_at_another_height_are_left_out_of_the_line() {
+    let three = CFG.replace("frameCfg 0 1 4", "chirpCfg 2 2 0 0 0 0 0 2\nframeCfg 0 2 4");
+    let bytes = [frame(), frame()].concat();
+    let folder = folder(&[("a.bin", &bytes), ("a.cfg", three.as_bytes())]);
+    let imported = import(&folder.path().join("a.bin"), None, None).unwrap();
+    assert!(imported.toml.contains("chirps = [0, 1]"), "{}", imported.toml);
+    assert!(
+        imported.doubts.iter().any(|d| d.contains("Chirps 2 of a loop are sent at another height")),
+        "{:?}",
+        imported.doubts
+    );
+}
+
+#[test]
+fn the_longest_row_of_a_planar_board_is_the_line() {
+    let places = "antGeometry0 0 -1 -1 0 -2 -3 -3 -2 -2 -3 -3 -2\nantGeometry1 -1 -1 0 0 -1 -1 0 0 -3 -3 -2 -2\n";
+    let two = CFG.replace(" 0 0 0 0 4\n", " 0 0 0 0 2\n");
+    let folder = folder(&[("a.bin", &frame()), ("a.cfg", format!("{two}{places}").as_bytes())]);
+    let recording = open(&folder.path().join("a.bin"), None).unwrap();
+    assert_eq!(recording.radar.elements, 4);
+    assert!(recording.doubts.iter().any(|d| d.contains("antGeometry")), "{:?}", recording.doubts);
+}
+
+#[test]
+fn what_is_no_capture_is_told() {
+    let folder = folder(&[
+        ("a.cfg", CFG.as_bytes()),
+        ("b.cfg", b"{ \"mmWaveDevices\": [] }"),
+        ("empty.bin", b""),
+        ("odd.dat", &[7; 999]),
+    ]);
+    let told = |path: &str, config: Option<&str>| {
+        let config = config.map(|c| folder.path().join(c));
+        open(&folder.path().join(path), config.as_deref()).unwrap_err().to_string()
+    };
+    assert!(told("a.cfg", None).contains("a.cfg: the .cfg sets a radar up and holds no samples"));
+    assert!(
+        told("empty.bin", Some("a.cfg"))
+            .contains("empty.bin: has 0 bytes; expected at least one chirp, 1024 bytes as the .cfg says")
+    );
+    assert!(told("empty.bin", None).contains("has 0 bytes"));
+    assert!(told("odd.dat", Some("b.cfg")).contains("b.cfg: is a text of another dialect, mmWave Studio's JSON"));
+    assert!(told("no.bin", Some("a.cfg")).contains("no.bin: No such file"));
+    fs::create_dir(folder.path().join("folder.bin")).unwrap();
+    assert!(told("folder.bin", Some("a.cfg")).contains("is a folder"));
+}
+
+#[test]
+fn boards_have_the_places_of_their_guides() {
+    let cascade = boards::by_name("CASCADE").unwrap();
+    let flat: Vec<f64> = cascade.transmitters.iter().filter(|[_, up]| *up == 0.0).map(|[x, _]| *x).collect();
+    let antennas = crate::radar::Antennas::new(&flat, cascade.receivers).unwrap();
+    assert_eq!((antennas.pairs().len(), antennas.gaps()), (86, 0));
+    assert!(boards::ALL.iter().all(|b| ["SWRU", "SPRUI", "TIDU"].iter().any(|of| b.guide.contains(of))));
+    assert_eq!(boards::by_name("another"), None);
+}
