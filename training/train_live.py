@@ -38,9 +38,9 @@ import torch
 
 import apertura as ap
 import provenance
-from common import Clock, export, figures, save, unit, validation_scenes
+from common import LEARNED, TARGET, Clock, export, figures, fill, light, loaded, save, tensors_of, unit, validation_scenes
 from graph import Replayed
-from live import COLS, DOUBT, FINE, Doubt, Doubting, Live, expected_error, normalise, parted, widened
+from apertura.live import COLS, DOUBT, FINE, Doubt, Doubting, Live, expected_error, normalise, parted, widened
 from pool import Pool
 from team import Log, Team, batches
 
@@ -51,9 +51,9 @@ ELEMENTS = (0.2, 1.0, 20.0, 0.1)
 KINDS = ("1", "2", "3", "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near", "bodies", "street", "rails", "occlusion", "rough",
          "fences", "rain", "world")
 #: Two sets heard by elements that are off.
-OFF = {f"{kind} elements off": {"set": kind, "elements": (1.0, 0.6, 6.0, 0.0)} for kind in ("2", "3")}
+OFF = {f"{kind} elements off": {"mixture": kind, "elements": (1.0, 0.6, 6.0, 0.0)} for kind in ("2", "3")}
 #: And three sets over thermal noise.
-OTHERS = {f"{kind} at {snr} dB": {"set": kind, "floor": f"snr={snr}"} for kind, snr in (("2", 40), ("2", 20), ("3", 40))} | OFF
+OTHERS = {f"{kind} at {snr} dB": {"mixture": kind, "floor": f"snr={snr}"} for kind, snr in (("2", 40), ("2", 20), ("3", 40))} | OFF
 #: Other radars, where weights are for them: name, arguments of `Radar`.
 RADARS = {
     "76 GHz": {"carrier_hz": 76e9, "convention": "thesis"}, "1 GHz wide": {"bandwidth_hz": 1e9}, "4 GHz wide": {"bandwidth_hz": 4e9},
@@ -66,16 +66,23 @@ INPUTS = ("fine", "coarse", "rows", "scalars", "constants")
 def training_scenes(args):
     radar = "random" if args.radar == "random" else None
     try:
-        return ap.torch.Scenes(args.mixture, args.seed, length=1 << 32, thermal=(args.snr_share, *args.snr), elements=ELEMENTS, radar=radar)
+        return ap.torch.Scenes(args.mixture, args.seed, length=1 << 32, thermal=(args.snr_share, *args.snr), elements=ELEMENTS, radar=radar, targets=[TARGET])
     except ValueError as error:
         raise SystemExit(f"--mixture, --snr-share, --snr or --radar: {error}") from None
+
+
+def whole(network, path):
+    """Tensors of a weight file with what earlier editions lack."""
+    if "stem.conv.weight" not in network:
+        raise SystemExit(f"{path} holds weights of another network: it has no tensor \"stem.conv.weight\"")
+    return widened(network)
 
 
 def validation_sets(args):
     others = dict(OTHERS)
     if args.radar == "random":
-        others["world, random radars"] = {"set": "world", "radar": "random"}
-        others |= {f"{kind}, {name}": {"set": kind, "radar": ap.Radar(**given)} for name, given in RADARS.items() for kind in ("2", "3")}
+        others["world, random radars"] = {"mixture": "world", "radar": "random"}
+        others |= {f"{kind}, {name}": {"mixture": kind, "radar": ap.Radar(**given)} for name, given in RADARS.items() for kind in ("2", "3")}
     return validation_scenes(args.seed, args.validation, KINDS, others=others)
 
 
@@ -118,7 +125,7 @@ def coverage(model, doubt, sets, device="cpu"):
             log, minimum, picture = model.with_picture(*(batch[name] for name in INPUTS))
             of_cells, hidden = doubt.parts(picture)
             limit = expected_error(of_cells, doubt.scene(hidden)[:, 0])
-            covered.append(float((error_of(normalise(log, minimum), batch["target"]) <= limit).float().mean()))
+            covered.append(float((error_of(normalise(log, minimum), batch[LEARNED]) <= limit).float().mean()))
         report[kind] = round(100 * sum(covered) / len(covered), 2)
     return report
 
@@ -128,7 +135,7 @@ def estimate_with(model, device="cpu"):
     def estimate(batch):
         batch = {name: t.to(device) for name, t in batch.items()}
         output = normalise(*model(*(batch[name] for name in INPUTS))).clamp(0, 1)
-        return output, unit(batch["target"]), output
+        return output, unit(batch[LEARNED]), output
     return estimate
 
 
@@ -151,9 +158,10 @@ class Run:
         self.domain = training_scenes(args).domain
         maps = None
         if os.path.exists(self.path):
-            state = torch.load(self.path, weights_only=True, map_location=team.device)
-            self.model.load_state_dict(state["model"])
-            self.doubt.load_state_dict(state["doubt"])
+            keys = ("model", "doubt", "average", "optimizer", "step", "drawn", "parts")
+            state = loaded(self.path, team.device, keys, "train_live.py")
+            fill(self.model, state["model"], self.path)
+            fill(self.doubt, state["doubt"], self.path)
             for group in state["optimizer"]["param_groups"]:
                 group.update(kept)  # where the steps are counted follows from this
             self.optimizer.load_state_dict(state["optimizer"])
@@ -165,12 +173,11 @@ class Run:
                 self.domain = state.get("domain", self.domain)
         else:
             if args.init:
-                from safetensors.torch import load_file
                 initial = args.init
-                network, doubt = parted(load_file(initial))
-                self.model.load_state_dict(widened(network))
+                network, doubt = parted(tensors_of(initial))
+                fill(self.model, whole(network, initial), initial)
                 if doubt:
-                    self.doubt.load_state_dict(doubt)
+                    fill(self.doubt, doubt, initial)
                 self.drawn, self.parts = args.first_scene, provenance.parts_of(initial)
             self.average.load_state_dict(self.model.state_dict())
         #: Maps that the weights saw, in all parts.
@@ -202,7 +209,7 @@ class Run:
 
     def save(self):
         save(self.path, {"model": self.model.state_dict(), "doubt": self.doubt.state_dict(), "average": self.average.state_dict(),
-                         "optimizer": self.optimizer.state_dict(),
+                         "optimizer": light(self.optimizer.state_dict()),
                          "step": self.step, "domain": self.domain, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
 
 
@@ -233,8 +240,8 @@ def step_of(run, args, team):
     def step(batch):
         with torch.autocast(team.device.type, torch.bfloat16, enabled=args.bf16, cache_enabled=not run.recorded):
             output, minimum, doubt = model(*(batch[name] for name in INPUTS))
-        loss = loss_of(output, minimum, batch["target"], args.edge_weight)
-        of_doubt = doubt_loss_of(doubt, error_of(normalise(output, minimum), batch["target"]).detach())
+        loss = loss_of(output, minimum, batch[LEARNED], args.edge_weight)
+        of_doubt = doubt_loss_of(doubt, error_of(normalise(output, minimum), batch[LEARNED]).detach())
         run.optimizer.zero_grad(set_to_none=True)
         (loss + of_doubt).backward()
         run.advance()
@@ -294,15 +301,14 @@ def main(args):
     torch.manual_seed(args.seed)
     team = Team(args.threads)
     if args.judge:
-        from safetensors.torch import load_file
         model = Live()
-        network, of_doubt = parted(load_file(args.judge))
-        model.load_state_dict(widened(network))
+        network, of_doubt = parted(tensors_of(args.judge))
+        fill(model, whole(network, args.judge), args.judge)
         sets = validation_sets(args)
         report = figures(estimate_with(model), sets)
         if of_doubt:
             doubt = Doubt()
-            doubt.load_state_dict(of_doubt)
+            fill(doubt, of_doubt, args.judge)
             report["covered"] = coverage(model, doubt, sets)
         print(json.dumps(report))
         return

@@ -16,6 +16,7 @@ pub mod sets;
 mod shard;
 pub mod statistics;
 pub mod tables;
+mod target;
 pub mod threshold;
 pub mod trial;
 pub mod worsen;
@@ -26,3 +27,4 @@ pub use metrics::{Metrics, TARGET_ETA, detection_rates, eta_text, part_within, s
 pub use placement::{Placement, placement};
 pub use robustness::{Robustness, RobustnessRow};
 pub use roc::{Roc, RocPoint};
+pub use target::Target;

@@ -3,13 +3,13 @@
 use super::echoes::{self, EchoCounts, EchoTally};
 use super::failure::{Failures, Fate, Footprints};
 use super::rows::Row;
-use super::{Metrics, Roc, part_within, squared_doubt};
+use super::{Metrics, Roc, Target, part_within, squared_doubt};
 use crate::maps::cfar::{Cfar, CfarError};
-use crate::maps::{self, Aperture, LambdaScale, Normalisation, RangeAngleMap};
+use crate::maps::{self, Aperture, LambdaScale, LogMap, Normalisation, RangeAngleMap};
 use crate::platform::Instant;
-use crate::radar::Radar;
+use crate::radar::{BuiltArray, Radar};
 use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
-use crate::scene::{Reflector, Scene, SceneError};
+use crate::scene::{Disturbances, Reflector, Scene, SceneError};
 use crate::signal::{self, Floor, TwoEnds};
 use std::sync::OnceLock;
 
@@ -57,8 +57,29 @@ impl Trial {
     /// # Errors
     /// [`SceneError`] when the radar can't see the scene.
     pub fn new(radar: &Radar, scene: &Scene, floor: Floor, normalisation: Normalisation) -> Result<Trial, SceneError> {
+        Trial::against(Target::Measured, radar, scene, floor, normalisation)
+    }
+
+    /// [`Trial::new`] with another map that answers are held against.
+    ///
+    /// # Errors
+    /// As [`Trial::new`].
+    pub fn against(
+        target: Target,
+        radar: &Radar,
+        scene: &Scene,
+        floor: Floor,
+        normalisation: Normalisation,
+    ) -> Result<Trial, SceneError> {
         let signal = signal::simulate(radar, scene, floor, scene.noise_seed)?;
-        let full = maps::focus::map_of(radar, &scene.disturbances.elements, &signal, Aperture::Full).log_magnitude();
+        let elements = &scene.disturbances.elements;
+        let full = match target {
+            Target::Calibrated if !elements.is_ideal() => calibrated(radar, scene, floor)?,
+            Target::Ideal => calibrated(radar, scene, Floor::Exact)?,
+            Target::Measured | Target::Calibrated => {
+                maps::focus::map_of(radar, elements, &signal, Aperture::Full).log_magnitude()
+            }
+        };
         let target = full.normalise(normalisation);
         let ends = signal.two_ends(radar);
         let (radar, scene, scale) = (radar.clone(), scene.clone(), full.scale(normalisation));
@@ -141,6 +162,14 @@ impl Trial {
             ..row
         }
     }
+}
+
+/// The map of the array as it should be.
+fn calibrated(radar: &Radar, scene: &Scene, floor: Floor) -> Result<LogMap, SceneError> {
+    let elements = BuiltArray::default();
+    let disturbances = Disturbances { elements: elements.clone(), ..scene.disturbances.clone() };
+    let signal = signal::simulate(radar, &Scene { disturbances, ..scene.clone() }, floor, scene.noise_seed)?;
+    Ok(maps::focus::map_of(radar, &elements, &signal, Aperture::Full).log_magnitude())
 }
 
 /// Where a reflector shows: (column, range bin), neither rounded, and its object.

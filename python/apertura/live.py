@@ -1,4 +1,4 @@
-"""The live network: PyTorch twin of `src/network/live/module.rs`, with the same layer names and shapes."""
+"""The live network in PyTorch: the twin of `src/network/live/module.rs`, with the same layer names and shapes. Needs `torch`."""
 import math
 
 import torch

@@ -1,0 +1,41 @@
+//! The elements that hear the scenes of a campaign.
+
+use crate::files::sha256;
+use crate::radar::{BuiltArray, Radar, Tolerances};
+
+/// The elements that hear the scenes of a campaign.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Elements {
+    /// Those that each scene names.
+    #[default]
+    OfScenes,
+    /// The same for all.
+    Built(BuiltArray),
+    /// Drawn anew for each scene with these standard deviations.
+    Drawn(Tolerances),
+}
+
+impl Elements {
+    /// Those of scene `index`, in the place of its own; the seed of the scenes picks them.
+    pub(super) fn of(&self, radar: &Radar, seed: u64, index: u32) -> Option<BuiltArray> {
+        match self {
+            Elements::OfScenes => None,
+            Elements::Built(array) => Some(array.clone()),
+            Elements::Drawn(tolerances) => Some(tolerances.build(radar, seed.wrapping_add(index.into()))),
+        }
+    }
+
+    /// As rows name them.
+    pub(super) fn text(&self) -> String {
+        match self {
+            Elements::OfScenes => String::new(),
+            Elements::Built(array) => {
+                let digest = sha256::of_pieces([format!("{array:?}").as_bytes()]);
+                format!("built {}", sha256::short(&digest))
+            }
+            Elements::Drawn(Tolerances { gain, phase_degrees, position_millimetres }) => {
+                format!("drawn {} dB {phase_degrees} degrees {position_millimetres} mm", gain.0)
+            }
+        }
+    }
+}
