@@ -46,7 +46,7 @@ def stacked(entries):
 def figures(estimate, sets):
     """SE, and P_D with its threshold at `false_alarm(kind)`, for each kind; `eta` is where the mean P_FA is the mean of these.
 
-    `estimate` turns a batch into Lambda of output and target, and what is held against a threshold, [n, 512, 1024] each."""
+    `estimate` turns a batch into Lambda of output and target, and what is held against a threshold, [n, range bins, columns] each."""
     etas = np.linspace(0.5, 1.0, 251)
     report, alarms = {}, []
     for k, entries in sets.items():

@@ -14,7 +14,8 @@ on a CPU. The shipped weights come from here.
         --log-every 20 --threads 4 --init ../assets/weights/live.safetensors    # on a GPU that there is for twelve minutes
 
 Needs torch, numpy, safetensors and apertura (`pip install ../python`), which makes the scenes: `apertura.torch.Scenes`. Every scene is new; with `--pool`
-each is drawn `--uses` times. They are those of `--mixture`, before the radar of table 3.1 or one drawn for each (`--radar`). Half of them lie over
+each is drawn `--uses` times. They are those of `--mixture`, before one radar drawn for each, that of table 3.1, or that of a file (`--radar`). A radar of another shape gets a network of its shape,
+which `apertura.live.Estimator` makes a method of. Half of them lie over
 thermal noise (`--snr-share`, `--snr`), a fifth are heard by elements that are off. Example `i` is a function of the seed and `i` alone: a run that goes on takes the next ones, in
 any number of processes.
 
@@ -40,7 +41,7 @@ import apertura as ap
 import provenance
 from common import LEARNED, TARGET, Clock, export, figures, fill, light, loaded, save, tensors_of, unit, validation_scenes
 from graph import Replayed
-from apertura.live import COLS, DOUBT, FINE, Doubt, Doubting, Live, expected_error, normalise, parted, widened
+from apertura.live import DOUBT, Doubt, Doubting, Live, expected_error, normalise, parted, size_of, widened, widened_cells
 from pool import Pool
 from team import Log, Team, batches
 
@@ -63,10 +64,30 @@ RADARS = {
 INPUTS = ("fine", "coarse", "rows", "scalars", "constants")
 
 
-def training_scenes(args):
-    radar = "random" if args.radar == "random" else None
+def radar_of(args):
+    """What sees the scenes, as `Scenes` takes it."""
+    if args.radar in ("random", "thesis"):
+        return "random" if args.radar == "random" else None
     try:
-        return ap.torch.Scenes(args.mixture, args.seed, length=1 << 32, thermal=(args.snr_share, *args.snr), elements=ELEMENTS, radar=radar, targets=[TARGET])
+        return ap.Radar.load(args.radar)
+    except (ValueError, OSError) as error:
+        raise SystemExit(f"--radar {error}") from None
+
+
+def size_for(args):
+    """How large the network is: arguments of `Live`."""
+    radar = radar_of(args)
+    try:
+        size = size_of(radar) if isinstance(radar, ap.Radar) else {}
+    except ValueError as error:
+        raise SystemExit(f"--radar {args.radar}: {error}") from None
+    return {**size, "c": (4, 6, 8, 10), "blocks": (1, 1, 1, 1), "fine": 4} if args.tiny else size
+
+
+def training_scenes(args):
+    given = {"thermal": (args.snr_share, *args.snr), "elements": ELEMENTS, "radar": radar_of(args), "targets": [TARGET], "network": "live"}
+    try:
+        return ap.torch.Scenes(args.mixture, args.seed, length=1 << 32, **given)
     except ValueError as error:
         raise SystemExit(f"--mixture, --snr-share, --snr or --radar: {error}") from None
 
@@ -79,11 +100,25 @@ def whole(network, path):
 
 
 def validation_sets(args):
+    radar = radar_of(args)
+    if isinstance(radar, ap.Radar):
+        kinds = [kind for kind in KINDS if has_room(kind, radar)]
+        others = {name: {**given, "radar": radar} for name, given in OTHERS.items()}
+        return validation_scenes(args.seed, args.validation, (), others={kind: {"mixture": kind, "radar": radar} for kind in kinds} | others)
     others = dict(OTHERS)
-    if args.radar == "random":
+    if radar == "random":
         others["world, random radars"] = {"mixture": "world", "radar": "random"}
         others |= {f"{kind}, {name}": {"mixture": kind, "radar": ap.Radar(**given)} for name, given in RADARS.items() for kind in ("2", "3")}
     return validation_scenes(args.seed, args.validation, KINDS, others=others)
+
+
+def has_room(kind, radar):
+    """Whether the objects of a kind find room before a radar."""
+    try:
+        ap.Scene.random(kind, radar=radar, purpose="validation")
+    except ValueError:
+        return False
+    return True
 
 
 def loss_of(log, minimum, target, edge_weight):
@@ -110,7 +145,7 @@ def error_of(output, target):
 
 def doubt_loss_of(doubt, error):
     """Pinball loss of the logarithm: least where a part `COVERED` of the errors lies below."""
-    gap = torch.log10(error + LEAST_ERROR) - doubt.repeat_interleave(COLS // FINE, 2)
+    gap = torch.log10(error + LEAST_ERROR) - widened_cells(doubt, error.shape[2])
     return torch.maximum(COVERED * gap, (COVERED - 1) * gap).mean()
 
 
@@ -124,7 +159,7 @@ def coverage(model, doubt, sets, device="cpu"):
             batch = {name: t[None].float().to(device) for name, t in entry.items()}
             log, minimum, picture = model.with_picture(*(batch[name] for name in INPUTS))
             of_cells, hidden = doubt.parts(picture)
-            limit = expected_error(of_cells, doubt.scene(hidden)[:, 0])
+            limit = expected_error(of_cells, doubt.scene(hidden)[:, 0], model.columns)
             covered.append(float((error_of(normalise(log, minimum), batch[LEARNED]) <= limit).float().mean()))
         report[kind] = round(100 * sum(covered) / len(covered), 2)
     return report
@@ -144,8 +179,11 @@ class Run:
 
     def __init__(self, args, team):
         self.path = os.path.join(args.out, "checkpoint.pt")
-        self.model, self.average = Live().to(team.device, memory_format=torch.channels_last), Live().to(team.device)
-        self.doubt = Doubt().to(team.device)
+        #: How large the network is, as `Live` takes it.
+        self.size = size_for(args)
+        self.model, self.average = (Live(**self.size).to(team.device) for _ in range(2))
+        self.model.to(memory_format=torch.channels_last)
+        self.doubt = Doubt(self.model.stem.conv.out_channels).to(team.device)
         # A recorded step reads the rates from the GPU.
         self.recorded = args.graph
         if args.graph and team.device.type != "cuda":
@@ -160,6 +198,8 @@ class Run:
         if os.path.exists(self.path):
             keys = ("model", "doubt", "average", "optimizer", "step", "drawn", "parts")
             state = loaded(self.path, team.device, keys, "train_live.py")
+            if state.get("size", "{}") != json.dumps(self.size):
+                raise SystemExit(f"{self.path} is of a network of size {state.get('size', '{}')}; --radar and --tiny ask for {json.dumps(self.size)}")
             fill(self.model, state["model"], self.path)
             fill(self.doubt, state["doubt"], self.path)
             for group in state["optimizer"]["param_groups"]:
@@ -210,7 +250,7 @@ class Run:
     def save(self):
         save(self.path, {"model": self.model.state_dict(), "doubt": self.doubt.state_dict(), "average": self.average.state_dict(),
                          "optimizer": light(self.optimizer.state_dict()),
-                         "step": self.step, "domain": self.domain, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
+                         "step": self.step, "size": json.dumps(self.size), "domain": self.domain, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
 
 
 def scenes_of(args, first, team):
@@ -301,13 +341,13 @@ def main(args):
     torch.manual_seed(args.seed)
     team = Team(args.threads)
     if args.judge:
-        model = Live()
+        model = Live(**size_for(args))
         network, of_doubt = parted(tensors_of(args.judge))
         fill(model, whole(network, args.judge), args.judge)
         sets = validation_sets(args)
         report = figures(estimate_with(model), sets)
         if of_doubt:
-            doubt = Doubt()
+            doubt = Doubt(model.stem.conv.out_channels)
             fill(doubt, of_doubt, args.judge)
             report["covered"] = coverage(model, doubt, sets)
         print(json.dumps(report))
@@ -323,6 +363,8 @@ def main(args):
         report = figures(estimate_with(run.average, team.device), sets)
         meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(args.seed),
                 "steps": str(run.step), "scenes_simulated": str(run.drawn), "domain": run.domain, **provenance.metadata(run.parts)}
+        if run.size:
+            meta["size"] = json.dumps(run.size)
         doubt = {f"{DOUBT}{name}": weights for name, weights in run.doubt.state_dict().items()}
         tensors = {**run.average.state_dict(), **doubt}
         export({name: tensor.half() for name, tensor in tensors.items()}, args.export, meta, report, args.validation)

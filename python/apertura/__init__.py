@@ -44,6 +44,7 @@ from ._apertura import (
     threshold,
     write_rows,
 )
+from .layouts import layout
 from .objects import (
     ArgumentError,
     Box,
@@ -105,6 +106,7 @@ __all__ = [
     "find_page",
     "find_program",
     "kinds",
+    "layout",
     "live_input",
     "maps",
     "method",

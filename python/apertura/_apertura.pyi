@@ -309,6 +309,8 @@ class Method:
     def weights(self) -> str: ...
     @property
     def eta(self) -> float: ...
+    def refusal(self, radar: Radar | None = None) -> str | None: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
     def reconstruct(
         self,
         ends: npt.ArrayLike,
@@ -462,6 +464,7 @@ def evaluate(
     radar: Radar | None = None,
     elements: Elements | tuple[float, float, float] | None = None,
     target: _Target = "measured",
+    layout: Sequence[int] | None = None,
     on_row: Callable[[dict[str, Any]], object] | None = None,
     progress: _Progress | None = None,
     path: _Path | None = None,

@@ -38,7 +38,7 @@ class Scenes:
             Each such scene has its own part of these standard deviations, uniform from none to all.
         radar: The `Radar` that sees all scenes; "random" for one drawn for each scene, as `Examples` says; that of table 3.1 where none is given.
         targets: The maps to learn, of "ideal", "measured" and "calibrated".
-        layout: Numbers of the elements that are heard in place of the two ends (`apertura.layouts`).
+        layout: Numbers of the elements that are heard in place of the two ends (`apertura.layout`).
         scene: Makes the scenes in place of `mixture`: called as `scene(random, radar)` with a `numpy.random.Generator`, which is a function of seed,
             purpose and number of the example, and the example's `Radar`; it returns a `Scene`. Its noise is picked by seed, purpose and number.
         transform: Called with each example; what it returns is the example.

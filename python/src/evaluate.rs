@@ -38,6 +38,8 @@ use std::sync::Arc;
 ///         with which each scene's are drawn. Those of the scenes where nothing is given.
 ///     target: The map that outputs are held against: "measured" (what the whole array heard), "ideal" (of the array as it should be, without noise)
 ///         or "calibrated" (as it should be, over the noise).
+///     layout: Numbers of the elements that methods hear in place of the two ends (`layout`). Functions then get `heard`, complex128
+///         `[elements of the layout, samples]`, and "matched-filter" makes maps of it; the other methods hear two ends and refuse.
 ///     on_row: Called with each row as it is found.
 ///     progress: Called with the part that is done, 0 to 1.
 ///     cfar: A detector as `cfar` takes it, which is tried on every output beside the threshold; rows say it in `cfar_detection`,
@@ -59,7 +61,7 @@ use std::sync::Arc;
 ///     OSError: `path` can't be read or written.
 #[pyfunction]
 #[pyo3(signature = (methods, scenes, *, count=100, seed=0, floor="thesis", normalisation="min-max", purpose="test", reading="program",
-                    radar=None, elements=None, target="measured", on_row=None, progress=None, path=None, overwrite=false, only=None,
+                    radar=None, elements=None, target="measured", layout=None, on_row=None, progress=None, path=None, overwrite=false, only=None,
                     cfar=None))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn evaluate<'py>(
@@ -75,6 +77,7 @@ pub fn evaluate<'py>(
     radar: Option<&Radar>,
     elements: Option<&Bound<'py, PyAny>>,
     target: &str,
+    layout: Option<Vec<usize>>,
     on_row: Option<&Bound<'py, PyAny>>,
     progress: Progress<'_, 'py>,
     path: Option<PathBuf>,
@@ -99,6 +102,7 @@ pub fn evaluate<'py>(
         cfar: cfar.map(named).transpose()?,
         elements: elements.map_or(Ok(Elements::OfScenes), elements_of)?,
         target: named(target)?,
+        layout,
         ..Campaign::default()
     };
     let sets = sets_of(scenes, radar, purpose)?;
@@ -246,7 +250,9 @@ fn elements_of(any: &Bound<'_, PyAny>) -> PyResult<Elements> {
 fn kept(error: KeptError) -> PyErr {
     match &error {
         KeptError::File { source, .. } => system(source, &error),
-        KeptError::Other { .. } => value(format!("{error}; name another file, or write over this one with overwrite=True")),
+        KeptError::Other { .. } => {
+            value(format!("{error}; name another file, or write over this one with overwrite=True"))
+        }
         KeptError::Busy(_) | KeptError::Merge(_) => value(error),
     }
 }

@@ -177,9 +177,8 @@ impl Examples {
             let input = example.ends().filter(|_| mag_phase).map(|ends| mag_phase_of(&example.radar, ends));
             Ok::<_, examples::ExampleError>((example, input))
         };
-        let made: Result<Vec<_>, _> = work::run(py, None, |task| {
-            indices.par_iter().enumerate().map(|numbered| make(numbered, task)).collect()
-        })?;
+        let made: Result<Vec<_>, _> =
+            work::run(py, None, |task| indices.par_iter().enumerate().map(|numbered| make(numbered, task)).collect())?;
         let dicts: PyResult<Vec<_>> = made.map_err(value)?.into_iter().map(|made| dict_of(py, made)).collect();
         PyList::new(py, dicts?)
     }

@@ -47,7 +47,9 @@ impl Function {
             )));
         }
         if apertura::methods::by_name(name).is_ok() {
-            return Err(value(format!("name is \"{name}\", as a method of this package is called; expected another name")));
+            return Err(value(format!(
+                "name is \"{name}\", as a method of this package is called; expected another name"
+            )));
         }
         if !(0.0..=1.0).contains(&eta) {
             return Err(value(format!("eta is {eta}; expected 0 to 1")));
@@ -89,17 +91,25 @@ impl Function {
     ) -> PyResult<(Array2<f64>, Option<f32>)> {
         let told = (request.noise.to_string(), request.normalisation.to_string(), request.snapshot_range_metres);
         let radar = Radar(radar.of_one_chirp());
-        let answer = self.called.bind(py).call1((owned(py, both_ends(ends)), radar.clone(), told))?;
+        let heard = match &request.heard {
+            Some(heard) => owned(py, heard.samples.clone()).into_any(),
+            None => owned(py, both_ends(ends)).into_any(),
+        };
+        let answer = self.called.bind(py).call1((heard, radar.clone(), told))?;
         let (cells, eta): (Bound<'_, PyAny>, Option<f32>) = answer.extract()?;
         let expected = (radar.0.samples, radar.0.elements);
         let shape = format!("[{}, {}]", expected.0, expected.1);
         let cells: Array2<f64> = numbers(&cells, "its map", &shape)?;
         if cells.dim() != expected {
-            return Err(value(format!("its map has shape {:?}; expected {shape}, range bins and columns", cells.shape())));
+            return Err(value(format!(
+                "its map has shape {:?}; expected {shape}, range bins and columns",
+                cells.shape()
+            )));
         }
         let is_usable = |v: f64| v.is_finite() && (self.is_decades || (LAMBDA[0]..=LAMBDA[1]).contains(&v));
         if let Some((cell, v)) = cells.indexed_iter().find(|(_, v)| !is_usable(**v)) {
-            let expected = if self.is_decades { "finite numbers" } else { "Lambda, 0 to 1 (answers=\"decades\" takes others)" };
+            let expected =
+                if self.is_decades { "finite numbers" } else { "Lambda, 0 to 1 (answers=\"decades\" takes others)" };
             return Err(value(format!("its map is {v} at {cell:?}; expected {expected}")));
         }
         if let Some(eta) = eta.filter(|eta| !(0.0..=1.0).contains(eta)) {
@@ -125,6 +135,10 @@ impl Reconstructor for Function {
 
     fn knows_pairs(&self) -> bool {
         // It is told the radar, and with it where antennas stand.
+        true
+    }
+
+    fn hears_layouts(&self) -> bool {
         true
     }
 

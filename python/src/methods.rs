@@ -67,7 +67,8 @@ fn by_name(name: &str) -> PyResult<Arc<dyn Reconstructor>> {
 /// The live network with the weights of a file, under a name of its own.
 fn of_weights(path: PathBuf, called: Option<&str>) -> PyResult<Method> {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let plain: String = stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
+    let plain: String =
+        stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
     let usual = if plain.starts_with("live-") { plain } else { format!("live-{plain}") };
     let name = called.map_or_else(|| usual.chars().take(40).collect(), str::to_owned);
     if !is_name(&name) || apertura::methods::by_name(&name).is_ok() {
@@ -99,7 +100,10 @@ pub fn method_of(any: &Bound<'_, PyAny>, what: &str) -> PyResult<Arc<dyn Reconst
     if any.is_callable() {
         return of_function(any, None, "", "", 0.9, "lambda", "").map(|method| method.inner);
     }
-    Err(argument(any.py(), format!("{what} is {}; expected a name, a Method, a function or a file of weights", any.repr()?)))
+    Err(argument(
+        any.py(),
+        format!("{what} is {}; expected a name, a Method, a function or a file of weights", any.repr()?),
+    ))
 }
 
 /// Methods as arguments name them, in a list.
@@ -239,6 +243,15 @@ impl Method {
     #[getter]
     fn eta(&self) -> f32 {
         self.inner.eta()
+    }
+
+    /// Why the method can't work on samples of a radar, or None where it can.
+    ///
+    /// Args:
+    ///     radar: The radar; that of table 3.1 where none is given.
+    #[pyo3(signature = (radar=None))]
+    fn refusal(&self, radar: Option<&Radar>) -> Option<String> {
+        self.inner.check_array(&or_default(radar)).err().map(|error| error.to_string())
     }
 
     /// Estimates the whole array's map from the samples of the two ends.

@@ -168,7 +168,8 @@ impl Radar {
         if path.extension().is_none_or(|extension| extension != "toml") {
             return Err(value(format!("{}: expected a name that ends in .toml", path.display())));
         }
-        scene::file::save(&path, &SceneFile { scene: scene::Scene::default(), radar: self.0.clone() }).map_err(scene_file)
+        scene::file::save(&path, &SceneFile { scene: scene::Scene::default(), radar: self.0.clone() })
+            .map_err(scene_file)
     }
 
     /// The same radar with other fields, named as in the constructor. A convention brings its carrier and its spacing with it.

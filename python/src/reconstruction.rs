@@ -90,7 +90,8 @@ impl Reconstruction {
 #[pyfunction]
 #[pyo3(name = "_reconstruction")]
 pub fn reconstruction(fields: &Bound<'_, PyDict>) -> PyResult<Reconstruction> {
-    let given = |key: &str| fields.get_item(key)?.ok_or_else(|| value(format!("a pickled reconstruction has no \"{key}\"")));
+    let given =
+        |key: &str| fields.get_item(key)?.ok_or_else(|| value(format!("a pickled reconstruction has no \"{key}\"")));
     let radar = given("radar")?.extract::<PyRef<'_, Radar>>()?.0.clone();
     let map = |any: &Bound<'_, PyAny>, what: &str| -> PyResult<RangeAngleMap> {
         let lambda: Array2<f32> = numbers(any, what, "[samples, elements]")?;

@@ -68,7 +68,8 @@ pub fn robustness<'py>(
         return Err(value(format!("count is {count}; expected 1 to {MAX_SCENES}")));
     }
     let scales = scales.unwrap_or_else(|| USUAL_SCALES.to_vec());
-    let numbers = [("gain_db", gain_db), ("phase_degrees", phase_degrees), ("position_millimetres", position_millimetres)];
+    let numbers =
+        [("gain_db", gain_db), ("phase_degrees", phase_degrees), ("position_millimetres", position_millimetres)];
     let all = numbers.into_iter().chain(scales.iter().map(|scale| ("scales", *scale)));
     if let Some((name, number)) = all.into_iter().find(|(_, v)| !(0.0..=MAX_TOLERANCE).contains(v)) {
         return Err(value(format!("{name}: {number}; expected numbers from 0 to {MAX_TOLERANCE}")));

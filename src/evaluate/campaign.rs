@@ -15,7 +15,7 @@ use super::sets::{Case, SceneSet};
 use super::trial::{Answer, Trial};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
-use crate::radar::Radar;
+use crate::radar::{Radar, check_layout};
 use crate::reconstruct::{Reconstructor, Request, Weights, untrained_noise};
 use crate::scattering::Echoing;
 use crate::scene::generate::{Generator, Purpose, Reading};
@@ -50,6 +50,8 @@ pub struct Campaign {
     pub elements: Elements,
     /// What outputs are held against.
     pub target: Target,
+    /// Numbers of the elements that methods hear, in place of the two ends.
+    pub layout: Option<Vec<usize>>,
 }
 
 impl Default for Campaign {
@@ -67,6 +69,7 @@ impl Default for Campaign {
             cfar: None,
             elements: Elements::OfScenes,
             target: Target::Measured,
+            layout: None,
         }
     }
 }
@@ -144,6 +147,7 @@ impl Campaign {
             cfar: self.cfar.map(Text::from).unwrap_or_default(),
             elements: self.elements.text().into(),
             target: self.target.to_string().into(),
+            layout: self.layout.as_deref().map(elements::ranges).unwrap_or_default().into(),
             ..Row::default()
         };
         let of_set = |set: &SceneSet| -> Result<Vec<Row>, CampaignError> {
@@ -256,11 +260,20 @@ impl Campaign {
     /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {
         let Case { radar, mut scene } = set.case(&self.radar, generator, index)?;
+        let fits = |layout: &Vec<usize>| check_layout(layout, radar.elements).map_err(CampaignError::Layout);
+        self.layout.as_ref().map_or(Ok(()), fits)?;
         if let Some(elements) = self.elements.of(&radar, self.seed, index) {
             scene.disturbances.elements = elements;
         }
-        let trial = Trial::against(self.target, &radar, &scene, set.floor(self.floor), self.normalisation)
-            .map_err(|source| CampaignError::Scene { set: set_name(set), index, source })?;
+        let trial = Trial::against(
+            self.target,
+            self.layout.as_deref(),
+            &radar,
+            &scene,
+            set.floor(self.floor),
+            self.normalisation,
+        )
+        .map_err(|source| CampaignError::Scene { set: set_name(set), index, source })?;
         trial.footprints();
         Ok(trial)
     }

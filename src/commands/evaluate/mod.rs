@@ -12,7 +12,7 @@ use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::campaign::{Campaign, Shard};
 use crate::evaluate::rows::{
-    Key, KeptError, Lack, Row, RowFile, WHY_NO_OTHER_FORMAT, Wanted, key, lacks, merge, read_table, write_merged,
+    KeptError, Key, Lack, Row, RowFile, WHY_NO_OTHER_FORMAT, Wanted, key, lacks, merge, read_table, write_merged,
 };
 use crate::evaluate::sets::{Folder, SceneSet};
 use crate::maps::cfar::Cfar;

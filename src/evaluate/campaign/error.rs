@@ -30,6 +30,9 @@ pub enum CampaignError {
     /// The objects of a kind of scenes find no room before the radar.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
+    /// A radar that has not the elements of the layout.
+    #[error("{0}")]
+    Layout(String),
     /// A set or a method would count twice.
     #[error(transparent)]
     GivenTwice(#[from] GivenTwice),

@@ -14,7 +14,7 @@ mod whole;
 
 pub use cell::{Kind, Text, Value};
 pub use file::{RowError, Table, header, read_rows, read_table, row_writer, write_rows};
-pub use kept::{Key, KeptError, RowFile, Wanted, key, write_merged};
+pub use kept::{KeptError, Key, RowFile, Wanted, key, write_merged};
 pub use lacks::{Lack, lacks};
 pub use lines::MAX_ROWS;
 pub use merge::{MergeError, merge};
@@ -140,6 +140,8 @@ columns! {
         /// The map that outputs were held against: measured, calibrated or ideal ([`Target`](super::Target)); empty in tables from before targets
         /// had names, where it is the measured one.
         target: Text = Target,
+        /// Numbers of the elements that methods heard; empty where they heard the two ends.
+        layout: Text = Layout,
     }
 }
 

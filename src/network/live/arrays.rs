@@ -54,7 +54,8 @@ mod tests {
         let radar = Radar::default();
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 20.0, position_millimetres: 0.1 };
         let arrays = Arrays { share: 0.3, tolerances };
-        let drawn: Vec<BuiltArray> = (0..400).map(|seed| arrays.of(seed, &radar, false)).filter(|a| !a.is_ideal()).collect();
+        let drawn: Vec<BuiltArray> =
+            (0..400).map(|seed| arrays.of(seed, &radar, false)).filter(|a| !a.is_ideal()).collect();
         assert!((90..150).contains(&drawn.len()), "{}", drawn.len());
         for array in &drawn {
             let off = |n: usize| array.element(n) != ElementError::default();

@@ -10,10 +10,10 @@ use crate::maps::focus::map_of;
 use crate::maps::{Aperture, fast::whole_map, range_transform_in_place};
 use crate::network::domain::Domain;
 use crate::network::floors::Floors;
-use crate::radar::{BuiltArray, Radar};
+use crate::radar::{BuiltArray, Radar, check_layout};
 use crate::reconstruct::ReconstructError;
-use crate::scene::{Disturbances, Scene};
 use crate::scene::generate::{Generator, Kind, Mixture, NoRoom, Purpose, Reading};
+use crate::scene::{Disturbances, Scene};
 use crate::signal::{BeatSignal, Floor, TwoEnds, Unfinished, simulate_for};
 use crate::task::Task;
 use ndarray::{Array2, Axis};
@@ -300,25 +300,6 @@ impl Examples {
             None => FeatureExtractor::new(radar)?.extract(ends).map(Some),
         }
     }
-}
-
-/// Checks the elements of a layout.
-///
-/// # Errors
-/// The element that is not there, or that is given twice, and what was expected.
-pub fn check_layout(layout: &[usize], elements: usize) -> Result<(), String> {
-    if layout.is_empty() {
-        return Err("the layout has no element; expected at least one".to_owned());
-    }
-    let mut seen = vec![false; elements];
-    for &element in layout {
-        match seen.get_mut(element) {
-            None => return Err(format!("the layout has element {element}; the radar has elements 0 to {}", elements - 1)),
-            Some(true) => return Err(format!("the layout has element {element} twice; expected each once")),
-            Some(seen) => *seen = true,
-        }
-    }
-    Ok(())
 }
 
 impl Heard {

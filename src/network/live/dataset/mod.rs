@@ -286,7 +286,8 @@ fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
 
 /// One maker of examples for each kind.
 fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, DatasetError> {
-    let targets = request.parts.iter().filter_map(|part| if let Part::Target(target) = part { Some(*target) } else { None });
+    let targets =
+        request.parts.iter().filter_map(|part| if let Part::Target(target) = part { Some(*target) } else { None });
     let features = if request.parts.contains(&Part::Features) { Features::Needed } else { Features::No };
     let of_all = ExamplesRequest {
         purpose,

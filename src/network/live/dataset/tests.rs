@@ -38,7 +38,10 @@ fn an_example_on_disk_is_the_example() {
         assert_eq!(maps.index_axis(ndarray::Axis(0), 1), example.target(target).unwrap());
     }
     let fine: Array4<f32> = read_npy(path("fine")).unwrap();
-    assert_eq!(fine.index_axis(ndarray::Axis(0), 1).iter().copied().collect::<Vec<_>>(), example.input.as_ref().unwrap().fine);
+    assert_eq!(
+        fine.index_axis(ndarray::Axis(0), 1).iter().copied().collect::<Vec<_>>(),
+        example.input.as_ref().unwrap().fine
+    );
     let gain: Array1<f64> = read_npy(path("gain")).unwrap();
     assert_eq!(gain[1], example.gain);
     let ends: Array4<Complex64> = read_npy(path("ends")).unwrap();

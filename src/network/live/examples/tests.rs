@@ -20,11 +20,7 @@ fn an_example_does_not_depend_on_what_was_asked_before() {
     other.example(8, &task).unwrap();
     let again = other.example(7, &task).unwrap();
     assert_eq!((&first.input, first.floor, &first.targets), (&again.input, again.floor, &again.targets));
-    assert_ne!(
-        first.input,
-        examples(2, floors).example(7, &task).unwrap().input,
-        "another seed is another example"
-    );
+    assert_ne!(first.input, examples(2, floors).example(7, &task).unwrap().input, "another seed is another example");
 }
 
 #[test]
@@ -35,8 +31,7 @@ fn an_example_is_the_generators_scene() {
     let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed).unwrap();
     assert_eq!(example.ends(), Some(&signal.two_ends(&radar)));
     let map = crate::maps::LogMaps::of_signal(&radar, &signal).full;
-    let off =
-        decades(&example).iter().zip(map.decades()).map(|(a, b)| (f64::from(*a) + example.gain - b).abs());
+    let off = decades(&example).iter().zip(map.decades()).map(|(a, b)| (f64::from(*a) + example.gain - b).abs());
     assert!(off.fold(0.0, f64::max) < 1e-5);
 }
 
@@ -60,7 +55,7 @@ fn the_world_makes_no_test_examples() {
     let of = |purpose| {
         let mixture = "world".parse().unwrap();
         Examples::new(ExamplesRequest { mixture, purpose, radars: Radars::Random, ..ExamplesRequest::default() })
-        .map(|_| ())
+            .map(|_| ())
     };
     assert_eq!(of(Purpose::Test), Err(ExamplesError::ForTests(Kind::World)));
     assert_eq!((of(Purpose::Training), of(Purpose::Validation)), (Ok(()), Ok(())));
