@@ -145,7 +145,7 @@ def size_of(radar):
         raise ValueError(f"the radar has {radar.samples} samples; expected a multiple of 8, which the network halves three times")
     if (radar.samples, radar.elements, radar.end_elements) == (ROWS, COLS, 12):
         return {}
-    widths = (12, 24, 48, 64) if radar.samples * radar.elements <= ROWS * COLS // 2 else (16, 32, 64, 96)
+    widths = (12, 24, 44, 60) if radar.samples * radar.elements <= ROWS * COLS // 2 else (16, 32, 64, 96)
     return {"c": widths, "rows": radar.samples, "columns": radar.elements}
 
 

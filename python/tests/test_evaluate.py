@@ -133,6 +133,39 @@ def test_elements_and_target_are_columns_of_rows():
     assert built["elements"].startswith("built ")
 
 
+def lengths(heard, radar):
+    return np.full((radar.samples, radar.elements), len(heard) / 100)
+
+
+def test_a_layout_is_heard_by_functions_and_the_matched_filter():
+    nested = ap.layout("nested=8x8", CHIP)
+    assert nested[:8] == [*range(8)] and nested[8:] == [8, 17, 26, 35, 44, 53, 62, 71]
+    rows = ap.evaluate(["matched-filter", lengths], ["2"], count=1, radar=CHIP, layout=nested)
+    assert {row["layout"] for row in rows} == {"0-8 17 26 35 44 53 62 71"}
+    target = ap.Scene.random("2", radar=CHIP).simulate().target
+    assert rows[1]["squared_error"] == pytest.approx(((target - 0.16) ** 2).sum(), rel=1e-5)
+    every = ap.evaluate(["matched-filter"], ["2"], count=1, radar=CHIP, layout=list(range(86)))
+    assert every[0]["squared_error"] < rows[0]["squared_error"]
+    with pytest.raises(ValueError, match="capon.*it hears the two ends of an array; of other layouts matched-filter makes maps"):
+        ap.evaluate(["capon"], ["2"], count=1, radar=CHIP, layout=nested)
+    with pytest.raises(ValueError, match="element 86; the radar has elements 0 to 85"):
+        ap.evaluate([lengths], ["2"], count=1, radar=CHIP, layout=[0, 86])
+
+
+def test_layouts_have_names():
+    assert ap.layout("two-ends", CHIP) == [*range(8), *range(78, 86)]
+    assert ap.layout("coprime=3x5", CHIP) == sorted({0, 3, 6, 9, 12, 5, 10, 15, 20, 25})
+    assert ap.layout("random=24:3", CHIP) == ap.layout("random=24:3", CHIP) and len(ap.layout("random=24", CHIP)) == 24
+    for name, words in (("magic", "expected two-ends, nested=AxB"), ("nested=4", "expected two-ends"), ("nested=40x40", "reaches to element"), ("random=1", "expected two-ends")):
+        with pytest.raises(ValueError, match=words):
+            ap.layout(name, CHIP)
+
+
+def test_a_method_says_why_it_refuses_a_radar():
+    assert ap.method("live").refusal() is None and ap.method("capon").refusal(CHIP) is None
+    assert "this radar has 86 elements" in ap.method("live").refusal(CHIP)
+
+
 def test_a_file_of_rows_is_gone_on_with(tmp_path):
     path = tmp_path / "rows.csv"
     run = {"count": 3, "radar": CHIP, "path": path}
@@ -164,6 +197,9 @@ def test_a_file_of_rows_is_gone_on_with(tmp_path):
     assert ap.read_rows(path) == other
     with pytest.raises(OSError, match="no"):
         ap.evaluate(["baseline"], ["1"], count=1, path=tmp_path / "no" / "rows.csv")
+    scenes = [ap.Scene([ap.Point(1.0, 4.0)], radar=CHIP)]
+    mixed = [ap.evaluate(["baseline"], ["1", *scenes], count=1, radar=CHIP, path=tmp_path / "mixed.csv") for _ in range(2)]
+    assert [row["set"] for row in mixed[0]] == ["1", "scenes"] and mixed[0] == mixed[1]
 
 
 def test_robustness_takes_a_radar_and_functions():

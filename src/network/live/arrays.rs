@@ -63,6 +63,6 @@ mod tests {
         }
         let degrees = drawn.iter().map(|a| a.element(3).phase_degrees.abs()).fold(0.0, f64::max);
         assert!((20.0..80.0).contains(&degrees), "{degrees}");
-        assert!((0..50).all(|seed| Arrays::IDEAL.of(seed, &radar).is_ideal()));
+        assert!((0..50).all(|seed| Arrays::IDEAL.of(seed, &radar, false).is_ideal()));
     }
 }
