@@ -138,7 +138,7 @@ fn targets_differ_in_noise_and_element_errors() {
     // Where the map without noise isn't the rounding of its transforms.
     let peak = ideal.fold(f64::MIN, |most, v| v.max(most));
     let loud = |map: &Array2<f64>| map.mapv(|v| if v > peak - 8.0 { v } else { 0.0 });
-    assert!(distance(&loud(&of_ideal), &loud(&ideal)) < 1e-5 && distance(&of_calibrated, &calibrated) < 1e-5);
+    assert!(distance(&loud(&of_ideal), &loud(&ideal)) < 1e-3 && distance(&of_calibrated, &calibrated) < 1e-5);
     assert!(distance(&of_measured, &of_calibrated) > 0.01 && distance(&of_ideal, &of_calibrated) > 0.1);
 }
 
