@@ -32,8 +32,7 @@ def read_rows(path: str | os.PathLike[str]) -> list[dict[str, Any]]:
         rows = read_table(Path(path))
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    columns = {name: kind for name, kind, _ in _apertura.ROW_COLUMNS}
     if not all({"set", "index", "method"} <= row.keys() for row in rows):
         raise ValueError(f"{path}: it has no rows of an evaluation; expected the columns set, index and method")
-    found = (row for row in rows if row.get("error") is None)
-    return [{name: "" if row.get(name) is None and kind is str else row.get(name) for name, kind in columns.items()} for row in found]
+    lacking = {name: "" if kind is str else None for name, kind, _ in _apertura.ROW_COLUMNS}
+    return [{name: row.get(name, usual) for name, usual in lacking.items()} for row in rows if row.get("error") is None]

@@ -133,7 +133,8 @@ def test_a_dataset_of_random_radars_names_each(tmp_path):
 
 def test_the_documented_loop_learns(folder, tmp_path, monkeypatch, capsys):
     pytest.importorskip("torch")
-    [loop] = re.findall(r"```python\n(import torch\n.*?)```", (ROOT / "docs" / "data.md").read_text(), re.DOTALL)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "data.md").read_text(), re.DOTALL)
+    [loop] = [block for block in blocks if "ap.data.Files" in block]
     assert len(loop.strip().splitlines()) <= 21
     monkeypatch.chdir(tmp_path)
     exec(loop.replace('"target/data"', repr(str(folder))), {})
