@@ -18,7 +18,8 @@ from safetensors import safe_open
 from safetensors.torch import load_file, save_file
 
 import apertura as ap
-from live import CELL_DECADES, COLS, DOUBT, FINE, SCENE_DECADES, Doubt, Live, normalise, parted, widened
+from apertura.live import CELL_DECADES, COLS, DOUBT, FINE, SCENE_DECADES, Doubt, Live, normalise, parted, widened
+from common import LEARNED, TARGET
 from train_live import COVERED, INPUTS, KINDS, OFF, error_of
 
 #: Cells of a scene that the fit sees, drawn at random.
@@ -33,8 +34,8 @@ LEAST = 1e-7
 
 def groups():
     """Of each kind of scene, by name, the arguments of `Scenes`."""
-    found = {kind: {"set": kind} for kind in KINDS}
-    found |= {f"{kind} at 10 to 60 dB": {"set": kind, "thermal": (1.0, 10.0, 60.0)} for kind in KINDS}
+    found = {kind: {"mixture": kind} for kind in KINDS}
+    found |= {f"{kind} at 10 to 60 dB": {"mixture": kind, "thermal": (1.0, 10.0, 60.0)} for kind in KINDS}
     return found | OFF
 
 
@@ -44,13 +45,13 @@ def seen(live, doubt, seed, count):
     draw = np.random.default_rng(seed)
     found = {}
     for name, given in groups().items():
-        data = ap.torch.Scenes(**given, seed=seed, length=count, purpose="validation")
+        data = ap.torch.Scenes(**given, seed=seed, length=count, purpose="validation", targets=[TARGET])
         means, gaps = [], []
         for i in range(count):
             example = data[i]
             log, minimum, picture = live.with_picture(*(example[name][None] for name in INPUTS))
             of_cells, hidden = doubt.parts(picture)
-            error = error_of(normalise(log, minimum), example["target"][None])
+            error = error_of(normalise(log, minimum), example[LEARNED][None])
             gap = torch.log10(error + LEAST) - of_cells.clamp(*CELL_DECADES).repeat_interleave(COLS // FINE, 2)
             means.append(hidden[0])
             gaps.append(gap.flatten()[torch.from_numpy(draw.choice(gap.numel(), CELLS, replace=False))])

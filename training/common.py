@@ -13,6 +13,11 @@ P_FA = {"1": 0.0037, "2": 0.0056, "3": 0.0102}
 ELSEWHERE = 0.01
 
 
+#: What the networks learn: the map of the array as it should be, over the noise of the scene.
+TARGET = "calibrated"
+LEARNED = f"target_{TARGET}"
+
+
 def false_alarm(kind):
     return P_FA.get(kind, ELSEWHERE)
 
@@ -25,9 +30,10 @@ def unit(maps):
 
 def validation_scenes(seed, count, kinds=tuple(P_FA), network="live", others=None):
     """Examples of `count` validation scenes of each of the kinds, in f16, and of each name in `others`, whose values are arguments of `Scenes`."""
-    sets = {kind: {"set": kind} for kind in kinds} | (others or {})
+    sets = {kind: {"mixture": kind} for kind in kinds} | (others or {})
     half = lambda example: {name: t.half() if t.ndim > 1 and t.dtype == torch.float32 else t for name, t in example.items() if name != "ends"}
-    made = {name: ap.torch.Scenes(**given, seed=seed, length=count, purpose="validation", network=network) for name, given in sets.items()}
+    usual = {"seed": seed, "length": count, "purpose": "validation", "network": network, "targets": [TARGET]}
+    made = {name: ap.torch.Scenes(**given, **usual) for name, given in sets.items()}
     return {name: [half(scenes[i]) for i in range(count)] for name, scenes in made.items()}
 
 
@@ -40,7 +46,7 @@ def stacked(entries):
 def figures(estimate, sets):
     """SE, and P_D with its threshold at `false_alarm(kind)`, for each kind; `eta` is where the mean P_FA is the mean of these.
 
-    `estimate` turns a batch into Lambda of output and target, and what is held against a threshold, [n, 512, 1024] each."""
+    `estimate` turns a batch into Lambda of output and target, and what is held against a threshold, [n, range bins, columns] each."""
     etas = np.linspace(0.5, 1.0, 251)
     report, alarms = {}, []
     for k, entries in sets.items():
@@ -75,6 +81,41 @@ class Clock:
         stopped = time.monotonic()
         yield
         self.began += time.monotonic() - stopped
+
+
+def loaded(path, device, keys, what):
+    """A checkpoint of ours that holds these keys; anything else ends the program with a line."""
+    try:
+        state = torch.load(path, weights_only=True, map_location=device)
+    except Exception as error:  # whatever is wrong with the file, the reader says it in its own way
+        raise SystemExit(f"{path} is no checkpoint that can be read: {' '.join(str(error).split())[:200]}") from None
+    missing = [key for key in keys if not isinstance(state, dict) or key not in state]
+    if missing:
+        raise SystemExit(f"{path} is no checkpoint of {what}: it has no \"{missing[0]}\"")
+    return state
+
+
+def tensors_of(path):
+    """The tensors of a weight file; anything else ends the program with a line."""
+    from safetensors.torch import load_file
+    try:
+        return load_file(path)
+    except Exception as error:  # safetensors has an error of its own
+        raise SystemExit(f"{path} is no weight file that can be read: {error}; expected safetensors") from None
+
+
+def fill(module, tensors, path):
+    """Loads tensors into a module; those of another network end the program with a line."""
+    try:
+        module.load_state_dict(tensors)
+    except (RuntimeError, KeyError) as error:
+        raise SystemExit(f"{path} holds weights of another network: {' '.join(str(error).split())[:300]}") from None
+
+
+def light(state):
+    """The state of Adam with its first moment, which it forgets within steps, in 16 bits: an eighth less to keep."""
+    kept = {number: {name: t.bfloat16() if name == "exp_avg" else t for name, t in of.items()} for number, of in state["state"].items()}
+    return {**state, "state": kept}
 
 
 def save(path, state):

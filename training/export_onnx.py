@@ -8,7 +8,7 @@ from pathlib import Path
 import torch
 from safetensors.torch import load_file
 
-from live import COARSE_CHANNELS, CONSTANTS, FINE, GRID, ROWS, Live, parted, widened
+from apertura.live import COARSE_CHANNELS, CONSTANTS, FINE, GRID, ROWS, Live, parted, widened
 
 SHIPPED = Path(__file__).resolve().parent.parent / "assets" / "weights" / "live.safetensors"
 

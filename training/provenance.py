@@ -16,10 +16,12 @@ def sha256(path):
 
 
 def programs():
-    """One hash over all programs of this folder, names included."""
+    """One hash over all programs of this folder and the live network's, names included."""
+    import apertura.live
+    paths = [os.path.join(HERE, n) for n in os.listdir(HERE) if n.endswith(".py")] + [apertura.live.__file__]
     digest = hashlib.sha256()
-    for name in sorted(n for n in os.listdir(HERE) if n.endswith(".py")):
-        digest.update(f"{name} {sha256(os.path.join(HERE, name))}\n".encode())
+    for path in sorted(paths, key=os.path.basename):
+        digest.update(f"{os.path.basename(path)} {sha256(path)}\n".encode())
     return digest.hexdigest()
 
 

@@ -10,7 +10,7 @@ import torch
 from safetensors.torch import save_file
 
 import apertura as ap
-from live import Doubt, Live, expected_error
+from apertura.live import Doubt, Live, expected_error
 from thesis import Thesis
 
 POINTS = np.array([[3.0, 12.0], [-9.5, 17.0], [20.0, 6.0]])

@@ -14,7 +14,8 @@ on a CPU. The shipped weights come from here.
         --log-every 20 --threads 4 --init ../assets/weights/live.safetensors    # on a GPU that there is for twelve minutes
 
 Needs torch, numpy, safetensors and apertura (`pip install ../python`), which makes the scenes: `apertura.torch.Scenes`. Every scene is new; with `--pool`
-each is drawn `--uses` times. They are those of `--mixture`, before the radar of table 3.1 or one drawn for each (`--radar`). Half of them lie over
+each is drawn `--uses` times. They are those of `--mixture`, before one radar drawn for each, that of table 3.1, or that of a file (`--radar`). A radar of another shape gets a network of its shape,
+which `apertura.live.Estimator` makes a method of. Half of them lie over
 thermal noise (`--snr-share`, `--snr`), a fifth are heard by elements that are off. Example `i` is a function of the seed and `i` alone: a run that goes on takes the next ones, in
 any number of processes.
 
@@ -38,9 +39,9 @@ import torch
 
 import apertura as ap
 import provenance
-from common import Clock, export, figures, save, unit, validation_scenes
+from common import LEARNED, TARGET, Clock, export, figures, fill, light, loaded, save, tensors_of, unit, validation_scenes
 from graph import Replayed
-from live import COLS, DOUBT, FINE, Doubt, Doubting, Live, expected_error, normalise, parted, widened
+from apertura.live import DOUBT, Doubt, Doubting, Live, expected_error, normalise, parted, size_of, widened, widened_cells
 from pool import Pool
 from team import Log, Team, batches
 
@@ -51,9 +52,9 @@ ELEMENTS = (0.2, 1.0, 20.0, 0.1)
 KINDS = ("1", "2", "3", "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near", "bodies", "street", "rails", "occlusion", "rough",
          "fences", "rain", "world")
 #: Two sets heard by elements that are off.
-OFF = {f"{kind} elements off": {"set": kind, "elements": (1.0, 0.6, 6.0, 0.0)} for kind in ("2", "3")}
+OFF = {f"{kind} elements off": {"mixture": kind, "elements": (1.0, 0.6, 6.0, 0.0)} for kind in ("2", "3")}
 #: And three sets over thermal noise.
-OTHERS = {f"{kind} at {snr} dB": {"set": kind, "floor": f"snr={snr}"} for kind, snr in (("2", 40), ("2", 20), ("3", 40))} | OFF
+OTHERS = {f"{kind} at {snr} dB": {"mixture": kind, "floor": f"snr={snr}"} for kind, snr in (("2", 40), ("2", 20), ("3", 40))} | OFF
 #: Other radars, where weights are for them: name, arguments of `Radar`.
 RADARS = {
     "76 GHz": {"carrier_hz": 76e9, "convention": "thesis"}, "1 GHz wide": {"bandwidth_hz": 1e9}, "4 GHz wide": {"bandwidth_hz": 4e9},
@@ -63,20 +64,61 @@ RADARS = {
 INPUTS = ("fine", "coarse", "rows", "scalars", "constants")
 
 
-def training_scenes(args):
-    radar = "random" if args.radar == "random" else None
+def radar_of(args):
+    """What sees the scenes, as `Scenes` takes it."""
+    if args.radar in ("random", "thesis"):
+        return "random" if args.radar == "random" else None
     try:
-        return ap.torch.Scenes(args.mixture, args.seed, length=1 << 32, thermal=(args.snr_share, *args.snr), elements=ELEMENTS, radar=radar)
+        return ap.Radar.load(args.radar)
+    except (ValueError, OSError) as error:
+        raise SystemExit(f"--radar {error}") from None
+
+
+def size_for(args):
+    """How large the network is: arguments of `Live`."""
+    radar = radar_of(args)
+    try:
+        size = size_of(radar) if isinstance(radar, ap.Radar) else {}
+    except ValueError as error:
+        raise SystemExit(f"--radar {args.radar}: {error}") from None
+    return {**size, "c": (4, 6, 8, 10), "blocks": (1, 1, 1, 1), "fine": 4} if args.tiny else size
+
+
+def training_scenes(args):
+    given = {"thermal": (args.snr_share, *args.snr), "elements": ELEMENTS, "radar": radar_of(args), "targets": [TARGET], "network": "live"}
+    try:
+        return ap.torch.Scenes(args.mixture, args.seed, length=1 << 32, **given)
     except ValueError as error:
         raise SystemExit(f"--mixture, --snr-share, --snr or --radar: {error}") from None
 
 
+def whole(network, path):
+    """Tensors of a weight file with what earlier editions lack."""
+    if "stem.conv.weight" not in network:
+        raise SystemExit(f"{path} holds weights of another network: it has no tensor \"stem.conv.weight\"")
+    return widened(network)
+
+
 def validation_sets(args):
+    radar = radar_of(args)
+    if isinstance(radar, ap.Radar):
+        kinds = [kind for kind in KINDS if has_room(kind, radar)]
+        others = {name: {**given, "radar": radar} for name, given in OTHERS.items()}
+        return validation_scenes(args.seed, args.validation, (), others={kind: {"mixture": kind, "radar": radar} for kind in kinds} | others)
     others = dict(OTHERS)
-    if args.radar == "random":
-        others["world, random radars"] = {"set": "world", "radar": "random"}
-        others |= {f"{kind}, {name}": {"set": kind, "radar": ap.Radar(**given)} for name, given in RADARS.items() for kind in ("2", "3")}
+    if radar == "random":
+        others["world, random radars"] = {"mixture": "world", "radar": "random"}
+        others |= {f"{kind}, {name}": {"mixture": kind, "radar": ap.Radar(**given)} for name, given in RADARS.items() for kind in ("2", "3")}
     return validation_scenes(args.seed, args.validation, KINDS, others=others)
+
+
+def has_room(kind, radar):
+    """Whether the objects of a kind find room before a radar."""
+    try:
+        ap.Scene.random(kind, radar=radar, purpose="validation")
+    except ValueError:
+        return False
+    return True
 
 
 def loss_of(log, minimum, target, edge_weight):
@@ -103,7 +145,7 @@ def error_of(output, target):
 
 def doubt_loss_of(doubt, error):
     """Pinball loss of the logarithm: least where a part `COVERED` of the errors lies below."""
-    gap = torch.log10(error + LEAST_ERROR) - doubt.repeat_interleave(COLS // FINE, 2)
+    gap = torch.log10(error + LEAST_ERROR) - widened_cells(doubt, error.shape[2])
     return torch.maximum(COVERED * gap, (COVERED - 1) * gap).mean()
 
 
@@ -117,8 +159,8 @@ def coverage(model, doubt, sets, device="cpu"):
             batch = {name: t[None].float().to(device) for name, t in entry.items()}
             log, minimum, picture = model.with_picture(*(batch[name] for name in INPUTS))
             of_cells, hidden = doubt.parts(picture)
-            limit = expected_error(of_cells, doubt.scene(hidden)[:, 0])
-            covered.append(float((error_of(normalise(log, minimum), batch["target"]) <= limit).float().mean()))
+            limit = expected_error(of_cells, doubt.scene(hidden)[:, 0], model.columns)
+            covered.append(float((error_of(normalise(log, minimum), batch[LEARNED]) <= limit).float().mean()))
         report[kind] = round(100 * sum(covered) / len(covered), 2)
     return report
 
@@ -128,7 +170,7 @@ def estimate_with(model, device="cpu"):
     def estimate(batch):
         batch = {name: t.to(device) for name, t in batch.items()}
         output = normalise(*model(*(batch[name] for name in INPUTS))).clamp(0, 1)
-        return output, unit(batch["target"]), output
+        return output, unit(batch[LEARNED]), output
     return estimate
 
 
@@ -137,8 +179,11 @@ class Run:
 
     def __init__(self, args, team):
         self.path = os.path.join(args.out, "checkpoint.pt")
-        self.model, self.average = Live().to(team.device, memory_format=torch.channels_last), Live().to(team.device)
-        self.doubt = Doubt().to(team.device)
+        #: How large the network is, as `Live` takes it.
+        self.size = size_for(args)
+        self.model, self.average = (Live(**self.size).to(team.device) for _ in range(2))
+        self.model.to(memory_format=torch.channels_last)
+        self.doubt = Doubt(self.model.stem.conv.out_channels).to(team.device)
         # A recorded step reads the rates from the GPU.
         self.recorded = args.graph
         if args.graph and team.device.type != "cuda":
@@ -151,9 +196,12 @@ class Run:
         self.domain = training_scenes(args).domain
         maps = None
         if os.path.exists(self.path):
-            state = torch.load(self.path, weights_only=True, map_location=team.device)
-            self.model.load_state_dict(state["model"])
-            self.doubt.load_state_dict(state["doubt"])
+            keys = ("model", "doubt", "average", "optimizer", "step", "drawn", "parts")
+            state = loaded(self.path, team.device, keys, "train_live.py")
+            if state.get("size", "{}") != json.dumps(self.size):
+                raise SystemExit(f"{self.path} is of a network of size {state.get('size', '{}')}; --radar and --tiny ask for {json.dumps(self.size)}")
+            fill(self.model, state["model"], self.path)
+            fill(self.doubt, state["doubt"], self.path)
             for group in state["optimizer"]["param_groups"]:
                 group.update(kept)  # where the steps are counted follows from this
             self.optimizer.load_state_dict(state["optimizer"])
@@ -165,12 +213,11 @@ class Run:
                 self.domain = state.get("domain", self.domain)
         else:
             if args.init:
-                from safetensors.torch import load_file
                 initial = args.init
-                network, doubt = parted(load_file(initial))
-                self.model.load_state_dict(widened(network))
+                network, doubt = parted(tensors_of(initial))
+                fill(self.model, whole(network, initial), initial)
                 if doubt:
-                    self.doubt.load_state_dict(doubt)
+                    fill(self.doubt, doubt, initial)
                 self.drawn, self.parts = args.first_scene, provenance.parts_of(initial)
             self.average.load_state_dict(self.model.state_dict())
         #: Maps that the weights saw, in all parts.
@@ -202,8 +249,8 @@ class Run:
 
     def save(self):
         save(self.path, {"model": self.model.state_dict(), "doubt": self.doubt.state_dict(), "average": self.average.state_dict(),
-                         "optimizer": self.optimizer.state_dict(),
-                         "step": self.step, "domain": self.domain, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
+                         "optimizer": light(self.optimizer.state_dict()),
+                         "step": self.step, "size": json.dumps(self.size), "domain": self.domain, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
 
 
 def scenes_of(args, first, team):
@@ -233,8 +280,8 @@ def step_of(run, args, team):
     def step(batch):
         with torch.autocast(team.device.type, torch.bfloat16, enabled=args.bf16, cache_enabled=not run.recorded):
             output, minimum, doubt = model(*(batch[name] for name in INPUTS))
-        loss = loss_of(output, minimum, batch["target"], args.edge_weight)
-        of_doubt = doubt_loss_of(doubt, error_of(normalise(output, minimum), batch["target"]).detach())
+        loss = loss_of(output, minimum, batch[LEARNED], args.edge_weight)
+        of_doubt = doubt_loss_of(doubt, error_of(normalise(output, minimum), batch[LEARNED]).detach())
         run.optimizer.zero_grad(set_to_none=True)
         (loss + of_doubt).backward()
         run.advance()
@@ -294,15 +341,14 @@ def main(args):
     torch.manual_seed(args.seed)
     team = Team(args.threads)
     if args.judge:
-        from safetensors.torch import load_file
-        model = Live()
-        network, of_doubt = parted(load_file(args.judge))
-        model.load_state_dict(widened(network))
+        model = Live(**size_for(args))
+        network, of_doubt = parted(tensors_of(args.judge))
+        fill(model, whole(network, args.judge), args.judge)
         sets = validation_sets(args)
         report = figures(estimate_with(model), sets)
         if of_doubt:
-            doubt = Doubt()
-            doubt.load_state_dict(of_doubt)
+            doubt = Doubt(model.stem.conv.out_channels)
+            fill(doubt, of_doubt, args.judge)
             report["covered"] = coverage(model, doubt, sets)
         print(json.dumps(report))
         return
@@ -317,6 +363,8 @@ def main(args):
         report = figures(estimate_with(run.average, team.device), sets)
         meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(args.seed),
                 "steps": str(run.step), "scenes_simulated": str(run.drawn), "domain": run.domain, **provenance.metadata(run.parts)}
+        if run.size:
+            meta["size"] = json.dumps(run.size)
         doubt = {f"{DOUBT}{name}": weights for name, weights in run.doubt.state_dict().items()}
         tensors = {**run.average.state_dict(), **doubt}
         export({name: tensor.half() for name, tensor in tensors.items()}, args.export, meta, report, args.validation)

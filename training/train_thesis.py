@@ -38,7 +38,7 @@ import torch
 
 import apertura as ap
 import provenance
-from common import Clock, export, figures, save, stacked, unit, validation_scenes
+from common import LEARNED, TARGET, Clock, export, figures, loaded, save, stacked, tensors_of, unit, validation_scenes
 from muon import Muon
 from team import Log, Team
 from thesis import Thesis
@@ -56,12 +56,12 @@ MIXTURE = {1: "points", 2: "mixed"}
 
 def training_scenes(experiment):
     mixture = ",".join(f"{MIXTURE[experiment]}-{objects}=1" for objects in range(1, 5))
-    return ap.torch.Scenes(mixture, experiment, length=1 << 32, network="thesis")
+    return ap.torch.Scenes(mixture, experiment, length=1 << 32, network="thesis", targets=[TARGET])
 
 
 def entry(example):
     """Input [4, 512, 1024] and target [512, 1024]."""
-    return example["mag_phase"], unit(example["target"][None])[0]
+    return example["mag_phase"], unit(example[LEARNED][None])[0]
 
 
 def crop(entry, rng):
@@ -90,7 +90,7 @@ def loss_of(experiment, output, target):
 def estimate_with(model):
     """For `common.figures`. The output is Lambda as it stands; for a threshold the thesis stretches it to [0, 1]."""
     def estimate(batch):
-        target = unit(batch["target"])
+        target = unit(batch[LEARNED])
         model.eval()
         output = model(batch["mag_phase"].contiguous(memory_format=torch.channels_last))[:, 0]
         model.train()
@@ -114,10 +114,9 @@ def settle(model, experiment):
 def state_of(path):
     """What another run's checkpoint or a weight file holds: "model", and of a run where it stands."""
     if path.endswith(".safetensors"):
-        from safetensors.torch import load_file
         parts = provenance.parts_of(path)
-        return {"model": load_file(path), "parts": json.dumps(parts), "maps": provenance.maps_of(parts)}
-    return torch.load(path, weights_only=True)
+        return {"model": tensors_of(path), "parts": json.dumps(parts), "maps": provenance.maps_of(parts)}
+    return loaded(path, "cpu", ("model",), "train_thesis.py")
 
 
 def optimizers(model, lr, muon):
@@ -136,7 +135,7 @@ class Run:
         self.model, self.average = fresh().to(team.device), fresh().to(team.device)
         self.step, self.maps, self.scenes, self.parts, initial, state = 0, 0.0, 0, [], None, None
         if os.path.exists(self.path):
-            state = torch.load(self.path, weights_only=True, map_location=team.device)
+            state = loaded(self.path, team.device, ("model", "average", "optimizers", "step"), "train_thesis.py")
             # A run goes on with the optimizers that it has.
             self.optimizers = optimizers(self.model, args.lr, muon=len(state["optimizers"]) > 1)
             self.average.load_state_dict(state["average"])

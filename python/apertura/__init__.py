@@ -7,7 +7,7 @@
     print(ap.metrics(maps.target, found.map, found.eta))
 
 Maps are `[range bins, columns]`: row k is range `radar.range_metres[k]`, column k the direction `radar.cos_theta[k]`, which falls from column
-to column under the two-way carrier: `map[:, numpy.argsort(radar.cos_theta)]` has left on the left. An error of the library becomes
+to column under the two-way carrier: `map[:, radar.rising_columns]` has left on the left. An error of the library becomes
 ValueError, one of a file OSError. Rust works without the interpreter's lock; Ctrl-C stops it. `python/README.md` says more.
 """
 
@@ -24,9 +24,11 @@ from ._apertura import (
     __version__,
     ambiguity,
     cfar,
+    chirp_samples,
     cramer_rao,
     dataset,
     evaluate,
+    kinds,
     live_input,
     maps,
     method,
@@ -34,7 +36,7 @@ from ._apertura import (
     metrics,
     paired,
     range_doppler,
-    read_rows,
+    robustness,
     roc,
     rules,
     set_threads,
@@ -42,7 +44,9 @@ from ._apertura import (
     threshold,
     write_rows,
 )
+from .layouts import layout
 from .objects import (
+    ArgumentError,
     Box,
     Cluster,
     Elements,
@@ -61,9 +65,11 @@ from .objects import (
 )
 from .page import Shown, find_page, show
 from .program import find_program, open
+from .rows import read_rows
 from .serve import Request, serve
 
 __all__ = [
+    "ArgumentError",
     "Box",
     "Cluster",
     "Elements",
@@ -92,12 +98,15 @@ __all__ = [
     "__version__",
     "ambiguity",
     "cfar",
+    "chirp_samples",
     "cramer_rao",
     "data",
     "dataset",
     "evaluate",
     "find_page",
     "find_program",
+    "kinds",
+    "layout",
     "live_input",
     "maps",
     "method",
@@ -107,6 +116,7 @@ __all__ = [
     "paired",
     "range_doppler",
     "read_rows",
+    "robustness",
     "roc",
     "rules",
     "serve",

@@ -31,6 +31,9 @@ _Convention = Literal["thesis", "physical"]
 _Window = Literal["hann", "hamming", "blackman", "rectangular"]
 _Purpose = Literal["training", "validation", "test"]
 _Reading = Literal["program", "text"]
+_Target = str
+#: A name, a method, a file of weights, or a function.
+_Method = str | os.PathLike[str] | Method | Callable[..., Any]
 
 __all__ = [
     "ROW_COLUMNS",
@@ -46,9 +49,11 @@ __all__ = [
     "ambiguity",
     "built_elements",
     "cfar",
+    "chirp_samples",
     "cramer_rao",
     "dataset",
     "evaluate",
+    "kinds",
     "live_input",
     "maps",
     "method",
@@ -57,6 +62,7 @@ __all__ = [
     "paired",
     "range_doppler",
     "read_rows",
+    "robustness",
     "roc",
     "rules",
     "set_threads",
@@ -120,6 +126,9 @@ class Radar:
     def preset(name: str) -> Radar: ...
     @staticmethod
     def presets() -> list[str]: ...
+    @staticmethod
+    def load(path: _Path) -> Radar: ...
+    def save(self, path: _Path) -> None: ...
     def replace(self, **fields: Any) -> Radar: ...
     @property
     def transmit_power_watts(self) -> float: ...
@@ -178,6 +187,8 @@ class Radar:
     def range_metres(self) -> npt.NDArray[np.float64]: ...
     @property
     def cos_theta(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def rising_columns(self) -> npt.NDArray[np.int64]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
@@ -268,12 +279,26 @@ class Maps:
     @property
     def target(self) -> npt.NDArray[np.float32]: ...
     @property
+    def complex(self) -> npt.NDArray[np.complex128]: ...
+    @property
     def inputs(self) -> npt.NDArray[np.float32]: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Method:
     @staticmethod
     def of_command(command: str, *, seconds: float = 120.0) -> Method: ...
+    @staticmethod
+    def of_function(
+        function: Callable[..., Any],
+        *,
+        name: str | None = None,
+        description: str = "",
+        told: str = "",
+        eta: float = 0.9,
+        answers: Literal["lambda", "decades"] = "lambda",
+        weights: str = "",
+    ) -> Method: ...
     @property
     def name(self) -> str: ...
     @property
@@ -281,7 +306,11 @@ class Method:
     @property
     def told(self) -> str: ...
     @property
+    def weights(self) -> str: ...
+    @property
     def eta(self) -> float: ...
+    def refusal(self, radar: Radar | None = None) -> str | None: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
     def reconstruct(
         self,
         ends: npt.ArrayLike,
@@ -292,6 +321,19 @@ class Method:
         snapshot_range_metres: float | None = None,
         progress: _Progress | None = None,
     ) -> Reconstruction: ...
+
+def _maps(samples: npt.ArrayLike, radar: Radar, normalisation: str, elements: Elements | None = None) -> Maps: ...
+def _recording(
+    name: str,
+    notes: str,
+    radar: Radar,
+    samples: npt.ArrayLike | None,
+    ends: npt.ArrayLike,
+    missing: Sequence[int],
+    range_metres: float | None,
+    doubts: Sequence[str],
+) -> Recording: ...
+def _reconstruction(fields: dict[str, Any]) -> Reconstruction: ...
 
 @final
 class Reconstruction:
@@ -307,6 +349,7 @@ class Reconstruction:
     def confidences(self) -> npt.NDArray[np.float64]: ...
     @property
     def detections(self) -> npt.NDArray[np.float64]: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Recording:
@@ -350,10 +393,19 @@ class Examples:
         thermal: tuple[float, float, float] | None = None,
         elements: tuple[float, float, float, float] | None = None,
         radar: Radar | Literal["random"] | None = None,
+        targets: Sequence[str] | None = None,
+        features: bool | None = None,
+        layout: Sequence[int] | None = None,
     ) -> Examples: ...
     @property
     def domain(self) -> str: ...
-    def batch(self, indices: Sequence[SupportsIndex], *, mag_phase: bool = False) -> list[dict[str, Any]]: ...
+    @property
+    def has_features(self) -> bool: ...
+    def radar(self, index: SupportsIndex) -> Radar: ...
+    def batch(
+        self, indices: Sequence[SupportsIndex], *, mag_phase: bool = False, scenes: Sequence[Scene] | None = None
+    ) -> list[dict[str, Any]]: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 def dataset(
     folder: _Path,
@@ -365,8 +417,11 @@ def dataset(
     seed: int = 0,
     floor: str = "thesis",
     thermal: tuple[float, float, float] | None = None,
+    elements: tuple[float, float, float, float] | None = None,
+    radar: Radar | Literal["random"] | None = None,
+    layout: Sequence[int] | None = None,
     dtype: Literal["f16", "f32"] = "f16",
-    arrays: Sequence[Literal["ends", "features", "target"]] | None = None,
+    arrays: Sequence[Literal["ends", "features", "target_ideal", "target_measured", "target_calibrated"]] | None = None,
     shard: int = 64,
     progress: _Progress | None = None,
 ) -> None: ...
@@ -381,7 +436,17 @@ def range_doppler(
     seconds: float = 0.0,
     progress: _Progress | None = None,
 ) -> npt.NDArray[np.float64]: ...
-def method(name: str) -> Method: ...
+def chirp_samples(
+    scene: Scene,
+    radar: Radar | None = None,
+    *,
+    floor: str = "thesis",
+    seed: int | None = None,
+    seconds: float = 0.0,
+    progress: _Progress | None = None,
+) -> npt.NDArray[np.complex128]: ...
+def kinds(*, training: bool = False) -> list[str]: ...
+def method(name: str, *, weights: _Path | None = None, called: str | None = None) -> Method: ...
 def methods() -> list[str]: ...
 def metrics(target: npt.ArrayLike, output: npt.ArrayLike, eta: float, *, has_echoes: bool = True) -> Metrics: ...
 def roc(
@@ -389,8 +454,8 @@ def roc(
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
 def cfar(power: npt.ArrayLike, detector: str = "ca") -> npt.NDArray[np.bool_]: ...
 def evaluate(
-    methods: Sequence[str],
-    sets: Sequence[str | int],
+    methods: Sequence[_Method],
+    scenes: Sequence[str | int | Scene],
     *,
     count: int = 100,
     seed: int = 0,
@@ -399,14 +464,33 @@ def evaluate(
     purpose: _Purpose = "test",
     reading: _Reading = "program",
     radar: Radar | None = None,
+    elements: Elements | tuple[float, float, float] | None = None,
+    target: _Target = "measured",
+    layout: Sequence[int] | None = None,
     on_row: Callable[[dict[str, Any]], object] | None = None,
     progress: _Progress | None = None,
     path: _Path | None = None,
+    overwrite: bool = False,
     only: Sequence[tuple[str, int, str]] | None = None,
     cfar: str | None = None,
 ) -> list[dict[str, Any]]: ...
+def robustness(
+    methods: Sequence[_Method],
+    set: str | int,
+    *,
+    gain_db: float = 0.5,
+    phase_degrees: float = 10.0,
+    position_millimetres: float = 0.0,
+    scales: Sequence[float] | None = None,
+    count: int = 5,
+    seed: int = 0,
+    floor: str = "thesis",
+    radar: Radar | None = None,
+    calibrate: bool = False,
+    progress: _Progress | None = None,
+) -> list[dict[str, Any]]: ...
 def threshold(
-    method: str = "live",
+    method: _Method | None = None,
     *,
     false_alarm_percent: float = 1.0,
     sets: Sequence[str | int] | None = None,

@@ -87,11 +87,6 @@ def entry(method: _apertura.Method, *, weights: str = "", scenes: int = SCENES, 
     return found | {"sha256": digest_of(found)}
 
 
-def weights_of(method: str) -> str:
-    """Digits that tell the weights of a method of this package from others, as rows of an evaluation hold them; none without weights."""
-    return str(_apertura.evaluate([method], ["1"], count=1)[0]["weights"] or "")
-
-
 def machine() -> dict[str, Any]:
     """What the times were measured on."""
     processor = platform.processor() or platform.machine()
@@ -183,7 +178,7 @@ def _run(given: argparse.Namespace) -> None:
         raise ValueError(f"the scenes of {', '.join(changed)} are not the frozen ones; a benchmark of other scenes needs another version")
     for name in OWN if given.all else (given.method,):
         method = _apertura.Method.of_command(given.method_command, seconds=300) if name is None else _apertura.method(name)
-        weights = given.weights or (weights_of(name) if name else "")
+        weights = given.weights or method.weights
         if given.check:
             print(check(given.check, method, weights, given.scenes, given.seed))
             return
@@ -201,7 +196,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     which.add_argument("--all", action="store_true", help=f"make the entries of {', '.join(OWN)}, into the folder of -o")
     which.add_argument("--table", type=Path, nargs="+", metavar="ENTRY", help="print these entries as a Markdown table, and stop")
     which.add_argument("--freeze", action="store_true", help="print the suites and the hashes of their scenes and samples, and stop")
-    parser.add_argument("--weights", default="", help="digits that tell these weights from others, for the entry; those of a method of this package are known")
+    parser.add_argument("--weights", default="", help="digits that tell these weights from others, for the entry [default: those that the method says]")
     parser.add_argument("-o", "--output", type=Path, help="the entry to write; with --all, a folder")
     parser.add_argument("--check", type=Path, metavar="ENTRY", help="score again, compare with this entry, and score a third draw")
     parser.add_argument("--seed", type=int, help="seed of the third draw; random where none is given")

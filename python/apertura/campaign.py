@@ -42,6 +42,12 @@ class Run:
     normalisation: str = "min-max"
     #: Programs of one's own (docs/own-network.md).
     commands: tuple[str, ...] = ()
+    #: The radar; that of table 3.1 where none is given.
+    radar: _apertura.Radar | None = None
+    #: Standard deviations of the elements (gain in decibels, phase in degrees, place in millimetres), drawn for each scene.
+    elements: tuple[float, float, float] | None = None
+    #: What outputs are held against: "measured", "ideal" or "calibrated".
+    target: str = "measured"
 
     def keys(self) -> Iterator[Key]:
         """Every row, in the order of the table."""
@@ -51,7 +57,32 @@ class Run:
         """For the first line of a journal."""
         version = _apertura.__version__
         fields = {name: list(value) if isinstance(value, tuple) else value for name, value in vars(self).items()}
+        usual = {"radar": None, "elements": None, "target": "measured"}
+        # Journals of earlier editions have none of these.
+        fields = {name: value for name, value in fields.items() if name not in usual or value != usual[name]}
+        if self.radar is not None:
+            fields["radar"] = _apertura.Scene(radar=self.radar).to_toml()
         return {**fields, "program": version}
+
+    def evaluate(self, only: Sequence[Key], on_row: Callable[[dict[str, Any]], object] | None = None) -> None:
+        """Finds the rows of these keys.
+
+        Raises:
+            ValueError: A name is unknown, or a method can't work on a scene.
+        """
+        _apertura.evaluate(
+            self.methods,
+            self.sets,
+            count=self.count,
+            seed=self.seed,
+            floor=self.floor,
+            normalisation=self.normalisation,
+            radar=self.radar,
+            elements=self.elements,
+            target=self.target,
+            only=list(only),
+            on_row=on_row,
+        )
 
 
 _STARTED: set[str] = set()
@@ -76,19 +107,14 @@ def rows_of(run: Run, keys: Sequence[Key]) -> list[dict[str, Any]]:
     def keep(row: dict[str, Any]) -> None:
         found[row["set"], row["index"], row["method"]] = row
 
-    def evaluate(only: Sequence[Key]) -> None:
-        _apertura.evaluate(
-            run.methods, run.sets, count=run.count, seed=run.seed, floor=run.floor, normalisation=run.normalisation, only=list(only), on_row=keep
-        )
-
     try:
-        evaluate(keys)
+        run.evaluate(keys, keep)
     except ValueError:
         # Somebody failed: the rest one by one, so that no failure hides another row.
         for key in keys:
             if key not in found:
                 try:
-                    evaluate([key])
+                    run.evaluate([key], keep)
                 except ValueError as error:
                     found[key] = failed(run, key, str(error))
     return [found[key] for key in keys]
@@ -200,7 +226,7 @@ def campaign(run: Run, out: Path, *, scheduler: str | None = None, workers: int 
         raise ValueError(f"{out} is there already; name another file, or remove it")
     start_commands(run.commands)
     # Names are checked before workers start.
-    _apertura.evaluate(run.methods, run.sets, count=run.count, seed=run.seed, floor=run.floor, normalisation=run.normalisation, only=[])
+    run.evaluate([])
     journal = Journal(journal_path, run.told())
     try:
         total = run.count * len(run.sets) * len(run.methods)
@@ -243,10 +269,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m apertura.campaign", description=(__doc__ or "").split("\n\n")[1])
     parser.add_argument("--methods", type=_names, default=(), help="names, separated by commas")
     parser.add_argument("--method-command", action="append", default=[], metavar="COMMAND", help="a program of your own as a method")
-    parser.add_argument("--sets", type=_names, required=True, help="1, 2, 3 or other kinds of scenes, separated by commas")
+    parser.add_argument("--sets", type=_names, required=True, help=f"kinds of scenes, separated by commas: {', '.join(_apertura.kinds())}")
     parser.add_argument("--count", type=int, required=True, help="scenes of each set")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--floor", default="thesis", help="thesis, exact, snr=DB or dbm=LEVEL")
+    parser.add_argument("--floor", default="thesis", help="thesis, exact, thermal, snr=DB or dbm=LEVEL")
+    parser.add_argument("--radar", type=Path, metavar="FILE", help="a .toml with a table [radar], such as a scene [default: table 3.1]")
+    parser.add_argument("--elements", type=float, nargs=3, metavar=("DB", "DEGREES", "MM"), help="elements that are off: standard deviations")
+    parser.add_argument("--target", default="measured", choices=("measured", "ideal", "calibrated"), help="what outputs are held against")
     parser.add_argument("--normalisation", default="min-max", help="min-max or db=RANGE")
     parser.add_argument("--out", type=Path, required=True, help="the table to write: .csv or .parquet")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask cluster, such as tcp://host:8786; workers on this machine where none is given")
@@ -258,7 +287,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
         methods = given.methods or tuple(own)
         if not methods:
             parser.error("--methods or --method-command is needed")
-        run = Run(methods, given.sets, given.count, given.seed, given.floor, given.normalisation, tuple(given.method_command))
+        run = Run(
+            methods,
+            given.sets,
+            given.count,
+            given.seed,
+            given.floor,
+            given.normalisation,
+            tuple(given.method_command),
+            _apertura.Radar.load(given.radar) if given.radar else None,
+            tuple(given.elements) if given.elements else None,
+            given.target,
+        )
         rows = campaign(run, given.out, scheduler=given.scheduler, workers=given.workers, progress_seconds=given.progress)
     except (ValueError, OSError, ImportError) as error:
         sys.exit(f"error: {error}")

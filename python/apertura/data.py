@@ -13,15 +13,32 @@ from typing import Any, Literal
 
 import numpy as np
 
-_VERSION = 1
+from ._apertura import Radar
+
+#: Versions of the manifest that are read. Before version 2 the only target had no name.
+_VERSIONS = (1, 2)
+
+
+class Example(dict[str, Any]):
+    """One example, by the names of its arrays."""
+
+    def __missing__(self, name: str) -> Any:
+        if name != "target":
+            raise KeyError(name)
+        there = ", ".join(key for key in self if key.startswith("target_")) or "none"
+        raise KeyError(
+            "a target has a name: target_ideal (the array as it should be, without noise) or target_measured (what the whole array heard); "
+            f"this example has {there}"
+        )
 
 
 class Files:
     """One split of a dataset on disk, as a map-style dataset: a `torch.utils.data.DataLoader` takes it as it is.
 
-    Item `i` is a dict of arrays: those that were written of `ends` complex128 `[2, 12, 512]`, `fine` `[4, 512, 256]`, `coarse` `[10, 512, 64]`,
-    `rows` `[6, 512]`, `scalars` `[2]`, `constants` `[6]` and `target` `[512, 1024]`, and `gain`. Halves become float32. Files are mapped into memory: nothing is
-    read before it is asked for, and worker processes share what was.
+    Item `i` is a dict of arrays: those that were written of `ends` complex128 `[2, end_elements, samples]` (or `heard` `[elements of the layout,
+    samples]`), `fine` `[4, 512, 256]`, `coarse` `[10, 512, 64]`, `rows` `[6, 512]`, `scalars` `[2]`, `constants` `[6]` and the targets `target_ideal`,
+    `target_measured` and `target_calibrated` `[samples, elements]`, and `gain`. Halves become float32. Files are mapped into memory: nothing is
+    read before it is asked for, and worker processes share what was. The target of a dataset of version 1 is its `target_measured`.
 
     Args:
         folder: The dataset's folder.
@@ -43,11 +60,13 @@ class Files:
             version, splits = self.manifest["apertura_dataset"], self.manifest["splits"]
         except (ValueError, KeyError, TypeError) as error:
             raise ValueError(f"{path} is no manifest of a dataset: {error}") from None
-        if version != _VERSION:
-            raise ValueError(f"{path} has version {version}; this package reads version {_VERSION}")
+        if version not in _VERSIONS:
+            raise ValueError(f"{path} has version {version}; this package reads versions {_VERSIONS[0]} to {_VERSIONS[-1]}")
         if split not in splits:
             raise ValueError(f"split is {split!r}; expected {', '.join(splits)}")
         self._shards: list[dict[str, Any]] = splits[split]
+        if version == 1:
+            self._shards = [{**shard, "files": {_named(name): file for name, file in shard["files"].items()}} for shard in self._shards]
         self._ends = list(accumulate(shard["examples"] for shard in self._shards))
         self._open: dict[tuple[int, str], Any] = {}
         for shard in self._shards:
@@ -76,7 +95,7 @@ class Files:
             IndexError: There are not as many.
         """
         shard, row = self._place(index)
-        example = {}
+        example = Example()
         for name in self._shards[shard]["files"]:
             value = self._array(shard, name)[row]
             example[name] = value.astype(np.float32) if value.dtype == np.float16 else np.array(value)
@@ -86,6 +105,13 @@ class Files:
         """Kind of the scene of example `index`."""
         shard, row = self._place(index)
         return str(self._shards[shard]["kinds"][row])
+
+    def radar(self, index: int) -> Radar:
+        """The radar that saw example `index`."""
+        shard, row = self._place(index)
+        drawn = self._shards[shard].get("radars")
+        fields: dict[str, Any] = drawn[row] if drawn else self.manifest["radar"]
+        return Radar(**fields)
 
     def _place(self, index: int) -> tuple[int, int]:
         number = operator.index(index)
@@ -106,6 +132,11 @@ class Files:
 
     def __repr__(self) -> str:
         return f"Files({str(self._folder)!r}: {len(self)} examples)"
+
+
+def _named(array: str) -> str:
+    """Name of an array of version 1. No element was off then."""
+    return "target_measured" if array == "target" else array
 
 
 def _digest(opened: Any) -> str:

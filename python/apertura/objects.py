@@ -11,6 +11,10 @@ import numpy.typing as npt
 from ._apertura import Radar, built_elements
 
 
+class ArgumentError(TypeError, ValueError):
+    """An argument of the wrong type. It is a ValueError too, as all errors of the library are."""
+
+
 @dataclass(frozen=True)
 class Point:
     """One reflector. x lies along the array, y ahead of it, both in metres. Every object may have a velocity, which only

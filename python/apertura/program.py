@@ -16,11 +16,16 @@ _NAME = "apertura.exe" if sys.platform == "win32" else "apertura"
 
 
 def find_program() -> str:
-    """Path of the program: beside this module, where pip put it, beside the Python that runs, or on PATH.
+    """Path of the program: $APERTURA_PROGRAM, beside this module, where pip put it, beside the Python that runs, or on PATH.
 
     Raises:
-        FileNotFoundError: It is in none of these places; the message says how to get it.
+        FileNotFoundError: It is in none of these places, or what $APERTURA_PROGRAM names is no program; the message says how to get it.
     """
+    named = os.environ.get("APERTURA_PROGRAM")
+    if named:
+        if not (os.path.isfile(named) and os.access(named, os.X_OK)):
+            raise FileNotFoundError(f"APERTURA_PROGRAM is {named}, which is no program; expected the path of apertura, or nothing")
+        return named
     beside = [Path(__file__).parent / "bin" / _NAME, Path(sys.executable).parent / _NAME]
     for path in [beside[0], *_of_wheel(), beside[1]]:
         if path.is_file() and os.access(path, os.X_OK):

@@ -132,6 +132,15 @@ def _answer(
     _send(sink, said, question, {answers: cells})
 
 
+def called(
+    function: Callable[..., Any], ends: npt.NDArray[np.complex128], radar: Radar, told: tuple[str, str, float | None]
+) -> tuple[npt.NDArray[Any], float | None]:
+    """What a method of this process answers: its map, and its threshold where it has one."""
+    found = function(ends, radar, Request(*told)) if _takes_request(function) else function(ends, radar)
+    found, eta = found if isinstance(found, tuple) else (found, None)
+    return _cells(found), None if eta is None else float(eta)
+
+
 def _cells(found: Any) -> npt.NDArray[Any]:
     """The map as an array of float32 or float64."""
     if hasattr(found, "detach"):

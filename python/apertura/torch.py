@@ -3,75 +3,99 @@
 from __future__ import annotations
 
 import operator
-from typing import TYPE_CHECKING, Any, Literal, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Literal, Sequence
 
-from ._apertura import Examples, Radar
+import numpy as np
+
+from ._apertura import Examples, Radar, Scene
+from .data import Example
 
 if TYPE_CHECKING:
     import torch as _torch
 
-_TENSORS = {"live": ("ends", "fine", "coarse", "rows", "scalars", "constants", "target"), "thesis": ("ends", "mag_phase", "target")}
+#: What of an example is no tensor.
+_OTHER = ("gain", "kind", "floor", "radar")
 
 
 class Scenes:
-    """Examples for the live network, as a map-style dataset: example `i` is a function of (mixture, seed, i) alone.
+    """Examples to train on, as a map-style dataset: example `i` is a function of (mixture, seed, i) alone.
 
     No worker needs a seed of its own. Any number of workers and processes gives the same examples, started by fork, spawn or forkserver, and a
     run that was stopped goes on by index. A forked worker computes on one thread (`apertura.set_threads` changes that there), so that as many
     workers as processors keep all of them busy.
 
     Args:
-        set: Kinds of scenes with their shares, as in "3" or "1=4,2=12,walls=8".
+        mixture: Kinds of scenes (`apertura.kinds()`) with their shares, as in "3" or "1=4,2=12,walls=8".
         seed: Seed of the examples.
         length: How many examples the dataset has; at most 2^32.
         purpose: "training", "validation" or "test": their scenes never meet.
         floor: What lies beneath all scenes: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL".
         thermal: (share, lowest dB, highest dB), in place of `floor`: this share of the scenes lies over thermal noise at a ratio drawn between
             the two, the others over the thesis' floor.
-        network: Whose input the examples have: "live" or "thesis".
+        network: Whose input the examples have beside the samples: "live", "thesis", or "none". Where nothing is said, that of the live network
+            before radars of its shape (1024 elements, ends of 12, 512 samples), and none before others.
         elements: (share, gain in decibels, phase in degrees, place in millimetres): this share of the scenes is heard by elements that are off.
-            Each such scene has its own part of these standard deviations, uniform from none to all. `target` stays that of the array as it
-            should be.
-        radar: The `Radar` that sees all scenes, with 1024 elements, ends of 12 and 512 samples; "random" for one drawn for each scene, as
-            `Examples` says; that of table 3.1 where none is given.
+            Each such scene has its own part of these standard deviations, uniform from none to all.
+        radar: The `Radar` that sees all scenes; "random" for one drawn for each scene, as `Examples` says; that of table 3.1 where none is given.
+        targets: The maps to learn, of "ideal", "measured" and "calibrated".
+        layout: Numbers of the elements that are heard in place of the two ends (`apertura.layout`).
+        scene: Makes the scenes in place of `mixture`: called as `scene(random, radar)` with a `numpy.random.Generator`, which is a function of seed,
+            purpose and number of the example, and the example's `Radar`; it returns a `Scene`. Its noise is picked by seed, purpose and number.
+        transform: Called with each example; what it returns is the example.
 
-    An example is a dict of tensors: `ends` complex64 `[2, 12, 512]`, the network's input `fine` float32 `[4, 512, 256]`, `coarse` float32
-    `[10, 512, 64]`, `rows` float32 `[6, 512]`, `scalars` float32 `[2]` and `constants` float32 `[6]`, and `target` float32 `[512, 1024]`, decades of amplitude of the
-    whole array's map. With `network="thesis"` the input is `mag_phase` float32 `[4, 512, 1024]`. Ends and target are relative to the samples'
-    mean power; the rounding of complex64 covers the thesis' floor in `ends`, and in nothing else.
+    An example is a dict of tensors. `ends` is complex64 `[2, end_elements, samples]`; with `layout` there is `heard` complex64 `[elements of the layout,
+    samples]` in its place. `target_ideal` is the map of the array as it should be, without noise; `target_measured` that of what the whole array heard;
+    `target_calibrated` that of the array as it should be over the noise, which the live network learns. Each is float32 `[samples, elements]`,
+    decades of amplitude, and cos(theta) rises with its column (`Radar.rising_columns`). The live network's input is `fine` float32 `[4, samples, 256]`,
+    `coarse` float32 `[10, samples, 64]`, `rows` float32 `[6, samples]`, `scalars` float32 `[2]` and `constants` float32 `[6]`; the thesis' networks' is
+    `mag_phase` float32 `[4, samples, elements]`. Samples and targets are relative to the samples' mean power; the rounding of complex64 covers the
+    thesis' floor in the samples, and in nothing else.
 
     Raises:
-        ValueError: A name is unknown or a number can't be used.
+        ValueError: A name is unknown, a number can't be used, or a kind finds no room before the radar.
     """
 
     def __init__(
         self,
-        set: str | int,
+        mixture: str | int = "world",
         seed: int = 0,
         *,
         length: int = 1 << 20,
         purpose: str = "training",
         floor: str = "thesis",
         thermal: tuple[float, float, float] | None = None,
-        network: Literal["live", "thesis"] = "live",
+        network: Literal["live", "thesis", "none"] | None = None,
         elements: tuple[float, float, float, float] | None = None,
         radar: Radar | Literal["random"] | None = None,
+        targets: Sequence[str] = ("ideal", "measured"),
+        layout: Sequence[int] | None = None,
+        scene: Callable[[np.random.Generator, Radar], Scene] | None = None,
+        transform: Callable[[dict[str, Any]], Any] | None = None,
     ) -> None:
-        if network not in _TENSORS:
-            raise ValueError(f'network is {network!r}; expected "live" or "thesis"')
-        self._network = network
+        if network not in (None, "live", "thesis", "none"):
+            raise ValueError(f'network is {network!r}; expected "live", "thesis" or "none"')
+        if network == "thesis" and layout is not None:
+            raise ValueError("the thesis' networks hear two ends; expected no layout, or another network")
+        for name, function in (("scene", scene), ("transform", transform)):
+            if function is not None and not callable(function):
+                raise ValueError(f"{name} is {function!r}; expected a function")
+        self._network, self._scene, self._transform = network, scene, transform
         length = operator.index(length)
         if not 1 <= length <= 1 << 32:
             raise ValueError(f"length is {length}; expected 1 to {1 << 32}")
         self._length = length
         self._arguments: dict[str, Any] = {
-            "mixture": str(set),
+            # A function may make scenes that no kind has room for.
+            "mixture": str(mixture) if scene is None else "1",
             "seed": seed,
             "purpose": purpose,
             "floor": floor,
             "thermal": thermal,
             "elements": elements,
             "radar": radar,
+            "targets": list(targets),
+            "features": {None: None, "live": True}.get(network, False),
+            "layout": None if layout is None else [operator.index(element) for element in layout],
         }
         self._examples: Examples | None = Examples(**self._arguments)
 
@@ -83,7 +107,7 @@ class Scenes:
         """The radars that a network which learns from these examples is trained for, as JSON: a weight file's entry `domain`."""
         return self._made().domain
 
-    def __getitem__(self, index: int) -> dict[str, _torch.Tensor]:
+    def __getitem__(self, index: int) -> Any:
         """Example `index`; negative numbers count from the end.
 
         Raises:
@@ -92,19 +116,33 @@ class Scenes:
         """
         return self.__getitems__([index])[0]
 
-    def __getitems__(self, indices: Sequence[int]) -> list[dict[str, _torch.Tensor]]:
+    def __getitems__(self, indices: Sequence[int]) -> list[Any]:
         """Several examples, made in parallel: what a DataLoader asks for."""
         import torch
 
-        return [{name: torch.from_numpy(example[name]) for name in _TENSORS[self._network]} for example in self._batch(indices)]
+        tensors = ({name: torch.from_numpy(v) for name, v in example.items() if name not in _OTHER} for example in self._batch(indices))
+        examples: list[dict[str, _torch.Tensor]] = [Example(each) for each in tensors]
+        return examples if self._transform is None else [self._transform(example) for example in examples]
 
     def arrays(self, index: int) -> dict[str, Any]:
-        """Example `index` as NumPy arrays, with its `gain`, `kind` and `floor`; this needs no PyTorch."""
+        """Example `index` as NumPy arrays, with its `gain`, `kind`, `floor` and `radar`, as it is before `transform`; this needs no PyTorch."""
         return self._batch([index])[0]
 
     def _batch(self, indices: Sequence[int]) -> list[dict[str, Any]]:
         numbers = [self._number(index) for index in indices]
-        return self._made().batch(numbers, mag_phase=self._network == "thesis")
+        scenes = None if self._scene is None else [self._own(number) for number in numbers]
+        made = self._made().batch(numbers, mag_phase=self._network == "thesis", scenes=scenes)
+        return [Example(example) for example in made]
+
+    def _own(self, number: int) -> Scene:
+        """The scene that `scene` makes for an example."""
+        assert self._scene is not None
+        purpose = ("training", "validation", "test").index(self._arguments["purpose"])
+        random = np.random.default_rng([self._arguments["seed"], purpose, number])
+        made = self._scene(random, self._made().radar(number))
+        if not isinstance(made, Scene):
+            raise ValueError(f"example {number}: scene returned {made!r}; expected a Scene")
+        return made
 
     def _number(self, index: int) -> int:
         number = operator.index(index)
@@ -118,7 +156,7 @@ class Scenes:
         return self._examples
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"_length": self._length, "_network": self._network, "_arguments": self._arguments, "_examples": None}
+        return {**self.__dict__, "_examples": None}
 
     def __repr__(self) -> str:
         given = ", ".join(f"{name}={value!r}" for name, value in self._arguments.items())

@@ -38,7 +38,7 @@ def main():
     parser.add_argument("--workers", default="0,2")
     parser.add_argument("--rounds", type=int, default=3)
     given = parser.parse_args()
-    data = ap.torch.Scenes(MIXTURE, 1)
+    data = ap.torch.Scenes(MIXTURE, 1, targets=["measured"])
     # The scenes of the dataset, so that both do the same work.
     kinds = [data.arrays(index)["kind"] for index in range(64)]
     work = {"bare simulator": lambda: simulate(given.count, kinds)}

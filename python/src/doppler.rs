@@ -1,13 +1,14 @@
 //! Range-Doppler maps of scenes whose objects move.
 
 use crate::arrays::owned;
-use crate::errors::{named, value};
+use crate::errors::{named, value, whole};
 use crate::radar::Radar;
 use crate::scene::Scene;
 use crate::work;
 use apertura::maps::doppler;
-use apertura::signal::{Floor, Unfinished};
-use numpy::PyArray2;
+use apertura::signal::{Floor, Unfinished, simulate_chirps_for};
+use num_complex::Complex64;
+use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 
 /// Power over range and radial velocity, float64 `[samples, chirps]`, mean over up to 4 elements of each end. Row k is range
@@ -30,7 +31,7 @@ pub fn range_doppler<'py>(
     scene: &Scene,
     radar: Option<&Radar>,
     floor: &str,
-    seed: Option<u64>,
+    seed: Option<i128>,
     seconds: f64,
     progress: work::Progress<'_, '_>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -39,8 +40,45 @@ pub fn range_doppler<'py>(
     }
     let floor: Floor = named(floor)?;
     let radar = radar.map_or_else(|| scene.0.radar.clone(), |r| r.0.clone());
-    let seed = seed.unwrap_or(scene.0.scene.noise_seed);
+    let seed = seed.map_or(Ok(scene.0.scene.noise_seed), |seed| whole("seed", seed))?;
     let then = scene.0.scene.at(seconds);
     let map = work::run(py, progress, |task| doppler::range_doppler_for(task, &radar, &then, floor, seed))?;
     Ok(owned(py, map.map_err(|error: Unfinished| value(error))?.power))
+}
+
+/// Samples of every chirp while objects move: what `range_doppler` is made of.
+///
+/// Args:
+///     scene: The scene; its objects move by their velocities.
+///     radar: The radar; that of the scene where none is given. It sends `radar.chirps` chirps.
+///     floor: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL"; every chirp has noise of its own.
+///     seed: Picks the noise; that of the scene where none is given.
+///     seconds: Time at which the first chirp is sent.
+///     progress: Called with the part that is done, 0 to 1.
+///
+/// Returns:
+///     complex128 `[chirps, elements, samples]` of up to 4 elements of each end, those farthest out: elements 0 to 3 and the last 4.
+///
+/// Raises:
+///     ValueError: A name is unknown, or the radar can't see the scene.
+#[pyfunction]
+#[pyo3(signature = (scene, radar=None, *, floor="thesis", seed=None, seconds=0.0, progress=None))]
+pub fn chirp_samples<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    radar: Option<&Radar>,
+    floor: &str,
+    seed: Option<i128>,
+    seconds: f64,
+    progress: work::Progress<'_, '_>,
+) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
+    if !seconds.is_finite() {
+        return Err(value(format!("seconds is {seconds}; expected a finite number")));
+    }
+    let floor: Floor = named(floor)?;
+    let radar = radar.map_or_else(|| scene.0.radar.clone(), |r| r.0.clone());
+    let seed = seed.map_or(Ok(scene.0.scene.noise_seed), |seed| whole("seed", seed))?;
+    let then = scene.0.scene.at(seconds);
+    let found = work::run(py, progress, |task| simulate_chirps_for(task, &radar, &then, floor, seed))?;
+    Ok(owned(py, found.map_err(|error: Unfinished| value(error))?.samples))
 }

@@ -4,7 +4,7 @@ use apertura::files::npz::NpzError;
 use apertura::recording::{Fault, RecordingError};
 use apertura::scene::file::SceneFileError;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyPermissionError, PyRuntimeError, PyValueError};
-use pyo3::{PyErr, PyResult};
+use pyo3::prelude::*;
 use std::fmt::Display;
 use std::io;
 use std::str::FromStr;
@@ -50,4 +50,28 @@ pub fn recording(error: RecordingError) -> PyErr {
         Fault::Io(source) => system(source, &error),
         _ => value(error),
     }
+}
+
+/// An argument of the wrong type: both a TypeError and a ValueError.
+pub fn argument(py: Python<'_>, message: String) -> PyErr {
+    let made = py.import("apertura.objects").and_then(|m| m.getattr("ArgumentError")?.call1((message,)));
+    made.map_or_else(|error| error, PyErr::from_value)
+}
+
+/// A whole number from 0 to the largest of `T`, as the argument of this name.
+pub fn whole<T: TryFrom<i128> + Bounded>(name: &str, number: i128) -> PyResult<T> {
+    T::try_from(number).map_err(|_| value(format!("{name} is {number}; expected a whole number from 0 to {}", T::MOST)))
+}
+
+/// Unsigned numbers.
+pub trait Bounded {
+    const MOST: u64;
+}
+
+impl Bounded for u64 {
+    const MOST: u64 = u64::MAX;
+}
+
+impl Bounded for u32 {
+    const MOST: u64 = u32::MAX as u64;
 }

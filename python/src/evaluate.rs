@@ -1,188 +1,91 @@
-//! Figures of merit, and methods over many scenes.
+//! Methods over many scenes.
 
-use crate::arrays::{numbers, owned};
-use crate::errors::named;
-use crate::errors::{runtime, system, value};
+use crate::errors::{argument, named, system, value, whole};
+use crate::methods::{caused, methods_of};
+use crate::objects;
 use crate::radar::{Radar, or_default};
-use crate::scene::{purpose_of, reading_of, set_name};
+use crate::rows::{dict_of, list_of};
+use crate::scene::{Scene, purpose_of, reading_of, set_name};
 use crate::work::{self, Progress};
-use apertura::evaluate::campaign::{Campaign, CampaignError};
-use apertura::evaluate::rows::{self, Column, Row, read_rows as read, write_rows};
-use apertura::evaluate::sets::SceneSet;
-use apertura::evaluate::{Metrics, Roc};
-use apertura::files::{write_atomically, write_bytes};
-use apertura::maps::RangeAngleMap;
-use apertura::maps::cfar::Cfar;
+use apertura::evaluate::campaign::{Campaign, CampaignError, Elements};
+use apertura::evaluate::rows::{KeptError, Row, RowFile, Wanted};
+use apertura::evaluate::sets::{Case, Listed, SceneSet};
+use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::Reconstructor;
-use apertura::scene::generate::Kind;
-use ndarray::{Array1, Array2};
-use numpy::PyArray1;
+use apertura::scene::file::SceneFile;
+use apertura::scene::generate::{Kind, Purpose};
+use apertura::task::Task;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyFloat, PyInt, PyList, PyString, PyType};
-use serde_json::Value as Json;
+use pyo3::types::PyList;
 use std::collections::HashSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// One number a threshold, float64.
-type Numbers<'py> = Bound<'py, PyArray1<f64>>;
-
-const SHAPE: &str = "[range bins, columns]";
-
-/// Lambda of every cell, all of them finite.
-fn map_of(from: &Bound<'_, PyAny>, what: &str) -> PyResult<RangeAngleMap> {
-    let lambda: Array2<f32> = numbers(from, what, SHAPE)?;
-    match lambda.indexed_iter().find(|(_, v)| !v.is_finite()) {
-        Some((cell, v)) => Err(value(format!("{what}: {v} at {cell:?}; expected finite numbers only"))),
-        None => Ok(RangeAngleMap { lambda }),
-    }
-}
-
-/// Both maps, of one shape.
-fn both(target: &Bound<'_, PyAny>, output: &Bound<'_, PyAny>) -> PyResult<[RangeAngleMap; 2]> {
-    let both = [map_of(target, "target")?, map_of(output, "output")?];
-    let [target, output] = both.each_ref().map(|map| map.lambda.shape().to_vec());
-    if target != output {
-        return Err(value(format!("output: its shape is {output:?}; expected {target:?}, the target's")));
-    }
-    if target.contains(&0) {
-        return Err(value(format!("target: its shape is {target:?}; expected at least one cell")));
-    }
-    Ok(both)
-}
-
-/// The three figures of the thesis' tables for one scene.
+/// Tries methods on scenes: the rows of `apertura evaluate --rows`.
 ///
 /// Args:
-///     target: Lambda of the whole array, numbers `[range bins, columns]`, read as float32.
-///     output: Lambda as a method estimates it, of the same shape.
-///     eta: Threshold of the output.
-///     has_echoes: False where nothing reflects: then nothing can be detected, and what exceeds eta is a false alarm.
-///
-/// Returns:
-///     `squared_error`, `detection` (None where the target has no cell above 0.9) and `false_alarm`.
-///
-/// Raises:
-///     ValueError: The shapes differ, a map is empty, or a cell is not finite.
-#[pyfunction]
-#[pyo3(signature = (target, output, eta, *, has_echoes=true))]
-pub fn metrics<'py>(
-    py: Python<'py>,
-    target: &Bound<'py, PyAny>,
-    output: &Bound<'py, PyAny>,
-    eta: f32,
-    has_echoes: bool,
-) -> PyResult<Bound<'py, PyAny>> {
-    if !eta.is_finite() {
-        return Err(value(format!("eta is {eta}; expected a finite number")));
-    }
-    let [target, output] = both(target, output)?;
-    let found = Metrics::of_echoes(has_echoes, &target, &output, eta);
-    let figures = (found.squared_error, found.detection, found.false_alarm);
-    py.import("apertura.objects")?.getattr("Metrics")?.call1(figures)
-}
-
-/// Detects at a constant false-alarm rate: each cell against a threshold from the cells around it.
-///
-/// Args:
-///     power: Linear power, numbers `[range bins, columns]`, as in `10 ** (2 * maps.decades)`; its unit doesn't matter. Columns wrap around.
-///     detector: "ca" (cell averaging, Finn and Johnson 1968) or "os" (ordered statistics, Rohling 1983), with guard and training cells a
-///         side as range bins x columns and the wanted rate, as in "ca:guard=4x0:training=16x0:rate=0.0001".
-///
-/// Returns:
-///     bool `[range bins, columns]`: True where a cell is a detection. The rate holds for noise of exponentially distributed power that is
-///     independent from cell to cell.
-///
-/// Raises:
-///     ValueError: The text is no detector, the window leaves no training cell, or a cell is negative or not finite.
-#[pyfunction]
-#[pyo3(signature = (power, detector="ca"))]
-pub fn cfar<'py>(
-    py: Python<'py>,
-    power: &Bound<'py, PyAny>,
-    detector: &str,
-) -> PyResult<Bound<'py, numpy::PyArray2<bool>>> {
-    let cfar: Cfar = named(detector)?;
-    let power: Array2<f64> = numbers(power, "power", SHAPE)?;
-    if let Some((cell, v)) = power.indexed_iter().find(|(_, v)| !(v.is_finite() && **v >= 0.0)) {
-        return Err(value(format!("power: {v} at {cell:?}; expected finite numbers from 0")));
-    }
-    let mask = work::run(py, None, |_| cfar.detect(power.view()))?.map_err(value)?;
-    Ok(owned(py, mask.cells))
-}
-
-/// P_D and P_FA over 4097 thresholds from 0 to 1.
-///
-/// Args:
-///     target: Lambda of the whole array, numbers `[range bins, columns]`, read as float32.
-///     output: Lambda as a method estimates it, of the same shape.
-///
-/// Returns:
-///     `eta`, `detection` and `false_alarm`, float64 `[4097]` each; empty where the target has no cell above 0.9, or no other.
-///
-/// Raises:
-///     ValueError: The shapes differ, a map is empty, or a cell is not finite.
-#[pyfunction]
-pub fn roc<'py>(
-    py: Python<'py>,
-    target: &Bound<'py, PyAny>,
-    output: &Bound<'py, PyAny>,
-) -> PyResult<(Numbers<'py>, Numbers<'py>, Numbers<'py>)> {
-    let [target, output] = both(target, output)?;
-    let roc = work::run(py, None, |_| Roc::of(&target, &output))?;
-    let column = |of: fn(apertura::evaluate::RocPoint) -> f64| owned(py, roc.points().map(of).collect::<Array1<f64>>());
-    Ok((column(|p| p.eta.into()), column(|p| p.detection), column(|p| p.false_alarm)))
-}
-
-/// Tries methods on random scenes: the rows of `apertura evaluate --rows`.
-///
-/// Args:
-///     methods: Names of methods.
-///     sets: Names of sets as `Scene.random` takes them.
-///     count: Scenes of each set.
-///     seed: Seed of the sets.
+///     methods: Names, `Method`s, functions as `Method.of_function` takes them, and files of weights of the live network, in a list.
+///     scenes: Names of kinds (`kinds()`), or `Scene`s, in a list. All `Scene`s are one set called "scenes", before their own radars where `radar` names
+///         none.
+///     count: Scenes of each kind.
+///     seed: Seed of the kinds' scenes.
 ///     floor: What lies beneath the reflectors.
 ///     normalisation: How every map is normalised.
 ///     purpose: "test", "validation" or "training".
 ///     reading: "program" or "text".
 ///     radar: The radar; that of table 3.1 where none is given.
+///     elements: The elements that hear the scenes: an `Elements`, or standard deviations (gain in decibels, phase in degrees, place in millimetres)
+///         with which each scene's are drawn. Those of the scenes where nothing is given.
+///     target: The map that outputs are held against: "measured" (what the whole array heard), "ideal" (of the array as it should be, without noise)
+///         or "calibrated" (as it should be, over the noise).
+///     layout: Numbers of the elements that methods hear in place of the two ends (`layout`). Functions then get `heard`, complex128
+///         `[elements of the layout, samples]`, and "matched-filter" makes maps of it; the other methods hear two ends and refuse.
 ///     on_row: Called with each row as it is found.
 ///     progress: Called with the part that is done, 0 to 1.
 ///     cfar: A detector as `cfar` takes it, which is tried on every output beside the threshold; rows say it in `cfar_detection`,
 ///         `cfar_false_alarm` and `cfar`.
-///     path: A CSV file that all rows are written to in one step, in the program's format.
+///     path: A CSV file in the program's format. Each row is appended as it is found, and the same call goes on where a stopped one ended. A file that
+///         holds anything else is refused.
+///     overwrite: Whether `path` begins anew, whatever it holds.
 ///     only: The rows to find, as (set, number of the scene, method), in place of all rows of the run.
 ///
 /// Returns:
-///     One dict a row, sorted by set, scene and method: the columns of the program's CSV and what made the row. `echoes` and `echoes_found`
-///     are texts of six numbers, one for every 10 dB below the strongest echo; None for scenes without bodies. `doubt` is the squared
-///     error if every cell were off by `Reconstruction.doubt`, and `within_doubt` the part of the cells that are off by at most it; None for
+///     One dict a row, sorted by set, scene and method: the columns of the program's CSV and what made the row, those that `path` held included.
+///     `echoes` and `echoes_found` are texts of six numbers, one for every 10 dB below the strongest echo; None for scenes without bodies. `doubt` is
+///     the squared error if every cell were off by `Reconstruction.doubt`, and `within_doubt` the part of the cells that are off by at most it; None for
 ///     methods that say no doubt.
 ///
 /// Raises:
-///     ValueError: A name is unknown or given twice, `count` is 0, or a method can't work on a scene.
-///     OSError: `path` can't be written.
+///     ValueError: A name is unknown or given twice, `count` is 0, a kind finds no room before the radar, a method can't work on a scene, or `path` holds
+///         other rows. What a function raised is its cause.
+///     OSError: `path` can't be read or written.
 #[pyfunction]
-#[pyo3(signature = (methods, sets, *, count=100, seed=0, floor="thesis", normalisation="min-max", purpose="test", reading="program",
-                    radar=None, on_row=None, progress=None, path=None, only=None, cfar=None))]
+#[pyo3(signature = (methods, scenes, *, count=100, seed=0, floor="thesis", normalisation="min-max", purpose="test", reading="program",
+                    radar=None, elements=None, target="measured", layout=None, on_row=None, progress=None, path=None, overwrite=false, only=None,
+                    cfar=None))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn evaluate<'py>(
     py: Python<'py>,
-    methods: Vec<String>,
-    sets: Vec<Bound<'py, PyAny>>,
-    count: u32,
-    seed: u64,
+    methods: &Bound<'py, PyAny>,
+    scenes: &Bound<'py, PyAny>,
+    count: i128,
+    seed: i128,
     floor: &str,
     normalisation: &str,
     purpose: &str,
     reading: &str,
     radar: Option<&Radar>,
+    elements: Option<&Bound<'py, PyAny>>,
+    target: &str,
+    layout: Option<Vec<usize>>,
     on_row: Option<&Bound<'py, PyAny>>,
     progress: Progress<'_, 'py>,
     path: Option<PathBuf>,
-    only: Option<Vec<(String, u32, String)>>,
+    overwrite: bool,
+    only: Option<Vec<Key>>,
     cfar: Option<&str>,
 ) -> PyResult<Bound<'py, PyList>> {
+    let (count, seed) = (whole("count", count)?, whole("seed", seed)?);
     if count == 0 {
         return Err(value("count is 0; expected at least 1"));
     }
@@ -197,34 +100,21 @@ pub fn evaluate<'py>(
         floor,
         normalisation,
         cfar: cfar.map(named).transpose()?,
+        elements: elements.map_or(Ok(Elements::OfScenes), elements_of)?,
+        target: named(target)?,
+        layout,
         ..Campaign::default()
     };
-    let kinds: PyResult<Vec<_>> = sets.iter().map(|s| named::<Kind>(&set_name(s)?)).collect();
-    let sets: Vec<SceneSet> = kinds?.into_iter().map(SceneSet::Generated).collect();
-    let known: Result<Vec<Arc<dyn Reconstructor>>, _> = methods.iter().map(|m| apertura::methods::by_name(m)).collect();
-    let known = known.map_err(value)?;
-    let methods: Vec<&dyn Reconstructor> = known.iter().map(AsRef::as_ref).collect();
-    let only: Option<HashSet<_>> = only.map(|only| only.into_iter().collect());
-    let all =
-        only.as_ref().map_or(f64::from(count) * sets.len() as f64 * methods.len() as f64, |only| only.len() as f64);
-    let empty = campaign.empty_rows(&sets, &methods).map_err(value)?;
-    check_only(only.as_ref(), &sets, &methods, count)?;
-    // Most scenes of a long run are left out by their number alone.
-    let numbers = only.iter().flatten().map(|(_, index, _)| *index);
-    let between = numbers.clone().min().unwrap_or(1)..=numbers.max().unwrap_or(0);
-    let is_left_out = |set: &str, index: u32, method: &str| {
-        only.as_ref().is_some_and(|only| {
-            !between.contains(&index) || !only.contains(&(set.to_owned(), index, method.to_owned()))
-        })
-    };
-    let mut done = 0.0;
+    let sets = sets_of(scenes, radar, purpose)?;
+    let methods = methods_of(methods)?;
+    let run = Run::new(campaign, sets, methods, only.map(|only| only.into_iter().collect()))?;
+    let mut file = path.as_deref().map(|path| run.open(path, overwrite)).transpose()?;
+    let mut done = file.as_ref().map_or(0.0, |file| file.present.len() as f64);
+    let all = run.rows();
     let rows = work::run_watched(
         py,
         None,
-        |task, finder| {
-            let on_row = |row: &Row, _: &_, _: &_| finder.found(row.clone());
-            campaign.run_rest(&sets, &methods, &empty, &is_left_out, task, on_row)
-        },
+        |task, finder| run.rest(task, file.as_mut(), |row| finder.found(row.clone())),
         |row| {
             done += 1.0;
             if let Some(on_row) = on_row {
@@ -235,109 +125,151 @@ pub fn evaluate<'py>(
             }
             Ok(())
         },
-    )?
-    .map_err(|error: CampaignError| value(error))?;
-    if let Some(path) = path {
-        let mut text = Vec::new();
-        write_rows(&mut text, &rows).map_err(runtime)?;
-        write_bytes(&path, &text).map_err(|e| system(&e, format!("{}: {e}", path.display())))?;
+    )?;
+    let failure = file.as_mut().and_then(RowFile::failure);
+    if let Some(failure) = failure {
+        return Err(kept(failure));
     }
+    let rows = rows.map_err(|error: CampaignError| caused(py, value(error), &run.methods))?;
+    let rows = file.map_or(Ok(rows), |file| file.finish().map_err(kept))?;
     list_of(py, &rows)
+}
+
+/// Set, number of the scene, method.
+type Key = (String, u32, String);
+
+/// What an evaluation is asked for.
+struct Run {
+    campaign: Campaign,
+    sets: Vec<SceneSet>,
+    methods: Vec<Arc<dyn Reconstructor>>,
+    only: Option<HashSet<Key>>,
+    /// Rows without figures.
+    empty: Vec<Vec<Row>>,
+}
+
+impl Run {
+    fn new(
+        campaign: Campaign,
+        sets: Vec<SceneSet>,
+        methods: Vec<Arc<dyn Reconstructor>>,
+        only: Option<HashSet<Key>>,
+    ) -> PyResult<Self> {
+        let borrowed: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
+        let empty = campaign.empty_rows(&sets, &borrowed).map_err(value)?;
+        check_only(only.as_ref(), &sets, &borrowed, campaign.count)?;
+        Ok(Run { campaign, sets, methods, only, empty })
+    }
+
+    /// Rows of the whole run.
+    fn rows(&self) -> f64 {
+        let scenes: f64 = self.sets.iter().map(|set| f64::from(self.campaign.scenes(set))).sum();
+        self.only.as_ref().map_or(scenes * self.methods.len() as f64, |only| only.len() as f64)
+    }
+
+    fn open(&self, path: &Path, overwrite: bool) -> PyResult<RowFile> {
+        RowFile::open(path, &Wanted::new(&self.empty), overwrite).map_err(kept)
+    }
+
+    /// Finds the rows that `file` doesn't hold, and appends them to it.
+    fn rest(
+        &self,
+        task: &Task,
+        mut file: Option<&mut RowFile>,
+        on_row: impl Fn(&Row),
+    ) -> Result<Vec<Row>, CampaignError> {
+        let key = |row: &Row| (row.set.to_string(), row.index, row.method.to_string());
+        let there: HashSet<Key> = file.iter().flat_map(|file| file.present.iter().map(key)).collect();
+        // Most scenes of a long run are left out by their number alone.
+        let numbers = self.only.iter().flatten().map(|(_, index, _)| *index);
+        let between = numbers.clone().min().unwrap_or(1)..=numbers.max().unwrap_or(0);
+        let is_left_out = |set: &str, index: u32, method: &str| {
+            let key = || (set.to_owned(), index, method.to_owned());
+            let is_asked = self.only.as_ref().is_none_or(|only| between.contains(&index) && only.contains(&key()));
+            !is_asked || (!there.is_empty() && there.contains(&key()))
+        };
+        let methods: Vec<&dyn Reconstructor> = self.methods.iter().map(AsRef::as_ref).collect();
+        self.campaign.run_rest(&self.sets, &methods, &self.empty, &is_left_out, task, |row, _, _| {
+            on_row(row);
+            if file.as_mut().is_some_and(|file| !file.append(row)) {
+                task.cancel();
+            }
+        })
+    }
+}
+
+/// Kinds and `Scene`s as sets; all `Scene`s are one. A radar that is named sees them in place of their own.
+fn sets_of(scenes: &Bound<'_, PyAny>, radar: Option<&Radar>, purpose: Purpose) -> PyResult<Vec<SceneSet>> {
+    let single = scenes.extract::<String>().is_ok() || scenes.cast::<Scene>().is_ok();
+    let items = if single { None } else { scenes.try_iter().ok() };
+    let Some(items) = items else {
+        let shown = scenes.repr()?;
+        let message = format!("scenes is {shown}; expected a list of kinds or of Scenes, as in [{shown}]");
+        return Err(argument(scenes.py(), message));
+    };
+    let (mut sets, mut cases) = (Vec::new(), Vec::new());
+    for item in items {
+        let item = item?;
+        if let Ok(scene) = item.cast::<Scene>() {
+            let SceneFile { scene, radar: own } = scene.get().0.clone();
+            let radar = radar.map_or(own, |radar| radar.0.clone());
+            scene.validate(&radar).map_err(|e| value(format!("scenes: {e}")))?;
+            cases.push(Case { radar, scene });
+            continue;
+        }
+        let name = set_name(&item)?;
+        let kind = if purpose == Purpose::Test { named(&name)? } else { Kind::for_training(&name).map_err(value)? };
+        sets.push(SceneSet::Generated(kind));
+    }
+    if !cases.is_empty() {
+        sets.push(SceneSet::Listed(Listed::new("scenes".to_owned(), cases).map_err(value)?));
+    }
+    if sets.is_empty() {
+        return Err(value("scenes is empty; expected at least one kind or Scene"));
+    }
+    Ok(sets)
+}
+
+/// `Elements`, or standard deviations of gain, phase and place.
+fn elements_of(any: &Bound<'_, PyAny>) -> PyResult<Elements> {
+    if let Ok((gain, phase_degrees, position_millimetres)) = any.extract::<(f64, f64, f64)>() {
+        let are_usable = [gain, phase_degrees, position_millimetres].iter().all(|v| (0.0..=360.0).contains(v));
+        if !are_usable {
+            let found = format!("elements is ({gain}, {phase_degrees}, {position_millimetres})");
+            return Err(value(format!("{found}; expected three standard deviations of 0 to 360")));
+        }
+        return Ok(Elements::Drawn(Tolerances { gain: Decibels(gain), phase_degrees, position_millimetres }));
+    }
+    if any.hasattr("gain_db")? {
+        return Ok(Elements::Built(objects::elements(any)?));
+    }
+    let message = format!("elements is {}; expected an Elements, or three standard deviations", any.repr()?);
+    Err(argument(any.py(), message))
+}
+
+fn kept(error: KeptError) -> PyErr {
+    match &error {
+        KeptError::File { source, .. } => system(source, &error),
+        KeptError::Other { .. } => {
+            value(format!("{error}; name another file, or write over this one with overwrite=True"))
+        }
+        KeptError::Busy(_) | KeptError::Merge(_) => value(error),
+    }
 }
 
 /// Rows that are asked for and can't be.
 fn check_only(
-    only: Option<&HashSet<(String, u32, String)>>,
+    only: Option<&HashSet<Key>>,
     sets: &[SceneSet],
     methods: &[&dyn Reconstructor],
     count: u32,
 ) -> PyResult<()> {
     for (set, index, method) in only.into_iter().flatten() {
         let known = sets.iter().any(|s| s.to_string() == *set) && methods.iter().any(|m| m.name() == method);
+        let count = sets.iter().find(|s| s.to_string() == *set).and_then(SceneSet::len).unwrap_or(count);
         if !known || *index >= count {
             return Err(value(format!("only: scene {index} of set {set} by {method} is no row of this run")));
         }
     }
     Ok(())
-}
-
-/// Writes rows in the program's format, in one step.
-///
-/// Args:
-///     path: A CSV file.
-///     rows: Rows as `evaluate` and `read_rows` give them.
-///
-/// Raises:
-///     ValueError: Something is no row; the message names its line in the file and the column.
-///     OSError: The file can't be written.
-#[pyfunction]
-#[pyo3(name = "write_rows")]
-pub fn write_rows_to(py: Python<'_>, path: PathBuf, rows: Vec<Bound<'_, PyDict>>) -> PyResult<()> {
-    let rows = rows_of(py, &rows)?;
-    write_atomically(&path, |out| write_rows(out, &rows)).map_err(|e| system(&e, format!("{}: {e}", path.display())))
-}
-
-/// Rows of dicts, read as the program reads a file of them.
-pub fn rows_of(py: Python<'_>, rows: &[Bound<'_, PyDict>]) -> PyResult<Vec<Row>> {
-    let names: Vec<&str> = Column::all().map(Column::name).collect();
-    let mut text = names.join(",");
-    for row in rows {
-        text.push('\n');
-        for (i, name) in names.iter().enumerate() {
-            let cell = row.get_item(name)?.filter(|cell| !cell.is_none());
-            let cell = cell.map_or_else(|| Ok(String::new()), |cell| cell.str().map(|s| s.to_string()))?;
-            if i > 0 {
-                text.push(',');
-            }
-            text.push_str(&format!("\"{}\"", cell.replace('"', "\"\"")));
-        }
-    }
-    text.push('\n');
-    work::run(py, None, |_| read(text.as_bytes()))?.map_err(value)
-}
-
-/// Reads the rows of `apertura evaluate --rows`.
-///
-/// Returns:
-///     One dict a row, as `evaluate` gives them; figures that an older table does not say are None, and texts empty.
-///
-/// Raises:
-///     OSError: The file can't be read.
-///     ValueError: It is no such table; the message names the line and column.
-#[pyfunction]
-pub fn read_rows(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyList>> {
-    let file = std::fs::File::open(&path).map_err(|e| system(&e, format!("{}: {e}", path.display())))?;
-    let rows = work::run(py, None, |_| read(file))?.map_err(|e| value(format!("{}: {e}", path.display())))?;
-    list_of(py, &rows)
-}
-
-fn list_of<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py, PyList>> {
-    let dicts: PyResult<Vec<_>> = rows.iter().map(|row| dict_of(py, row)).collect();
-    PyList::new(py, dicts?)
-}
-
-fn dict_of<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    let Json::Object(cells) = serde_json::to_value(row).map_err(runtime)? else { return Ok(dict) };
-    for name in Column::all().map(Column::name) {
-        match &cells[name] {
-            Json::String(text) => dict.set_item(name, text)?,
-            Json::Number(number) => match number.as_u64() {
-                Some(whole) if !number.is_f64() => dict.set_item(name, whole)?,
-                _ => dict.set_item(name, number.as_f64())?,
-            },
-            _ => dict.set_item(name, py.None())?,
-        }
-    }
-    Ok(dict)
-}
-
-/// The columns of rows, in the file's order: name, type (str, int or float), and whether it says what made a row.
-pub fn row_columns(py: Python<'_>) -> Vec<(&'static str, Bound<'_, PyType>, bool)> {
-    let python_type = |column: Column| match column.kind() {
-        rows::Kind::Text => py.get_type::<PyString>(),
-        rows::Kind::Whole => py.get_type::<PyInt>(),
-        rows::Kind::Real => py.get_type::<PyFloat>(),
-    };
-    Column::all().map(|column| (column.name(), python_type(column), Column::ORIGIN.contains(&column))).collect()
 }

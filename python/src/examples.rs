@@ -1,20 +1,20 @@
 //! Examples to train on.
 
 use crate::arrays::{self, both_ends, owned};
-use crate::errors::named;
-use crate::errors::{system, value};
+use crate::errors::{named, system, value, whole};
 use crate::radar::{Radar, or_default};
-use crate::scene::{purpose_of, set_name};
+use crate::scene::{Scene, purpose_of, set_name};
 use crate::work::{self, Progress};
+use apertura::evaluate::Target;
 use apertura::maps::channels_map;
 use apertura::maps::network_input::mag_phase;
 use apertura::network::floors::Floors;
 use apertura::network::live::arrays::Arrays;
-use apertura::network::live::constants::turn_columns;
+use apertura::network::live::constants::turn_rows;
 use apertura::network::live::dataset::{self as files, DatasetError, DatasetRequest, Part};
-use apertura::network::live::examples::{self, Example};
+use apertura::network::live::examples::{self, Example, ExamplesRequest, Features, Heard};
 use apertura::network::live::features::{FeatureExtractor, LiveInput};
-use apertura::network::live::grid::{COARSE, COARSE_CHANNELS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS};
+use apertura::network::live::grid::{COARSE, COARSE_CHANNELS, FINE, FINE_CHANNELS, ROW_CHANNELS};
 use apertura::network::live::radars::Radars;
 use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::check_ends;
@@ -22,32 +22,41 @@ use apertura::scene::generate::Kind;
 use apertura::signal::TwoEnds;
 use apertura::task::Task;
 use ndarray::{Array, Array1, Array3, ArrayD, IxDyn};
-use num_complex::Complex32;
+use num_complex::{Complex32, Complex64};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-/// Makes examples for the live network: example `i` is a function of (mixture, seed, i) alone.
+/// Makes examples to train on: example `i` is a function of (mixture, seed, i) alone.
 ///
 /// Args:
-///     mixture: Kinds of scenes with their shares, as in "3" or "1=4,2=12,walls=8".
+///     mixture: Kinds of scenes (`kinds()`) with their shares, as in "3" or "1=4,2=12,walls=8".
 ///     seed: Seed of the examples.
 ///     purpose: "training", "validation" or "test": their scenes never meet.
 ///     floor: What lies beneath all scenes: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL".
 ///     thermal: (share, lowest dB, highest dB): this share of the scenes lies over thermal noise at a ratio drawn between the two, the
 ///         others over the thesis' floor. In place of `floor`.
 ///     elements: (share, gain in decibels, phase in degrees, place in millimetres): this share of the scenes is heard by elements that are off.
-///         Each such scene has its own part of these standard deviations, uniform from none to all. `target` stays that of the array as it should be.
-///     radar: The `Radar` that sees all scenes, with 1024 elements, ends of 12 and 512 samples; "random" for one drawn for each scene: 20 to
+///         Each such scene has its own part of these standard deviations, uniform from none to all.
+///     radar: The `Radar` that sees all scenes; "random" for one drawn for each scene: 1024 elements, ends of 12, 512 samples, 20 to
 ///         100 GHz, 0.1 to 6 GHz of bandwidth, both conventions, all windows, a quarter of them that of table 3.1. That of table 3.1 where none
 ///         is given.
+///     targets: The maps to learn: "ideal" (of the array as it should be, without noise), "measured" (what the whole array heard: with noise and
+///         errors of elements), "calibrated" (with the noise alone).
+///     features: Whether the live network's input is made. Where nothing is said, it is before radars of the shape that the shipped one is for (1024
+///         elements, ends of 12, 512 samples).
+///     layout: Numbers of the elements that are heard, in place of the two ends.
 ///
 /// Raises:
-///     ValueError: A name is unknown or a number can't be used.
+///     ValueError: A name is unknown, a number can't be used, or a kind finds no room before the radar.
 #[pyclass(module = "apertura", frozen)]
-pub struct Examples(examples::Examples);
+pub struct Examples {
+    inner: examples::Examples,
+    /// The arguments, for pickle.
+    fields: Py<PyDict>,
+}
 
 /// Tables of the radar of table 3.1.
 static EXTRACTOR: OnceLock<FeatureExtractor> = OnceLock::new();
@@ -61,58 +70,135 @@ const MOST: usize = 4096;
 #[pymethods]
 impl Examples {
     #[new]
-    #[pyo3(signature = (mixture, seed=0, *, purpose="training", floor="thesis", thermal=None, elements=None, radar=None))]
+    #[pyo3(signature = (mixture, seed=0, *, purpose="training", floor="thesis", thermal=None, elements=None, radar=None, targets=None,
+                        features=None, layout=None))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn new(
+        py: Python<'_>,
         mixture: &str,
-        seed: u64,
+        seed: i128,
         purpose: &str,
         floor: &str,
         thermal: Option<(f64, f64, f64)>,
         elements: Option<(f64, f64, f64, f64)>,
         radar: Option<&Bound<'_, PyAny>>,
+        targets: Option<Vec<String>>,
+        features: Option<bool>,
+        layout: Option<Vec<usize>>,
     ) -> PyResult<Self> {
-        let (floors, arrays, radars) = (floors_of(floor, thermal)?, arrays_of(elements)?, radars_of(radar)?);
-        examples::Examples::new(named(mixture)?, purpose_of(purpose)?, seed, floors, arrays, radars)
-            .map(Examples)
-            .map_err(value)
+        let fields = PyDict::new(py);
+        fields.set_item("mixture", mixture)?;
+        fields.set_item("seed", seed)?;
+        fields.set_item("purpose", purpose)?;
+        fields.set_item("floor", floor)?;
+        fields.set_item("thermal", thermal)?;
+        fields.set_item("elements", elements)?;
+        fields.set_item("radar", radar)?;
+        fields.set_item("targets", &targets)?;
+        fields.set_item("features", features)?;
+        fields.set_item("layout", &layout)?;
+        let request = ExamplesRequest {
+            mixture: named(mixture)?,
+            purpose: purpose_of(purpose)?,
+            seed: whole("seed", seed)?,
+            floors: floors_of(floor, thermal)?,
+            arrays: arrays_of(elements)?,
+            radars: radars_of(radar)?,
+            targets: targets.map_or(Ok(Target::USUAL.to_vec()), targets_of)?,
+            features: match features {
+                None => Features::WherePossible,
+                Some(true) => Features::Needed,
+                Some(false) => Features::No,
+            },
+            layout,
+        };
+        let inner = examples::Examples::new(request).map_err(value)?;
+        Ok(Examples { inner, fields: fields.unbind() })
     }
 
     /// The radars that a network which learns from these examples is trained for, as a weight file's entry `domain` has them.
     #[getter]
     fn domain(&self) -> PyResult<String> {
-        self.0.domain().json().map_err(value)
+        self.inner.domain().json().map_err(value)
+    }
+
+    /// Whether the examples have the live network's input.
+    #[getter]
+    fn has_features(&self) -> bool {
+        self.inner.has_features()
+    }
+
+    /// The radar that sees the scene of an example.
+    ///
+    /// Args:
+    ///     index: Number of the example, 0 to 2^32 - 1.
+    fn radar(&self, index: u32) -> Radar {
+        Radar(self.inner.radar(index))
     }
 
     /// Examples of these numbers, made in parallel.
     ///
     /// Args:
     ///     indices: Numbers of examples, 0 to 2^32 - 1; at most 4096.
-    ///     mag_phase: Whether the thesis' networks' input, `mag_phase` float32 `[4, 512, 1024]`, stands in place of the live network's.
+    ///     mag_phase: Whether the thesis' networks' input, `mag_phase` float32 `[4, samples, elements]`, stands in place of the live network's.
+    ///     scenes: A `Scene` for each number in place of a generated one, before the example's radar. Noise is that of seed and number.
     ///
     /// Returns:
-    ///     One dict an example: `ends` complex64 `[2, 12, 512]` and `target` float32 `[512, 1024]` (decades of amplitude), both relative to
-    ///     the samples' mean power; the network's input `fine` float32 `[4, 512, 256]`, `coarse` float32 `[10, 512, 64]`, `rows` float32
-    ///     `[6, 512]`, `scalars` float32 `[2]`, `constants` float32 `[6]`; `gain` (decades that were taken off), `kind`, `floor` and `radar`.
-    ///     The columns of input and target run from left to right as cos(theta) rises, in both conventions.
+    ///     One dict an example: `ends` complex64 `[2, end_elements, samples]`, or `heard` complex64 `[elements of the layout, samples]`, and the
+    ///     targets `target_ideal`, `target_measured` and `target_calibrated` that were asked for, float32 `[samples, elements]` (decades of
+    ///     amplitude), all relative to the samples' mean power; the live network's input `fine` float32 `[4, samples, 256]`, `coarse` float32
+    ///     `[10, samples, 64]`, `rows` float32 `[6, samples]`, `scalars` float32 `[2]`, `constants` float32 `[6]`; `gain` (decades that were taken off),
+    ///     `kind`, `floor` and `radar`. The columns of input and targets run from left to right as cos(theta) rises, in both conventions
+    ///     (`Radar.rising_columns`).
     ///
     /// Raises:
     ///     ValueError: An example can't be made (silence has no input), or there are too many.
-    #[pyo3(signature = (indices, *, mag_phase=false))]
-    fn batch<'py>(&self, py: Python<'py>, indices: Vec<u32>, mag_phase: bool) -> PyResult<Bound<'py, PyList>> {
+    #[pyo3(signature = (indices, *, mag_phase=false, scenes=None))]
+    fn batch<'py>(
+        &self,
+        py: Python<'py>,
+        indices: Vec<u32>,
+        mag_phase: bool,
+        scenes: Option<Vec<PyRef<'py, Scene>>>,
+    ) -> PyResult<Bound<'py, PyList>> {
         if indices.len() > MOST {
             return Err(value(format!("{} examples are asked for; at most {MOST} at once", indices.len())));
         }
-        let examples = &self.0;
-        let make = |index: &u32, task: &Task| {
-            let example = examples.example(*index, task)?;
-            let input = mag_phase.then(|| mag_phase_of(&example.radar, &example.ends));
+        let scenes: Option<Vec<_>> = scenes.map(|scenes| scenes.iter().map(|scene| scene.0.scene.clone()).collect());
+        if let Some(scenes) = scenes.as_ref().filter(|scenes| scenes.len() != indices.len()) {
+            return Err(value(format!("there are {} scenes; expected {}, one a number", scenes.len(), indices.len())));
+        }
+        let examples = &self.inner;
+        let make = |(place, index): (usize, &u32), task: &Task| {
+            let example = match &scenes {
+                None => examples.example(*index, task)?,
+                Some(scenes) => examples.example_of(scenes[place].clone(), *index, task)?,
+            };
+            let input = example.ends().filter(|_| mag_phase).map(|ends| mag_phase_of(&example.radar, ends));
             Ok::<_, examples::ExampleError>((example, input))
         };
         let made: Result<Vec<_>, _> =
-            work::run(py, None, |task| indices.par_iter().map(|index| make(index, task)).collect())?;
+            work::run(py, None, |task| indices.par_iter().enumerate().map(|numbered| make(numbered, task)).collect())?;
         let dicts: PyResult<Vec<_>> = made.map_err(value)?.into_iter().map(|made| dict_of(py, made)).collect();
         PyList::new(py, dicts?)
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Py<PyDict>,))> {
+        Ok((py.import("apertura._pickle")?.getattr("examples")?, (self.fields.clone_ref(py),)))
+    }
+}
+
+/// Names of targets, each once.
+fn targets_of(names: Vec<String>) -> PyResult<Vec<Target>> {
+    let mut targets = Vec::new();
+    for name in names {
+        let target: Target = name.parse().map_err(value)?;
+        if targets.contains(&target) {
+            return Err(value(format!("targets has \"{target}\" twice; expected each once")));
+        }
+        targets.push(target);
+    }
+    Ok(targets)
 }
 
 fn floors_of(floor: &str, thermal: Option<(f64, f64, f64)>) -> PyResult<Floors> {
@@ -155,15 +241,19 @@ fn radars_of(radar: Option<&Bound<'_, PyAny>>) -> PyResult<Radars> {
 ///
 /// Args:
 ///     folder: A new folder or an empty one.
-///     sets: Names of sets as `Scene.random` takes them for training.
+///     sets: Names of kinds (`kinds(training=True)`).
 ///     count: Scenes of each set for training.
 ///     validation: For validation; a tenth of `count` where none is given.
 ///     test: For the test; likewise, but none where "world" is among the sets.
 ///     seed: Seed of the scenes.
 ///     floor: What lies beneath all scenes: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL".
 ///     thermal: (share, lowest dB, highest dB), in place of `floor`, as for `Examples`.
-///     dtype: "f16" or "f32", the precision of features and target.
-///     arrays: Which of "ends", "features" and "target" to write.
+///     elements: Elements that are off, as for `Examples`.
+///     radar: The `Radar` that sees all scenes, or "random", as for `Examples`; that of table 3.1 where none is given.
+///     layout: Numbers of the elements that are heard, in place of the two ends: the array "heard" then stands in place of "ends".
+///     dtype: "f16" or "f32", the precision of features and targets.
+///     arrays: Which of "ends", "features", "target_ideal", "target_measured" and "target_calibrated" to write; all but the last where nothing is
+///         said, and features only before radars that have the live network's.
 ///     shard: Examples of a shard; as many are in memory at once.
 ///     progress: Called with the part that is done, 0 to 1.
 ///
@@ -171,39 +261,48 @@ fn radars_of(radar: Option<&Bound<'_, PyAny>>) -> PyResult<Radars> {
 ///     ValueError: A name is unknown, a number can't be used, or the folder is not empty.
 ///     OSError: A file can't be written.
 #[pyfunction]
-#[pyo3(signature = (folder, sets, *, count, validation=None, test=None, seed=0, floor="thesis", thermal=None, dtype="f16", arrays=None,
-                    shard=64, progress=None))]
+#[pyo3(signature = (folder, sets, *, count, validation=None, test=None, seed=0, floor="thesis", thermal=None, elements=None, radar=None,
+                    layout=None, dtype="f16", arrays=None, shard=64, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn dataset(
     py: Python<'_>,
     folder: PathBuf,
     sets: Vec<Bound<'_, PyAny>>,
-    count: u32,
-    validation: Option<u32>,
-    test: Option<u32>,
-    seed: u64,
+    count: i128,
+    validation: Option<i128>,
+    test: Option<i128>,
+    seed: i128,
     floor: &str,
     thermal: Option<(f64, f64, f64)>,
+    elements: Option<(f64, f64, f64, f64)>,
+    radar: Option<&Bound<'_, PyAny>>,
+    layout: Option<Vec<usize>>,
     dtype: &str,
     arrays: Option<Vec<String>>,
-    shard: u32,
+    shard: i128,
     progress: Progress<'_, '_>,
 ) -> PyResult<()> {
     let kinds: PyResult<Vec<Kind>> =
         sets.iter().map(|set| Kind::for_training(&set_name(set)?).map_err(value)).collect();
     let kinds = kinds?;
+    let radars = radars_of(radar)?;
     let parts: Result<Vec<Part>, _> = match arrays {
-        None => Ok(Part::ALL.to_vec()),
+        None => Ok(Part::usual(&radars, layout.as_deref())),
         Some(names) => names.iter().map(|name| name.parse()).collect(),
     };
+    let further = |name: &str, count: Option<i128>| count.map(|count| whole(name, count)).transpose();
+    let (validation, test) = (further("validation", validation)?, further("test", test)?);
     let request = DatasetRequest {
-        counts: DatasetRequest::counts(&kinds, count, validation, test),
+        counts: DatasetRequest::counts(&kinds, whole("count", count)?, validation, test),
         kinds,
-        seed,
+        seed: whole("seed", seed)?,
         floors: floors_of(floor, thermal)?,
+        arrays: arrays_of(elements)?,
+        radars,
+        layout,
         precision: dtype.parse().map_err(value)?,
         parts: parts.map_err(value)?,
-        shard,
+        shard: whole("shard", shard)?,
     };
     work::run(py, progress, |task| files::write(&folder, &request, task))?.map(|_| ()).map_err(|error| match error {
         DatasetError::File { path, source } => system(&source, format!("{}: {source}", path.display())),
@@ -218,25 +317,29 @@ fn shaped(values: Vec<f32>, shape: &[usize]) -> PyResult<ArrayD<f32>> {
 fn mag_phase_of(radar: &apertura::radar::Radar, ends: &TwoEnds) -> Array3<f32> {
     let [first, last] = [&ends.first, &ends.last].map(|end| channels_map(radar, end.view()));
     let mut maps = mag_phase(&first, &last).mapv(|v| v as f32);
-    if let Some(cells) = maps.as_slice_mut() {
-        turn_columns(radar, cells);
-    }
+    maps.outer_iter_mut().for_each(|mut map| turn_rows(radar, &mut map));
     maps
 }
 
 fn dict_of(py: Python<'_>, made: (Example, Option<Array3<f32>>)) -> PyResult<Bound<'_, PyDict>> {
-    let (Example { kind, floor, radar, ends, input, decades }, mag_phase) = made;
-    let scale = 10f64.powf(-input.gain);
-    let ends = both_ends(&ends).mapv(|v| Complex32::new((v.re * scale) as f32, (v.im * scale) as f32));
+    let (Example { kind, floor, radar, heard, input, gain, targets }, mag_phase) = made;
+    let scale = 10f64.powf(-gain);
+    let single = |v: &Complex64| Complex32::new((v.re * scale) as f32, (v.im * scale) as f32);
     let dict = PyDict::new(py);
-    dict.set_item("ends", owned(py, ends))?;
-    dict.set_item("gain", input.gain)?;
-    match mag_phase {
-        Some(mag_phase) => dict.set_item("mag_phase", owned(py, mag_phase))?,
-        None => set_input(&dict, input)?,
+    match heard {
+        Heard::Ends(ends) => dict.set_item("ends", owned(py, both_ends(&ends).map(single)))?,
+        Heard::Elements(samples) => dict.set_item("heard", owned(py, samples.map(single)))?,
     }
-    dict.set_item("target", owned(py, decades))?;
-    dict.set_item("kind", kind.to_string())?;
+    dict.set_item("gain", gain)?;
+    match (mag_phase, input) {
+        (Some(mag_phase), _) => dict.set_item("mag_phase", owned(py, mag_phase))?,
+        (None, Some(input)) => set_input(&dict, input)?,
+        (None, None) => {}
+    }
+    for (target, map) in targets {
+        dict.set_item(target.array(), owned(py, map))?;
+    }
+    dict.set_item("kind", kind.map_or_else(|| "own".to_owned(), |kind| kind.to_string()))?;
     dict.set_item("floor", floor.to_string())?;
     dict.set_item("radar", Radar(radar))?;
     Ok(dict)
@@ -249,11 +352,11 @@ fn dict_of(py: Python<'_>, made: (Example, Option<Array3<f32>>)) -> PyResult<Bou
 ///     radar: The radar that sampled them; that of table 3.1 where none is given.
 ///
 /// Returns:
-///     `fine` float32 `[4, 512, 256]`, `coarse` float32 `[10, 512, 64]`, `rows` float32 `[6, 512]`, `scalars` float32 `[2]`, `constants`
+///     `fine` float32 `[4, samples, 256]`, `coarse` float32 `[10, samples, 64]`, `rows` float32 `[6, samples]`, `scalars` float32 `[2]`, `constants`
 ///     float32 `[6]`, and `gain`: the decades by which `decades` of a map exceed the network's.
 ///
 /// Raises:
-///     ValueError: The shape is not the radar's, a sample is not finite, or the radar has not 1024 elements, ends of 12 and 512 samples.
+///     ValueError: The shape is not the radar's, a sample is not finite, or the radar has ends of one element or fewer than 8 samples.
 #[pyfunction]
 #[pyo3(signature = (ends, radar=None))]
 pub fn live_input<'py>(
@@ -285,9 +388,10 @@ pub fn live_input<'py>(
 
 fn set_input(dict: &Bound<'_, PyDict>, input: LiveInput) -> PyResult<()> {
     let py = dict.py();
-    dict.set_item("fine", owned(py, shaped(input.fine, &[FINE_CHANNELS, ROWS, FINE])?))?;
-    dict.set_item("coarse", owned(py, shaped(input.coarse, &[COARSE_CHANNELS, ROWS, COARSE])?))?;
-    dict.set_item("rows", owned(py, shaped(input.rows, &[ROW_CHANNELS, ROWS])?))?;
+    let rows = input.rows.len() / ROW_CHANNELS;
+    dict.set_item("fine", owned(py, shaped(input.fine, &[FINE_CHANNELS, rows, FINE])?))?;
+    dict.set_item("coarse", owned(py, shaped(input.coarse, &[COARSE_CHANNELS, rows, COARSE])?))?;
+    dict.set_item("rows", owned(py, shaped(input.rows, &[ROW_CHANNELS, rows])?))?;
     dict.set_item("scalars", owned(py, Array1::from(input.scalars.to_vec())))?;
     dict.set_item("constants", owned(py, Array1::from(input.constants.to_vec())))?;
     dict.set_item("gain", input.gain)

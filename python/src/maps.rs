@@ -1,8 +1,8 @@
 //! Samples and the maps made of them.
 
 use crate::arrays::{both_ends, numbers, owned, view};
-use crate::errors::named;
-use crate::errors::value;
+use crate::errors::{named, value};
+use crate::objects::{self, of_elements};
 use crate::radar::{Radar, or_default};
 use crate::work;
 use apertura::maps::focus::map_of;
@@ -13,12 +13,13 @@ use ndarray::{Array2, Array3, Axis};
 use num_complex::Complex64;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::OnceLock;
 
 /// The samples of a radar's elements, and the range-angle maps made of them. A map is computed when it is first asked for.
 ///
 /// Arrays are read-only views of what this object holds, which they keep alive. Row k of a map is range `radar.range_metres[k]`, column k is
-/// the direction `radar.cos_theta[k]`; `target[:, numpy.argsort(radar.cos_theta)]` has left on the left in any convention.
+/// the direction `radar.cos_theta[k]`; `target[:, radar.rising_columns]` has left on the left in any convention.
 #[pyclass(module = "apertura", frozen)]
 pub struct Maps {
     radar: radar::Radar,
@@ -91,6 +92,14 @@ impl Maps {
         unsafe { view(&target.lambda, slf.clone().into_any()) }
     }
 
+    /// The whole array's map itself, complex128 `[samples, elements]`: `decades` is log10 of its magnitude, with a guard far below its noise. Computed
+    /// anew each time.
+    #[getter]
+    fn complex<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<Complex64>>> {
+        let (radar, elements, signal) = (&self.radar, &self.elements, &self.signal);
+        Ok(owned(py, work::run(py, None, |_| map_of(radar, elements, signal, Aperture::Full).cells)?))
+    }
+
     /// Lambda of each end's own map, float32 `[2, samples, elements]`. Computed anew each time.
     #[getter]
     fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
@@ -104,6 +113,16 @@ impl Maps {
         both.index_axis_mut(Axis(0), 0).assign(&first);
         both.index_axis_mut(Axis(0), 1).assign(&last);
         Ok(owned(py, both))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyDict>,))> {
+        let fields = PyDict::new(py);
+        fields.set_item("samples", owned(py, self.signal.samples.clone()))?;
+        fields.set_item("radar", Radar(self.radar.clone()))?;
+        fields.set_item("normalisation", self.normalisation.to_string())?;
+        let elements = (!self.elements.is_ideal()).then(|| of_elements(py, &self.elements)).transpose()?;
+        fields.set_item("elements", elements)?;
+        Ok((py.import("apertura._pickle")?.getattr("maps")?, (fields,)))
     }
 
     fn __repr__(&self) -> String {
@@ -134,4 +153,18 @@ pub fn maps(samples: &Bound<'_, PyAny>, radar: Option<&Radar>, normalisation: &s
         return Err(value(format!("sample {sample} of element {element} is not finite")));
     }
     Ok(Maps::new(radar, BuiltArray::default(), BeatSignal { samples }, named(normalisation)?))
+}
+
+/// What pickle makes maps of.
+#[pyfunction]
+#[pyo3(name = "_maps", signature = (samples, radar, normalisation, elements=None))]
+pub fn pickled(
+    samples: &Bound<'_, PyAny>,
+    radar: &Radar,
+    normalisation: &str,
+    elements: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Maps> {
+    let made = maps(samples, Some(radar), normalisation)?;
+    let elements = elements.map(objects::elements).transpose()?.unwrap_or_default();
+    Ok(Maps { elements, ..made })
 }

@@ -1,42 +1,159 @@
 //! Reconstruction methods.
 
-use crate::arrays::{ends, owned, rows_of, view};
-use crate::errors::named;
-use crate::errors::value;
+use crate::arrays::ends;
+use crate::errors::{argument, named, system, value};
+use crate::function::{Function, Said, is_name};
 use crate::radar::{Radar, or_default};
+use crate::reconstruction::Reconstruction;
 use crate::work::{self, Progress};
 use apertura::external::{self, CommandLine};
 use apertura::maps::Normalisation;
-use apertura::reconstruct::{self, NoisePrior, Reconstructor, Request};
-use ndarray::{Array1, Array2};
-use numpy::{PyArray1, PyArray2};
+use apertura::reconstruct::{NoisePrior, Reconstructor, Request};
 use pyo3::prelude::*;
-use std::sync::Arc;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::Duration;
 
 /// A reconstruction method: the two ends' samples in, an estimate of the whole array's map out.
 #[pyclass(module = "apertura", frozen)]
-pub struct Method(pub Arc<dyn Reconstructor>);
+pub struct Method {
+    pub inner: Arc<dyn Reconstructor>,
+    made_of: MadeOf,
+}
 
-/// What a method found.
-#[pyclass(module = "apertura", frozen)]
-pub struct Reconstruction {
-    answer: reconstruct::Reconstruction,
-    eta: f32,
-    radar: apertura::radar::Radar,
+/// What makes a method again in another process.
+enum MadeOf {
+    /// Its name.
+    Name,
+    /// A file of weights.
+    Weights(PathBuf),
+    /// A function, and what is said of it: description, told, answers and weights.
+    Function(Arc<Function>, Py<PyAny>, [String; 4]),
 }
 
 /// The method called `name`.
 ///
+/// Args:
+///     name: One of `methods()`.
+///     weights: A file of weights (safetensors) in the place of the shipped ones, for "live".
+///     called: Name of the method with these weights; "live-" and the file's name without its ending where none is given. Both stand in one table.
+///
 /// Raises:
-///     ValueError: There is none; the message lists those there are.
+///     ValueError: There is none; the message lists those there are. Or the file is damaged, or for another network.
 #[pyfunction]
-pub fn method(name: &str) -> PyResult<Method> {
-    apertura::methods::by_name(name).map(Method).map_err(|error| {
+#[pyo3(signature = (name, *, weights=None, called=None))]
+pub fn method(name: &str, weights: Option<PathBuf>, called: Option<&str>) -> PyResult<Method> {
+    if let Some(path) = weights {
+        if name != apertura::network::live::method::NAME {
+            return Err(value(format!("weights are for \"live\"; \"{name}\" takes none")));
+        }
+        return of_weights(path, called);
+    }
+    if let Some(called) = called {
+        return Err(value(format!("called is \"{called}\"; expected it beside weights alone")));
+    }
+    by_name(name).map(|inner| Method { inner, made_of: MadeOf::Name })
+}
+
+fn by_name(name: &str) -> PyResult<Arc<dyn Reconstructor>> {
+    apertura::methods::by_name(name).map_err(|error| {
         let burn = !cfg!(feature = "networks") && ["thesis", "thesis-1", "unet"].contains(&name);
         let how = if burn { "; this one needs a build with the feature \"networks\" (python/README.md)" } else { "" };
         value(format!("{error}{how}"))
     })
+}
+
+/// The live network with the weights of a file, under a name of its own.
+fn of_weights(path: PathBuf, called: Option<&str>) -> PyResult<Method> {
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let plain: String =
+        stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
+    let usual = if plain.starts_with("live-") { plain } else { format!("live-{plain}") };
+    let name = called.map_or_else(|| usual.chars().take(40).collect(), str::to_owned);
+    if !is_name(&name) || apertura::methods::by_name(&name).is_ok() {
+        return Err(value(format!(
+            "called is \"{name}\"; expected 1 to 40 letters, digits, \"-\", \"_\" or \".\", and no name of another method"
+        )));
+    }
+    if let Err(error) = std::fs::File::open(&path) {
+        return Err(system(&error, format!("{}: {error}", path.display())));
+    }
+    let live = apertura::network::live_from_file(&path, &name).map_err(value)?;
+    Ok(Method { inner: Arc::new(live), made_of: MadeOf::Weights(path) })
+}
+
+/// A method as arguments name it: a name, a `Method`, a file of weights or a function. `what` is the argument.
+pub fn method_of(any: &Bound<'_, PyAny>, what: &str) -> PyResult<Arc<dyn Reconstructor>> {
+    if let Ok(method) = any.cast::<Method>() {
+        return Ok(method.get().inner.clone());
+    }
+    if let Ok(name) = any.extract::<String>() {
+        return match name.ends_with(".safetensors") {
+            true => of_weights(PathBuf::from(name), None).map(|method| method.inner),
+            false => by_name(&name),
+        };
+    }
+    if any.hasattr("__fspath__")? {
+        return of_weights(any.extract()?, None).map(|method| method.inner);
+    }
+    if any.is_callable() {
+        return of_function(any, None, "", "", 0.9, "lambda", "").map(|method| method.inner);
+    }
+    Err(argument(
+        any.py(),
+        format!("{what} is {}; expected a name, a Method, a function or a file of weights", any.repr()?),
+    ))
+}
+
+/// Methods as arguments name them, in a list.
+pub fn methods_of(any: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<dyn Reconstructor>>> {
+    let single = any.cast::<Method>().is_ok() || any.extract::<String>().is_ok() || any.hasattr("__fspath__")?;
+    let items = if single { None } else { any.try_iter().ok() };
+    let Some(items) = items else {
+        let shown = any.repr()?;
+        return Err(argument(any.py(), format!("methods is {shown}; expected a list of methods, as in [{shown}]")));
+    };
+    items.enumerate().map(|(i, item)| method_of(&item?, &format!("methods[{i}]"))).collect()
+}
+
+/// An error of the library with what a function raised as its cause.
+pub fn caused(py: Python<'_>, error: PyErr, methods: &[Arc<dyn Reconstructor>]) -> PyErr {
+    let raised = FUNCTIONS
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .iter()
+        .filter_map(Weak::upgrade)
+        .filter(|function| methods.iter().any(|method| method.name() == function.name()))
+        .find_map(|function| function.take_raised());
+    error.set_cause(py, raised);
+    error
+}
+
+/// The functions that are methods somewhere.
+static FUNCTIONS: Mutex<Vec<Weak<Function>>> = Mutex::new(Vec::new());
+
+fn of_function(
+    function: &Bound<'_, PyAny>,
+    name: Option<&str>,
+    description: &str,
+    told: &str,
+    eta: f32,
+    answers: &str,
+    weights: &str,
+) -> PyResult<Method> {
+    if !function.is_callable() {
+        return Err(argument(function.py(), format!("function is {}; expected a function", function.repr()?)));
+    }
+    let own = || function.getattr("__name__").or_else(|_| function.get_type().getattr("__name__"))?.extract::<String>();
+    let name = name.map_or_else(own, |name| Ok(name.to_owned()))?;
+    let said = Said { name: &name, description, told, eta, answers, weights };
+    let inner = Arc::new(Function::new(function, &said)?);
+    let mut functions = FUNCTIONS.lock().unwrap_or_else(PoisonError::into_inner);
+    functions.retain(|function| function.strong_count() > 0);
+    functions.push(Arc::downgrade(&inner));
+    let texts = [description, told, answers, weights].map(str::to_owned);
+    Ok(Method { inner: inner.clone(), made_of: MadeOf::Function(inner, function.clone().unbind(), texts) })
 }
 
 /// Names of all methods.
@@ -66,31 +183,75 @@ impl Method {
         let started = work::run(py, None, |task| external::start(line, Duration::from_secs_f64(seconds), task))?;
         let method: Arc<dyn Reconstructor> = Arc::new(started.map_err(value)?);
         apertura::methods::add(method.clone()).map_err(value)?;
-        Ok(Method(method))
+        Ok(Method { inner: method, made_of: MadeOf::Name })
+    }
+
+    /// A function of one's own as a method of this process. Where a method is asked for, the function alone will do, under its own name.
+    ///
+    /// Args:
+    ///     function: Called as `function(ends, radar)` or `function(ends, radar, request)`, as `serve` calls it: complex128
+    ///         `[2, end_elements, samples]`, a `Radar` and a `Request`. It returns a map, numbers `[samples, elements]`, whose columns are those of
+    ///         `radar.cos_theta`, or a pair of a map and its threshold. A tensor of PyTorch will do.
+    ///     name: Name of the method: letters, digits, "-", "_" and "."; the function's where none is given.
+    ///     description: One sentence for lists.
+    ///     told: What it knows beside samples and radar, such as what it was trained on.
+    ///     eta: Threshold of answers that bring none.
+    ///     answers: What a map holds: "lambda", 0 to 1, or "decades" of amplitude, of which Lambda is made.
+    ///     weights: Hexadecimal digits that tell its weights from others; rows hold them.
+    ///
+    /// Raises:
+    ///     ValueError: A name or a number can't be used.
+    #[staticmethod]
+    #[pyo3(name = "of_function", signature = (function, *, name=None, description="", told="", eta=0.9, answers="lambda", weights=""))]
+    fn of_function_named(
+        function: &Bound<'_, PyAny>,
+        name: Option<&str>,
+        description: &str,
+        told: &str,
+        eta: f32,
+        answers: &str,
+        weights: &str,
+    ) -> PyResult<Self> {
+        of_function(function, name, description, told, eta, answers, weights)
     }
 
     /// Short name.
     #[getter]
     fn name(&self) -> &'static str {
-        self.0.name()
+        self.inner.name()
     }
 
     /// One sentence.
     #[getter]
     fn description(&self) -> &'static str {
-        self.0.description()
+        self.inner.description()
     }
 
     /// What it knows beside samples and radar.
     #[getter]
     fn told(&self) -> &'static str {
-        self.0.about().told
+        self.inner.about().told
+    }
+
+    /// Hexadecimal digits that tell its weights from others, as rows hold them; "" where it has none, or doesn't say.
+    #[getter]
+    fn weights(&self) -> String {
+        self.inner.weights().unwrap_or_default().sha256
     }
 
     /// Threshold of its output, chosen on validation scenes.
     #[getter]
     fn eta(&self) -> f32 {
-        self.0.eta()
+        self.inner.eta()
+    }
+
+    /// Why the method can't work on samples of a radar, or None where it can.
+    ///
+    /// Args:
+    ///     radar: The radar; that of table 3.1 where none is given.
+    #[pyo3(signature = (radar=None))]
+    fn refusal(&self, radar: Option<&Radar>) -> Option<String> {
+        self.inner.check_array(&or_default(radar)).err().map(|error| error.to_string())
     }
 
     /// Estimates the whole array's map from the samples of the two ends.
@@ -121,73 +282,39 @@ impl Method {
         let (noise, normalisation): (NoisePrior, Normalisation) = (named(floor)?, named(normalisation)?);
         let radar = or_default(radar);
         let ends = self::ends(ends, &radar)?;
-        let method = &self.0;
+        let method = &self.inner;
         let answer = work::run(py, progress, |task| {
             let request =
                 Request { noise, normalisation, snapshot_range_metres, task: task.clone(), ..Request::default() };
             method.reconstruct(&radar, &ends, &request)
         })?
-        .map_err(value)?;
-        let eta = self.0.eta_of(&answer);
-        Ok(Reconstruction { answer, eta, radar })
+        .map_err(|error| caused(py, value(error), std::slice::from_ref(method)))?;
+        let eta = self.inner.eta_of(&answer);
+        Ok(Reconstruction::new(answer, eta, radar))
     }
 
     fn __repr__(&self) -> String {
-        format!("<Method {}: {}>", self.0.name(), self.0.description())
+        format!("<Method {}: {}>", self.inner.name(), self.inner.description())
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (&'static str,))> {
-        Ok((py.import("apertura")?.getattr("method")?, (self.0.name(),)))
-    }
-}
-
-#[pymethods]
-impl Reconstruction {
-    /// Estimate of the whole array's Lambda, float32 `[samples, elements]`, a read-only view of this object.
-    #[getter]
-    fn map<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        // SAFETY: a frozen object's map neither moves nor changes.
-        unsafe { view(&slf.get().answer.lambda.lambda, slf.clone().into_any()) }
-    }
-
-    /// The threshold for this answer: the method's own, or one that it read off the samples.
-    #[getter]
-    fn eta(&self) -> f32 {
-        self.eta
-    }
-
-    /// How far off the method expects its map to be, float32 `[samples, elements]`: nine of ten cells are no farther than this from the true
-    /// Lambda, on scenes and over noise like those it was trained on. `None` where the method does not say; a copy.
-    #[getter]
-    fn doubt<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f32>>> {
-        self.answer.doubt.as_ref().map(|map| owned(py, map.lambda.clone()))
-    }
-
-    /// The reflectors it believes in, float64 `[reflectors, 3]`: x and y in metres, reflectivity. Empty where the method draws maps only.
-    #[getter]
-    fn reflectors<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        owned(py, rows_of(&self.answer.reflectors))
-    }
-
-    /// How far each reflector is needed, float64 `[reflectors]`, 0 to 1; empty where the method does not say.
-    #[getter]
-    fn confidences<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        owned(py, Array1::from(self.answer.confidences.clone()))
-    }
-
-    /// The reflectors as the array's centre hears them, the strongest first, float64 `[reflectors, 4]`: cos(theta), range in metres, power
-    /// in dB below the strongest, confidence (NaN where the method does not say).
-    #[getter]
-    fn detections<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        let found = self.answer.detections(&self.radar);
-        let rows = Array2::from_shape_fn((found.len(), 4), |(i, j)| {
-            let d = &found[i];
-            [d.cos_theta, d.range_metres, d.relative_power.0, d.confidence.unwrap_or(f64::NAN)][j]
-        });
-        owned(py, rows)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<Reconstruction: {} reflectors, eta {}>", self.answer.reflectors.len(), self.eta)
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyDict>,))> {
+        let fields = PyDict::new(py);
+        match &self.made_of {
+            MadeOf::Name => fields.set_item("name", self.inner.name())?,
+            MadeOf::Weights(path) => {
+                fields.set_item("name", apertura::network::live::method::NAME)?;
+                fields.set_item("weights", path)?;
+                fields.set_item("called", self.inner.name())?;
+            }
+            MadeOf::Function(_, function, texts) => {
+                fields.set_item("function", function)?;
+                fields.set_item("name", self.inner.name())?;
+                fields.set_item("eta", self.inner.eta())?;
+                for (key, text) in ["description", "told", "answers", "weights"].into_iter().zip(texts) {
+                    fields.set_item(key, text)?;
+                }
+            }
+        }
+        Ok((py.import("apertura._pickle")?.getattr("method")?, (fields,)))
     }
 }

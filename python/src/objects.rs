@@ -1,7 +1,7 @@
 //! Objects and disturbances of a scene, which are data classes in Python (`apertura/objects.py`).
 
 use crate::arrays::{numbers, owned};
-use crate::errors::value;
+use crate::errors::{value, whole};
 use crate::radar::{Radar, or_default};
 use apertura::radar::{BuiltArray, Decibels, ElementError, Tolerances};
 use apertura::scene::{Block, GaussianCluster, Interferer, Line, Mirror, Object, Point, Polygon, Post, Wall};
@@ -257,9 +257,10 @@ pub fn built_elements<'py>(
     gain_db: f64,
     phase_degrees: f64,
     position_millimetres: f64,
-    seed: u64,
+    seed: i128,
     radar: Option<&Radar>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let seed = whole("seed", seed)?;
     let tolerances = Tolerances { gain: Decibels(gain_db), phase_degrees, position_millimetres };
     let radar = or_default(radar);
     let built = tolerances.build(&radar, seed);

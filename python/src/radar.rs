@@ -2,14 +2,18 @@
 
 use crate::arrays::owned;
 use crate::budget::{LinkBudget, budget_of, link_figures};
-use crate::errors::value;
+use crate::errors::{scene_file, system, value};
 use crate::radar_fields::{antennas_of, carrier_name, carrier_of, convention_of, fields_of, window_of};
+use apertura::files::read_bounded;
 use apertura::radar;
 use apertura::radar::presets::{ALL, RadarPreset};
+use apertura::scene;
+use apertura::scene::file::{MAX_FILE_BYTES, SceneFile, radar_of};
 use ndarray::Array1;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
+use std::path::PathBuf;
 
 /// A radar with a uniform line array on the x axis, centred on x = 0. Without arguments it is that of the thesis' table 3.1.
 ///
@@ -140,6 +144,32 @@ impl Radar {
     #[staticmethod]
     fn presets() -> Vec<&'static str> {
         ALL.iter().map(|p| p.id).collect()
+    }
+
+    /// The radar of a TOML file that holds one in a table [radar]: a scene, a recording, or nothing else. What the table leaves out is table 3.1's.
+    ///
+    /// Raises:
+    ///     OSError: The file can't be read.
+    ///     ValueError: It holds no radar; the message names the line.
+    #[staticmethod]
+    fn load(path: PathBuf) -> PyResult<Self> {
+        let bytes = read_bounded(&path, MAX_FILE_BYTES).map_err(|e| system(&e, format!("{}: {e}", path.display())))?;
+        let told = |what: String| value(format!("{}: {what}", path.display()));
+        let text = String::from_utf8(bytes).map_err(|_| told("is not text".to_owned()))?;
+        radar_of(&text).map(|(radar, _)| Radar(radar)).map_err(told)
+    }
+
+    /// Writes the radar as a TOML file, in one step.
+    ///
+    /// Raises:
+    ///     OSError: The file can't be written.
+    ///     ValueError: Its name does not end in `.toml`.
+    fn save(&self, path: PathBuf) -> PyResult<()> {
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            return Err(value(format!("{}: expected a name that ends in .toml", path.display())));
+        }
+        scene::file::save(&path, &SceneFile { scene: scene::Scene::default(), radar: self.0.clone() })
+            .map_err(scene_file)
     }
 
     /// The same radar with other fields, named as in the constructor. A convention brings its carrier and its spacing with it.
@@ -355,11 +385,24 @@ impl Radar {
         owned(py, (0..self.0.samples).map(|bin| self.0.range_of_bin_metres(bin as f64)).collect::<Array1<f64>>())
     }
 
-    /// Cosines, from the array's axis, of the columns of a map, float64 `[elements]`. They rise from column to column under the one-way carrier
-    /// and fall under the two-way carrier; `map[:, numpy.argsort(radar.cos_theta)]` has left on the left with either.
+    /// Cosines, from the array's axis, of the columns of a map, float64 `[elements]`.
+    ///
+    /// They rise from column to column under the one-way carrier and fall under the two-way carrier: `map[:, radar.rising_columns]` has left on the
+    /// left with either. A map in NumPy, Z being `samples` of `Maps` and H and E the weights of the window over samples and elements:
+    /// `Y = numpy.fft.fftshift(numpy.fft.fft(numpy.fft.fft(Z * H, axis=1) * E[:, None], axis=0), axes=0).T`, each transform over the root of its
+    /// length; `Maps.complex` is it.
     #[getter]
     fn cos_theta<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         owned(py, (0..self.0.elements).map(|column| self.0.cos_of_column(column as f64)).collect::<Array1<f64>>())
+    }
+
+    /// Numbers of the columns of a map from left to right, int64 `[elements]`: cos(theta) rises along `map[:, radar.rising_columns]`. The same brings
+    /// the columns back. Column 0, whose cosine is 1 and -1 alike, stays the first.
+    #[getter]
+    fn rising_columns<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        let elements = self.0.elements as i64;
+        let falls = self.0.cos_of_column(0.0) > 0.0;
+        owned(py, (0..elements).map(|k| if falls && k > 0 { elements - k } else { k }).collect::<Array1<i64>>())
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {

@@ -1,6 +1,6 @@
 //! Recordings: samples that a radar measured.
 
-use crate::arrays::{both_ends, owned, view};
+use crate::arrays::{self, both_ends, numbers, owned, view};
 use crate::errors;
 use crate::errors::named;
 use crate::maps::Maps;
@@ -8,10 +8,13 @@ use crate::radar::Radar;
 use apertura::radar::BuiltArray;
 use apertura::reconstruct::NoisePrior;
 use apertura::recording::presets::{ALL, Preset};
-use apertura::recording::{self, file::load};
+use apertura::recording::{self, Recorded, file::load};
+use apertura::signal::BeatSignal;
+use ndarray::Array2;
 use num_complex::Complex64;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::path::PathBuf;
 
 /// Samples that a radar measured, with the radar.
@@ -135,8 +138,51 @@ impl Recording {
         Ok(Maps::new(self.0.radar.clone(), BuiltArray::default(), signal.clone(), normalisation))
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyDict>,))> {
+        let (py, own) = (slf.py(), slf.get());
+        let fields = PyDict::new(py);
+        fields.set_item("name", own.name())?;
+        fields.set_item("notes", own.notes())?;
+        fields.set_item("radar", own.radar())?;
+        fields.set_item("samples", own.0.signal().map(|signal| owned(py, signal.samples.clone())))?;
+        fields.set_item("ends", own.ends(py))?;
+        fields.set_item("missing", own.missing())?;
+        fields.set_item("range_metres", own.range_metres())?;
+        fields.set_item("doubts", own.doubts())?;
+        Ok((py.import("apertura._pickle")?.getattr("recording")?, (fields,)))
+    }
+
     fn __repr__(&self) -> String {
         let radar = &self.0.radar;
         format!("<Recording {:?}: {} elements by {} samples>", self.0.name, radar.elements, radar.samples)
     }
+}
+
+/// What pickle makes a recording of.
+#[pyfunction]
+#[pyo3(name = "_recording", signature = (name, notes, radar, samples, ends, missing, range_metres, doubts))]
+#[expect(clippy::too_many_arguments, reason = "one a field")]
+pub fn pickled(
+    name: String,
+    notes: String,
+    radar: &Radar,
+    samples: Option<&Bound<'_, PyAny>>,
+    ends: &Bound<'_, PyAny>,
+    missing: Vec<usize>,
+    range_metres: Option<f64>,
+    doubts: Vec<String>,
+) -> PyResult<Recording> {
+    let radar = radar.0.clone();
+    let samples = match samples {
+        Some(samples) => {
+            let shape = format!("[{}, {}]", radar.elements, radar.samples);
+            let samples: Array2<Complex64> = numbers(samples, "samples", &shape)?;
+            if samples.dim() != (radar.elements, radar.samples) {
+                return Err(errors::value(format!("samples: their shape is {:?}; expected {shape}", samples.shape())));
+            }
+            Recorded::All(BeatSignal { samples })
+        }
+        None => Recorded::Ends(arrays::ends(ends, &radar)?),
+    };
+    Ok(Recording(recording::Recording { name, notes, radar, samples, missing, range_metres, doubts }))
 }

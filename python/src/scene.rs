@@ -1,14 +1,13 @@
 //! Scenes.
 
 use crate::arrays::{owned, reflectors, rows_of};
-use crate::errors::{named, scene_file, value};
+use crate::errors::{named, scene_file, value, whole};
 use crate::maps::Maps;
 use crate::objects;
 use crate::radar::Radar;
 use crate::work::{self, Progress};
 use apertura::evaluate::TARGET_ETA;
 use apertura::maps::Normalisation;
-use apertura::network::live::examples::ExamplesError;
 use apertura::picture::ColourMap;
 use apertura::scene::file::{SceneFile, from_toml, load, save, to_toml};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
@@ -64,6 +63,19 @@ pub fn set_name(set: &Bound<'_, PyAny>) -> PyResult<String> {
     set.str().map(|name| name.to_string())
 }
 
+/// Names of the kinds of random scenes, in the order in which they are shown.
+///
+/// Args:
+///     training: Whether "world", which makes scenes for training and validation alone, is one of them.
+///
+/// Returns:
+///     The names that `Scene.random`, `evaluate` and others take.
+#[pyfunction]
+#[pyo3(signature = (*, training=false))]
+pub fn kinds(training: bool) -> Vec<String> {
+    Kind::all().chain(training.then_some(Kind::World)).map(|kind| kind.to_string()).collect()
+}
+
 fn checked(file: SceneFile) -> PyResult<Scene> {
     file.scene.validate(&file.radar).map_err(value)?;
     Ok(Scene(file))
@@ -78,7 +90,7 @@ impl Scene {
         objects: Option<&Bound<'_, PyAny>>,
         name: &str,
         notes: &str,
-        noise_seed: u64,
+        noise_seed: i128,
         radar: Option<&Radar>,
         elements: Option<&Bound<'_, PyAny>>,
         interferer: Option<&Bound<'_, PyAny>>,
@@ -96,7 +108,7 @@ impl Scene {
             interferer: interferer.map(objects::interferer).transpose()?,
             mirror: mirror.map(objects::mirror).transpose()?,
         };
-        let (name, notes) = (name.to_owned(), notes.to_owned());
+        let (name, notes, noise_seed) = (name.to_owned(), notes.to_owned(), whole("noise_seed", noise_seed)?);
         let scene = scene::Scene { name, notes, noise_seed, shadows, disturbances, objects: made };
         checked(SceneFile { scene, radar: radar.map(|r| r.0.clone()).unwrap_or_default() })
     }
@@ -124,8 +136,7 @@ impl Scene {
     /// Random scene `index` of a set: the one that the program makes of the same numbers.
     ///
     /// Args:
-    ///     set: 1, 2 or 3 for the thesis' test sets, or "clusters", "walls", "spacings", "corner", "crowd", "dynamic", "near",
-    ///         "bodies", "street", "rails", "occlusion", "rough", "noise"; "world" for training and validation.
+    ///     set: One of `kinds()`: "1", "2" and "3" are the thesis' test sets. "world" makes scenes for training and validation.
     ///     seed: Seed of the set.
     ///     index: Number of the scene, from 0.
     ///     purpose: "test", "validation" or "training": their scenes never meet.
@@ -138,8 +149,8 @@ impl Scene {
     #[pyo3(signature = (set, seed=0, index=0, *, purpose="test", reading="program", radar=None))]
     fn random(
         set: &Bound<'_, PyAny>,
-        seed: u64,
-        index: u32,
+        seed: i128,
+        index: i128,
         purpose: &str,
         reading: &str,
         radar: Option<&Radar>,
@@ -150,12 +161,9 @@ impl Scene {
             _ => Kind::for_training(&name).map_err(value)?,
         };
         let radar = radar.map(|r| r.0.clone()).unwrap_or_default();
-        let (needed, found) = (kind.needed_range_metres(), radar.max_range_metres());
-        if needed > found {
-            return Err(value(ExamplesError::NoRoom { kind, needed, found }));
-        }
-        let generator = Generator::new(&radar, reading_of(reading)?, purpose, seed);
-        checked(SceneFile { scene: generator.scene(kind, index), radar })
+        kind.check_room(&radar).map_err(value)?;
+        let generator = Generator::new(&radar, reading_of(reading)?, purpose, whole("seed", seed)?);
+        checked(SceneFile { scene: generator.scene(kind, whole("index", index)?), radar })
     }
 
     /// A scene that comes with the library.
@@ -340,13 +348,14 @@ impl Scene {
         py: Python<'_>,
         radar: Option<&Radar>,
         floor: &str,
-        seed: Option<u64>,
+        seed: Option<i128>,
         normalisation: &str,
         progress: Progress<'_, '_>,
     ) -> PyResult<Maps> {
         let (floor, normalisation): (Floor, Normalisation) = (named(floor)?, named(normalisation)?);
         let radar = radar.map_or_else(|| self.0.radar.clone(), |r| r.0.clone());
-        let (scene, seed) = (&self.0.scene, seed.unwrap_or(self.0.scene.noise_seed));
+        let scene = &self.0.scene;
+        let seed = seed.map_or(Ok(scene.noise_seed), |seed| whole("seed", seed))?;
         let signal = work::run(py, progress, |task| simulate_for(task, &radar, scene, floor, seed))?;
         let signal = signal.map_err(|error: Unfinished| value(error))?;
         Ok(Maps::new(radar, scene.disturbances.elements.clone(), signal, normalisation))

@@ -1,7 +1,7 @@
 //! What rows allow to say of methods and of bad scenes.
 
 use crate::errors::value;
-use crate::evaluate::rows_of;
+use crate::rows::rows_of;
 use crate::work;
 use apertura::evaluate::statistics::{Paired, USUALLY_BAD, rules};
 use pyo3::prelude::*;

@@ -1,6 +1,6 @@
 //! The threshold at which a method keeps a rate of false alarms.
 
-use crate::errors::{named, value};
+use crate::errors::{named, value, whole};
 use crate::methods;
 use crate::radar::{Radar, or_default};
 use crate::scene::set_name;
@@ -16,9 +16,9 @@ use pyo3::prelude::*;
 /// these, P_FA is then at most the rate on average. This holds for no other kinds of scenes, floors or radars, and not for each single scene.
 ///
 /// Args:
-///     method: Name of a method.
+///     method: A method, as `evaluate` takes it; "live" where none is given.
 ///     false_alarm_percent: Part of the cells that are dark in the target which may exceed the threshold, percent. 1 % takes 99 scenes or more.
-///     sets: Names of kinds of scenes with echoes, as `Scene.random` takes them, each once.
+///     sets: Names of kinds of scenes with echoes (`kinds()`), each once; 1, 2 and 3 where none are given.
 ///     count: Scenes of each kind.
 ///     seed: Seed of the scenes.
 ///     floor: What lies beneath the reflectors.
@@ -34,16 +34,16 @@ use pyo3::prelude::*;
 /// Raises:
 ///     ValueError: A name is unknown or given twice, the scenes are too few for the rate, or the method can't work on a scene.
 #[pyfunction]
-#[pyo3(signature = (method="live", *, false_alarm_percent=1.0, sets=None, count=100, seed=0, floor="thesis", normalisation="min-max",
+#[pyo3(signature = (method=None, *, false_alarm_percent=1.0, sets=None, count=100, seed=0, floor="thesis", normalisation="min-max",
                     radar=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn threshold<'py>(
     py: Python<'py>,
-    method: &str,
+    method: Option<&Bound<'py, PyAny>>,
     false_alarm_percent: f64,
     sets: Option<Vec<Bound<'py, PyAny>>>,
-    count: u32,
-    seed: u64,
+    count: i128,
+    seed: i128,
     floor: &str,
     normalisation: &str,
     radar: Option<&Radar>,
@@ -59,13 +59,17 @@ pub fn threshold<'py>(
         floor: named(floor)?,
         normalisation: named(normalisation)?,
         kinds,
-        count,
-        seed,
+        count: whole("count", count)?,
+        seed: whole("seed", seed)?,
         false_alarm_percent,
     };
-    let method = methods::method(method)?.0;
+    let method = match method {
+        Some(method) => methods::method_of(method, "method")?,
+        None => apertura::methods::by_name("live").map_err(value)?,
+    };
     let found = work::run(py, progress, |task| search.run(&*method, task, |part| task.set_progress(part)))?;
-    let KeptThreshold { eta, tried } = found.map_err(value)?;
+    let found = found.map_err(|error| methods::caused(py, value(error), std::slice::from_ref(&method)));
+    let KeptThreshold { eta, tried } = found?;
     let price = (search.left_to_scenes(tried.scenes), search.scenes_within_a_tenth());
     let figures = (eta, tried.scenes, tried.false_alarm, tried.detection, price.0, price.1);
     py.import("apertura.objects")?.getattr("Threshold")?.call1(figures)

@@ -43,6 +43,9 @@ pub fn run_watched<T: Send, E: Send>(
     mut on_found: impl FnMut(E) -> PyResult<()>,
 ) -> PyResult<T> {
     let task = Task::default();
+    if rayon::current_thread_index().is_some() {
+        return within(py, &task, job, on_found);
+    }
     let (sender, mut receiver) = channel();
     let mut raised = None;
     let mut told = 0.0;
@@ -90,6 +93,28 @@ pub fn run_watched<T: Send, E: Send>(
         Some(Err(panic)) => Err(runtime(format!("a fault in apertura: {}", panic_message(panic.as_ref())))),
         None => Err(runtime("the work ended without an answer")),
     }
+}
+
+/// [`run_watched`] on a thread of the pool, on which a function of one's own was asked: it must not wait for the pool. Ctrl-C and progress are those of
+/// the work outside.
+fn within<T: Send, E: Send>(
+    py: Python<'_>,
+    task: &Task,
+    job: impl FnOnce(&Task, &Finder<E, T>) -> T + Send,
+    mut on_found: impl FnMut(E) -> PyResult<()>,
+) -> PyResult<T> {
+    let (sender, receiver) = channel();
+    let finder = Finder(sender);
+    let (outcome, receiver) = py.detach(move || {
+        let outcome = catch_unwind(AssertUnwindSafe(|| job(task, &finder)));
+        (outcome, receiver)
+    });
+    for event in receiver.try_iter() {
+        if let Event::Found(event) = event {
+            on_found(event)?;
+        }
+    }
+    outcome.map_err(|panic| runtime(format!("a fault in apertura: {}", panic_message(panic.as_ref()))))
 }
 
 fn tell(progress: Progress<'_, '_>, task: &Task, told: &mut f32) -> PyResult<()> {

@@ -265,9 +265,10 @@ def test_unusable_samples_have_no_input(ends):
         ap.live_input(ends, SMALL)
 
 
-def test_the_live_network_s_input_is_for_its_radar():
-    with pytest.raises(ValueError, match="live"):
-        ap.live_input(ENDS, SMALL)
+def test_the_live_network_s_input_has_the_shape_of_its_radar():
+    assert ap.live_input(ENDS, SMALL)["fine"].shape == (4, 32, 256)
+    with pytest.raises(ValueError, match="8 samples or more"):
+        ap.live_input(ENDS[:, :, :4], SMALL.replace(samples=4))
     ends = ap.Scene.of_points([[0.0, 9.0]]).simulate().ends
     strided = np.zeros((2, 24, 512), complex)
     strided[:, ::2] = ends

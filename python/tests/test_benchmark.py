@@ -232,7 +232,7 @@ def test_the_entries_are_those_of_this_package(path):
     found = benchmark.read_entry(path)
     method = ap.method(path.stem)
     assert found["method"]["name"] == method.name and found["method"]["eta"] == pytest.approx(method.eta, abs=1e-6)
-    assert found["method"]["weights"] == benchmark.weights_of(method.name)
+    assert found["method"]["weights"] == method.weights
     entered, again = found["first"]["suites"], benchmark.draw(method, benchmark.SEED, 3)["suites"]
     assert differences(entered, again) == []
 

@@ -39,3 +39,22 @@ def test_the_recording_of_the_documents_has_its_two_posts(monkeypatch, tmp_path)
     recording = ap.Recording.load("post.toml")
     found = ap.method("iaa").reconstruct(recording.ends, recording.radar, floor=recording.floor)
     assert np.allclose(found.detections[:2, :2], [(0.0, 4.0), (0.275, 7.28)], atol=0.005)
+
+
+def test_the_half_hour_of_research_runs(monkeypatch, tmp_path, capsys):
+    pytest.importorskip("torch")
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    page = blocks("docs/data.md", "python")
+    research = [block for block in page if "ap.data.Files" not in block]
+    assert len(research) == len(page) - 1 == 6
+    names = {}
+    for block in research:
+        for long, short in (("length=400", "length=12"), ("range(10)", "range(2)"), ("count=8", "count=1"), ("count=3", "count=1")):
+            block = block.replace(long, short)
+        exec(block, names)
+    out = capsys.readouterr().out
+    assert "mine" in out and "hybrid" in out and "matched-filter" in out and "this radar has 128 elements" in out
+    assert (tmp_path / "target" / "mine.png").stat().st_size > 10_000
+    assert {row["layout"] for row in ap.read_rows("target/nested.csv")} == {"0-12 25 38 51 64 77 90 103 116"}
+    assert ap.Radar.load("target/radar.toml") == names["radar"] and len(ap.data.Files("target/nested")) == 2

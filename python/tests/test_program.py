@@ -54,6 +54,7 @@ def test_the_search_answers_as_that_of_the_program(tmp_path):
 
 
 def test_the_window_opens_on_a_scene(tmp_path, monkeypatch):
+    monkeypatch.delenv("APERTURA_PROGRAM", raising=False)
     script = tmp_path / "apertura"
     script.write_text(f'#!/bin/sh\ncp "$1" {tmp_path}/seen.toml\n')
     script.chmod(script.stat().st_mode | stat.S_IXUSR)
@@ -67,6 +68,7 @@ def test_the_window_opens_on_a_scene(tmp_path, monkeypatch):
 
 
 def test_a_missing_program_is_told(tmp_path, monkeypatch):
+    monkeypatch.delenv("APERTURA_PROGRAM", raising=False)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
     with pytest.raises(FileNotFoundError, match="cargo install"):
@@ -76,6 +78,7 @@ def test_a_missing_program_is_told(tmp_path, monkeypatch):
 
 
 def test_the_program_of_a_wheel_is_found_where_pip_put_it(tmp_path, monkeypatch):
+    monkeypatch.delenv("APERTURA_PROGRAM", raising=False)
     placed = tmp_path / "user" / "bin" / program._NAME
 
     class Placed:
@@ -93,3 +96,13 @@ def test_the_program_of_a_wheel_is_found_where_pip_put_it(tmp_path, monkeypatch)
     placed.write_text("")
     placed.chmod(placed.stat().st_mode | stat.S_IXUSR)
     assert program.find_program() == str(placed)
+
+
+def test_the_program_that_is_named_is_found(tmp_path, monkeypatch):
+    named = tmp_path / "mine"
+    named.write_text("#!/bin/sh\n")
+    monkeypatch.setenv("APERTURA_PROGRAM", str(named))
+    with pytest.raises(FileNotFoundError, match="APERTURA_PROGRAM is .*mine, which is no program"):
+        program.find_program()
+    named.chmod(named.stat().st_mode | stat.S_IXUSR)
+    assert program.find_program() == str(named)

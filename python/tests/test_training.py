@@ -153,6 +153,72 @@ def test_what_can_not_train_is_told_in_a_line(tmp_path):
         assert found.returncode != 0 and told in found.stderr and "Traceback" not in found.stderr
 
 
+def test_wrong_files_are_told_in_a_line(tmp_path):
+    text, other = tmp_path / "text.toml", tmp_path / "other.safetensors"
+    text.write_text("mine")
+    from safetensors.torch import save_file
+
+    save_file({"a": torch.zeros(3)}, other)
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "checkpoint.pt").write_text("mine")
+    torch.save({"model": {}}, tmp_path / "checkpoint.pt")
+    for folder, arguments, told in (
+        ("new", ("--radar", str(text)), "text.toml: line 1"),
+        ("new", ("--radar", "nowhere.toml"), "--radar nowhere.toml: there is no such file"),
+        ("new", ("--init", str(text)), "text.toml is no weight file"),
+        ("new", ("--init", str(other)), "other.safetensors holds weights of another network"),
+        ("run", (), "checkpoint.pt is no checkpoint"),
+        (".", (), 'checkpoint.pt is no checkpoint of train_live.py: it has no "doubt"'),
+    ):
+        found = alone(tmp_path / folder, *LIVE, "--steps", "1", *arguments)
+        assert found.returncode != 0 and told in found.stderr and "Traceback" not in found.stderr, found.stderr
+    found = alone(tmp_path, "train_live.py", "--judge", str(other))
+    assert found.returncode != 0 and "another network" in found.stderr and "Traceback" not in found.stderr
+
+
+def test_a_checkpoint_is_light_and_has_what_adam_needs(tmp_path):
+    for until in ("1", "2"):
+        found = alone(tmp_path, *LIVE, "--steps", until)
+        assert found.returncode == 0, found.stderr
+    assert (tmp_path / "checkpoint.pt").stat().st_size < 15 << 20
+    [*moments] = weights(tmp_path)["optimizer"]["state"].values()
+    assert {m["exp_avg"].dtype for m in moments} == {torch.bfloat16} and {m["exp_avg_sq"].dtype for m in moments} == {torch.float32}
+
+
+def test_a_radar_of_another_shape_trains_a_network_of_its_shape(tmp_path):
+    import apertura as ap
+    from apertura.live import Estimator
+
+    radar = ap.Radar(elements=86, end_elements=8, samples=128, convention="physical")
+    ap.Scene(radar=radar).save(tmp_path / "radar.toml")
+    own = ("train_live.py", "--batch", "2", "--validation", "0", "--radar", str(tmp_path / "radar.toml"), "--tiny")
+    found = alone(tmp_path / "run", *own, "--steps", "2")
+    assert found.returncode == 0, found.stderr
+    found = alone(tmp_path / "run", *LIVE, "--steps", "3")
+    assert found.returncode != 0 and "--radar and --tiny ask for {}" in found.stderr
+    path = tmp_path / "own.safetensors"
+    found = alone(tmp_path / "run", *own[:-5], "--radar", str(tmp_path / "radar.toml"), "--tiny", "--validation", "1", "--export", str(path))
+    assert found.returncode == 0, found.stderr
+    estimator = Estimator(path)
+    assert estimator.radar == radar and estimator.__name__ == "live-own"
+    rows = ap.evaluate([estimator, "baseline"], ["2"], count=1, radar=radar)
+    assert [row["method"] for row in rows] == ["live-own", "baseline"] and rows[0]["squared_error"] > 0
+    with pytest.raises(ValueError, match="the weights are for"):
+        ap.evaluate([estimator], ["2"], count=1, radar=radar.replace(carrier_hz=76e9))
+    method = ap.Method.of_command(f'"{sys.executable}" -m apertura.live "{path}"')
+    assert method.name == "live-own" and len(method.weights) == 12
+    found = alone(tmp_path / "odd", "train_live.py", "--steps", "1", "--radar", str(odd(tmp_path)))
+    assert found.returncode != 0 and "expected a multiple of 8" in found.stderr
+
+
+def odd(folder):
+    """The file of a radar whose samples can't be halved three times."""
+    import apertura as ap
+
+    ap.Scene(radar=ap.Radar(elements=64, end_elements=8, samples=36)).save(folder / "odd.toml")
+    return folder / "odd.toml"
+
+
 def test_weights_are_exported(tmp_path):
     assert alone(tmp_path, *LIVE, "--steps", "1").returncode == 0
     path = tmp_path / "live.safetensors"

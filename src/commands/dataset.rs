@@ -1,9 +1,12 @@
 //! `apertura dataset`: examples to train on as files.
 
 use super::arguments::{real, seed, whole};
+use super::radar_arg::RadarArg;
 use super::{CommandError, print};
 use crate::network::floors::Floors;
+use crate::network::live::arrays::Arrays;
 use crate::network::live::dataset::{DatasetError, DatasetRequest, Part, Precision, write};
+use crate::network::live::radars::Radars;
 use crate::radar::{Bytes, Decibels};
 use crate::scene::generate::Kind;
 use crate::signal::Floor;
@@ -11,14 +14,14 @@ use crate::task::Task;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Write examples for training as files: samples of both ends, the live network's input, and the map of the whole array
+/// Write examples for training as files: samples of both ends, the live network's input, and maps of the whole array
 ///
 /// DIR gets train, validation and test with shards of NumPy arrays, and manifest.json with the SHA-256 of each file. The scenes of the three
 /// never meet. The same arguments write the same files. docs/data.md leads from here to a training loop.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Test sets 1 to 3 or other kinds of scenes, as `apertura evaluate` takes them, separated by commas; or world, for training and validation
-    #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', required = true, value_parser = Kind::for_training)]
+    #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', required = true, value_parser = Kind::for_training,
+          help = format!("Kinds of scenes, separated by commas: {}; or world, for training and validation", Kind::names()))]
     set: Vec<Kind>,
 
     /// Scenes of each kind for training
@@ -50,9 +53,14 @@ pub struct Args {
     #[arg(long, value_name = "f16|f32", default_value = "f16")]
     dtype: Precision,
 
-    /// What to write
-    #[arg(long, value_name = "ends,features,target", value_delimiter = ',', default_value = "ends,features,target")]
+    /// What to write: ends, features (the live network's input), target_ideal (the map of the array as it should be, without noise), target_measured
+    /// (what the whole array heard), target_calibrated (what it would have heard without errors of its elements) [default: ends, features where the
+    /// radar has the live network's shape, target_ideal, target_measured]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     arrays: Vec<Part>,
+
+    #[command(flatten)]
+    radar: RadarArg,
 
     /// Examples of a shard; as many are in memory at once
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = whole(1..=4096u32))]
@@ -73,13 +81,17 @@ impl Args {
     /// Writes the dataset.
     pub fn run(self) -> Result<(), CommandError> {
         let [from, to] = THERMAL;
+        let radars = Radars::Fixed(Box::new(self.radar.load()?.0));
         let request = DatasetRequest {
             counts: DatasetRequest::counts(&self.set, self.count, self.validation, self.test),
             kinds: self.set,
             seed: self.seed,
             floors: self.thermal.map_or(Floors::Fixed(self.floor), |share| Floors::Thermal { share, from, to }),
             precision: self.dtype,
-            parts: self.arrays,
+            parts: if self.arrays.is_empty() { Part::usual(&radars, None) } else { self.arrays },
+            arrays: Arrays::IDEAL,
+            radars,
+            layout: None,
             shard: self.shard,
         };
         let task = Task::default();

@@ -3,8 +3,7 @@
 use super::CommandError;
 use crate::files::read_bounded;
 use crate::radar::Radar;
-use crate::scene::file::MAX_FILE_BYTES;
-use serde::Deserialize;
+use crate::scene::file::{MAX_FILE_BYTES, radar_of};
 use std::path::{Path, PathBuf};
 
 /// Which radar measured the samples.
@@ -28,27 +27,10 @@ impl RadarArg {
 }
 
 fn load(path: &Path) -> Result<(Radar, Option<f64>), CommandError> {
-    #[derive(Deserialize)]
-    struct Head {
-        radar: Option<Radar>,
-        #[serde(default)]
-        recording: Told,
-    }
-    #[derive(Deserialize, Default)]
-    struct Told {
-        range_metres: Option<f64>,
-    }
     let bytes =
         read_bounded(path, MAX_FILE_BYTES).map_err(|source| CommandError::File { path: path.to_owned(), source })?;
-    let wrong = |what: String| {
-        CommandError::Usage(format!("{}: {what}; expected a TOML file with a table [radar]", path.display()))
-    };
-    let text = String::from_utf8(bytes).map_err(|_| wrong("is not text".to_owned()))?;
-    let head: Head = toml::from_str(&text).map_err(|e| {
-        let place = e.span().map_or(0, |s| text[..s.start].matches('\n').count() + 1);
-        wrong(format!("line {place}: {}", e.message().lines().collect::<Vec<_>>().join(", ")))
-    })?;
-    let radar = head.radar.ok_or_else(|| wrong("has no table [radar]".to_owned()))?;
-    radar.validate().map_err(CommandError::on(path))?;
-    Ok((radar, head.recording.range_metres))
+    let wrong = |what: String| CommandError::Usage(format!("{}: {what}", path.display()));
+    let text = String::from_utf8(bytes)
+        .map_err(|_| wrong("is not text; expected a TOML file with a table [radar]".to_owned()))?;
+    radar_of(&text).map_err(wrong)
 }

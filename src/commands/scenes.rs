@@ -10,10 +10,9 @@ use std::path::{Path, PathBuf};
 /// Write random test scenes of one kind to a folder
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Test set 1 (one point), 2 (3 to 6 points) or 3 (3 to 6 points and lines); or clusters, walls, spacings, corner, crowd, dynamic,
-    /// near, fences, rain; or of bodies: bodies, street, rails, occlusion, rough; or noise (empty scenes: give --floor dbm=LEVEL to the command that
-    /// reads them). The sets are those of the thesis author's program; its text draws other ones (--thesis-text)
-    #[arg(long, value_name = "1|2|3|KIND")]
+    #[arg(long, value_name = "KIND", help = format!(
+        "Kind of the scenes: {}. 1, 2 and 3 are the sets of the thesis author's program (one point; 3 to 6 points; 3 to 6 points and lines); its \
+         text draws other ones (--thesis-text). Scenes of noise are empty: give --floor dbm=LEVEL to the command that reads them", Kind::names()))]
     set: Kind,
 
     /// Number of scenes

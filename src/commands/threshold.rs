@@ -35,8 +35,8 @@ pub struct Args {
     #[arg(long, value_name = "PERCENT", default_value_t = 1.0, value_parser = real(0.01..=50.0))]
     false_alarm: f64,
 
-    /// Test sets or other kinds of scenes with echoes, separated by commas
-    #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3")]
+    #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3",
+          help = format!("Kinds of scenes with echoes, separated by commas: {}", Kind::names()))]
     set: Vec<Kind>,
 
     /// Scenes of each kind

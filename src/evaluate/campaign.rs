@@ -1,18 +1,21 @@
 //! Methods over many scenes: what fills tables 4.1 to 4.3, row by row.
 
+mod elements;
 mod error;
 mod job;
 mod radar;
 
 pub use super::shard::Shard;
+pub use elements::Elements;
 pub use error::{CampaignError, Unfit};
 
+use super::Target;
 use super::rows::{FORMAT, Row, Text, Whole};
 use super::sets::{Case, SceneSet};
 use super::trial::{Answer, Trial};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
-use crate::radar::Radar;
+use crate::radar::{Radar, check_layout};
 use crate::reconstruct::{Reconstructor, Request, Weights, untrained_noise};
 use crate::scattering::Echoing;
 use crate::scene::generate::{Generator, Purpose, Reading};
@@ -43,6 +46,12 @@ pub struct Campaign {
     pub normalisation: Normalisation,
     /// A detector that is tried on every output beside the method's threshold, if one is.
     pub cfar: Option<Cfar>,
+    /// The elements that hear the scenes.
+    pub elements: Elements,
+    /// What outputs are held against.
+    pub target: Target,
+    /// Numbers of the elements that methods hear, in place of the two ends.
+    pub layout: Option<Vec<usize>>,
 }
 
 impl Default for Campaign {
@@ -58,6 +67,9 @@ impl Default for Campaign {
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
             cfar: None,
+            elements: Elements::OfScenes,
+            target: Target::Measured,
+            layout: None,
         }
     }
 }
@@ -129,12 +141,18 @@ impl Campaign {
     /// For each set, one row a method that says what makes the rows of this campaign and has no figures yet.
     ///
     /// # Errors
-    /// [`CampaignError`] for a folder whose scenes can't be read, and for a set or method that is there twice.
+    /// [`CampaignError`] for a folder whose scenes can't be read, for a kind that finds no room before the radar, and for a set or method that is
+    /// there twice.
     pub fn empty_rows(
         &self,
         sets: &[SceneSet],
         methods: &[&dyn Reconstructor],
     ) -> Result<Vec<Vec<Row>>, CampaignError> {
+        for set in sets {
+            if let SceneSet::Generated(kind) = set {
+                kind.check_room(&self.radar)?;
+            }
+        }
         let counted = |set: &SceneSet| (set.to_string(), set.len().unwrap_or(self.count));
         let names = methods.iter().map(|method| method.name().to_owned()).collect();
         let whole = Whole::new(sets.iter().map(counted).collect(), names)?;
@@ -146,12 +164,16 @@ impl Campaign {
             whole: whole.sets_text().into(),
             methods: whole.methods_text().into(),
             cfar: self.cfar.map(Text::from).unwrap_or_default(),
+            elements: self.elements.text().into(),
+            target: self.target.to_string().into(),
+            layout: self.layout.as_deref().map(elements::ranges).unwrap_or_default().into(),
             ..Row::default()
         };
         let of_set = |set: &SceneSet| -> Result<Vec<Row>, CampaignError> {
             let of_set = Row { set: set.to_string().into(), floor: Some(set.floor(self.floor)), ..of_all.clone() };
             let of_set = match set {
                 SceneSet::Folder(folder) => Row { scenes: folder.fingerprint()?.into(), ..of_set },
+                SceneSet::Listed(listed) => Row { scenes: listed.fingerprint().into(), ..of_set },
                 SceneSet::Generated(_) => Row {
                     seed: self.seed,
                     purpose: Some(self.purpose),
@@ -271,9 +293,21 @@ impl Campaign {
     /// # Errors
     /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {
-        let Case { radar, scene } = set.case(&self.radar, generator, index)?;
-        let trial = Trial::new(&radar, &scene, set.floor(self.floor), self.normalisation)
-            .map_err(|source| CampaignError::Scene { set: set_name(set), index, source })?;
+        let Case { radar, mut scene } = set.case(&self.radar, generator, index)?;
+        let fits = |layout: &Vec<usize>| check_layout(layout, radar.elements).map_err(CampaignError::Layout);
+        self.layout.as_ref().map_or(Ok(()), fits)?;
+        if let Some(elements) = self.elements.of(&radar, self.seed, index) {
+            scene.disturbances.elements = elements;
+        }
+        let trial = Trial::against(
+            self.target,
+            self.layout.as_deref(),
+            &radar,
+            &scene,
+            set.floor(self.floor),
+            self.normalisation,
+        )
+        .map_err(|source| CampaignError::Scene { set: set_name(set), index, source })?;
         trial.footprints();
         Ok(trial)
     }

@@ -66,6 +66,7 @@ impl Robustness {
         task: &Task,
         mut on_map: impl FnMut(),
     ) -> Result<Vec<RobustnessRow>, CampaignError> {
+        self.kind.check_room(&self.radar)?;
         let mut metrics = vec![vec![Vec::new(); self.scales.len()]; methods.len()];
         let request = Request { noise: self.floor.into(), task: task.clone(), ..Request::default() };
         let set = || format!("{:?}", self.kind);

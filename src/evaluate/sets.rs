@@ -5,12 +5,13 @@ use crate::files::{read_bounded, sha256};
 use crate::platform::fs;
 use crate::radar::{DecibelMilliwatts, Radar};
 use crate::scene::Scene;
-use crate::scene::file::{self, MAX_FILE_BYTES, SceneFileError};
+use crate::scene::file::{self, MAX_FILE_BYTES, SceneFile, SceneFileError};
 use crate::scene::generate::{Generator, Kind};
 use crate::signal::Floor;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A false-alarm rate for scenes that the thesis prints no table of.
 const FALSE_ALARM_ELSEWHERE: f64 = 0.01;
@@ -19,12 +20,41 @@ const FALSE_ALARM_ELSEWHERE: f64 = 0.01;
 pub const NOISE_LEVEL: DecibelMilliwatts = DecibelMilliwatts(-20.0);
 
 /// A set of scenes.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum SceneSet {
     /// Random scenes of one kind.
     Generated(Kind),
     /// Somebody's own.
     Folder(Folder),
+    /// The same, given one by one.
+    Listed(Listed),
+}
+
+/// Scenes that are given one by one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Listed {
+    name: String,
+    cases: Arc<Vec<Case>>,
+    fingerprint: String,
+}
+
+impl Listed {
+    /// Scenes that rows call `name`.
+    ///
+    /// # Errors
+    /// [`toml::ser::Error`] for a scene that no file can hold.
+    pub fn new(name: String, cases: Vec<Case>) -> Result<Listed, toml::ser::Error> {
+        let of = |case: &Case| file::to_toml(&SceneFile { scene: case.scene.clone(), radar: case.radar.clone() });
+        let texts: Vec<String> = cases.iter().map(of).collect::<Result<_, _>>()?;
+        // An end that no file has keeps scenes apart.
+        let digest = sha256::of_pieces(texts.iter().flat_map(|text| [text.as_bytes(), b"\0".as_slice()]));
+        Ok(Listed { name, cases: Arc::new(cases), fingerprint: sha256::short(&digest).to_owned() })
+    }
+
+    /// What the scenes and their radars are known by: the same only where every one is.
+    pub fn fingerprint(&self) -> &str {
+        &self.fingerprint
+    }
 }
 
 /// The scene files of a folder, in the order of their names.
@@ -124,6 +154,7 @@ impl SceneSet {
         match self {
             SceneSet::Generated(_) => None,
             SceneSet::Folder(folder) => Some(u32::try_from(folder.files.len()).unwrap_or(u32::MAX)),
+            SceneSet::Listed(listed) => Some(u32::try_from(listed.cases.len()).unwrap_or(u32::MAX)),
         }
     }
 
@@ -143,6 +174,10 @@ impl SceneSet {
                 let path = folder.file(index).unwrap_or(&folder.path);
                 file::load(path).map(|file| Case { radar: file.radar, scene: file.scene })
             }
+            SceneSet::Listed(listed) => {
+                let beyond = || Case { radar: radar.clone(), scene: Scene::default() };
+                Ok(listed.cases.get(index as usize).cloned().unwrap_or_else(beyond))
+            }
         }
     }
 
@@ -161,7 +196,7 @@ impl SceneSet {
     pub fn false_alarm(&self) -> f64 {
         match self {
             SceneSet::Generated(kind) => false_alarm(kind.test_set()),
-            SceneSet::Folder(_) => false_alarm(None),
+            SceneSet::Folder(_) | SceneSet::Listed(_) => false_alarm(None),
         }
     }
 }
@@ -181,6 +216,7 @@ impl fmt::Display for SceneSet {
                 let path = folder.path.display();
                 if path.to_string().parse::<Kind>().is_ok() { write!(f, "./{path}") } else { path.fmt(f) }
             }
+            SceneSet::Listed(listed) => listed.name.fmt(f),
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Radar, counted};
 use crate::reconstruct::{ReconstructError, Reconstructor, Request};
 use crate::scene::SceneError;
-use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::scene::generate::{Generator, Kind, NoRoom, Purpose, Reading};
 use crate::signal::Floor;
 use crate::task::Task;
 
@@ -89,6 +89,9 @@ pub enum ThresholdError {
     /// No threshold of Lambda keeps the rate.
     #[error("no threshold keeps {0} % on these scenes")]
     Unreached(f64),
+    /// The objects of a kind of scenes find no room before the radar.
+    #[error(transparent)]
+    NoRoom(#[from] NoRoom),
     /// A scene can't be simulated.
     #[error("scene {index} of {kind}: {source}")]
     Scene {
@@ -204,6 +207,7 @@ impl ThresholdSearch {
         if self.kinds.contains(&Kind::Noise) {
             return Err(ThresholdError::NoEchoes(Kind::Noise));
         }
+        self.kinds.iter().try_for_each(|kind| kind.check_room(&self.radar))?;
         let twice = self.kinds.iter().enumerate().find(|(i, kind)| self.kinds[..*i].contains(kind));
         if let Some((_, kind)) = twice {
             return Err(ThresholdError::GivenTwice(*kind));

@@ -3,15 +3,16 @@
 use super::echoes::{self, EchoCounts, EchoTally};
 use super::failure::{Failures, Fate, Footprints};
 use super::rows::Row;
-use super::{Metrics, Roc, part_within, squared_doubt, squared_error};
+use super::{Metrics, Roc, Target, part_within, squared_doubt, squared_error};
 use crate::maps::cfar::{Cfar, CfarError};
-use crate::maps::{self, Aperture, LambdaScale, Normalisation, RangeAngleMap};
+use crate::maps::{self, Aperture, LambdaScale, LogMap, Normalisation, RangeAngleMap};
 use crate::platform::Instant;
-use crate::radar::Radar;
-use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
-use crate::scene::{Reflector, Scene, SceneError};
+use crate::radar::{BuiltArray, Radar};
+use crate::reconstruct::{LayoutSamples, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::scene::{Disturbances, Reflector, Scene, SceneError};
 use crate::signal::{self, Floor, TwoEnds};
-use std::sync::OnceLock;
+use ndarray::Axis;
+use std::sync::{Arc, OnceLock};
 
 /// A simulated scene: what methods get, and what they are held against.
 #[derive(Debug, Clone)]
@@ -20,7 +21,9 @@ pub struct Trial {
     pub radar: Radar,
     /// The samples of the two ends.
     pub ends: TwoEnds,
-    /// Lambda of the whole array.
+    /// What another layout heard, where methods are to hear that.
+    pub heard: Option<Arc<LayoutSamples>>,
+    /// Lambda that answers are held against.
     pub target: RangeAngleMap,
     scene: Scene,
     scale: LambdaScale,
@@ -57,12 +60,38 @@ impl Trial {
     /// # Errors
     /// [`SceneError`] when the radar can't see the scene.
     pub fn new(radar: &Radar, scene: &Scene, floor: Floor, normalisation: Normalisation) -> Result<Trial, SceneError> {
+        Trial::against(Target::Measured, None, radar, scene, floor, normalisation)
+    }
+
+    /// [`Trial::new`] with another map that answers are held against, and with the samples of the elements of `layout` beside those of the ends.
+    ///
+    /// # Errors
+    /// As [`Trial::new`].
+    pub fn against(
+        target: Target,
+        layout: Option<&[usize]>,
+        radar: &Radar,
+        scene: &Scene,
+        floor: Floor,
+        normalisation: Normalisation,
+    ) -> Result<Trial, SceneError> {
         let signal = signal::simulate(radar, scene, floor, scene.noise_seed)?;
-        let full = maps::focus::map_of(radar, &scene.disturbances.elements, &signal, Aperture::Full).log_magnitude();
+        let elements = &scene.disturbances.elements;
+        let full = match target {
+            Target::Calibrated if !elements.is_ideal() => calibrated(radar, scene, floor)?,
+            Target::Ideal => calibrated(radar, scene, Floor::Exact)?,
+            Target::Measured | Target::Calibrated => {
+                maps::focus::map_of(radar, elements, &signal, Aperture::Full).log_magnitude()
+            }
+        };
         let target = full.normalise(normalisation);
         let ends = signal.two_ends(radar);
+        let of_layout = |layout: &[usize]| {
+            Arc::new(LayoutSamples { layout: layout.to_vec(), samples: signal.samples.select(Axis(0), layout) })
+        };
+        let heard = layout.map(of_layout);
         let (radar, scene, scale) = (radar.clone(), scene.clone(), full.scale(normalisation));
-        Ok(Trial { radar, ends, target, scene, scale, footprints: OnceLock::new() })
+        Ok(Trial { radar, ends, heard, target, scene, scale, footprints: OnceLock::new() })
     }
 
     /// Lets `method` try, and judges what it makes.
@@ -72,7 +101,12 @@ impl Trial {
     pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<Answer, ReconstructError> {
         request.task.check()?;
         let start = Instant::now();
-        let found = method.reconstruct(&self.radar, &self.ends, request)?;
+        let found = match &self.heard {
+            None => method.reconstruct(&self.radar, &self.ends, request)?,
+            heard => {
+                method.reconstruct(&self.radar, &self.ends, &Request { heard: heard.clone(), ..request.clone() })?
+            }
+        };
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         let eta = method.eta_of(&found);
         Ok(Answer {
@@ -143,6 +177,14 @@ impl Trial {
             ..row
         }
     }
+}
+
+/// The map of the array as it should be.
+fn calibrated(radar: &Radar, scene: &Scene, floor: Floor) -> Result<LogMap, SceneError> {
+    let elements = BuiltArray::default();
+    let disturbances = Disturbances { elements: elements.clone(), ..scene.disturbances.clone() };
+    let signal = signal::simulate(radar, &Scene { disturbances, ..scene.clone() }, floor, scene.noise_seed)?;
+    Ok(maps::focus::map_of(radar, &elements, &signal, Aperture::Full).log_magnitude())
 }
 
 /// Where a reflector shows: (column, range bin), neither rounded, and its object.

@@ -55,10 +55,12 @@ mod shipped;
 #[cfg(feature = "network")]
 pub use shipped::{from_file, shipped, shipped_on};
 
+use crate::files::read_bounded;
 use crate::platform;
 #[cfg(not(feature = "network"))]
 use crate::reconstruct::Reconstructor;
 use live::LiveMethod;
+use std::path::Path;
 #[cfg(not(feature = "network"))]
 use std::sync::{Arc, LazyLock};
 use weights::{WeightFile, WeightsError};
@@ -69,6 +71,20 @@ const LIVE_FILE: &str = "assets/weights/live.safetensors";
 /// The live network whose weights are part of the program, by itself; `None`, with a warning in the log, where they can't be used.
 pub fn live() -> Option<LiveMethod> {
     usable(WeightFile::parse(LIVE_FILE, &platform::live_weights()).and_then(LiveMethod::new))
+}
+
+/// Most bytes of a file with weights of the live network; the shipped one has 2 MB.
+const MAX_LIVE_BYTES: u64 = 256 << 20;
+
+/// The live network with the weights that the safetensors file at `path` holds, as a method called `name`.
+///
+/// # Errors
+/// [`WeightsError`] when the file can't be read, is damaged, or belongs to another network.
+pub fn live_from_file(path: &Path, name: &str) -> Result<LiveMethod, WeightsError> {
+    let file = path.display().to_string();
+    let bytes = read_bounded(path, MAX_LIVE_BYTES)
+        .map_err(|e| WeightsError::File { file: file.clone(), reason: e.to_string() })?;
+    LiveMethod::named(WeightFile::parse(&file, &bytes)?, name)
 }
 
 /// The networks whose weights are part of the program: the live network alone, without the feature `network`.

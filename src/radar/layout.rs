@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 /// Positions of an array's elements on the x axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
-    /// Position of each element, metres, in rising order.
+    /// Position of each element, metres; in rising order but for [`Layout::of_numbers`].
     pub x_metres: Vec<f64>,
     /// Antennas of each element, where transmitters stand apart from receivers.
     pairs: Option<Vec<Pair>>,
@@ -23,7 +23,35 @@ pub struct LayoutError {
     places: usize,
 }
 
+/// Checks a layout that is a list of numbers of elements.
+///
+/// # Errors
+/// The element that is not there or that is given twice, and what was expected.
+pub fn check_layout(layout: &[usize], elements: usize) -> Result<(), String> {
+    if layout.is_empty() {
+        return Err("the layout has no element; expected at least one".to_owned());
+    }
+    let mut seen = vec![false; elements];
+    for &element in layout {
+        match seen.get_mut(element) {
+            None => {
+                let last = elements.saturating_sub(1);
+                return Err(format!("the layout has element {element}; the radar has elements 0 to {last}"));
+            }
+            Some(true) => return Err(format!("the layout has element {element} twice; expected each once")),
+            Some(seen) => *seen = true,
+        }
+    }
+    Ok(())
+}
+
 impl Layout {
+    /// The elements of `radar` that have these numbers, in this order.
+    pub fn of_numbers(radar: &Radar, numbers: &[usize]) -> Self {
+        let pairs = (!radar.is_monostatic()).then(|| numbers.iter().map(|n| radar.pair(*n)).collect());
+        Layout { x_metres: numbers.iter().map(|n| radar.element_x_metres(*n)).collect(), pairs }
+    }
+
     /// Every element of `radar` (thesis figure 1-1).
     pub fn uniform(radar: &Radar) -> Self {
         Layout::of_elements(radar, 0..radar.elements)

@@ -7,6 +7,8 @@ use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
 use crate::task::Task;
 use ndarray::Array2;
+use num_complex::Complex64;
+use std::sync::Arc;
 
 /// What a reconstruction is told beside the samples.
 #[derive(Debug, Clone)]
@@ -21,8 +23,19 @@ pub struct Request {
     /// Whether a method with a memory ([`Reconstructor::following`](super::Reconstructor::following)) may start from its last answer,
     /// as while something is dragged.
     pub may_follow: bool,
+    /// What another layout than the two ends heard, for methods that hear any ([`Reconstructor::hears_layouts`](super::Reconstructor::hears_layouts)).
+    pub heard: Option<Arc<LayoutSamples>>,
     /// Progress to report to, and the flag to stop at.
     pub task: Task,
+}
+
+/// Samples of some elements.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayoutSamples {
+    /// Their numbers.
+    pub layout: Vec<usize>,
+    /// `[elements of the layout, samples]`, of the same gain as those of the two ends.
+    pub samples: Array2<Complex64>,
 }
 
 impl Default for Request {
@@ -33,6 +46,7 @@ impl Default for Request {
             normalisation: Normalisation::MinMax,
             snapshot_range_metres: None,
             may_follow: false,
+            heard: None,
             task: Task::default(),
         }
     }

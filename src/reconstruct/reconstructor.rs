@@ -1,6 +1,6 @@
 //! What every method is, and what is done once for all of them.
 
-use super::answer::{Reconstruction, Request};
+use super::answer::{LayoutSamples, Reconstruction, Request};
 use super::error::ReconstructError;
 use super::family::Family;
 use super::hearing::ends_noise_variance;
@@ -63,6 +63,11 @@ pub trait Reconstructor: Send + Sync {
         false
     }
 
+    /// Whether the method makes maps of the samples of any elements ([`Request::heard`]).
+    fn hears_layouts(&self) -> bool {
+        false
+    }
+
     /// Says at once whether the method can work on samples of `radar`: [`Reconstructor::check_radar`], and whether it knows such antennas.
     ///
     /// # Errors
@@ -99,9 +104,16 @@ pub trait Reconstructor: Send + Sync {
         request.task.check()?;
         check_ends(radar, ends)?;
         self.check_array(radar)?;
+        if request.heard.is_some() && !self.hears_layouts() {
+            let reason = "it hears the two ends of an array; of other layouts matched-filter makes maps, and programs of your own";
+            return Err(self.unusable(reason.to_owned()));
+        }
         self.check_hearing(ends)?;
         let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
-        let request = &Request { noise: request.noise.scaled(gain), ..request.clone() };
+        let heard = request.heard.as_ref().map(|heard| {
+            Arc::new(LayoutSamples { layout: heard.layout.clone(), samples: heard.samples.mapv(|v| v * gain) })
+        });
+        let request = &Request { noise: request.noise.scaled(gain), heard, ..request.clone() };
         // From within, a parallel step is handed to whoever is idle; from without, its caller would sleep through each one.
         let found = rayon::scope(|_| self.estimate(radar, &ends, request))?;
         // What was cancelled while it was drawn is no answer.

@@ -59,6 +59,7 @@ impl Basis {
             normalisation: self.normalisation,
             snapshot_range_metres: self.snapshot_range_metres,
             may_follow,
+            heard: None,
             task,
         }
     }

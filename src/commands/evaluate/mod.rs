@@ -3,7 +3,6 @@
 mod against;
 mod by_doubt;
 mod by_echo;
-mod kept;
 mod percent;
 mod progress;
 mod report;
@@ -12,14 +11,15 @@ use super::arguments::{self, FloorArgs, real, seed, whole};
 use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::campaign::{Campaign, Shard};
-use crate::evaluate::rows::{Lack, Row, WHY_NO_OTHER_FORMAT, lacks, merge, read_table};
+use crate::evaluate::rows::{
+    KeptError, Key, Lack, Row, RowFile, WHY_NO_OTHER_FORMAT, Wanted, key, lacks, merge, read_table, write_merged,
+};
 use crate::evaluate::sets::{Folder, SceneSet};
 use crate::maps::cfar::Cfar;
 use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::{Kind, Reading};
 use crate::task::Task;
-use kept::{Key, RowFile, Wanted, key, on_file, write_merged};
 use progress::Progress;
 use report::Report;
 use std::collections::HashSet;
@@ -69,8 +69,8 @@ pub struct Args {
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     method: Vec<String>,
 
-    /// Test sets 1 to 3 or other kinds of scenes (clusters, walls, spacings, corner, crowd, dynamic, near, fences, rain; of bodies: bodies, street, rails, occlusion, rough; noise), separated by commas
-    #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3")]
+    #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3",
+          help = format!("Kinds of scenes, separated by commas: {}", Kind::names()))]
     set: Vec<Kind>,
 
     /// Scenes of each set
@@ -185,7 +185,7 @@ impl Args {
         }
         let wanted = Wanted::new(&empty);
         let open = |path: &PathBuf| RowFile::open(path, &wanted, self.overwrite);
-        let mut file = self.rows.as_ref().map(open).transpose()?;
+        let mut file = self.rows.as_ref().map(open).transpose().map_err(told)?;
         let maps = scenes * methods.len() as u64;
         let done = self.done(file.as_ref(), maps);
         let mut progress = Progress::new(maps - done.len() as u64, Duration::from_secs(self.progress.into()));
@@ -203,8 +203,8 @@ impl Args {
         match file {
             None => found.map_err(CommandError::failed),
             Some(mut file) => match file.failure() {
-                Some(failure) => Err(failure),
-                None => found.map_err(CommandError::failed).and_then(|_| file.finish()),
+                Some(failure) => Err(told(failure)),
+                None => found.map_err(CommandError::failed).and_then(|_| file.finish().map_err(told)),
             },
         }
     }
@@ -226,7 +226,8 @@ impl Args {
     fn merged(&self) -> Result<(Vec<Row>, Vec<Lack>), CommandError> {
         let (mut tables, mut problems) = (Vec::new(), Vec::new());
         for path in &self.merge {
-            let file = File::open(path).map_err(on_file(path))?;
+            let on_file = |source| CommandError::File { path: path.clone(), source };
+            let file = File::open(path).map_err(on_file)?;
             let table = read_table(file).map_err(CommandError::on(path))?;
             if table.is_cut {
                 problems.push(format!("{} ends within a line, which was left out", path.display()));
@@ -256,8 +257,19 @@ impl Args {
             );
         }
         if let Some(path) = &self.rows {
-            write_merged(path, &rows, self.overwrite)?;
+            write_merged(path, &rows, self.overwrite).map_err(told)?;
         }
         Ok((rows, missing))
+    }
+}
+
+fn told(error: KeptError) -> CommandError {
+    match error {
+        KeptError::File { path, source } => CommandError::File { path, source },
+        KeptError::Other { .. } => {
+            CommandError::Usage(format!("{error}; name another file, or write over this one with --overwrite"))
+        }
+        KeptError::Busy(_) => CommandError::Usage(error.to_string()),
+        KeptError::Merge(error) => CommandError::failed(error),
     }
 }

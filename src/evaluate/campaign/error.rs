@@ -6,6 +6,7 @@ use crate::maps::cfar::CfarError;
 use crate::reconstruct::ReconstructError;
 use crate::scene::SceneError;
 use crate::scene::file::SceneFileError;
+use crate::scene::generate::NoRoom;
 
 /// Why a campaign stopped.
 #[derive(Debug, thiserror::Error)]
@@ -26,6 +27,12 @@ pub enum CampaignError {
     /// A folder's scenes can't be read.
     #[error(transparent)]
     Folder(#[from] FolderError),
+    /// The objects of a kind of scenes find no room before the radar.
+    #[error(transparent)]
+    NoRoom(#[from] NoRoom),
+    /// A radar that has not the elements of the layout.
+    #[error("{0}")]
+    Layout(String),
     /// A set or a method would count twice.
     #[error(transparent)]
     GivenTwice(#[from] GivenTwice),

@@ -375,7 +375,7 @@ mod tests {
             "line 3, column squared_error: \"inf\"; expected a finite number"
         );
         assert!(error(&good.replacen(",7,", ",-7,", 1)).starts_with("line 2, column seed: \"-7\"; expected a whole"));
-        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 42"));
+        assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 45"));
         assert!(error(&good.replacen("1 0 0 1 0 0", "1 0 0 3 0 0", 1)).starts_with("line 2, column echoes_found: "));
         assert!(error(&good.replacen("1 0 0 2 0 4", "1 0 0", 1)).starts_with("line 2, column echoes: \"1 0 0\""));
         let half = Row { cfar_detection: Some(0.5), ..row("1", 0, "live") };

@@ -5,6 +5,7 @@
 mod cell;
 mod columns;
 mod file;
+mod kept;
 mod lacks;
 mod lines;
 mod merge;
@@ -13,6 +14,7 @@ mod whole;
 
 pub use cell::{Kind, Text, Value};
 pub use file::{RowError, Table, header, read_rows, read_table, row_writer, write_rows};
+pub use kept::{KeptError, Key, RowFile, Wanted, key, write_merged};
 pub use lacks::{Lack, lacks};
 pub use lines::MAX_ROWS;
 pub use merge::{MergeError, merge};
@@ -133,6 +135,13 @@ columns! {
         methods: Text = Methods,
         /// The detector of constant false-alarm rate that was tried on every output; empty where none was.
         cfar: Text = Cfar,
+        /// The elements that heard the scenes in place of the scenes' own; empty where those did.
+        elements: Text = Elements,
+        /// The map that outputs were held against: measured, calibrated or ideal ([`Target`](super::Target)); empty in tables from before targets
+        /// had names, where it is the measured one.
+        target: Text = Target,
+        /// Numbers of the elements that methods heard; empty where they heard the two ends.
+        layout: Text = Layout,
     }
 }
 

@@ -23,8 +23,8 @@ impl Arrays {
         tolerances: Tolerances { gain: Decibels(0.0), phase_degrees: 0.0, position_millimetres: 0.0 },
     };
 
-    /// The array that hears the scene whose noise has this seed: only elements of the two ends are off.
-    pub fn of(&self, noise_seed: u64, radar: &Radar) -> BuiltArray {
+    /// The array that hears the scene whose noise has this seed. Where it isn't heard `whole`, only elements of the two ends are off.
+    pub fn of(&self, noise_seed: u64, radar: &Radar, whole: bool) -> BuiltArray {
         let mut rng = ChaCha8Rng::seed_from_u64(noise_seed);
         rng.set_stream(STREAM);
         if rng.random::<f64>() >= self.share {
@@ -38,7 +38,9 @@ impl Arrays {
             position_millimetres: of_position * position_millimetres,
         };
         let mut array = tolerances.build(radar, rng.random());
-        array.elements[radar.end_elements..radar.elements - radar.end_elements].fill(ElementError::default());
+        if !whole {
+            array.elements[radar.end_elements..radar.elements - radar.end_elements].fill(ElementError::default());
+        }
         array
     }
 }
@@ -52,7 +54,8 @@ mod tests {
         let radar = Radar::default();
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 20.0, position_millimetres: 0.1 };
         let arrays = Arrays { share: 0.3, tolerances };
-        let drawn: Vec<BuiltArray> = (0..400).map(|seed| arrays.of(seed, &radar)).filter(|a| !a.is_ideal()).collect();
+        let drawn: Vec<BuiltArray> =
+            (0..400).map(|seed| arrays.of(seed, &radar, false)).filter(|a| !a.is_ideal()).collect();
         assert!((90..150).contains(&drawn.len()), "{}", drawn.len());
         for array in &drawn {
             let off = |n: usize| array.element(n) != ElementError::default();
@@ -60,6 +63,6 @@ mod tests {
         }
         let degrees = drawn.iter().map(|a| a.element(3).phase_degrees.abs()).fold(0.0, f64::max);
         assert!((20.0..80.0).contains(&degrees), "{degrees}");
-        assert!((0..50).all(|seed| Arrays::IDEAL.of(seed, &radar).is_ideal()));
+        assert!((0..50).all(|seed| Arrays::IDEAL.of(seed, &radar, false).is_ideal()));
     }
 }

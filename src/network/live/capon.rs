@@ -1,7 +1,7 @@
 //! The Capon spectrum of every range row of one end, forward-backward smoothed (Pillai and Kwon 1989): with next to no noise it tells apart
 //! reflectors that the end's own beam cannot.
 
-use super::grid::{ELEMENTS, FINE, ROWS, cosine};
+use super::grid::{FINE, cosine};
 use crate::signal::simd::powers::logarithm;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use ndarray::ArrayView2;
@@ -9,9 +9,9 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Elements of a subarray; five of them slide over an end, forwards and backwards.
-const SUBARRAY: usize = 8;
-const SLIDES: usize = ELEMENTS - SUBARRAY + 1;
+/// Elements of a subarray, the most first: as many as two thirds of an end have. Of 12 elements it has 8, and five subarrays slide over the end, forwards and
+/// backwards.
+const SUBARRAYS: [usize; 5] = [16, 8, 4, 2, 1];
 /// Diagonal loading of the covariance, relative to its mean diagonal.
 const LOADING: f64 = 1e-5;
 
@@ -19,7 +19,7 @@ const LOADING: f64 = 1e-5;
 #[derive(Debug)]
 pub(super) struct Capon {
     /// `[subarray][256]` cosines and sines of the lag phases.
-    lags: [[Vec<f32>; 2]; SUBARRAY],
+    lags: Vec<[Vec<f32>; 2]>,
 }
 
 /// Rows that are worked on side by side.
@@ -28,44 +28,54 @@ type Numbers = Lanes<f64, ROWS_AT_ONCE>;
 type Complexes = ComplexLanes<f64, ROWS_AT_ONCE>;
 
 impl Capon {
-    pub(super) fn new() -> Self {
+    /// For ends of so many elements.
+    pub(super) fn new(elements: usize) -> Self {
+        let subarray = SUBARRAYS.into_iter().find(|n| 3 * n <= 2 * elements).unwrap_or(1);
         let phases = |lag: usize| (0..FINE).map(move |k| PI * lag as f64 * cosine(k, FINE));
-        let lags = std::array::from_fn(|lag| {
-            [phases(lag).map(|p| p.cos() as f32).collect(), phases(lag).map(|p| p.sin() as f32).collect()]
-        });
-        Capon { lags }
+        let of = |lag| [phases(lag).map(|p| p.cos() as f32).collect(), phases(lag).map(|p| p.sin() as f32).collect()];
+        Capon { lags: (0..subarray).map(of).collect() }
     }
 
-    /// log10 amplitude `[512, 256]` of the spectrum of each row of `z` `[512, 12]`.
+    /// log10 amplitude `[rows, 256]` of the spectrum of each row of `z` `[rows, elements]`.
     pub(super) fn decades(&self, z: ArrayView2<'_, Complex64>) -> Vec<f32> {
-        let mut out = vec![0.0f32; ROWS * FINE];
-        let simd = Simd::chosen();
+        let (rows, elements) = z.dim();
+        let mut out = vec![0.0f32; rows * FINE];
         out.par_chunks_mut(ROWS_AT_ONCE * FINE).enumerate().for_each(|(chunk, out)| {
-            let mut elements = [Complexes::zero(); ELEMENTS];
-            for lane in 0..ROWS_AT_ONCE {
-                for (element, v) in elements.iter_mut().zip(z.row(chunk * ROWS_AT_ONCE + lane)) {
+            let mut heard = vec![Complexes::zero(); elements];
+            for (lane, row) in (chunk * ROWS_AT_ONCE..rows).take(ROWS_AT_ONCE).enumerate() {
+                for (element, v) in heard.iter_mut().zip(z.row(row)) {
                     (element.re.0[lane], element.im.0[lane]) = (v.re, v.im);
                 }
             }
-            simd.run(Spectra { lags: &self.lags, elements: &elements, out });
+            match self.lags.len() {
+                16 => self.run::<16>(&heard, out),
+                8 => self.run::<8>(&heard, out),
+                4 => self.run::<4>(&heard, out),
+                2 => self.run::<2>(&heard, out),
+                _ => self.run::<1>(&heard, out),
+            }
         });
         out
     }
+
+    fn run<const N: usize>(&self, elements: &[Complexes], out: &mut [f32]) {
+        Simd::chosen().run(Spectra::<N> { lags: &self.lags, elements, out });
+    }
 }
 
-/// The spectra of [`ROWS_AT_ONCE`] rows.
-struct Spectra<'a> {
-    lags: &'a [[Vec<f32>; 2]; SUBARRAY],
-    elements: &'a [Complexes; ELEMENTS],
+/// The spectra of [`ROWS_AT_ONCE`] rows, by subarrays of `N` elements.
+struct Spectra<'a, const N: usize> {
+    lags: &'a [[Vec<f32>; 2]],
+    elements: &'a [Complexes],
     out: &'a mut [f32],
 }
 
-impl Kernel for Spectra<'_> {
+impl<const N: usize> Kernel for Spectra<'_, N> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        let (power, lags) = inverse_lags::<FMA>(self.elements);
+        let (power, lags) = inverse_lags::<FMA, N>(self.elements);
         for (lane, out) in self.out.chunks_exact_mut(FINE).enumerate() {
             out.fill(0.0);
             for (lag, [cos, sin]) in lags.iter().zip(self.lags) {
@@ -84,11 +94,11 @@ impl Kernel for Spectra<'_> {
 /// to that power); those off the main diagonal doubled. They are the coefficients of `a(u)^H R^-1 a(u)`.
 #[allow(clippy::needless_range_loop, reason = "indices as in the textbook's matrices")]
 #[inline(always)]
-fn inverse_lags<const FMA: bool>(z: &[Complexes; ELEMENTS]) -> (Numbers, [Complexes; SUBARRAY]) {
-    const N: usize = SUBARRAY;
+fn inverse_lags<const FMA: bool, const N: usize>(z: &[Complexes]) -> (Numbers, [Complexes; N]) {
     const ZERO: Complexes = Complexes { re: Lanes([0.0; ROWS_AT_ONCE]), im: Lanes([0.0; ROWS_AT_ONCE]) };
     let mut cov = [[ZERO; N]; N];
-    for start in 0..SLIDES {
+    let slides = z.len() - N + 1;
+    for start in 0..slides {
         let x = &z[start..start + N];
         for i in 0..N {
             for j in 0..=i {
@@ -142,5 +152,5 @@ fn inverse_lags<const FMA: bool>(z: &[Complexes; ELEMENTS]) -> (Numbers, [Comple
             *lag = lag.scaled(Numbers::splat(2.0));
         }
     }
-    (trace.map(|v| v / (N * 2 * SLIDES) as f64), lags)
+    (trace.map(|v| v / (N * 2 * slides) as f64), lags)
 }

@@ -1,6 +1,6 @@
 //! The coarse features: each end's beams, the same on the grid that the array's centre sees, and their phases.
 
-use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, ELEMENTS, LEAST_ROWS, ROWS, cosine};
+use super::grid::{COARSE, COARSE_CHANNELS, LEAST_ROWS, cosine};
 use super::registration::Registration;
 use crate::radar::{End, Radar, hann};
 use crate::signal::simd::powers::logarithm;
@@ -10,14 +10,14 @@ use num_complex::{Complex32, Complex64};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-const PLANE: usize = ROWS * COARSE;
-
 /// Tables that depend on the radar alone.
 #[derive(Debug)]
 pub(super) struct Coarse {
+    /// Range rows.
+    rows: usize,
     /// The centre's grid from either end.
     centre: [Registration<COARSE>; 2],
-    /// `[512, 64]`: what makes the phase of a reflector's cells one and the same, see [`even_phases`].
+    /// `[rows, 64]`: what makes the phase of a reflector's cells one and the same, see [`even_phases`].
     even: Vec<Complex64>,
     /// `[elements, 64]`: windowed steering vectors.
     beams: Array2<Complex64>,
@@ -26,39 +26,41 @@ pub(super) struct Coarse {
 /// What is said of one end.
 #[derive(Debug)]
 struct Seen {
-    /// `[512, 64]` log10 amplitude.
+    /// `[rows, 64]` log10 amplitude.
     magnitude: Vec<f32>,
-    /// `[512, 64]` of amplitude 1.
+    /// `[rows, 64]` of amplitude 1.
     phase: Vec<Complex32>,
-    /// `[512, 64]` with even phases, the strongest 1.
+    /// `[rows, 64]` with even phases, the strongest 1.
     even: Vec<Complex32>,
 }
 
 impl Coarse {
     pub(super) fn new(radar: &Radar) -> Self {
         let centre = End::BOTH.map(|end| Registration::new(radar, 0.0, radar.end_centre_metres(end)));
-        Coarse { centre, even: even_phases(), beams: beams() }
+        Coarse { rows: radar.samples, centre, even: even_phases(radar), beams: beams(radar) }
     }
 
-    /// `[10, 512, 64]`, see [`LiveInput::coarse`](super::features::LiveInput::coarse), of both ends' range profiles `[512, 12]`.
+    /// `[10, rows, 64]`, see [`LiveInput::coarse`](super::features::LiveInput::coarse), of both ends' range profiles `[rows, elements]`.
     pub(super) fn features(&self, profiles: &[Array2<Complex64>; 2]) -> Vec<f32> {
         let [first, last] = profiles;
         let (first, last) = rayon::join(|| self.seen(first), || self.seen(last));
         let both = [first, last];
-        let mut coarse = vec![0.0; COARSE_CHANNELS * PLANE];
-        let (magnitudes, rest) = coarse.split_at_mut(2 * PLANE);
-        let (registered, rest) = rest.split_at_mut(2 * PLANE);
-        let (steps, between) = rest.split_at_mut(4 * PLANE);
+        let plane = self.rows * COARSE;
+        let mut coarse = vec![0.0; COARSE_CHANNELS * plane];
+        let (magnitudes, rest) = coarse.split_at_mut(2 * plane);
+        let (registered, rest) = rest.split_at_mut(2 * plane);
+        let (steps, between) = rest.split_at_mut(4 * plane);
         for (e, seen) in both.iter().enumerate() {
-            let part = e * PLANE..(e + 1) * PLANE;
+            let part = e * plane..(e + 1) * plane;
             magnitudes[part.clone()].copy_from_slice(&seen.magnitude);
             rows_of(&mut registered[part]).for_each(|(row, to)| {
                 to.iter_mut().zip(self.centre[e].row(&seen.magnitude, row)).for_each(|(to, v)| *to = v);
             });
-            let (cosines, sines) = steps[2 * e * PLANE..2 * (e + 1) * PLANE].split_at_mut(PLANE);
+            let (cosines, sines) = steps[2 * e * plane..2 * (e + 1) * plane].split_at_mut(plane);
             rows_of(cosines).zip(rows_of(sines)).for_each(|((row, cosines), (_, sines))| {
                 let of = |row: usize| &seen.phase[row * COARSE..(row + 1) * COARSE];
-                let steps = of(row).iter().zip(of((row + ROWS - 1) % ROWS)).map(|(here, before)| here * before.conj());
+                let before = of((row + self.rows - 1) % self.rows);
+                let steps = of(row).iter().zip(before).map(|(here, before)| here * before.conj());
                 cosines
                     .iter_mut()
                     .zip(sines)
@@ -70,12 +72,13 @@ impl Coarse {
         coarse
     }
 
-    /// Beams of an end's range profiles `[512, 12]`.
+    /// Beams of an end's range profiles `[rows, elements]`.
     fn seen(&self, profiles: &Array2<Complex64>) -> Seen {
         let beams = profiles.dot(&self.beams).into_raw_vec_and_offset().0;
         let strongest = beams.iter().map(|v| v.norm_sqr()).fold(1e-300, f64::max).sqrt().recip();
-        let zeros = || vec![Complex32::default(); PLANE];
-        let mut seen = Seen { magnitude: vec![0.0; PLANE], phase: zeros(), even: zeros() };
+        let plane = self.rows * COARSE;
+        let zeros = || vec![Complex32::default(); plane];
+        let mut seen = Seen { magnitude: vec![0.0; plane], phase: zeros(), even: zeros() };
         Simd::chosen().run(Look { beams: &beams, even: &self.even, strongest, seen: &mut seen });
         seen
     }
@@ -83,7 +86,7 @@ impl Coarse {
     /// Cosine and sine of twice the phase between the two ends' maps, both registered on the centre's grid: one colour for every
     /// cell of a reflector, another for the next reflector. Twice, because side lobes change their sign.
     fn fill_phase_between(&self, both: &[Seen; 2], planes: &mut [f32]) {
-        let (cosines, sines) = planes.split_at_mut(PLANE);
+        let (cosines, sines) = planes.split_at_mut(self.rows * COARSE);
         rows_of(cosines).zip(rows_of(sines)).for_each(|((row, cosines), (_, sines))| {
             let [first, last] = [0, 1].map(|e| self.centre[e].row(&both[e].even, row));
             for ((cos, sin), (a, b)) in cosines.iter_mut().zip(sines).zip(first.zip(last)) {
@@ -130,18 +133,20 @@ impl Kernel for Look<'_> {
 /// Less than any sample's rounding leaves, and more than the least f32.
 const LEAST_POWER: f32 = 1e-36;
 
-/// `[512, 64]` factors that take out of a map's phase what changes from cell to cell within one reflector's blob: the phases of mid-chirp and of
+/// `[rows, 64]` factors that take out of a map's phase what changes from cell to cell within one reflector's blob: the phases of mid-chirp and of
 /// (half an element off) the end's middle; the half lets the angle axis close, the phase at cos(theta) = -1 and 1 being the same.
-fn even_phases() -> Vec<Complex64> {
-    let row = |r: usize| PI * (ROWS - 1) as f64 / ROWS as f64 * r as f64;
-    let column = |k: usize| PI * (ELEMENTS / 2) as f64 * cosine(k, COARSE);
-    (0..PLANE).map(|i| Complex64::from_polar(1.0, row(i / COARSE) + column(i % COARSE))).collect()
+fn even_phases(radar: &Radar) -> Vec<Complex64> {
+    let (rows, elements) = (radar.samples, radar.end_elements);
+    let row = |r: usize| PI * (rows - 1) as f64 / rows as f64 * r as f64;
+    let column = |k: usize| PI * (elements / 2) as f64 * cosine(k, COARSE);
+    (0..rows * COARSE).map(|i| Complex64::from_polar(1.0, row(i / COARSE) + column(i % COARSE))).collect()
 }
 
-/// Hann-windowed steering vectors of 64 beams over 12 elements, scaled as the 1024-column transform.
-fn beams() -> Array2<Complex64> {
-    let window = hann(ELEMENTS);
-    Array2::from_shape_fn((ELEMENTS, COARSE), |(m, k)| {
-        Complex64::from_polar(window[m] / (COLUMNS as f64).sqrt(), -PI * m as f64 * cosine(k, COARSE))
+/// Hann-windowed steering vectors of 64 beams over the elements of an end, scaled as the transform of the whole array.
+fn beams(radar: &Radar) -> Array2<Complex64> {
+    let window = hann(radar.end_elements);
+    let scale = (radar.elements as f64).sqrt();
+    Array2::from_shape_fn((radar.end_elements, COARSE), |(m, k)| {
+        Complex64::from_polar(window[m] / scale, -PI * m as f64 * cosine(k, COARSE))
     })
 }

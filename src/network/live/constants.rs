@@ -7,7 +7,7 @@
 use super::grid::{COLUMNS, CONSTANTS};
 use crate::network::domain::migration_bins;
 use crate::radar::{Carrier, Radar, WindowFunction};
-use ndarray::{Array2, Axis};
+use ndarray::{Array2, ArrayViewMut2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -58,6 +58,17 @@ pub fn turn_columns(radar: &Radar, map: &mut [f32]) {
     if radar.cos_of_column(0.0) > 0.0 {
         // The first column's direction is that of one column beyond the last.
         map.par_chunks_mut(COLUMNS).for_each(|row| row[1..].reverse());
+    }
+}
+
+/// [`turn_columns`] of a map of any width.
+pub fn turn_rows(radar: &Radar, map: &mut ArrayViewMut2<'_, f32>) {
+    if radar.cos_of_column(0.0) > 0.0 {
+        map.outer_iter_mut().into_par_iter().for_each(|mut row| {
+            if let Some(cells) = row.as_slice_mut() {
+                cells[1..].reverse();
+            }
+        });
     }
 }
 

@@ -1,50 +1,127 @@
-//! Examples to train on: example `i` is a function of (mixture, seed, i) alone, whoever asks, in whatever order.
+//! Examples to train on: example `i` is a function of the request and `i` alone, whoever asks, in whatever order.
 
 use super::arrays::Arrays;
-use super::constants::turn_columns;
+use super::constants::turn_rows;
 use super::features::{FeatureExtractor, LiveInput};
-use super::radars::Radars;
+use super::radars::{DRAWN, Radars};
+use crate::evaluate::Target;
 use crate::evaluate::sets::SceneSet;
-use crate::maps::{fast::whole_map, range_transform_in_place};
+use crate::maps::focus::map_of;
+use crate::maps::{Aperture, fast::whole_map, range_transform_in_place};
 use crate::network::domain::Domain;
 use crate::network::floors::Floors;
-use crate::radar::Radar;
+use crate::radar::{BuiltArray, Radar, check_layout};
 use crate::reconstruct::ReconstructError;
-use crate::scene::Scene;
-use crate::scene::generate::{Generator, Kind, Mixture, Purpose, Reading};
-use crate::signal::{Floor, TwoEnds, Unfinished, simulate_for};
+use crate::scene::generate::{Generator, Kind, Mixture, NoRoom, Purpose, Reading};
+use crate::scene::{Disturbances, Scene};
+use crate::signal::{BeatSignal, Floor, TwoEnds, Unfinished, simulate_for};
 use crate::task::Task;
-use ndarray::Array2;
+use ndarray::{Array2, Axis};
+use num_complex::Complex64;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Which examples are made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExamplesRequest {
+    /// Kinds of the scenes.
+    pub mixture: Mixture,
+    /// Picks the streams of the scenes: those of different purposes never meet.
+    pub purpose: Purpose,
+    /// Seed of the scenes.
+    pub seed: u64,
+    /// What lies beneath them.
+    pub floors: Floors,
+    /// The elements that hear them.
+    pub arrays: Arrays,
+    /// The radars that see them.
+    pub radars: Radars,
+    /// The maps to learn, each once.
+    pub targets: Vec<Target>,
+    /// Whether the live network's input is made.
+    pub features: Features,
+    /// The elements that are heard, in the place of the two ends.
+    pub layout: Option<Vec<usize>>,
+}
+
+/// Whether the live network's input is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Features {
+    /// It is, in the radar's shape; a radar that has none is refused.
+    Needed,
+    /// It is where the radar has the shape of the network that is shipped.
+    WherePossible,
+    /// It isn't.
+    No,
+}
+
+impl Default for ExamplesRequest {
+    /// What the live network learns from the thesis' set 3: the calibrated target of training scenes over the thesis' floor.
+    fn default() -> Self {
+        ExamplesRequest {
+            mixture: Mixture::of(Kind::Set3),
+            purpose: Purpose::Training,
+            seed: 0,
+            floors: Floors::Fixed(Floor::Thesis),
+            arrays: Arrays::IDEAL,
+            radars: Radars::default(),
+            targets: vec![Target::Calibrated],
+            features: Features::Needed,
+            layout: None,
+        }
+    }
+}
 
 /// Makes examples.
 #[derive(Debug)]
 pub struct Examples {
-    mixture: Mixture,
-    purpose: Purpose,
-    seed: u64,
-    floors: Floors,
-    arrays: Arrays,
-    radars: Radars,
+    request: ExamplesRequest,
     /// Tables of the radar, where all scenes have the same.
     extractor: Option<FeatureExtractor>,
+}
+
+/// What the sparse array hears.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Heard {
+    /// The two ends.
+    Ends(TwoEnds),
+    /// The elements of a layout, `[elements, samples]`.
+    Elements(Array2<Complex64>),
 }
 
 /// What is learned from one scene.
 #[derive(Debug, Clone)]
 pub struct Example {
-    /// Kind of the scene.
-    pub kind: Kind,
+    /// Kind of the scene; none where somebody else made it.
+    pub kind: Option<Kind>,
     /// Its floor.
     pub floor: Floor,
     /// Its radar.
     pub radar: Radar,
-    /// The samples of both ends, heard by elements that may be off.
-    pub ends: TwoEnds,
-    /// The live network's input.
-    pub input: LiveInput,
-    /// The map of the whole array as it should be, `[512, 1024]`: decades of amplitude relative to [`LiveInput::gain`]. cos(theta) rises with the
-    /// column in both conventions.
-    pub decades: Array2<f32>,
+    /// What the sparse array hears, by elements that may be off.
+    pub heard: Heard,
+    /// The live network's input, where it is made.
+    pub input: Option<LiveInput>,
+    /// Half the log10 of the mean power of what is heard.
+    pub gain: f64,
+    /// Maps of the whole array, `[range bins, columns]`: decades of amplitude relative to `gain`. cos(theta) rises with the column in both
+    /// conventions.
+    pub targets: Vec<(Target, Array2<f32>)>,
+}
+
+impl Example {
+    /// The samples of the two ends; `None` where a layout was asked for.
+    pub fn ends(&self) -> Option<&TwoEnds> {
+        match &self.heard {
+            Heard::Ends(ends) => Some(ends),
+            Heard::Elements(_) => None,
+        }
+    }
+
+    /// One of its targets, where it was asked for.
+    pub fn target(&self, target: Target) -> Option<&Array2<f32>> {
+        self.targets.iter().find(|(name, _)| *name == target).map(|(_, map)| map)
+    }
 }
 
 /// Why there are no examples.
@@ -54,18 +131,14 @@ pub enum ExamplesError {
     #[error("{0} makes no scenes for tests; expected a purpose of training or validation")]
     ForTests(Kind),
     /// A kind whose objects find no room before a radar.
-    #[error("scenes of {kind} need a radar that sees {needed} m far; this one sees {found:.1} m")]
-    NoRoom {
-        /// The kind.
-        kind: Kind,
-        /// Maximum range that it needs, metres.
-        needed: f64,
-        /// Least maximum range of the radars, metres.
-        found: f64,
-    },
+    #[error(transparent)]
+    NoRoom(#[from] NoRoom),
     /// The network can't use the radar.
     #[error(transparent)]
     Radar(#[from] ReconstructError),
+    /// What is asked for can't be.
+    #[error("{0}")]
+    Request(String),
 }
 
 /// Why there is no example.
@@ -87,39 +160,61 @@ pub enum ExampleError {
         /// Why.
         source: ReconstructError,
     },
+    /// Nothing is heard.
+    #[error("example {index}: the samples are silent; put a reflector into the scene")]
+    Silent {
+        /// Number of the example.
+        index: u32,
+    },
 }
 
 impl Examples {
-    /// Examples of scenes of `mixture` before `radars`. `purpose` picks the streams of the scenes: those of different purposes never meet.
+    /// Examples as they are asked for.
     ///
     /// # Errors
-    /// [`ExamplesError`] names the kind or the radar that can't be.
-    pub fn new(
-        mixture: Mixture,
-        purpose: Purpose,
-        seed: u64,
-        floors: Floors,
-        arrays: Arrays,
-        radars: Radars,
-    ) -> Result<Self, ExamplesError> {
-        if purpose == Purpose::Test && mixture.shares().iter().any(|(kind, _)| *kind == Kind::World) {
+    /// [`ExamplesError`] names the kind, the radar or the element that can't be.
+    pub fn new(mut request: ExamplesRequest) -> Result<Self, ExamplesError> {
+        let kinds = || request.mixture.shares().iter().map(|(kind, _)| *kind);
+        if request.purpose == Purpose::Test && kinds().any(|kind| kind == Kind::World) {
             return Err(ExamplesError::ForTests(Kind::World));
         }
-        let found = radars.least_max_range_metres();
-        let crowded = mixture.shares().iter().find(|(kind, _)| kind.needed_range_metres() > found);
-        if let Some(&(kind, _)) = crowded {
-            return Err(ExamplesError::NoRoom { kind, needed: kind.needed_range_metres(), found });
+        let found = request.radars.least_max_range_metres();
+        kinds().try_for_each(|kind| kind.check_room_within(found))?;
+        if let Some(layout) = &request.layout {
+            check_layout(layout, request.radars.elements()).map_err(ExamplesError::Request)?;
+            match request.features {
+                Features::Needed => {
+                    let message = "the live network hears two ends; expected no layout, or no features";
+                    return Err(ExamplesError::Request(message.to_owned()));
+                }
+                _ => request.features = Features::No,
+            }
         }
-        let extractor = match &radars {
-            Radars::Fixed(radar) => Some(FeatureExtractor::new(radar)?),
-            Radars::Random => None,
+        let extractor = match (&request.radars, request.features) {
+            (Radars::Random, _) | (_, Features::No) => None,
+            (Radars::Fixed(radar), Features::Needed) => Some(FeatureExtractor::new(radar)?),
+            (Radars::Fixed(radar), Features::WherePossible) if !DRAWN.has_shape(radar) => None,
+            (Radars::Fixed(radar), Features::WherePossible) => Some(FeatureExtractor::new(radar)?),
         };
-        Ok(Examples { mixture, purpose, seed, floors, arrays, radars, extractor })
+        if extractor.is_none() && matches!(request.radars, Radars::Fixed(_)) {
+            request.features = Features::No;
+        }
+        Ok(Examples { request, extractor })
     }
 
     /// What a network that learns from them is trained for.
     pub fn domain(&self) -> Domain {
-        self.radars.domain()
+        self.request.radars.domain()
+    }
+
+    /// Whether they have the live network's input.
+    pub fn has_features(&self) -> bool {
+        self.request.features != Features::No
+    }
+
+    /// The radar of example `index`.
+    pub fn radar(&self, index: u32) -> Radar {
+        self.request.radars.of(self.request.seed, self.request.purpose, index)
     }
 
     /// Example `index`.
@@ -127,169 +222,111 @@ impl Examples {
     /// # Errors
     /// [`ExampleError`], also soon after `task` was cancelled.
     pub fn example(&self, index: u32, task: &Task) -> Result<Example, ExampleError> {
-        let kind = self.mixture.kind(self.seed, index);
-        let radar = self.radars.of(self.seed, self.purpose, index);
-        let mut scene = Generator::new(&radar, Reading::Program, self.purpose, self.seed).scene(kind, index);
-        let floor = SceneSet::Generated(kind).floor(self.floors.of(scene.noise_seed));
-        let simulated = |scene: &Scene| {
+        let ExamplesRequest { mixture, purpose, seed, .. } = &self.request;
+        let (kind, radar) = (mixture.kind(*seed, index), self.radar(index));
+        let scene = Generator::new(&radar, Reading::Program, *purpose, *seed).scene(kind, index);
+        self.made(Some(kind), radar, scene, index, task)
+    }
+
+    /// Example `index` of a scene that somebody else made. Its noise is picked by seed, purpose and `index`.
+    ///
+    /// # Errors
+    /// As [`Examples::example`].
+    pub fn example_of(&self, scene: Scene, index: u32, task: &Task) -> Result<Example, ExampleError> {
+        let noise_seed = self.noise_seed(index);
+        self.made(None, self.radar(index), Scene { noise_seed, ..scene }, index, task)
+    }
+
+    /// Seed of the noise of a scene that somebody else made.
+    fn noise_seed(&self, index: u32) -> u64 {
+        let mut key = [0u8; 32];
+        key[..8].copy_from_slice(&self.request.seed.to_le_bytes());
+        // No purpose of generated scenes has the first number, nor have the draws of kinds and of radars.
+        key[8..10].copy_from_slice(&[6, self.request.purpose.number()]);
+        let mut rng = ChaCha8Rng::from_seed(key);
+        rng.set_stream(index.into());
+        rng.random::<u64>() >> 11
+    }
+
+    fn made(
+        &self,
+        kind: Option<Kind>,
+        radar: Radar,
+        mut scene: Scene,
+        index: u32,
+        task: &Task,
+    ) -> Result<Example, ExampleError> {
+        let ExamplesRequest { floors, arrays, targets, layout, .. } = &self.request;
+        let floor = floors.of(scene.noise_seed);
+        let floor = kind.map_or(floor, |kind| SceneSet::Generated(kind).floor(floor));
+        let simulated = |scene: &Scene, floor: Floor| {
             simulate_for(task, &radar, scene, floor, scene.noise_seed)
                 .map_err(|source| ExampleError::Scene { index, source })
         };
-        let signal = simulated(&scene)?;
-        let array = self.arrays.of(scene.noise_seed, &radar);
-        let ends = if array.is_ideal() {
-            signal.two_ends(&radar)
-        } else {
-            scene.disturbances.elements = array;
-            simulated(&scene)?.two_ends(&radar)
-        };
-        let input = match &self.extractor {
-            Some(extractor) => extractor.extract(&ends),
-            None => FeatureExtractor::new(&radar).and_then(|extractor| extractor.extract(&ends)),
-        };
-        let input = input.map_err(|source| ExampleError::Input { index, source })?;
-        let mut decades = whole_map(&radar, &range_transform_in_place(&radar, signal));
-        decades.mapv_inplace(|v| (f64::from(v) - input.gain) as f32);
-        if let Some(cells) = decades.as_slice_mut() {
-            turn_columns(&radar, cells);
+        let drawn = arrays.of(scene.noise_seed, &radar, targets.contains(&Target::Measured));
+        if !drawn.is_ideal() {
+            scene.disturbances.elements = drawn;
         }
-        Ok(Example { kind, floor, radar, ends, input, decades })
+        let measured = simulated(&scene, floor)?;
+        let heard = match layout {
+            None => Heard::Ends(measured.two_ends(&radar)),
+            Some(layout) => Heard::Elements(measured.samples.select(Axis(0), layout)),
+        };
+        let gain = heard.gain().ok_or(ExampleError::Silent { index })?;
+        let input = self.input(&radar, &heard).map_err(|source| ExampleError::Input { index, source })?;
+        let elements = &scene.disturbances.elements;
+        let is_measured =
+            |target: &Target| *target == Target::Measured || (*target == Target::Calibrated && elements.is_ideal());
+        let of_measured = targets.iter().any(is_measured).then(|| map(&radar, elements, measured, gain));
+        let of_other = |target: Target| {
+            let disturbances = Disturbances { elements: BuiltArray::default(), ..scene.disturbances.clone() };
+            let floor = if target == Target::Ideal { Floor::Exact } else { floor };
+            let signal = simulated(&Scene { disturbances, ..scene.clone() }, floor)?;
+            Ok(map(&radar, &BuiltArray::default(), signal, gain))
+        };
+        let of = |target: &Target| match &of_measured {
+            Some(map) if is_measured(target) => Ok((*target, map.clone())),
+            _ => of_other(*target).map(|map| (*target, map)),
+        };
+        let maps = targets.iter().map(of).collect::<Result<_, _>>()?;
+        Ok(Example { kind, floor, heard, input, gain, targets: maps, radar })
     }
+
+    fn input(&self, radar: &Radar, heard: &Heard) -> Result<Option<LiveInput>, ReconstructError> {
+        let Heard::Ends(ends) = heard else { return Ok(None) };
+        match &self.extractor {
+            _ if !self.has_features() => Ok(None),
+            Some(extractor) => extractor.extract(ends).map(Some),
+            None => FeatureExtractor::new(radar)?.extract(ends).map(Some),
+        }
+    }
+}
+
+impl Heard {
+    /// Half the log10 of the mean power; `None` of silence.
+    fn gain(&self) -> Option<f64> {
+        let mean = |power: f64, samples: usize| (power > 0.0).then(|| 0.5 * (power / samples as f64).log10());
+        match self {
+            // The sum of the live network's features, to the bit.
+            Heard::Ends(ends) => {
+                let power = ends.first.iter().chain(&ends.last).map(|v| v.norm_sqr()).sum::<f64>();
+                mean(power, ends.first.len() + ends.last.len())
+            }
+            Heard::Elements(samples) => mean(samples.iter().map(|v| v.norm_sqr()).sum::<f64>(), samples.len()),
+        }
+    }
+}
+
+/// Decades of the whole array's map over `gain`, cos(theta) rising with the column.
+fn map(radar: &Radar, elements: &BuiltArray, signal: BeatSignal, gain: f64) -> Array2<f32> {
+    let mut decades = match radar.focus_off_line {
+        true => map_of(radar, elements, &signal, Aperture::Full).log_magnitude().decades().mapv(|v| v as f32),
+        false => whole_map(radar, &range_transform_in_place(radar, signal)),
+    };
+    decades.mapv_inplace(|v| (f64::from(v) - gain) as f32);
+    turn_rows(radar, &mut decades.view_mut());
+    decades
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::radar::{Convention, Decibels, Tolerances};
-    use crate::signal::simulate;
-
-    fn examples(seed: u64, floors: Floors) -> Examples {
-        Examples::new("2=1,3=1".parse().unwrap(), Purpose::Training, seed, floors, Arrays::IDEAL, Radars::default())
-            .unwrap()
-    }
-
-    #[test]
-    fn an_example_does_not_depend_on_what_was_asked_before() {
-        let floors = Floors::Thermal { share: 0.5, from: Decibels(10.0), to: Decibels(60.0) };
-        let task = Task::default();
-        let first = examples(1, floors).example(7, &task).unwrap();
-        let other = examples(1, floors);
-        other.example(8, &task).unwrap();
-        let again = other.example(7, &task).unwrap();
-        assert_eq!((&first.input, first.floor, &first.decades), (&again.input, again.floor, &again.decades));
-        assert_ne!(
-            first.input,
-            examples(2, floors).example(7, &task).unwrap().input,
-            "another seed is another example"
-        );
-    }
-
-    #[test]
-    fn an_example_is_the_generators_scene() {
-        let example = examples(1, Floors::Fixed(Floor::Thesis)).example(3, &Task::default()).unwrap();
-        let radar = Radar::default();
-        let scene = Generator::new(&radar, Reading::Program, Purpose::Training, 1).scene(example.kind, 3);
-        let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed).unwrap();
-        assert_eq!(example.ends, signal.two_ends(&radar));
-        let map = crate::maps::LogMaps::of_signal(&radar, &signal).full;
-        let off =
-            example.decades.iter().zip(map.decades()).map(|(a, b)| (f64::from(*a) + example.input.gain - b).abs());
-        assert!(off.fold(0.0, f64::max) < 1e-5);
-    }
-
-    #[test]
-    fn elements_that_are_off_change_the_input_alone() {
-        let floors = Floors::Fixed(Floor::Thesis);
-        let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 20.0, position_millimetres: 0.1 };
-        let mixture = || "2".parse().unwrap();
-        let off = Examples::new(
-            mixture(),
-            Purpose::Training,
-            1,
-            floors,
-            Arrays { share: 1.0, tolerances },
-            Radars::default(),
-        )
-        .unwrap();
-        let ideal = Examples::new(mixture(), Purpose::Training, 1, floors, Arrays::IDEAL, Radars::default()).unwrap();
-        let [off, ideal] = [off, ideal].map(|examples| examples.example(5, &Task::default()).unwrap());
-        assert_ne!(off.ends, ideal.ends);
-        let both = [&off, &ideal].map(|e| e.decades.iter().map(|v| f64::from(*v) + e.input.gain).collect::<Vec<_>>());
-        assert!(both[0].iter().zip(&both[1]).all(|(a, b)| (a - b).abs() < 1e-5));
-    }
-
-    #[test]
-    fn the_world_makes_no_test_examples() {
-        let of = |purpose| {
-            Examples::new(
-                "world".parse().unwrap(),
-                purpose,
-                1,
-                Floors::Fixed(Floor::Thesis),
-                Arrays::IDEAL,
-                Radars::Random,
-            )
-            .map(|_| ())
-        };
-        assert_eq!(of(Purpose::Test), Err(ExamplesError::ForTests(Kind::World)));
-        assert_eq!((of(Purpose::Training), of(Purpose::Validation)), (Ok(()), Ok(())));
-    }
-
-    #[test]
-    fn an_example_of_noise_lies_over_a_level_of_its_own() {
-        let noise = examples_of("noise", Radars::default());
-        assert!(matches!(noise.example(0, &Task::default()).unwrap().floor, Floor::Level(_)));
-    }
-
-    fn examples_of(mixture: &str, radars: Radars) -> Examples {
-        let floors = Floors::Fixed(Floor::Thesis);
-        Examples::new(mixture.parse().unwrap(), Purpose::Training, 1, floors, Arrays::IDEAL, radars).unwrap()
-    }
-
-    #[test]
-    fn columns_of_a_physical_radar_rise_with_cos_theta() {
-        let physical = Radar::default().in_convention(Convention::Physical);
-        let generator = Generator::new(&physical, Reading::Program, Purpose::Training, 1);
-        let cos_of = |index: u32| {
-            let point = generator.scene(Kind::Set1, index).reflectors()[0];
-            point.x_metres / point.x_metres.hypot(point.y_metres)
-        };
-        let index = (0..100).find(|index| (0.3..0.9).contains(&cos_of(*index).abs())).unwrap();
-        let cos = cos_of(index);
-        let maker = examples_of("1", Radars::Fixed(Box::new(physical)));
-        let example = maker.example(index, &Task::default()).unwrap();
-        let strongest = |cells: &[f32], columns: usize| {
-            let at = cells.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
-            ((at % columns) as f64 / columns as f64 - 0.5) * 2.0
-        };
-        // The whole array's target, what both ends agree on, and one end's beams.
-        let target = strongest(example.decades.as_slice().unwrap(), 1024);
-        let fine = strongest(&example.input.fine[..512 * 256], 256);
-        let coarse = strongest(&example.input.coarse[..512 * 64], 64);
-        for (found, off) in [(target, 0.12), (fine, 0.12), (coarse, 0.2)] {
-            assert!((found - cos).abs() < off, "{found} for {cos}");
-        }
-    }
-
-    #[test]
-    fn an_example_of_a_random_radar_is_that_of_the_radar() {
-        let random = examples_of("world", Radars::Random);
-        for index in 0..6 {
-            let example = random.example(index, &Task::default()).unwrap();
-            let alone = examples_of("world", Radars::Fixed(Box::new(example.radar.clone())));
-            let alone = alone.example(index, &Task::default()).unwrap();
-            assert_eq!((example.input, example.decades), (alone.input, alone.decades), "{index}");
-        }
-    }
-
-    #[test]
-    fn a_kind_that_finds_no_room_is_named() {
-        let near = Radar { bandwidth_hz: 6e9, ..Radar::default() };
-        for radars in [Radars::Random, Radars::Fixed(Box::new(near))] {
-            let floors = Floors::Fixed(Floor::Thesis);
-            let made = Examples::new("2,street".parse().unwrap(), Purpose::Training, 1, floors, Arrays::IDEAL, radars);
-            let told = made.unwrap_err().to_string();
-            assert!(told.contains("scenes of street need a radar that sees 20 m far; this one sees 12.8 m"), "{told}");
-        }
-    }
-}
+mod tests;

@@ -1,6 +1,6 @@
 //! What the live network is shown: tensors made of the raw samples of the two ends.
 //!
-//! Twelve elements resolve about twelve angles, so nothing here is finer than 256 columns. Each end's picture is drawn from that
+//! Twelve elements resolve about twelve angles, so nothing here is finer than 256 columns. A radar's samples are the rows of every picture. Each end's picture is drawn from that
 //! end; the same reflector lies up to 27 range bins apart in the two, so both are also *registered*: gathered onto the grid
 //! that the array's centre sees. On the fine grid an end is shown by its Capon spectrum, row by row: with next to no noise it tells
 //! apart reflectors that the end's own beam cannot.
@@ -14,8 +14,7 @@ use super::capon::Capon;
 use super::coarse::Coarse;
 use super::constants::{constants, in_thesis_convention};
 use super::floors::{measured_floor, rounding_floor};
-use super::grid::{CONSTANTS, ELEMENTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
-use super::radars::DRAWN;
+use super::grid::{CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
 use super::registration::Registration;
 use crate::maps::windowed_range_transform;
 use crate::radar::{End, Radar, hann};
@@ -25,16 +24,19 @@ use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
+/// Fewest samples of a chirp whose pictures can be registered.
+pub const LEAST_SAMPLES: usize = 8;
+
 /// The tensors of one scene, row-major.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveInput {
-    /// `[4, 512, 256]` decades: the Capon spectra of both ends where they agree (minimum) and where either speaks (maximum) on the
+    /// `[4, samples, 256]` decades: the Capon spectra of both ends where they agree (minimum) and where either speaks (maximum) on the
     /// centre's grid, and where they agree as the first and as the last end sees it.
     pub fine: Vec<f32>,
-    /// `[10, 512, 64]`: log-magnitude of each end's beams, the same registered, for each end cosine and sine of the phase step
+    /// `[10, samples, 64]`: log-magnitude of each end's beams, the same registered, for each end cosine and sine of the phase step
     /// from the row before, and cosine and sine of twice the phase between the registered ends.
     pub coarse: Vec<f32>,
-    /// `[6, 512]`: for each end real and imaginary part of the mean phase step between elements, then each end's power in decades.
+    /// `[6, samples]`: for each end real and imaginary part of the mean phase step between elements, then each end's power in decades.
     pub rows: Vec<f32>,
     /// Two estimates of the noise floor in decades: from the rounding that the thesis' samples carry, and as measured.
     pub scalars: [f32; SCALARS],
@@ -63,16 +65,22 @@ impl FeatureExtractor {
     /// Tables for `radar`.
     ///
     /// # Errors
-    /// [`ReconstructError::Unusable`] unless it has 512 samples, 1024 elements of one antenna each and ends of 12.
+    /// [`ReconstructError::Unusable`] for ends of a single element or fewer than [`LEAST_SAMPLES`] samples.
     pub fn new(radar: &Radar) -> Result<Self, ReconstructError> {
-        DRAWN.check_shape("live", radar)?;
+        if radar.end_elements < 2 || radar.samples < LEAST_SAMPLES {
+            let (elements, samples) = (radar.end_elements, radar.samples);
+            let reason = format!(
+                "its input needs ends of 2 elements or more and {LEAST_SAMPLES} samples or more; this radar has {elements} and {samples}"
+            );
+            return Err(ReconstructError::Unusable { method: "live", reason });
+        }
         let ends = End::BOTH.map(|end| radar.end_centre_metres(end));
         let table = |from: f64, to: f64| Registration::new(radar, from, to);
         Ok(FeatureExtractor {
             fine_centre: ends.map(|x| table(0.0, x)),
             fine_other: [table(ends[0], ends[1]), table(ends[1], ends[0])],
             coarse: Coarse::new(radar),
-            capon: Capon::new(),
+            capon: Capon::new(radar.end_elements),
             constants: constants(radar),
             window: hann(radar.samples),
             radar: radar.clone(),
@@ -90,7 +98,7 @@ impl FeatureExtractor {
     /// [`ReconstructError`] on samples of the wrong shape or not finite, and on silence.
     pub fn extract(&self, ends: &TwoEnds) -> Result<LiveInput, ReconstructError> {
         check_ends(&self.radar, ends)?;
-        let samples = 2.0 * (ELEMENTS * ROWS) as f64;
+        let samples = (2 * self.radar.end_elements * self.radar.samples) as f64;
         let power = ends.first.iter().chain(&ends.last).map(|v| v.norm_sqr()).sum::<f64>() / samples;
         if power == 0.0 {
             return Err(ReconstructError::Unusable {
@@ -105,7 +113,7 @@ impl FeatureExtractor {
             .map(|e| windowed_range_transform(&self.radar, e.view(), &self.window).profiles.reversed_axes());
 
         let capon = profiles.each_ref().map(|p| self.capon.decades(p.view()));
-        let mut fine = vec![0.0; FINE_CHANNELS * ROWS * FINE];
+        let mut fine = vec![0.0; FINE_CHANNELS * self.radar.samples * FINE];
         self.fill_fine(&capon, &mut fine);
         Ok(LiveInput {
             fine,
@@ -118,9 +126,10 @@ impl FeatureExtractor {
     }
 
     fn fill_fine(&self, capon: &[Vec<f32>; 2], fine: &mut [f32]) {
-        let (agree, rest) = fine.split_at_mut(ROWS * FINE);
-        let (either, rest) = rest.split_at_mut(ROWS * FINE);
-        let (first, last) = rest.split_at_mut(ROWS * FINE);
+        let plane = self.radar.samples * FINE;
+        let (agree, rest) = fine.split_at_mut(plane);
+        let (either, rest) = rest.split_at_mut(plane);
+        let (first, last) = rest.split_at_mut(plane);
         let rows = |plane| <[f32]>::par_chunks_mut(plane, FINE);
         rows(agree).zip(rows(either)).zip(rows(first).zip(rows(last))).enumerate().for_each(
             |(row, ((agree, either), (first, last)))| {
@@ -142,15 +151,16 @@ impl FeatureExtractor {
 }
 
 fn row_features(profiles: &[Array2<Complex64>; 2]) -> Vec<f32> {
-    let mut out = vec![0.0; ROW_CHANNELS * ROWS];
+    let (rows, elements) = profiles[0].dim();
+    let mut out = vec![0.0; ROW_CHANNELS * rows];
     for (e, z) in profiles.iter().enumerate() {
         for (row, z) in z.axis_iter(Axis(0)).enumerate() {
-            let step: Complex64 = (1..ELEMENTS).map(|n| z[n] * z[n - 1].conj()).sum();
+            let step: Complex64 = (1..elements).map(|n| z[n] * z[n - 1].conj()).sum();
             let power: f64 = z.iter().map(|v| v.norm_sqr()).sum();
             let step = step / (power + 1e-300);
-            out[2 * e * ROWS + row] = step.re as f32;
-            out[(2 * e + 1) * ROWS + row] = step.im as f32;
-            out[(4 + e) * ROWS + row] = (0.5 * (power / ELEMENTS as f64 + 1e-300).log10()) as f32;
+            out[2 * e * rows + row] = step.re as f32;
+            out[(2 * e + 1) * rows + row] = step.im as f32;
+            out[(4 + e) * rows + row] = (0.5 * (power / elements as f64 + 1e-300).log10()) as f32;
         }
     }
     out
@@ -166,7 +176,8 @@ mod tests {
 
     /// Row of the strongest cell of a coarse picture.
     fn row(input: &LiveInput, channel: usize) -> f64 {
-        let plane = &input.coarse[channel * ROWS * COARSE..][..ROWS * COARSE];
+        let rows = input.rows.len() / ROW_CHANNELS;
+        let plane = &input.coarse[channel * rows * COARSE..][..rows * COARSE];
         let strongest = plane.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(i, _)| i);
         (strongest / COARSE) as f64
     }
@@ -202,13 +213,27 @@ mod tests {
     }
 
     #[test]
-    fn radars_of_other_counts_are_refused() {
-        for (radar, told) in [
-            (Radar { samples: 256, ..Radar::default() }, "for 512 samples; this radar has 256 samples"),
-            (Radar { end_elements: 16, ..Radar::default() }, "for 12 elements an end; this radar has 16"),
-        ] {
+    fn a_reflector_is_seen_by_radars_of_other_shapes() {
+        for (elements, end_elements, samples) in [(86, 8, 128), (192, 16, 100), (64, 2, 64), (256, 30, 256)] {
+            let radar = Radar { elements, end_elements, samples, ..Radar::default() };
+            let range = 0.6 * radar.max_range_metres();
+            let reflectors = [Reflector { x_metres: 0.5 * range, y_metres: 0.75f64.sqrt() * range, reflectivity: 1.0 }];
+            let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
+            let input = FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap();
+            assert_eq!((input.fine.len(), input.coarse.len()), (4 * samples * FINE, 10 * samples * COARSE));
+            assert!(input.fine.iter().chain(&input.coarse).chain(&input.rows).all(|v| v.is_finite()));
+            for channel in [2, 3] {
+                let found = row(&input, channel);
+                assert!((found - 0.6 * samples as f64).abs() <= 2.0, "{radar:?}: row {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn radars_of_next_to_nothing_are_refused() {
+        for radar in [Radar { samples: 4, ..Radar::default() }, Radar { end_elements: 1, ..Radar::default() }] {
             let error = FeatureExtractor::new(&radar).unwrap_err().to_string();
-            assert!(error.contains(told), "{error}");
+            assert!(error.contains("2 elements or more and 8 samples or more"), "{error}");
         }
     }
 }

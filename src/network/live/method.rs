@@ -20,12 +20,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Name of the network, on the command line and in weight files.
 pub const NAME: &str = "live";
 
+/// What the method with the shipped weights says of itself.
+const DESCRIPTION: &str = "a small network that draws the whole array's map from matched filters of both ends";
+const TOLD: &str = "scenes drawn as the generators of all kinds draw them, with the radar of table 3.1, a third of them over thermal noise \
+    at signal-to-noise ratios of 10 to 60 dB, the others over the rounding of the thesis' program";
+
 /// Buffers kept for later passes; each takes some 30 MB.
 const MOST_IDLE: usize = 2;
 
 /// The live network with its weights.
 #[derive(Debug)]
 pub struct LiveMethod {
+    /// [`NAME`], or that of other weights.
+    name: &'static str,
     engine: LiveEngine,
     /// Of the radar that was last asked for.
     extractor: Mutex<Option<Arc<FeatureExtractor>>>,
@@ -45,7 +52,19 @@ impl LiveMethod {
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile) -> Result<Self, WeightsError> {
+        LiveMethod::named(file, NAME)
+    }
+
+    /// The same under a name of its own, beside which the shipped weights are another method. The name lives as long as the program.
+    ///
+    /// # Errors
+    /// As [`LiveMethod::new`].
+    pub fn named(file: WeightFile, name: &str) -> Result<Self, WeightsError> {
+        if !file.network().is_empty() {
+            file.expect_network(NAME)?;
+        }
         Ok(LiveMethod {
+            name: if name == NAME { NAME } else { name.to_owned().leak() },
             engine: LiveEngine::new(&file, &LiveConfig::default())?,
             extractor: Mutex::default(),
             idle: Mutex::default(),
@@ -84,7 +103,7 @@ impl LiveMethod {
         if let Some(extractor) = kept().as_ref().filter(|extractor| is_alike(extractor.radar(), radar)) {
             return Ok(Arc::clone(extractor));
         }
-        self.trained.check(NAME, radar)?;
+        self.trained.check(self.name, radar)?;
         let made = Arc::new(FeatureExtractor::new(radar)?);
         *kept() = Some(Arc::clone(&made));
         Ok(made)
@@ -153,11 +172,11 @@ impl Reconstructor for LiveMethod {
     }
 
     fn about(&self) -> About {
+        let is_shipped = self.name == NAME;
         About {
-            name: NAME,
-            description: "a small network that draws the whole array's map from matched filters of both ends",
-            told: "scenes drawn as the generators of all kinds draw them, with the radar of table 3.1, a third of them over thermal noise \
-                at signal-to-noise ratios of 10 to 60 dB, the others over the rounding of the thesis' program",
+            name: self.name,
+            description: if is_shipped { DESCRIPTION } else { "the live network with weights from a file" },
+            told: if is_shipped { TOLD } else { "what its weights were trained on, which their file says" },
             eta: self.eta,
         }
     }
@@ -179,7 +198,7 @@ impl Reconstructor for LiveMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        self.trained.check(NAME, radar)
+        self.trained.check(self.name, radar)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -190,7 +209,7 @@ impl Reconstructor for LiveMethod {
         let doubt = doubt.map(|doubt| on_scale(doubt, [minimum, peak], scale));
         map.par_chunks_mut(COLUMNS).for_each(|line| each(line, |v| scale.lambda(v.into()) as f32));
         let lambda = Array2::from_shape_vec((ROWS, COLUMNS), map)
-            .map_err(|e| ReconstructError::Unusable { method: NAME, reason: e.to_string() })?;
+            .map_err(|e| ReconstructError::Unusable { method: self.name, reason: e.to_string() })?;
         let lambda = RangeAngleMap { lambda };
         let eta = own_threshold(&lambda, doubt.as_ref());
         Ok(Reconstruction {

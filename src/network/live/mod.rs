@@ -8,7 +8,7 @@
 //!
 //! Angles wrap around (column 0 follows column 1023), ranges do not. Row and column means mix at the two coarsest levels.
 //!
-//! `training/live.py` is this module in PyTorch, with the same names and shapes.
+//! `python/apertura/live.py` is this module in PyTorch, with the same names and shapes.
 //!
 //! | file | what |
 //! |---|---|

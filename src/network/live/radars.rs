@@ -65,6 +65,19 @@ impl Radars {
         }
     }
 
+    /// A radar that has the number of elements and samples of all of them.
+    pub fn shape(&self) -> Radar {
+        match self {
+            Radars::Fixed(radar) => (**radar).clone(),
+            Radars::Random => Radar::default(),
+        }
+    }
+
+    /// Elements of the whole array.
+    pub fn elements(&self) -> usize {
+        self.shape().elements
+    }
+
     /// Least maximum range of the radars, metres.
     pub fn least_max_range_metres(&self) -> f64 {
         match self {

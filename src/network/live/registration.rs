@@ -1,7 +1,7 @@
 //! What one end sees, gathered onto the polar grid that another place sees: the same reflector lies up to 27 range bins apart in the two.
 
 use super::constants::cosine_scale;
-use super::grid::{ROWS, cosine};
+use super::grid::cosine;
 use crate::radar::Radar;
 use std::ops::{Add, Mul};
 
@@ -30,6 +30,7 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
         let bin = radar.range_resolution_metres();
         let half = (COLUMNS / 2) as f64;
         let scale = cosine_scale(radar);
+        let rows = radar.samples;
         let tap = |i: usize| {
             let (r, seen) = ((i / COLUMNS) as f64 * bin, cosine(i % COLUMNS, COLUMNS) * scale);
             let u = seen.clamp(-1.0, 1.0);
@@ -37,15 +38,15 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
             let distance = (dx * dx + r * r * (1.0 - u * u)).sqrt();
             let there = if distance > 0.0 { dx / distance } else { 0.0 };
             let there = if u == seen { there } else { seen };
-            let (row, column) = ((distance / bin).min((ROWS - 1) as f64), there / scale * half + half);
-            let (r0, c0) = ((row.floor() as usize).min(ROWS - 2), column.floor());
+            let (row, column) = ((distance / bin).min((rows - 1) as f64), there / scale * half + half);
+            let (r0, c0) = ((row.floor() as usize).min(rows - 2), column.floor());
             let part = [row - r0 as f64, column - c0].map(|part| (part as f32 * WHOLE).round() as u16);
             Tap { cell: (r0 * COLUMNS + c0.rem_euclid(COLUMNS as f64) as usize) as u32, part }
         };
-        Registration { taps: (0..ROWS * COLUMNS).map(tap).collect() }
+        Registration { taps: (0..rows * COLUMNS).map(tap).collect() }
     }
 
-    /// What row `row` of the grid sees of `plane` `[512, COLUMNS]`.
+    /// What row `row` of the grid sees of `plane` `[rows, COLUMNS]`.
     #[inline]
     pub(super) fn row<T>(&self, plane: &[T], row: usize) -> impl Iterator<Item = T>
     where

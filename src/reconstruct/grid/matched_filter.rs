@@ -2,7 +2,8 @@
 
 use super::backprojector::{Backprojector, RangeWindow, too_large};
 use super::cells::Cells;
-use crate::radar::Radar;
+use super::layout_filter::layout_matched_filter;
+use crate::radar::{Layout, Radar};
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::hearing::ends_noise_variance;
@@ -52,7 +53,16 @@ impl Reconstructor for MatchedFilter {
         why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
+    fn hears_layouts(&self) -> bool {
+        *self == MatchedFilter::Coherent
+    }
+
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        if let Some(heard) = &request.heard {
+            let layout = Layout::of_numbers(radar, &heard.layout);
+            let lambda = layout_matched_filter(radar, &layout, heard.samples.view(), request)?;
+            return Ok(Reconstruction { lambda, ..Reconstruction::silence(radar) });
+        }
         let cells = Cells::new(radar);
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::Hann);
         request.task.check()?;

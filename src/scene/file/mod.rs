@@ -55,11 +55,13 @@ mod content;
 mod disk;
 mod losses;
 mod objects;
+mod radar;
 mod read;
 mod write;
 
 pub use content::{Format, MAX_FILE_BYTES, SceneFile, SceneFileError, SceneTextError};
 pub use disk::{load, load_beside, save, save_beside};
 pub use losses::Loss;
+pub use radar::radar_of;
 pub use read::{from_toml, from_toml_beside};
 pub use write::{to_toml, to_toml_beside};

@@ -79,6 +79,11 @@ impl Kind {
         Kind::with_echoes().chain(Kind::IRREGULAR).chain(Kind::THINGS).chain([Kind::Noise])
     }
 
+    /// Names of [`Kind::all`], separated by commas: what help and messages list.
+    pub fn names() -> String {
+        Kind::all().map(|kind| kind.to_string()).collect::<Vec<_>>().join(", ")
+    }
+
     /// The test sets and what lies beyond them: scenes of points with something to detect.
     pub fn with_echoes() -> impl Iterator<Item = Kind> {
         Kind::TEST_SETS.into_iter().chain(Kind::VARIED)

@@ -23,6 +23,11 @@ pub struct MixtureError {
 }
 
 impl Mixture {
+    /// Scenes of one kind.
+    pub fn of(kind: Kind) -> Mixture {
+        Mixture { shares: vec![(kind, 1.0)] }
+    }
+
     /// The kinds and their shares, which need not add up to 1.
     pub fn shares(&self) -> &[(Kind, f64)] {
         &self.shares

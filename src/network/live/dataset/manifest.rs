@@ -4,8 +4,8 @@ use crate::radar::Radar;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Version of the format.
-pub const VERSION: u32 = 1;
+/// Version of the format. Before version 2 a dataset had one target, without a name, and the radar of table 3.1.
+pub const VERSION: u32 = 2;
 
 /// Name of the manifest in the dataset's folder.
 pub const FILE_NAME: &str = "manifest.json";
@@ -23,8 +23,14 @@ pub struct Manifest {
     pub kinds: Vec<String>,
     /// What lies beneath the echoes.
     pub floor: String,
-    /// The radar.
-    pub radar: Radar,
+    /// The radar; none where each example has its own.
+    pub radar: Option<Radar>,
+    /// The elements that are heard in the place of the two ends.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layout: Option<Vec<usize>>,
+    /// The elements that are off: their share of the scenes, and the largest tolerances in decibels, degrees and millimetres. None where all are ideal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elements: Option<[f64; 4]>,
     /// Type and axes of each array.
     pub arrays: BTreeMap<String, ArrayEntry>,
     /// Shards of each split, in order.
@@ -49,6 +55,9 @@ pub struct ShardEntry {
     pub examples: u32,
     /// Kind of each example.
     pub kinds: Vec<String>,
+    /// Radar of each example, where each has its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub radars: Vec<Radar>,
     /// Its files by array.
     pub files: BTreeMap<String, FileEntry>,
 }

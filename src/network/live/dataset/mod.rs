@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! DIR/manifest.json                 format, what made it, the files of each split with their SHA-256
-//! DIR/train/00000.ends.npy          complex128 [examples, 2, 12, 512]
-//! DIR/train/00000.fine.npy ...      the live network's input, and the target
+//! DIR/train/00000.ends.npy          complex128 [examples, 2, 12, 512]; of a layout 00000.heard.npy [examples, elements, samples]
+//! DIR/train/00000.fine.npy ...      the live network's input, where the radar has its shape, and the targets by their names
 //! DIR/validation/...  DIR/test/...
 //! ```
 //!
@@ -17,8 +17,9 @@ mod shard;
 pub use manifest::{FILE_NAME, Manifest, VERSION};
 
 use super::arrays::Arrays;
-use super::examples::{Example, ExampleError, Examples, ExamplesError};
-use super::radars::Radars;
+use super::examples::{Example, ExampleError, Examples, ExamplesError, ExamplesRequest, Features};
+use super::radars::{DRAWN, Radars};
+use crate::evaluate::Target;
 use crate::files::{sha256, write_bytes};
 use crate::network::floors::Floors;
 use crate::platform::fs;
@@ -28,6 +29,7 @@ use crate::task::{Cancelled, Task};
 use manifest::{ArrayEntry, FileEntry, ShardEntry};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -57,26 +59,46 @@ impl FromStr for Precision {
 /// What of an example is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// Samples of both ends.
+    /// What is heard: samples of both ends, or of the elements of a layout.
     Ends,
     /// The live network's input.
     Features,
-    /// Decades of the whole array's map.
-    Target,
+    /// A map of the whole array in decades.
+    Target(Target),
 }
 
 impl Part {
-    /// All of them.
-    pub const ALL: [Part; 3] = [Part::Ends, Part::Features, Part::Target];
+    /// What is written of examples before `radars` where nothing else is asked for: without the live network's input where that needs another radar,
+    /// or hears no two ends.
+    pub fn usual(radars: &Radars, layout: Option<&[usize]>) -> Vec<Part> {
+        let fits = layout.is_none()
+            && match radars {
+                Radars::Fixed(radar) => DRAWN.has_shape(radar),
+                Radars::Random => true,
+            };
+        let features = fits.then_some(Part::Features);
+        [Part::Ends].into_iter().chain(features).chain(Target::USUAL.map(Part::Target)).collect()
+    }
 
-    fn arrays(self) -> &'static [ArrayKind] {
+    fn arrays(self, layout: Option<usize>) -> Vec<ArrayKind> {
         match self {
-            Part::Ends => &[ArrayKind::Ends],
+            Part::Ends => vec![layout.map_or(ArrayKind::Ends, ArrayKind::Layout)],
             Part::Features => {
-                &[ArrayKind::Fine, ArrayKind::Coarse, ArrayKind::Rows, ArrayKind::Scalars, ArrayKind::Constants]
+                vec![ArrayKind::Fine, ArrayKind::Coarse, ArrayKind::Rows, ArrayKind::Scalars, ArrayKind::Constants]
             }
-            Part::Target => &[ArrayKind::Target],
+            Part::Target(target) => vec![ArrayKind::Target(target)],
         }
+    }
+}
+
+/// As [`FromStr`] reads it.
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Part::Ends => "ends",
+            Part::Features => "features",
+            Part::Target(target) => target.array(),
+        })
     }
 }
 
@@ -87,8 +109,10 @@ impl FromStr for Part {
         match name {
             "ends" => Ok(Part::Ends),
             "features" => Ok(Part::Features),
-            "target" => Ok(Part::Target),
-            _ => Err(format!("unknown array \"{name}\"; expected ends, features or target")),
+            _ if name.starts_with("target") => name.parse().map(Part::Target),
+            _ => Err(format!(
+                "unknown array \"{name}\"; expected ends, features, target_ideal, target_measured or target_calibrated"
+            )),
         }
     }
 }
@@ -97,12 +121,14 @@ impl FromStr for Part {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ArrayKind {
     Ends,
+    /// Of so many elements.
+    Layout(usize),
     Fine,
     Coarse,
     Rows,
     Scalars,
     Constants,
-    Target,
+    Target(Target),
     /// Decades by which everything of an example is scaled down.
     Gain,
 }
@@ -122,7 +148,13 @@ pub struct DatasetRequest {
     pub seed: u64,
     /// What lies beneath them.
     pub floors: Floors,
-    /// Of features and target.
+    /// The elements that hear them.
+    pub arrays: Arrays,
+    /// The radars that see them.
+    pub radars: Radars,
+    /// The elements that are heard, in the place of the two ends.
+    pub layout: Option<Vec<usize>>,
+    /// Of features and targets.
     pub precision: Precision,
     /// What of an example is written.
     pub parts: Vec<Part>,
@@ -175,15 +207,16 @@ pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Man
         move |source| DatasetError::File { path, source }
     };
     check(request)?;
+    makers(request, Purpose::Training)?;
     fs::create_dir_all(folder).map_err(on(folder))?;
     if fs::read_dir(folder).map_err(on(folder))?.next().is_some() {
         let message = format!("{} is not empty; expected an empty folder or a new one", folder.display());
         return Err(DatasetError::Request(message));
     }
+    let heard = request.layout.as_ref().map(Vec::len);
     let arrays: Vec<ArrayKind> =
-        request.parts.iter().flat_map(|part| part.arrays()).copied().chain([ArrayKind::Gain]).collect();
-    let radar = Radar::default();
-    let mut manifest = manifest_of(request, &arrays, &radar);
+        request.parts.iter().flat_map(|part| part.arrays(heard)).chain([ArrayKind::Gain]).collect();
+    let mut manifest = manifest_of(request, &arrays);
     let mut done = 0;
     for ((split, purpose), count) in SPLITS.into_iter().zip(request.counts) {
         if count == 0 {
@@ -206,9 +239,12 @@ pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Man
                 })
                 .collect();
             let examples = examples?;
-            let files = write_shard(folder, split, shards.len(), &examples, &arrays, request.precision)?;
-            let kinds = examples.iter().map(|e| e.kind.to_string()).collect();
-            shards.push(ShardEntry { examples: last - first, kinds, files });
+            let radar = request.radars.shape();
+            let files = write_shard(folder, split, shards.len(), &examples, (&arrays, &radar), request.precision)?;
+            let kinds = examples.iter().flat_map(|e| e.kind).map(|kind| kind.to_string()).collect();
+            let is_drawn = request.radars == Radars::Random;
+            let radars = examples.iter().filter(|_| is_drawn).map(|e| e.radar.clone()).collect();
+            shards.push(ShardEntry { examples: last - first, kinds, radars, files });
             done += last - first;
             task.set_progress(done as f32 / examples_of(request) as f32);
         }
@@ -230,6 +266,9 @@ fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
     if request.kinds.is_empty() || request.parts.is_empty() {
         return told("there is nothing to write; expected at least one kind of scenes and one array".to_owned());
     }
+    if let Some((_, part)) = request.parts.iter().enumerate().find(|(i, part)| request.parts[..*i].contains(part)) {
+        return told(format!("array {part} is given twice"));
+    }
     if let Some(kind) = request.kinds.iter().enumerate().find(|(i, kind)| request.kinds[..*i].contains(kind)) {
         return told(format!("kind {} is given twice", kind.1));
     }
@@ -247,10 +286,21 @@ fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
 
 /// One maker of examples for each kind.
 fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, DatasetError> {
-    let of = |kind: &Kind| {
-        let mixture: Mixture = kind.to_string().parse().map_err(|e| DatasetError::Request(format!("{e}")))?;
-        Ok(Examples::new(mixture, purpose, request.seed, request.floors, Arrays::IDEAL, Radars::default())?)
+    let targets =
+        request.parts.iter().filter_map(|part| if let Part::Target(target) = part { Some(*target) } else { None });
+    let features = if request.parts.contains(&Part::Features) { Features::Needed } else { Features::No };
+    let of_all = ExamplesRequest {
+        purpose,
+        seed: request.seed,
+        floors: request.floors,
+        arrays: request.arrays,
+        radars: request.radars.clone(),
+        targets: targets.collect(),
+        features,
+        layout: request.layout.clone(),
+        ..ExamplesRequest::default()
     };
+    let of = |kind: &Kind| Ok(Examples::new(ExamplesRequest { mixture: Mixture::of(*kind), ..of_all.clone() })?);
     request.kinds.iter().map(of).collect()
 }
 
@@ -259,14 +309,13 @@ fn write_shard(
     split: &str,
     number: usize,
     examples: &[Example],
-    arrays: &[ArrayKind],
+    (arrays, radar): (&[ArrayKind], &Radar),
     precision: Precision,
 ) -> Result<BTreeMap<String, FileEntry>, DatasetError> {
-    let radar = Radar::default();
     let name_of = |array: &ArrayKind| format!("{split}/{number:05}.{}.npy", array.name());
     let write = |array: &ArrayKind| {
         let name = name_of(array);
-        let bytes = array.file(examples, &radar, precision);
+        let bytes = array.file(examples, radar, precision);
         let path = folder.join(&name);
         write_bytes(&path, &bytes).map_err(|source| DatasetError::File { path: path.clone(), source })?;
         let entry = FileEntry { name, bytes: bytes.len() as u64, sha256: sha256::of_bytes(&bytes) };
@@ -280,7 +329,8 @@ fn write_shard(
     written
 }
 
-fn manifest_of(request: &DatasetRequest, arrays: &[ArrayKind], radar: &Radar) -> Manifest {
+fn manifest_of(request: &DatasetRequest, arrays: &[ArrayKind]) -> Manifest {
+    let radar = &request.radars.shape();
     let entry = |array: &ArrayKind| {
         let entry = ArrayEntry {
             dtype: array.dtype(request.precision).to_owned(),
@@ -295,7 +345,12 @@ fn manifest_of(request: &DatasetRequest, arrays: &[ArrayKind], radar: &Radar) ->
         seed: request.seed,
         kinds: request.kinds.iter().map(Kind::to_string).collect(),
         floor: request.floors.to_string(),
-        radar: radar.clone(),
+        radar: (request.radars != Radars::Random).then(|| radar.clone()),
+        layout: request.layout.clone(),
+        elements: (request.arrays != Arrays::IDEAL).then(|| {
+            let Arrays { share, tolerances } = request.arrays;
+            [share, tolerances.gain.0, tolerances.phase_degrees, tolerances.position_millimetres]
+        }),
         arrays: arrays.iter().map(entry).collect(),
         splits: BTreeMap::new(),
     }

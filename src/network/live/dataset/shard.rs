@@ -2,23 +2,24 @@
 
 use super::half::half_bits;
 use super::{ArrayKind, Precision};
-use crate::network::live::examples::Example;
-use crate::network::live::grid::{
-    COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS,
-};
+use crate::network::live::examples::{Example, Heard};
+use crate::network::live::features::LiveInput;
+use crate::network::live::grid::{COARSE, COARSE_CHANNELS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
 use crate::radar::Radar;
+use num_complex::Complex64;
 
 impl ArrayKind {
     /// Its file's name behind the shard's number.
     pub fn name(self) -> &'static str {
         match self {
             ArrayKind::Ends => "ends",
+            ArrayKind::Layout(_) => "heard",
             ArrayKind::Fine => "fine",
             ArrayKind::Coarse => "coarse",
             ArrayKind::Rows => "rows",
             ArrayKind::Scalars => "scalars",
             ArrayKind::Constants => "constants",
-            ArrayKind::Target => "target",
+            ArrayKind::Target(target) => target.array(),
             ArrayKind::Gain => "gain",
         }
     }
@@ -27,11 +28,12 @@ impl ArrayKind {
     pub fn axes(self) -> &'static [&'static str] {
         match self {
             ArrayKind::Ends => &["example", "end", "element", "sample"],
+            ArrayKind::Layout(_) => &["example", "element", "sample"],
             ArrayKind::Fine | ArrayKind::Coarse => &["example", "channel", "range_bin", "column"],
             ArrayKind::Rows => &["example", "channel", "range_bin"],
             ArrayKind::Scalars => &["example", "scalar"],
             ArrayKind::Constants => &["example", "constant"],
-            ArrayKind::Target => &["example", "range_bin", "column"],
+            ArrayKind::Target(_) => &["example", "range_bin", "column"],
             ArrayKind::Gain => &["example"],
         }
     }
@@ -40,12 +42,13 @@ impl ArrayKind {
     pub fn shape(self, radar: &Radar) -> Vec<usize> {
         match self {
             ArrayKind::Ends => vec![2, radar.end_elements, radar.samples],
-            ArrayKind::Fine => vec![FINE_CHANNELS, ROWS, FINE],
-            ArrayKind::Coarse => vec![COARSE_CHANNELS, ROWS, COARSE],
-            ArrayKind::Rows => vec![ROW_CHANNELS, ROWS],
+            ArrayKind::Layout(elements) => vec![elements, radar.samples],
+            ArrayKind::Fine => vec![FINE_CHANNELS, radar.samples, FINE],
+            ArrayKind::Coarse => vec![COARSE_CHANNELS, radar.samples, COARSE],
+            ArrayKind::Rows => vec![ROW_CHANNELS, radar.samples],
             ArrayKind::Scalars => vec![SCALARS],
             ArrayKind::Constants => vec![CONSTANTS],
-            ArrayKind::Target => vec![ROWS, COLUMNS],
+            ArrayKind::Target(_) => vec![radar.samples, radar.elements],
             ArrayKind::Gain => Vec::new(),
         }
     }
@@ -53,7 +56,7 @@ impl ArrayKind {
     /// NumPy's name of its numbers. What is small keeps its bits: the thesis' floor lies 230 dB below its echoes.
     pub fn dtype(self, precision: Precision) -> &'static str {
         match (self, precision) {
-            (ArrayKind::Ends, _) => "<c16",
+            (ArrayKind::Ends | ArrayKind::Layout(_), _) => "<c16",
             (ArrayKind::Gain, _) => "<f8",
             (ArrayKind::Scalars | ArrayKind::Constants, _) | (_, Precision::Single) => "<f4",
             (_, Precision::Half) => "<f2",
@@ -66,14 +69,10 @@ impl ArrayKind {
         let mut bytes = header(self.dtype(precision), &shape);
         for example in examples {
             match self {
-                ArrayKind::Ends => put_ends(&mut bytes, example),
-                ArrayKind::Fine => put(&mut bytes, &example.input.fine, precision),
-                ArrayKind::Coarse => put(&mut bytes, &example.input.coarse, precision),
-                ArrayKind::Rows => put(&mut bytes, &example.input.rows, precision),
-                ArrayKind::Scalars => put(&mut bytes, &example.input.scalars, Precision::Single),
-                ArrayKind::Constants => put(&mut bytes, &example.input.constants, Precision::Single),
-                ArrayKind::Target => put(&mut bytes, &example.decades, precision),
-                ArrayKind::Gain => bytes.extend(example.input.gain.to_le_bytes()),
+                ArrayKind::Ends | ArrayKind::Layout(_) => put_heard(&mut bytes, example),
+                ArrayKind::Target(target) => put(&mut bytes, example.target(target).into_iter().flatten(), precision),
+                ArrayKind::Gain => bytes.extend(example.gain.to_le_bytes()),
+                feature => example.input.iter().for_each(|input| put_feature(&mut bytes, feature, input, precision)),
             }
         }
         bytes
@@ -81,11 +80,27 @@ impl ArrayKind {
 }
 
 /// Samples relative to their mean power, as the network's input is.
-fn put_ends(bytes: &mut Vec<u8>, example: &Example) {
-    let scale = 10f64.powf(-example.input.gain);
-    for sample in example.ends.first.iter().chain(&example.ends.last) {
+fn put_heard(bytes: &mut Vec<u8>, example: &Example) {
+    let scale = 10f64.powf(-example.gain);
+    let mut put = |sample: &Complex64| {
         bytes.extend((sample.re * scale).to_le_bytes());
         bytes.extend((sample.im * scale).to_le_bytes());
+    };
+    match &example.heard {
+        Heard::Ends(ends) => ends.first.iter().chain(&ends.last).for_each(&mut put),
+        Heard::Elements(samples) => samples.iter().for_each(&mut put),
+    }
+}
+
+/// One array of the live network's input.
+fn put_feature(bytes: &mut Vec<u8>, feature: ArrayKind, input: &LiveInput, precision: Precision) {
+    match feature {
+        ArrayKind::Fine => put(bytes, &input.fine, precision),
+        ArrayKind::Coarse => put(bytes, &input.coarse, precision),
+        ArrayKind::Rows => put(bytes, &input.rows, precision),
+        ArrayKind::Scalars => put(bytes, &input.scalars, Precision::Single),
+        ArrayKind::Constants => put(bytes, &input.constants, Precision::Single),
+        ArrayKind::Ends | ArrayKind::Layout(_) | ArrayKind::Target(_) | ArrayKind::Gain => {}
     }
 }
 

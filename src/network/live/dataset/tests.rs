@@ -11,9 +11,17 @@ fn request() -> DatasetRequest {
         seed: 5,
         floors: Floors::Fixed(Floor::Thesis),
         precision: Precision::Single,
-        parts: Part::ALL.to_vec(),
+        arrays: Arrays::IDEAL,
+        radars: Radars::default(),
+        layout: None,
+        parts: Part::usual(&Radars::default(), None),
         shard: 3,
     }
+}
+
+fn maker_of(kind: &str) -> Examples {
+    let (mixture, targets) = (kind.parse().unwrap(), Target::USUAL.to_vec());
+    Examples::new(ExamplesRequest { mixture, seed: 5, targets, ..ExamplesRequest::default() }).unwrap()
 }
 
 #[test]
@@ -22,25 +30,22 @@ fn an_example_on_disk_is_the_example() {
     let manifest = write(folder.path(), &request(), &Task::default()).unwrap();
     let shards: Vec<u32> = manifest.splits["train"].iter().map(|shard| shard.examples).collect();
     assert_eq!(shards, [3, 1]);
-    let maker = Examples::new(
-        "clusters".parse().unwrap(),
-        Purpose::Training,
-        5,
-        Floors::Fixed(Floor::Thesis),
-        Arrays::IDEAL,
-        Radars::default(),
-    )
-    .unwrap();
+    let maker = maker_of("clusters");
     let example = maker.example(0, &Task::default()).unwrap();
     let path = |array: &str| folder.path().join(format!("train/00000.{array}.npy"));
-    let target: Array3<f32> = read_npy(path("target")).unwrap();
-    assert_eq!(target.index_axis(ndarray::Axis(0), 1), example.decades);
+    for target in Target::USUAL {
+        let maps: Array3<f32> = read_npy(path(target.array())).unwrap();
+        assert_eq!(maps.index_axis(ndarray::Axis(0), 1), example.target(target).unwrap());
+    }
     let fine: Array4<f32> = read_npy(path("fine")).unwrap();
-    assert_eq!(fine.index_axis(ndarray::Axis(0), 1).iter().copied().collect::<Vec<_>>(), example.input.fine);
+    assert_eq!(
+        fine.index_axis(ndarray::Axis(0), 1).iter().copied().collect::<Vec<_>>(),
+        example.input.as_ref().unwrap().fine
+    );
     let gain: Array1<f64> = read_npy(path("gain")).unwrap();
-    assert_eq!(gain[1], example.input.gain);
+    assert_eq!(gain[1], example.gain);
     let ends: Array4<Complex64> = read_npy(path("ends")).unwrap();
-    let last = example.ends.last[[11, 500]] * 10f64.powf(-example.input.gain);
+    let last = example.ends().unwrap().last[[11, 500]] * 10f64.powf(-example.gain);
     assert_eq!(ends[[1, 1, 11, 500]], last);
     assert_eq!(manifest.splits["train"][0].kinds, ["2", "clusters", "2"]);
 }
@@ -82,23 +87,15 @@ fn halves_are_off_by_a_two_thousandth_at_most() {
         counts: [1, 0, 0],
         kinds: vec!["2".parse().unwrap()],
         precision: Precision::Half,
-        parts: vec![Part::Target],
+        parts: vec![Part::Target(Target::Measured)],
         ..request()
     };
     write(folder.path(), &request, &Task::default()).unwrap();
-    let bytes = std::fs::read(folder.path().join("train/00000.target.npy")).unwrap();
+    let bytes = std::fs::read(folder.path().join("train/00000.target_measured.npy")).unwrap();
     assert_eq!(bytes.len() - 128, 2 * 512 * 1024);
-    let maker = Examples::new(
-        "2".parse().unwrap(),
-        Purpose::Training,
-        5,
-        Floors::Fixed(Floor::Thesis),
-        Arrays::IDEAL,
-        Radars::default(),
-    )
-    .unwrap();
+    let maker = maker_of("2");
     let example = maker.example(0, &Task::default()).unwrap();
-    for (half, exact) in bytes[128..].chunks(2).zip(&example.decades).step_by(101) {
+    for (half, exact) in bytes[128..].chunks(2).zip(example.target(Target::Measured).unwrap()).step_by(101) {
         let bits = u16::from_le_bytes([half[0], half[1]]);
         let magnitude = f32::from(1024 + (bits & 1023)) * (f32::from(bits >> 10 & 31) - 25.0).exp2();
         assert!((magnitude - exact.abs()).abs() <= exact.abs() / 2000.0, "{magnitude} and {exact}");
@@ -125,4 +122,23 @@ fn a_cancelled_dataset_has_no_manifest() {
     task.cancel();
     assert!(write(folder.path(), &request(), &task).is_err());
     assert!(!folder.path().join(FILE_NAME).exists());
+}
+
+#[test]
+fn a_dataset_of_another_radar_and_layout_has_its_shape() {
+    let folder = tempfile::tempdir().unwrap();
+    let radars = Radars::Fixed(Box::new(Radar { elements: 86, end_elements: 8, samples: 128, ..Radar::default() }));
+    let layout = vec![0, 1, 4, 9, 85];
+    let parts = Part::usual(&radars, Some(&layout));
+    assert!(!parts.contains(&Part::Features) && Part::usual(&Radars::Random, None).contains(&Part::Features));
+    let request = DatasetRequest { counts: [1, 0, 0], layout: Some(layout.clone()), radars, parts, ..request() };
+    let manifest = write(folder.path(), &request, &Task::default()).unwrap();
+    assert_eq!((manifest.layout, manifest.radar.unwrap().elements), (Some(layout), 86));
+    let heard: Array3<Complex64> = read_npy(folder.path().join("train/00000.heard.npy")).unwrap();
+    let ideal: Array3<f32> = read_npy(folder.path().join("train/00000.target_ideal.npy")).unwrap();
+    assert_eq!((heard.dim(), ideal.dim()), ((2, 5, 128), (2, 128, 86)));
+    let features = DatasetRequest { parts: vec![Part::Features], ..request };
+    let other = tempfile::tempdir().unwrap();
+    let told = write(&other.path().join("new"), &features, &Task::default()).unwrap_err().to_string();
+    assert!(told.contains("hears two ends") && !other.path().join("new").exists(), "{told}");
 }

@@ -1,8 +1,7 @@
 //! The file of rows that a run appends to and resumes from.
 
-use super::super::CommandError;
-use crate::evaluate::rows::{
-    Column, Row, Table, Text, WHY_NO_OTHER_FORMAT, header, merge, read_table, row_writer, write_rows,
+use super::{
+    Column, MergeError, Row, Table, Text, WHY_NO_OTHER_FORMAT, header, merge, read_table, row_writer, write_rows,
 };
 use crate::files::write_atomically;
 use std::collections::{HashMap, HashSet};
@@ -10,12 +9,36 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// What a user can do about a file that is not to be lost.
-const WAYS_OUT: &str = "name another file, or write over this one with --overwrite";
+/// Why a file of rows can't be read, or isn't written.
+#[derive(Debug, thiserror::Error)]
+pub enum KeptError {
+    /// What the system says.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// It holds what would be lost. The caller says how to write over it.
+    #[error("{}: {why}", path.display())]
+    Other {
+        /// The file.
+        path: PathBuf,
+        /// What it holds.
+        why: String,
+    },
+    /// Another process writes it.
+    #[error("{}: another run writes it; wait for that run, or name another file", _0.display())]
+    Busy(PathBuf),
+    /// Its rows don't fit together.
+    #[error(transparent)]
+    Merge(#[from] MergeError),
+}
 
 /// The error of a file that can't be read or written.
-pub fn on_file(path: &Path) -> impl FnOnce(io::Error) -> CommandError {
-    move |source| CommandError::File { path: path.to_owned(), source }
+fn on_file(path: &Path) -> impl FnOnce(io::Error) -> KeptError {
+    move |source| KeptError::File { path: path.to_owned(), source }
 }
 
 /// Scene and method of a row.
@@ -79,8 +102,8 @@ impl RowFile {
     /// Opens the file, or begins it. Rows of the same run stay and half a last line goes; `overwrite` begins anew whatever is there.
     ///
     /// # Errors
-    /// [`CommandError`] for a file that holds anything else, and for one that another process writes.
-    pub fn open(path: &Path, wanted: &Wanted, overwrite: bool) -> Result<RowFile, CommandError> {
+    /// [`KeptError`] for a file that holds anything else, and for one that another process writes.
+    pub fn open(path: &Path, wanted: &Wanted, overwrite: bool) -> Result<RowFile, KeptError> {
         if path.exists() && !path.is_file() {
             let source = io::Error::new(io::ErrorKind::InvalidInput, "is no file; expected the name of a file");
             return Err(on_file(path)(source));
@@ -89,7 +112,7 @@ impl RowFile {
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(on_file(path))?;
         // Where the system has no locks the file is written all the same.
         if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
-            return Err(refused(path, "another run writes it", "wait for that run, or name another file"));
+            return Err(KeptError::Busy(path.to_owned()));
         }
         let table = if overwrite { Table::default() } else { present(path, &file, wanted)? };
         file.set_len(table.whole_bytes).map_err(on_file(path))?;
@@ -107,16 +130,19 @@ impl RowFile {
     }
 
     /// Why rows could not be appended, if so.
-    pub fn failure(&mut self) -> Option<CommandError> {
+    pub fn failure(&mut self) -> Option<KeptError> {
         self.failed.take().map(on_file(&self.path))
     }
 
     /// All rows, sorted as a run that was never stopped has them; so is the file then.
-    pub fn finish(self) -> Result<Vec<Row>, CommandError> {
+    ///
+    /// # Errors
+    /// [`KeptError`] for a file that can't be written.
+    pub fn finish(self) -> Result<Vec<Row>, KeptError> {
         let RowFile { path, out, present, appended, .. } = self;
         drop(out);
         let all: Vec<Row> = present.into_iter().chain(appended).collect();
-        let sorted = merge(vec![(path.display().to_string(), all.clone())]).map_err(CommandError::failed)?;
+        let sorted = merge(vec![(path.display().to_string(), all.clone())])?;
         if sorted != all {
             write_atomically(&path, |out| write_rows(out, &sorted)).map_err(on_file(&path))?;
         }
@@ -124,12 +150,12 @@ impl RowFile {
     }
 }
 
-fn refused(path: &Path, why: &str, ways_out: &str) -> CommandError {
-    CommandError::Usage(format!("{}: {why}; {ways_out}", path.display()))
+fn refused(path: &Path, why: &str) -> KeptError {
+    KeptError::Other { path: path.to_owned(), why: why.to_owned() }
 }
 
 /// The rows of this run that a file holds.
-fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, CommandError> {
+fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, KeptError> {
     let header = header();
     let mut start = Vec::new();
     file.take(header.len() as u64).read_to_end(&mut start).map_err(on_file(path))?;
@@ -138,31 +164,34 @@ fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, Comma
     if start.len() < header.len() && header.as_bytes().starts_with(&start) {
         return Ok(Table::default());
     }
-    let table = read_table(file).map_err(|e| refused(path, &e.to_string(), WAYS_OUT))?;
+    let table = read_table(file).map_err(|e| refused(path, &e.to_string()))?;
     let mut seen = HashSet::new();
     for row in &table.rows {
         let twice = || format!("it holds scene {} of set {} by {} twice", row.index, row.set, row.method);
         let wrong = wanted.foreign(row).or_else(|| (!seen.insert(key(row))).then(twice));
         if let Some(why) = wrong {
-            return Err(refused(path, &why, WAYS_OUT));
+            return Err(refused(path, &why));
         }
     }
     if start != header.as_bytes() {
-        return Err(refused(path, "its columns are not those that rows would be appended under", WAYS_OUT));
+        return Err(refused(path, "its columns are not those that rows would be appended under"));
     }
     Ok(table)
 }
 
 /// Writes merged rows, unless a file is there whose rows are not among them.
-pub fn write_merged(path: &Path, rows: &[Row], overwrite: bool) -> Result<(), CommandError> {
+///
+/// # Errors
+/// [`KeptError`] for a file that holds anything else, and for one that can't be written.
+pub fn write_merged(path: &Path, rows: &[Row], overwrite: bool) -> Result<(), KeptError> {
     if path.is_file() && !overwrite {
         let file = File::open(path).map_err(on_file(path))?;
-        let table = read_table(file).map_err(|e| refused(path, &e.to_string(), WAYS_OUT))?;
+        let table = read_table(file).map_err(|e| refused(path, &e.to_string()))?;
         let figures = |row: &Row| (key(row), row.seed, row.squared_error.to_bits());
         let merged: HashSet<_> = rows.iter().map(figures).collect();
         if let Some(row) = table.rows.iter().find(|row| !merged.contains(&figures(row))) {
             let why = format!("it holds other rows, scene {} of set {} by {} first", row.index, row.set, row.method);
-            return Err(refused(path, &why, WAYS_OUT));
+            return Err(refused(path, &why));
         }
     }
     write_atomically(path, |out| write_rows(out, rows)).map_err(on_file(path))

@@ -1,5 +1,14 @@
-"""The live network: PyTorch twin of `src/network/live/module.rs`, with the same layer names and shapes."""
+"""The live network in PyTorch: the twin of `src/network/live/module.rs`, with the same layer names and shapes. Needs `torch` and `safetensors`.
+
+`Estimator` makes a method of any weights that `training/train_live.py` wrote, those for radars of other shapes included, which the program's own engine
+can't read. `python -m apertura.live FILE` is that method for the program: `apertura --method-command "python -m apertura.live FILE"`.
+"""
+
+from __future__ import annotations
+
+import json
 import math
+from pathlib import Path
 
 import torch
 import torch.nn as nn
@@ -115,9 +124,37 @@ def other_windows(hann, n, step):
     return torch.stack([torch.maximum(hann + other - hann_window, other - 0.5) for other in others])
 
 
+def resampled(x, columns):
+    """Columns of the network's grid [..., COLS] as those of an array of so many elements; cos(theta) rises with both."""
+    if columns == COLS:
+        return x
+    places = (torch.arange(columns, device=x.device, dtype=torch.float64) - columns // 2) * (COLS / columns) + COLS // 2
+    low = places.floor()
+    part = (places - low).to(x.dtype)
+    low = low.long()
+    return x[..., low % COLS] * (1 - part) + x[..., (low + 1) % COLS] * part
+
+
+def size_of(radar):
+    """How large the network for a radar is: arguments of `Live`.
+
+    Raises:
+        ValueError: Its samples can't be halved three times.
+    """
+    if radar.samples % 8:
+        raise ValueError(f"the radar has {radar.samples} samples; expected a multiple of 8, which the network halves three times")
+    if (radar.samples, radar.elements, radar.end_elements) == (ROWS, COLS, 12):
+        return {}
+    widths = (12, 24, 44, 60) if radar.samples * radar.elements <= ROWS * COLS // 2 else (16, 32, 64, 96)
+    return {"c": widths, "rows": radar.samples, "columns": radar.elements}
+
+
 class Live(nn.Module):
-    def __init__(self, c=(16, 32, 64, 96), blocks=(1, 2, 2, 3), fine=16):
+    """The network for maps of `rows` range bins and `columns` columns. Inside, its pictures have 64, 256 and 1024 columns whatever the radar."""
+
+    def __init__(self, c=(16, 32, 64, 96), blocks=(1, 2, 2, 3), fine=16, rows=ROWS, columns=COLS):
         super().__init__()
+        self.rows, self.columns = rows, columns
         c0, c1, c2, c3 = c
         b0, b1, b2, b3 = blocks
         self.stem = Conv(IN_CHANNELS, c0)
@@ -138,9 +175,9 @@ class Live(nn.Module):
         self.fine1 = Conv(8 + 4, fine)
         self.fine2 = nn.Conv2d(fine, 8, 1)
         self.row_sources = nn.Conv2d(c0, 2, 1)
-        self.col_kernel = nn.Parameter(tail_prior(ROWS, -0.5))
+        self.col_kernel = nn.Parameter(tail_prior(rows, -0.5))
         self.row_kernel = nn.Parameter(tail_prior(128, -1.0))
-        self.col_kernels = nn.Parameter(other_windows(self.col_kernel.detach(), ROWS, 1))
+        self.col_kernels = nn.Parameter(other_windows(self.col_kernel.detach(), rows, 1))
         self.row_kernels = nn.Parameter(other_windows(self.row_kernel.detach(), COLS, 8))
         self.scalar1 = nn.Linear(2 * c3 + 2 + CONSTANTS, 64)
         self.scalar2 = nn.Linear(64, 2)
@@ -150,17 +187,17 @@ class Live(nn.Module):
             for m in (self.fine2, self.row_sources):
                 m.weight.mul_(0.3)
                 m.bias.fill_(-1.0)
-        r = torch.arange(ROWS, dtype=torch.float32)[:, None].expand(ROWS, GRID)
-        u = ((torch.arange(GRID, dtype=torch.float32) - GRID // 2) / (GRID // 2))[None, :].expand(ROWS, GRID)
-        grid = torch.stack([r / 256 - 1, torch.log10(r + 4) - 2, u])
+        r = torch.arange(rows, dtype=torch.float32)[:, None].expand(rows, GRID)
+        u = ((torch.arange(GRID, dtype=torch.float32) - GRID // 2) / (GRID // 2))[None, :].expand(rows, GRID)
+        grid = torch.stack([r / (rows / 2) - 1, torch.log10(r + 4) - 2, u])
         self.register_buffer("grid", grid, persistent=False)
 
     def forward(self, fine, coarse, rows, scalars, constants):
-        """log10 |Y_full| [B, 512, 1024] in decades above the gain, and its minimum [B]."""
+        """log10 |Y_full| [B, rows, columns] in decades above the gain, and its minimum [B]."""
         return self.with_picture(fine, coarse, rows, scalars, constants)[:2]
 
     def with_picture(self, fine, coarse, rows, scalars, constants):
-        """The same, and the coarse half's last picture [B, c0, 512, 64], which the heads read."""
+        """The same, and the coarse half's last picture [B, c0, rows, 64], which the heads read."""
         b = fine.shape[0]
         fine_n = ((fine + 3) / 3).clamp(-4, 2)
         coarse_n = torch.cat([((coarse[:, :4] + 3) / 3).clamp(-4, 2), coarse[:, 4:]], 1)
@@ -168,7 +205,7 @@ class Live(nn.Module):
         scalars_n = (scalars + 8) / 3
         cos = self.grid[2] / (1 + constants[:, SPACING_AT])[:, None, None]
         directions = torch.stack([cos, torch.sqrt((1 - cos * cos).clamp(min=0))], 1)
-        planes = lambda values: values[:, :, None, None].expand(-1, -1, ROWS, GRID)
+        planes = lambda values: values[:, :, None, None].expand(-1, -1, self.rows, GRID)
         x = torch.cat([
             unshuffle_cols(fine_n, 4), coarse_n, rows_n[..., None].expand(-1, -1, -1, GRID),
             planes(scalars_n), self.grid[:2].expand(b, -1, -1, -1), directions, planes(constants)], 1)
@@ -192,14 +229,14 @@ class Live(nn.Module):
         heads = shuffle_cols(f, 4) * 3 - 3
         a = heads.clamp(-18, 4)
         local = torch.exp(LN10 * a[:, 0])
-        column = of_windows(constants, self.col_kernel, self.col_kernels, ROWS) @ torch.exp(LN10 * a[:, 1])
+        column = of_windows(constants, self.col_kernel, self.col_kernels, self.rows) @ torch.exp(LN10 * a[:, 1])
         sharp = local + column
         src = shuffle_cols(self.row_sources(y0), 2)[:, 0] * 3 - 3
-        wide = torch.exp(LN10 * src.clamp(-18, 4)) + sharp.view(b, ROWS, 128, 8).mean(3)
+        wide = torch.exp(LN10 * src.clamp(-18, 4)) + sharp.view(b, self.rows, 128, 8).mean(3)
         row = (wide @ of_windows(constants, self.row_kernel, self.row_kernels, 128)).repeat_interleave(8, 2)
         floor = scalars[:, 0] + s[:, 0]
         total = sharp + row + torch.exp(LN10 * floor)[:, None, None]
-        log = torch.log(total) / LN10
+        log = resampled(torch.log(total) / LN10, self.columns)
         minimum = floor - 2.5 + s[:, 1]
         return log, minimum
 
@@ -219,12 +256,12 @@ class Doubt(nn.Module):
             self.scene.bias.zero_()
 
     def parts(self, picture):
-        """log10 of the error of each cell, [B, 512, 256], and what the head's hidden layer holds on average, [B, hidden]."""
+        """log10 of the error of each cell, [B, rows, 256], and what the head's hidden layer holds on average, [B, hidden]."""
         hidden = F.relu(self.conv1(picture))
         return shuffle_cols(self.conv2(hidden), FINE // GRID)[:, 0].float(), hidden.mean((2, 3)).float()
 
     def forward(self, picture):
-        """log10 of the error in Lambda that nine of ten cells stay below, [B, 512, 256]: one number for four columns.
+        """log10 of the error in Lambda that nine of ten cells stay below, [B, rows, 256]: one number for four columns.
 
         The mean of the hidden layer adds the same to every cell of a scene."""
         of_cells, of_scene = self.parts(picture)
@@ -235,10 +272,15 @@ class Doubt(nn.Module):
 CELL_DECADES, SCENE_DECADES = (-4.0, 0.0), 0.5
 
 
-def expected_error(of_cells, of_scene):
-    """The error of Lambda that is said, at most 1: [B, 512, 1024] of the decades of the cells [B, 512, 256] and of the scene [B]."""
+def widened_cells(of_cells, columns=COLS):
+    """Of [B, rows, 256], one number for four columns of the network's grid, those of an array of so many elements: [B, rows, columns]."""
+    return resampled(of_cells.repeat_interleave(COLS // FINE, 2), columns)
+
+
+def expected_error(of_cells, of_scene, columns=COLS):
+    """The error of Lambda that is said, at most 1: [B, rows, columns] of the decades of the cells [B, rows, 256] and of the scene [B]."""
     decades = of_cells.clamp(*CELL_DECADES) + of_scene.clamp(-SCENE_DECADES, SCENE_DECADES)[:, None, None]
-    return (10 ** decades).clamp(max=1).repeat_interleave(COLS // FINE, 2)
+    return widened_cells((10 ** decades).clamp(max=1), columns)
 
 
 class Doubting(nn.Module):
@@ -272,7 +314,7 @@ def widened(weights):
     if "col_kernels" not in weights:
         stem = F.pad(stem, (0, 0, 0, 0, 0, CONSTANTS))
         weights["scalar1.weight"] = F.pad(weights["scalar1.weight"], (0, CONSTANTS))
-        weights["col_kernels"] = other_windows(weights["col_kernel"], ROWS, 1)
+        weights["col_kernels"] = other_windows(weights["col_kernel"], 2 * (len(weights["col_kernel"]) - 1), 1)
         weights["row_kernels"] = other_windows(weights["row_kernel"], COLS, 8)
     missing = IN_CHANNELS - stem.shape[1]
     at = 16 + COARSE_CHANNELS - missing
@@ -285,3 +327,104 @@ def normalise(log, minimum):
     m = minimum[:, None, None]
     top = log.amax((1, 2), keepdim=True)
     return (log - m) / (top - m)
+
+
+#: The entries of a weight file that say how large its network is, and for which radars it is.
+SIZE, DOMAIN = "size", "domain"
+
+#: What changes no sample that a network sees.
+_SILENT = {"transmit_power_watts": None, "chirp_seconds": None, "chirps": None, "chirp_interval_seconds": None}
+
+
+class Estimator:
+    """A method of the weights of a file: a function as `apertura.evaluate` takes it.
+
+    Args:
+        path: Weights (safetensors) as `training/train_live.py` writes them.
+
+    Raises:
+        ValueError: The file can't be read, or its weights are another network's.
+        OSError: It is not there.
+    """
+
+    def __init__(self, path):
+        from safetensors import SafetensorError, safe_open
+        from safetensors.torch import load_file
+
+        from ._apertura import Radar
+
+        path = Path(path)
+        path.open("rb").close()
+        try:
+            with safe_open(path, "pt") as file:
+                record = file.metadata() or {}
+            network, _ = parted(load_file(path))
+        except SafetensorError as error:
+            raise ValueError(f"{path} is no weight file: {error}") from None
+        if record.get("network") != "live" or "stem.conv.weight" not in network:
+            raise ValueError(f'{path} holds weights of "{record.get("network", "")}"; expected those of "live"')
+        self.model = Live(**json.loads(record.get(SIZE, "{}"))).eval()
+        try:
+            self.model.load_state_dict(widened({name: t.float() for name, t in network.items()}))
+        except RuntimeError as error:
+            raise ValueError(f"{path}: {error}") from None
+        domain = json.loads(record.get(DOMAIN, "{}"))
+        #: The radar that the weights are for; None where they are for several, or say nothing.
+        self.radar = Radar(**domain["radar"]) if "radar" in domain else None
+        self.eta = float(record.get("eta", 0.8))
+        stem = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in path.stem)
+        self.__name__ = (stem if stem.startswith("live") else f"live-{stem}")[:40]
+        if self.__name__ == "live":
+            self.__name__ = "live-torch"
+
+    @torch.no_grad()
+    def __call__(self, ends, radar, request):
+        """Lambda of the whole array's map, `[samples, elements]`, and its threshold.
+
+        Raises:
+            ValueError: The radar is not the one that the weights are for.
+        """
+        from ._apertura import live_input
+
+        if self.radar is not None and self.radar.replace(**_SILENT) != radar.replace(**_SILENT):
+            raise ValueError(f"the weights are for {self.radar!r}; this radar is {radar!r}")
+        if (radar.samples, radar.elements) != (self.model.rows, self.model.columns):
+            raise ValueError(f"the network draws {self.model.rows} x {self.model.columns} cells; this radar has {radar.samples} x {radar.elements}")
+        given = live_input(ends, radar)
+        log, minimum = self.model(*(torch.from_numpy(given[name])[None] for name in ("fine", "coarse", "rows", "scalars", "constants")))
+        if request.normalisation == "min-max":
+            found = normalise(log, minimum)
+        else:
+            decibels = float(request.normalisation.removeprefix("db="))
+            found = 1 + 20 * (log - log.amax((1, 2), keepdim=True)) / decibels
+        # The network's columns rise with cos(theta), whatever the radar's do.
+        return found[0].clamp(0, 1).numpy()[:, radar.rising_columns], self.eta
+
+
+def main():
+    """Serves the weights of a file as a method of the program."""
+    import argparse
+
+    from ._apertura import threads
+    from .serve import serve
+
+    parser = argparse.ArgumentParser(prog="python -m apertura.live", description="The live network with the weights of a file, as a method of the program.")
+    parser.add_argument("file", metavar="FILE", help="weights as train_live.py writes them (safetensors)")
+    path = parser.parse_args().file
+    try:
+        estimator = Estimator(path)
+    except (ValueError, OSError) as error:
+        raise SystemExit(f"error: {error}") from None
+    torch.set_num_threads(threads())
+    serve(estimator, name=estimator.__name__, eta=estimator.eta, description="the live network with weights from a file", weights=_digits(path))
+
+
+def _digits(path):
+    """Digits that tell the weights of a file from others."""
+    import hashlib
+
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:12]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,76 @@
+//! The elements that hear the scenes of a campaign.
+
+use crate::files::sha256;
+use crate::radar::{BuiltArray, Radar, Tolerances};
+
+/// The elements that hear the scenes of a campaign.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Elements {
+    /// Those that each scene names.
+    #[default]
+    OfScenes,
+    /// The same for all.
+    Built(BuiltArray),
+    /// Drawn anew for each scene with these standard deviations.
+    Drawn(Tolerances),
+}
+
+/// Numbers as ranges: "0-11 1012-1023".
+pub(super) fn ranges(numbers: &[usize]) -> String {
+    let runs = numbers.chunk_by(|a, b| a + 1 == *b);
+    let text = |run: &[usize]| match run {
+        [one] => one.to_string(),
+        [first, .., last] => format!("{first}-{last}"),
+        [] => String::new(),
+    };
+    runs.map(text).collect::<Vec<_>>().join(" ")
+}
+
+impl Elements {
+    /// Those of scene `index`, in the place of its own; the seed of the scenes picks them.
+    pub(super) fn of(&self, radar: &Radar, seed: u64, index: u32) -> Option<BuiltArray> {
+        match self {
+            Elements::OfScenes => None,
+            Elements::Built(array) => Some(array.clone()),
+            Elements::Drawn(tolerances) => Some(tolerances.build(radar, seed.wrapping_add(index.into()))),
+        }
+    }
+
+    /// As rows name them.
+    pub(super) fn text(&self) -> String {
+        match self {
+            Elements::OfScenes => String::new(),
+            Elements::Built(array) => {
+                let digest = sha256::of_pieces([format!("{array:?}").as_bytes()]);
+                format!("built {}", sha256::short(&digest))
+            }
+            Elements::Drawn(Tolerances { gain, phase_degrees, position_millimetres }) => {
+                format!("drawn {} dB {phase_degrees} degrees {position_millimetres} mm", gain.0)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Decibels;
+
+    #[test]
+    fn numbers_in_a_row_are_a_range() {
+        assert_eq!(ranges(&[0, 1, 2, 5, 7, 8]), "0-2 5 7-8");
+    }
+
+    #[test]
+    fn elements_are_drawn_anew_for_each_scene() {
+        let radar = Radar { elements: 16, end_elements: 4, samples: 16, ..Radar::default() };
+        let tolerances = Tolerances { gain: Decibels(0.5), phase_degrees: 5.0, position_millimetres: 0.0 };
+        let drawn = Elements::Drawn(tolerances);
+        assert_ne!(drawn.of(&radar, 1, 0), drawn.of(&radar, 1, 1));
+        assert_eq!(
+            (drawn.of(&radar, 1, 1), drawn.text()),
+            (drawn.of(&radar, 2, 0), "drawn 0.5 dB 5 degrees 0 mm".to_owned())
+        );
+        assert_eq!((Elements::OfScenes.of(&radar, 1, 0), Elements::OfScenes.text()), (None, String::new()));
+    }
+}

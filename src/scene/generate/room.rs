@@ -1,0 +1,51 @@
+//! Radars before which the objects of a kind of scenes find room.
+
+use super::Kind;
+use crate::radar::Radar;
+
+/// A kind of scenes whose objects find no room before a radar.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("scenes of {kind} need a radar that sees {needed_metres} m far; this one sees {found_metres:.1} m")]
+pub struct NoRoom {
+    /// The kind.
+    pub kind: Kind,
+    /// Maximum range that it needs, metres.
+    pub needed_metres: f64,
+    /// Maximum range of the radar, metres.
+    pub found_metres: f64,
+}
+
+impl Kind {
+    /// Whether the objects of its scenes find room before `radar`.
+    ///
+    /// # Errors
+    /// [`NoRoom`] names the kind and both ranges.
+    pub fn check_room(self, radar: &Radar) -> Result<(), NoRoom> {
+        self.check_room_within(radar.max_range_metres())
+    }
+
+    /// [`Kind::check_room`] before every radar that sees this far.
+    ///
+    /// # Errors
+    /// As [`Kind::check_room`].
+    pub fn check_room_within(self, found_metres: f64) -> Result<(), NoRoom> {
+        let needed_metres = self.needed_range_metres();
+        if needed_metres > found_metres {
+            return Err(NoRoom { kind: self, needed_metres, found_metres });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kind_that_finds_no_room_is_named() {
+        let near = Radar { bandwidth_hz: 6e9, ..Radar::default() };
+        let told = Kind::Street.check_room(&near).unwrap_err().to_string();
+        assert_eq!(told, "scenes of street need a radar that sees 20 m far; this one sees 12.8 m");
+        assert_eq!(Kind::Street.check_room(&Radar::default()), Ok(()));
+    }
+}
