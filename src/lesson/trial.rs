@@ -1,6 +1,7 @@
 //! The check of a lesson when it is opened: its questions and challenges are simulated.
 
-use super::challenge::{Challenge, Measured};
+use super::challenge::Challenge;
+use super::criterion::Measured;
 use super::fault::Fault;
 use super::file::{Lesson, LessonTextError, Step};
 use super::question::{Question, Truth};

@@ -52,7 +52,7 @@ pub const ALL: &[Preset] = presets![
 ];
 
 impl Preset {
-    /// Whether its file names a radar; another scene is seen by whatever radar there is.
+    /// Whether its file names a radar; another scene is seen by the radar on screen.
     pub fn has_radar(&self) -> bool {
         self.toml.lines().any(|line| line.trim() == "[radar]")
     }

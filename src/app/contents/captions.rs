@@ -39,7 +39,7 @@ fn text(kind: MapKind, radar: &Radar, method: &str) -> String {
     }
 }
 
-/// What to do in the scene: in the street as it opens a post is to be dragged towards the wall, elsewhere whatever there is. After the first
+/// What to do in the scene: in the street as it opens a post is to be dragged towards the wall, elsewhere any reflector. After the first
 /// drag, what it did.
 pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
     let scene = state.editor.scene();

@@ -13,7 +13,7 @@ use crate::lesson::Progress;
 use answer::{answer, answered, judgement};
 use challenge::requirements;
 use eframe::egui;
-use eframe::egui::{RichText, ScrollArea, TextureId, Ui};
+use eframe::egui::{ScrollArea, TextureId, Ui};
 use large::{LARGE, large};
 use list::list;
 pub use memory::Memory;

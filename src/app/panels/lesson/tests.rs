@@ -102,7 +102,7 @@ fn the_question_is_in_view_however_little_room_there_is() {
 #[test]
 fn each_step_starts_at_its_top() {
     let mut panel = harness(Some(run("which-points-a-car-is", 4)));
-    panel.set_size(egui::vec2(360.0, 260.0));
+    panel.set_size(egui::vec2(360.0, 200.0));
     panel.run_steps(3);
     let over = panel.get_by_label_contains("Step ").rect().center();
     panel.hover_at(over);
