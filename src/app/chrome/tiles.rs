@@ -59,8 +59,8 @@ fn maximised(ui: &mut Ui, panel: Panel, behavior: &mut Behavior<'_>) {
 /// Between a tab's title and its sides, points.
 const TAB_MARGIN: f32 = 8.0;
 
-/// How strong the caption of what is old is drawn.
-const OLD: f32 = 0.55;
+/// How strong what is old is drawn.
+pub const OLD: f32 = 0.55;
 
 /// The least that a caption is worth drawing in, points.
 const LEAST_CAPTION: f32 = 60.0;

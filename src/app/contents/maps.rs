@@ -1,7 +1,7 @@
 //! What maps, cuts and the ROC are told.
 
 use super::{Contents, Reflectors, captions, shown_found};
-use crate::app::jobs::{Jobs, TheoryResult};
+use crate::app::jobs::{Jobs, TheoryResult, fates_of};
 use crate::app::panels::{cuts, map, roc};
 use crate::app::state::{Command, MapKind, MethodSlot, State};
 use crate::engine::ReadyMap;
@@ -79,7 +79,12 @@ pub(super) fn map_input<'a>(
     let (settings, pipeline) = (&state.settings, &jobs.pipeline);
     let picture = pipeline.result().and_then(|r| r.pictures.get(&kind));
     let found = if kind.slot() == Some(MethodSlot::First) { shown_found(state, pipeline) } else { &[] };
-    let of_formulas = jobs.theory.result().filter(|r| r.request.radar == *state.radar());
+    let of_formulas = jobs
+        .theory
+        .value()
+        .filter(|_| !jobs.theory.is_stale())
+        .and_then(Result::ok)
+        .filter(|r| r.request.radar == *state.radar());
     map::Input {
         kind,
         radar: state.editor.radar(),
@@ -139,7 +144,7 @@ fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Kinds<
         MapKind::Target | MapKind::TargetAbove => MethodSlot::First,
         other => other.slot()?,
     };
-    let (fates, current) = jobs.kinds.of(slot, &jobs.pipeline).filter(|_| state.settings.show_kinds)?;
+    let (fates, current) = fates_of(&jobs.kinds, slot, &jobs.pipeline).filter(|_| state.settings.show_kinds)?;
     Some(map::Kinds { fates, current })
 }
 

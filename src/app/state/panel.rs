@@ -202,6 +202,14 @@ pub enum MethodSlot {
 impl MethodSlot {
     /// Both.
     pub const BOTH: [MethodSlot; 2] = [MethodSlot::First, MethodSlot::Second];
+
+    /// The map that its method makes.
+    pub fn map(self) -> MapKind {
+        match self {
+            MethodSlot::First => MapKind::Output,
+            MethodSlot::Second => MapKind::Second,
+        }
+    }
 }
 
 impl MapKind {
