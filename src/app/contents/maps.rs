@@ -113,6 +113,7 @@ pub(super) fn map_input<'a>(
         line: captions::of_map(state, kind),
         shown: map::Shown {
             reflectors: settings.show_reflectors,
+            found: settings.show_found,
             theory: settings.show_theory,
             kinds: settings.show_kinds,
         },
