@@ -235,11 +235,11 @@ impl Jobs {
         }
         self.kinds.ask(KindsQuery::of(state, &self.pipeline));
         self.theory.ask(TheoryRequest::of(state));
-        self.bounds.ask(BoundsRequest::of(state).filter(|_| draws(Panel::Bounds)));
-        self.phasors.ask(PhasorsQuery::of(state, &self.pipeline).filter(|_| draws(Panel::Phasors)));
+        self.bounds.ask(draws(Panel::Bounds).then(|| BoundsRequest::of(state)).flatten());
+        self.phasors.ask(draws(Panel::Phasors).then(|| PhasorsQuery::of(state, &self.pipeline)).flatten());
         self.chirps.ask(draws(Panel::Chirp).then(|| ChirpQuery::of(state)));
-        self.dopplers.ask(DopplerQuery::of(state).filter(|_| draws(Panel::RangeDoppler)));
-        self.calibration.ask(CalibrationQuery::of(state).filter(|_| draws(Panel::Elements)));
+        self.dopplers.ask(draws(Panel::RangeDoppler).then(|| DopplerQuery::of(state)).flatten());
+        self.calibration.ask(draws(Panel::Elements).then(|| CalibrationQuery::of(state)).flatten());
         if draws(Panel::Training)
             && let Some(later) = self.training.look()
         {
