@@ -228,7 +228,7 @@ impl App {
     /// Draws everything; what was asked for meanwhile.
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
         let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
-        let is_open = |panel| state.arrangement.is_open(panel);
+        let is_open = |panel| state.arrangement.has_tile(panel);
         let is_on = |command: &Command| state.is_on(command);
         let input = contents::menu_input(state, jobs, &is_open, &is_on);
         let mut commands = menu::show(ui, input, &mut memory.menu);

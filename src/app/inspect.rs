@@ -107,6 +107,11 @@ impl App {
         (counts, self.jobs.pipeline.detector_error())
     }
 
+    /// What is drawn as fresh and yet of something else than what is on screen: for a moment after a change, and never for longer.
+    pub fn drawn_as_fresh_but_old(&self) -> Vec<String> {
+        self.jobs.drawn_as_fresh_but_old(&self.state)
+    }
+
     /// Bounds asked for since the start.
     pub fn bounds_asked(&self) -> u64 {
         self.jobs.bounds.requests()
@@ -114,7 +119,7 @@ impl App {
 
     /// The bound on screen, if there is one.
     pub fn position_bound(&self) -> Option<PositionBound> {
-        self.jobs.bounds.result().and_then(|r| r.bound.ok())
+        self.jobs.bounds.value()?.ok()?.bound.ok()
     }
 
     /// Chains of phasors asked for since the start.
@@ -124,7 +129,7 @@ impl App {
 
     /// Range bin and column of the chain of phasors on screen, and the end of the chain, if there is one.
     pub fn phasor_sum(&self) -> Option<([usize; 2], Complex64)> {
-        self.jobs.phasors.result()?.ok().map(|r| (r.cell, r.measured.sum()))
+        self.jobs.phasors.value()?.ok().map(|r| (r.cell, r.measured.sum()))
     }
 
     /// Beats asked for since the start.
@@ -139,7 +144,7 @@ impl App {
 
     /// Range bin and column of the strongest cell of the range-Doppler map on screen.
     pub fn doppler_peak(&self) -> Option<(usize, usize)> {
-        let decades = self.jobs.dopplers.result()?.ok()?.decades.decades();
+        let decades = self.jobs.dopplers.value()?.ok()?.decades.decades();
         decades.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(cell, _)| cell)
     }
 
@@ -155,7 +160,7 @@ impl App {
 
     /// The range bin in which the beat on screen is strongest, and the element it is of.
     pub fn beat_peak(&self) -> Option<(usize, usize)> {
-        let result = self.jobs.chirps.result()?.ok()?;
+        let result = self.jobs.chirps.value()?.ok()?;
         let peak = (0..result.spectrum.len()).max_by(|a, b| result.spectrum[*a].total_cmp(&result.spectrum[*b]))?;
         Some((peak, result.element))
     }
@@ -182,7 +187,7 @@ impl App {
 
     /// What became of every object in the output on screen, where that is marked and up to date.
     pub fn failures(&self) -> Option<&Failures> {
-        let (fates, current) = self.jobs.kinds.of(MethodSlot::First, &self.jobs.pipeline)?;
+        let (fates, current) = super::jobs::fates_of(&self.jobs.kinds, MethodSlot::First, &self.jobs.pipeline)?;
         (current && self.state.settings.show_kinds).then_some(&fates.failures)
     }
 

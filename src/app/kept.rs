@@ -56,7 +56,9 @@ pub(super) fn read(storage: Option<&dyn eframe::Storage>, folder: Option<&Path>)
         (None, Some(text)) => Some(set_aside(folder, &text, storage.get_string(VERSION_KEY).as_deref())),
         _ => None,
     };
-    (kept.unwrap_or_default(), captions, problem)
+    let mut kept = kept.unwrap_or_default();
+    kept.arrangement.join_views();
+    (kept, captions, problem)
 }
 
 /// Writes settings that can't be read into a file of their own; a sentence about it.

@@ -22,6 +22,7 @@ mod jobs;
 mod kept;
 mod page;
 mod panels;
+mod shared;
 mod state;
 mod widgets;
 

@@ -1,5 +1,6 @@
 //! Drives the whole app without a display: pointer, keys, files; asserts on state and on what was computed and what was not.
 
+mod age;
 mod bodies;
 mod compare;
 mod detection;

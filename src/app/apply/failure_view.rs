@@ -1,6 +1,6 @@
 //! The part of the maps in which a scene's method fails, shown when a preset of failures is opened.
 
-use crate::app::jobs::{Fates, Jobs};
+use crate::app::jobs::{Fates, Jobs, fates_of};
 use crate::app::state::{MapView, MethodSlot, State};
 use crate::evaluate::failure::Fate;
 use crate::maps::Aperture;
@@ -23,7 +23,7 @@ pub fn follow(state: &mut State, jobs: &Jobs) {
     if state.failures.view.wanted != Some(document) {
         return;
     }
-    let Some((fates, true)) = jobs.kinds.of(MethodSlot::First, &jobs.pipeline) else { return };
+    let Some((fates, true)) = fates_of(&jobs.kinds, MethodSlot::First, &jobs.pipeline) else { return };
     state.failures.view.wanted = None;
     if let Some(view) = around(state.editor.radar(), fates) {
         *shown = view;

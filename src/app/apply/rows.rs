@@ -21,7 +21,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
         RowsCommand::OpenTable(path) if !is_table_of_rows(&path) => work::watch(state, jobs, path),
         RowsCommand::OpenFile(path) | RowsCommand::OpenTable(path) => {
             jobs.failures.open(path);
-            if state.arrangement.maximised() != Some(Panel::Failures) {
+            if !state.arrangement.is_maximised(Panel::Failures) {
                 state.arrangement.set_open(Panel::Failures, true);
             }
         }

@@ -37,6 +37,7 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         }
         ViewCommand::SetPhasors(phasors) => settings.phasors = phasors,
         ViewCommand::MarkReflectors => settings.show_reflectors = true,
+        ViewCommand::ToggleDeveloper => settings.developer ^= true,
         ViewCommand::ToggleReflectors => settings.show_reflectors ^= true,
         ViewCommand::ToggleFound => settings.show_found ^= true,
         ViewCommand::ToggleFieldsOfView => settings.show_fields_of_view ^= true,

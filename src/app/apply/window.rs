@@ -11,6 +11,7 @@ pub fn apply(state: &mut State, command: WindowCommand) -> Option<Effect> {
         WindowCommand::TogglePanel(panel) => state.arrangement.toggle(panel),
         WindowCommand::ClosePanel(panel) => state.arrangement.set_open(panel, false),
         WindowCommand::OpenPanel(panel) => state.arrangement.set_open(panel, true),
+        WindowCommand::OpenView(panel) => state.arrangement.bring_to_front(panel),
         WindowCommand::Maximise(panel) => state.arrangement.toggle_maximised(panel),
         WindowCommand::ArrangeFor(task) => state.arrange_for(task),
         WindowCommand::ResetLayout => {

@@ -19,8 +19,8 @@ const TITLE: f32 = 20.0;
 pub fn order(arrangement: &Arrangement) -> Vec<Panel> {
     let first = [Panel::Scene, Panel::Map(MapKind::Output), Panel::Map(MapKind::Target), Panel::Controls];
     let tools = Panel::TOOLS.into_iter();
-    let rest = Panel::all().into_iter().filter(|panel| !Panel::TOOLS.contains(panel) && !first.contains(panel));
-    tools.chain(first).chain(rest).filter(|panel| arrangement.is_open(*panel)).collect()
+    let rest = Panel::tiles().into_iter().filter(|panel| !Panel::TOOLS.contains(panel) && !first.contains(panel));
+    tools.chain(first).chain(rest).filter(|panel| arrangement.has_tile(*panel)).collect()
 }
 
 /// Draws `panels`, those in sight by `draw`.
@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, panels: &[Panel], mut draw: impl FnMut(&mut Ui, Panel))
             let is_picture = matches!(panel, Panel::Scene | Panel::Map(_));
             let height = if is_picture { map_height } else { map_height.max(LEAST_HEIGHT) };
             let (title, _) = ui.allocate_exact_size(vec2(ui.available_width(), TITLE), eframe::egui::Sense::hover());
-            ui.put(title, eframe::egui::Label::new(panel.title()).selectable(false));
+            ui.put(title, eframe::egui::Label::new(panel.tile_title()).selectable(false));
             let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), eframe::egui::Sense::hover());
             if ui.clip_rect().intersects(rect) {
                 within(ui, rect, panel, &mut draw);

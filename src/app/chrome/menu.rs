@@ -306,7 +306,7 @@ fn panels<'a>(ui: &mut Ui, panels: impl Iterator<Item = &'a Panel>, input: &Inpu
     for &panel in panels.filter(|panel| is_of_use(**panel, input)) {
         let open = (input.is_open)(panel);
         let command = if open { WindowCommand::ClosePanel(panel) } else { WindowCommand::OpenPanel(panel) };
-        ticked(ui, panel.title(), command, open, asked);
+        ticked(ui, panel.tile_title(), command, open, asked);
     }
 }
 
@@ -314,13 +314,16 @@ fn panels<'a>(ui: &mut Ui, panels: impl Iterator<Item = &'a Panel>, input: &Inpu
 fn tools(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
     let is_help = |panel: &&Panel| [Panel::Guide, Panel::Lesson].contains(panel);
-    let is_research = |panel: &&Panel| Panel::RESEARCH.contains(panel);
-    panels(ui, Panel::TOOLS.iter().filter(|panel| !is_help(panel) && !is_research(panel)), input, asked);
+    let is_developer = |panel: &&Panel| Panel::DEVELOPER.contains(panel);
+    panels(ui, Panel::TOOLS.iter().filter(|panel| !is_help(panel) && !is_developer(panel)), input, asked);
     ui.separator();
     item(ui, ViewCommand::Flip.into(), input, asked);
     ui.menu_button("Failures explained", |ui| presets_of(ui, memory, true, asked));
     ui.separator();
-    ui.menu_button("Research", |ui| panels(ui, Panel::TOOLS.iter().filter(is_research), input, asked));
+    item(ui, ViewCommand::ToggleDeveloper.into(), input, asked);
+    if (input.is_on)(&ViewCommand::ToggleDeveloper.into()) == Some(true) {
+        panels(ui, Panel::DEVELOPER.iter(), input, asked);
+    }
 }
 
 fn help(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
@@ -334,8 +337,9 @@ fn help(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
     ui.menu_button("Panels", |ui| {
-        let all = Panel::all();
-        panels(ui, all.iter().filter(|panel| !Panel::TOOLS.contains(panel)), input, asked);
+        let all = Panel::tiles();
+        let is_listed = |panel: &&Panel| !Panel::TOOLS.contains(panel) && !Panel::DEVELOPER.contains(panel);
+        panels(ui, all.iter().filter(is_listed), input, asked);
     });
     ui.menu_button("Arrangement", |ui| {
         for task in Task::ALL {
@@ -349,16 +353,13 @@ fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             ticked(ui, colours.name(), command, on, asked);
         }
     });
+    ui.menu_button("Overlays", |ui| items(ui, ViewCommand::OVERLAYS, input, asked));
     item(ui, WindowCommand::ResetLayout.into(), input, asked);
     ui.separator();
     let of_maps = [
         ViewCommand::ToggleProjection,
         ViewCommand::ToggleUnits,
-        ViewCommand::ToggleReflectors,
-        ViewCommand::ToggleFound,
         ViewCommand::ToggleFieldsOfView,
-        ViewCommand::ToggleTheory,
-        ViewCommand::ToggleKinds,
         ViewCommand::ResetMaps,
         ViewCommand::NextMethod,
     ];

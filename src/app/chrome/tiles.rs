@@ -6,7 +6,7 @@ use crate::app::widgets::icons::{Icon, icon};
 use eframe::egui;
 use eframe::egui::{TextStyle, Ui, WidgetText, vec2};
 use egui_tiles::{SimplificationOptions, TileId, Tiles, UiResponse};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Whoever knows what the panels show.
 pub trait Draw {
@@ -24,7 +24,8 @@ pub trait Draw {
 
 /// Draws the panels.
 pub fn show(ui: &mut Ui, arrangement: &mut Arrangement, panels: &mut dyn Draw) -> Vec<Command> {
-    let mut behavior = Behavior { panels, shown: BTreeSet::new(), asked: Vec::new() };
+    let views = arrangement.views().clone();
+    let mut behavior = Behavior { panels, views, shown: BTreeSet::new(), asked: Vec::new() };
     let is_narrow = ui.available_width() < column::NARROW;
     match arrangement.maximised() {
         Some(panel) => maximised(ui, panel, &mut behavior),
@@ -43,10 +44,11 @@ fn maximised(ui: &mut Ui, panel: Panel, behavior: &mut Behavior<'_>) {
     let bar = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(8, 2));
     egui::Panel::top("maximised").frame(bar).show(ui, |ui| {
         ui.horizontal(|ui| {
-            ui.strong(panel.title());
+            ui.strong(panel.tile_title());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("Restore").on_hover_text("Show all panels again (Esc)").clicked() {
-                    behavior.asked.push(WindowCommand::Maximise(panel).into());
+                    let front = behavior.front(panel);
+                    behavior.asked.push(WindowCommand::Maximise(front).into());
                 }
                 let room = ui.available_width();
                 behavior.caption(ui, panel, room);
@@ -59,8 +61,8 @@ fn maximised(ui: &mut Ui, panel: Panel, behavior: &mut Behavior<'_>) {
 /// Between a tab's title and its sides, points.
 const TAB_MARGIN: f32 = 8.0;
 
-/// How strong the caption of what is old is drawn.
-const OLD: f32 = 0.55;
+/// How strong what is old is drawn.
+pub const OLD: f32 = 0.55;
 
 /// The least that a caption is worth drawing in, points.
 const LEAST_CAPTION: f32 = 60.0;
@@ -70,14 +72,36 @@ const ARROWS: f32 = 64.0;
 
 struct Behavior<'a> {
     panels: &'a mut dyn Draw,
+    /// The view in front of each tile that several share, where it is not the first.
+    views: BTreeMap<Panel, Panel>,
     shown: BTreeSet<Panel>,
     asked: Vec<Command>,
 }
 
 impl Behavior<'_> {
-    fn draw(&mut self, ui: &mut Ui, panel: Panel) {
+    /// The view in front of a tile.
+    fn front(&self, tile: Panel) -> Panel {
+        self.views.get(&tile).copied().unwrap_or(tile)
+    }
+
+    /// Draws the view in front of a tile, below the names of all its views where it has several.
+    fn draw(&mut self, ui: &mut Ui, tile: Panel) {
+        let panel = self.front(tile);
         self.shown.insert(panel);
+        if !panel.views().is_empty() {
+            let names = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 3));
+            names.show(ui, |ui| ui.horizontal_wrapped(|ui| self.names_of_views(ui, panel)));
+        }
         self.panels.draw(ui, panel);
+    }
+
+    fn names_of_views(&mut self, ui: &mut Ui, front: Panel) {
+        for view in front.views() {
+            let name = ui.selectable_label(*view == front, view.view_title());
+            if name.on_hover_text(view.describe()).clicked() && *view != front {
+                self.asked.push(WindowCommand::OpenView(*view).into());
+            }
+        }
     }
 
     /// Draws a panel's caption into `room` points, unless that is too little to say anything.
@@ -106,7 +130,7 @@ fn tabs_of(ui: &Ui, tiles: &Tiles<Panel>, tabs: &egui_tiles::Tabs) -> Vec<Tab> {
     let mut right = 0.0;
     let visible = tabs.children.iter().filter(|tile| tiles.is_visible(**tile));
     let placed = visible.filter_map(|tile| {
-        let title = tiles.get_pane(tile)?.title().to_owned();
+        let title = tiles.get_pane(tile)?.tile_title().to_owned();
         let left = right;
         right += ui.painter().layout_no_wrap(title, font.clone(), egui::Color32::WHITE).size().x + 2.0 * TAB_MARGIN;
         Some(Tab { tile: *tile, left, right })
@@ -132,16 +156,17 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
     }
 
     fn tab_title_for_pane(&mut self, panel: &Panel) -> WidgetText {
-        panel.title().into()
+        panel.tile_title().into()
     }
 
     fn on_tab_button(&mut self, tiles: &mut Tiles<Panel>, tile: TileId, button: egui::Response) -> egui::Response {
         let Some(panel) = tiles.get_pane(&tile).copied() else { return button };
         if button.double_clicked() {
-            self.asked.push(WindowCommand::Maximise(panel).into());
+            let front = self.front(panel);
+            self.asked.push(WindowCommand::Maximise(front).into());
         }
         button.on_hover_ui(|ui| {
-            ui.label(panel.describe());
+            ui.label(panel.describe_tile());
             ui.weak("Drag to move · double-click to maximise");
         })
     }
@@ -157,12 +182,13 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
         let Some(panel) = tabs.active.and_then(|id| tiles.get_pane(&id).copied()) else { return };
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.add_space(4.0);
-        let name = panel.title();
+        let name = panel.tile_title();
         if icon(ui, Icon::Close, &format!("Hide {name}")).clicked() {
             self.asked.push(WindowCommand::ClosePanel(panel).into());
         }
         if icon(ui, Icon::Maximise, &format!("Maximise {name}")).clicked() {
-            self.asked.push(WindowCommand::Maximise(panel).into());
+            let front = self.front(panel);
+            self.asked.push(WindowCommand::Maximise(front).into());
         }
         // The tabs come first: what they leave is the caption's.
         let row = tabs_of(ui, tiles, tabs);
@@ -246,7 +272,7 @@ mod tests {
             window.state_mut().set_open(panel, true);
         }
         window.run_steps(3);
-        for (panel, title) in [(Panel::Training, "Training"), (Panel::Roc, "ROC"), (Panel::Evaluation, "Evaluation")] {
+        for (panel, title) in [(Panel::Training, "Training"), (Panel::Roc, "ROC"), (Panel::Chirp, "Waveform")] {
             window.state_mut().set_open(panel, true);
             window.run_steps(4);
             assert!(whole(&window, title), "{title}: {:?}", seen::texts(window.output()));

@@ -1,7 +1,7 @@
 //! What the panel of failures is told.
 
 use super::{Contents, offered};
-use crate::app::jobs::Jobs;
+use crate::app::jobs::{Jobs, fates_of};
 use crate::app::panels::failures;
 use crate::app::state::{Command, MethodSlot, State};
 use crate::evaluate::worsen::summary;
@@ -44,7 +44,7 @@ fn live<'a>(state: &'a State, jobs: &Jobs) -> Option<failures::Live<'a>> {
     let opened = state.row_on_screen()?;
     let pipeline = &jobs.pipeline;
     let is_new = !pipeline.output_is_outdated() && !state.is_predicting();
-    let fates = jobs.kinds.of(MethodSlot::First, pipeline).filter(|(_, current)| *current);
+    let fates = fates_of(&jobs.kinds, MethodSlot::First, pipeline).filter(|(_, current)| *current);
     let now = pipeline.output().zip(pipeline.scores()).filter(|_| is_new).map(|(output, scores)| failures::Now {
         method: output.method,
         metrics: scores.metrics,

@@ -1,7 +1,7 @@
 //! What maps, cuts and the ROC are told.
 
 use super::{Contents, Reflectors, captions, shown_found};
-use crate::app::jobs::{Jobs, TheoryResult};
+use crate::app::jobs::{Jobs, TheoryResult, fates_of};
 use crate::app::panels::{cuts, map, roc};
 use crate::app::state::{Command, MapKind, MethodSlot, State};
 use crate::engine::ReadyMap;
@@ -79,7 +79,12 @@ pub(super) fn map_input<'a>(
     let (settings, pipeline) = (&state.settings, &jobs.pipeline);
     let picture = pipeline.result().and_then(|r| r.pictures.get(&kind));
     let found = if kind.slot() == Some(MethodSlot::First) { shown_found(state, pipeline) } else { &[] };
-    let of_formulas = jobs.theory.result().filter(|r| r.request.radar == *state.radar());
+    let of_formulas = jobs
+        .theory
+        .value()
+        .filter(|_| !jobs.theory.is_stale())
+        .and_then(Result::ok)
+        .filter(|r| r.request.radar == *state.radar());
     map::Input {
         kind,
         radar: state.editor.radar(),
@@ -109,6 +114,7 @@ pub(super) fn map_input<'a>(
         line: captions::of_map(state, kind),
         shown: map::Shown {
             reflectors: settings.show_reflectors,
+            found: settings.show_found,
             theory: settings.show_theory,
             kinds: settings.show_kinds,
         },
@@ -124,7 +130,7 @@ fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<map
     let pair = &jobs.pipeline.method(slot).output()?.pair;
     let (output, eta) = jobs.pipeline.judged(state, slot)?;
     let target = match state.settings.cfar {
-        None => pair.target.as_ref(),
+        None => pair.target.as_deref(),
         Some(_) if pair.target.is_none() => None,
         Some(_) => jobs.pipeline.result().and_then(|result| result.detected.target.as_ref()),
     };
@@ -145,7 +151,7 @@ fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Kinds<
         MapKind::Target | MapKind::TargetAbove => MethodSlot::First,
         other => other.slot()?,
     };
-    let (fates, current) = jobs.kinds.of(slot, &jobs.pipeline).filter(|_| state.settings.show_kinds)?;
+    let (fates, current) = fates_of(&jobs.kinds, slot, &jobs.pipeline).filter(|_| state.settings.show_kinds)?;
     Some(map::Kinds { fates, current })
 }
 
@@ -171,7 +177,7 @@ pub(super) fn caption(state: &State, jobs: &Jobs, kind: MapKind) -> Option<Strin
 
 /// What became of the objects in a method's output, as far as that is known of the one on screen: "5 of 5 found, 0 false, 3 cm off".
 pub(super) fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<String> {
-    let (fates, current) = jobs.kinds.of(slot, &jobs.pipeline)?;
+    let (fates, current) = fates_of(&jobs.kinds, slot, &jobs.pipeline)?;
     if !current || state.is_predicting() || fates.scene.objects.is_empty() {
         return None;
     }

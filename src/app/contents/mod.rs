@@ -10,7 +10,7 @@ mod tools;
 
 pub use bars::{menu_input, status_input};
 
-use super::chrome::tiles::Draw;
+use super::chrome::tiles::{Draw, OLD};
 use super::jobs::{Jobs, Pipeline};
 use super::panels::{
     bounds, controls, cuts, doppler, elements, evaluation, failures as failures_panel, guide, lesson, map, objects,
@@ -90,6 +90,11 @@ impl<'a> Contents<'a> {
 
 impl Draw for Contents<'_> {
     fn draw(&mut self, ui: &mut Ui, panel: Panel) {
+        // Maps, scene and lists say so themselves, beside what is not old in them.
+        let tells_age = matches!(panel, Panel::Scene | Panel::Map(_) | Panel::Found | Panel::Compare);
+        if !tells_age && self.jobs.is_stale(panel) {
+            ui.multiply_opacity(OLD);
+        }
         let commands = match panel {
             _ if tells_answers(panel) && self.state.is_predicting() => hidden(ui),
             Panel::Scene => self.scene(ui),
@@ -129,7 +134,7 @@ impl Draw for Contents<'_> {
     }
 
     fn is_old(&self, panel: Panel) -> bool {
-        matches!(panel, Panel::Map(kind) if self.jobs.pipeline.is_stale(kind))
+        self.jobs.is_stale(panel)
     }
 }
 
@@ -162,6 +167,5 @@ fn hidden(ui: &mut Ui) -> Vec<Command> {
 
 /// Where the method found something, if that is to be drawn: over a recording always.
 pub(super) fn shown_found<'a>(state: &State, pipeline: &'a Pipeline) -> &'a [Reflector] {
-    let drawn = state.settings.show_found || state.editor.document().recording().is_some();
-    pipeline.output_of(state).filter(|_| drawn && !state.is_predicting()).map_or(&[], |output| &output.reflectors)
+    pipeline.output_of(state).filter(|_| state.draws_found()).map_or(&[], |output| &output.reflectors)
 }

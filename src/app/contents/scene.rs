@@ -47,7 +47,7 @@ impl Contents<'_> {
         let input = elements::Input {
             radar: self.state.radar(),
             elements: &self.state.editor.scene().disturbances.elements,
-            calibration: self.jobs.calibration.result(),
+            calibration: self.jobs.calibration.value(),
         };
         elements::show(ui, input, &mut self.memory.elements)
     }

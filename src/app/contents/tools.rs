@@ -1,6 +1,7 @@
 //! What settings and tools are told.
 
 use super::{Contents, offered};
+use crate::app::jobs::BoundsRequest;
 use crate::app::panels::{
     bounds, chirp, controls, doppler, evaluation, found, lesson, phasors, run_time, several, timing, training,
 };
@@ -70,9 +71,8 @@ impl Contents<'_> {
         let input = bounds::Input {
             settings: self.state.settings.bounds,
             elements: self.state.radar().elements,
-            has_subject: job.has_subject(),
-            result: job.result(),
-            error: job.error(),
+            has_subject: BoundsRequest::of(self.state).is_some(),
+            result: job.value(),
         };
         bounds::show(ui, input, &mut self.memory.bounds)
     }
@@ -84,7 +84,7 @@ impl Contents<'_> {
             settings: state.settings.phasors,
             finds_reflectors: state.finds_reflectors(),
             is_recorded: state.editor.document().recording().is_some(),
-            result: self.jobs.phasors.result(),
+            result: self.jobs.phasors.value(),
         };
         phasors::show(ui, input, &mut self.memory.phasors)
     }
@@ -96,7 +96,7 @@ impl Contents<'_> {
             scene: state.scene(),
             settings: state.settings.chirp,
             is_recorded: state.editor.document().recording().is_some(),
-            result: self.jobs.chirps.result(),
+            result: self.jobs.chirps.value(),
         };
         chirp::show(ui, input)
     }
@@ -112,7 +112,7 @@ impl Contents<'_> {
             colours: state.settings.colours,
             normalisation: state.settings.normalisation,
             is_recorded: state.editor.document().recording().is_some(),
-            result: self.jobs.dopplers.result(),
+            result: self.jobs.dopplers.value(),
         };
         doppler::show(ui, input, &mut self.memory.doppler)
     }

@@ -1,5 +1,6 @@
-//! Bounds of one reflector, computed off the UI thread: how well any unbiased estimator could place it, and what looks like it.
+//! Bounds of one reflector: how well any unbiased estimator could place it, and what looks like it.
 
+use super::derived::{Failure, Query};
 use crate::app::state::{BoundsSettings, Elements, State};
 use crate::app::widgets::textures::colour_table;
 use crate::bounds::{
@@ -9,7 +10,7 @@ use crate::interact::Editor;
 use crate::picture::ColourMap;
 use crate::radar::{Decibels, Layout, LayoutError, Polar, Radar};
 use crate::scene::{Object, Reflector};
-use crate::task::{Reply, Task, Worker};
+use crate::task::Task;
 use eframe::egui::ColorImage;
 use std::sync::Arc;
 
@@ -36,7 +37,7 @@ pub struct BoundsRequest {
 
 impl BoundsRequest {
     /// For the selected object's centre, or else the first's; `None` where there is none ahead of the array.
-    fn of(state: &State) -> Option<Self> {
+    pub fn of(state: &State) -> Option<Self> {
         let (name, reflector) = subject(&state.editor)?;
         let BoundsSettings { elements, seed, snr, columns, bins } = state.settings.bounds;
         Some(BoundsRequest { radar: state.radar().clone(), elements, seed, name, reflector, snr, columns, bins })
@@ -116,74 +117,15 @@ pub fn bounds_of(request: BoundsRequest) -> Result<BoundsResult, LayoutError> {
     Ok(BoundsResult { layout, centre, bound, gain_per_end, ambiguity: found, image, request })
 }
 
-/// The worker, what it was asked last, and what it found last.
-pub struct Bounds {
-    worker: Worker<BoundsRequest, Result<BoundsResult, LayoutError>>,
-    asked: Option<BoundsRequest>,
-    subject: bool,
-    result: Option<BoundsResult>,
-    error: Option<String>,
-    requests: u64,
-}
+impl Query for BoundsRequest {
+    type Value = BoundsResult;
+    type State = ();
+    const THREAD: &'static str = "bounds";
+    const WHAT: &'static str = "Computing the bounds";
+    const ADVICE: &'static str = "Move the reflector to try again.";
 
-impl Bounds {
-    /// Starts the worker, which waits; `wake` is called from its thread.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Bounds> {
-        let work = |_: &mut (), request: BoundsRequest, _: &Task| bounds_of(request);
-        let worker = Worker::spawn("bounds", || (), work, wake)?;
-        Ok(Bounds { worker, asked: None, subject: false, result: None, error: None, requests: 0 })
-    }
-
-    /// Asks for the bounds of what is selected, unless that was asked for last.
-    pub fn ask(&mut self, state: &State) {
-        let request = BoundsRequest::of(state);
-        self.subject = request.is_some();
-        if request.is_some() && self.asked != request {
-            self.requests += 1;
-            request.clone().map(|request| self.worker.request(request));
-            self.asked = request;
-        }
-    }
-
-    /// Whether there is a reflector to compute bounds of.
-    pub fn has_subject(&self) -> bool {
-        self.subject
-    }
-
-    /// What was found last.
-    pub fn result(&self) -> Option<&BoundsResult> {
-        self.result.as_ref()
-    }
-
-    /// Why nothing was found.
-    pub fn error(&self) -> Option<&str> {
-        self.error.as_deref()
-    }
-
-    /// Requests so far: a test asks that a hidden panel makes none.
-    pub fn requests(&self) -> u64 {
-        self.requests
-    }
-
-    /// Whether it computes.
-    pub fn is_busy(&self) -> bool {
-        self.worker.is_busy()
-    }
-
-    /// Takes in what was found. Returns a message for the user.
-    pub fn poll(&mut self) -> Option<String> {
-        let mut message = None;
-        for reply in self.worker.replies() {
-            match reply {
-                Reply::Done { result: Ok(result), .. } => (self.result, self.error) = (Some(result), None),
-                Reply::Done { result: Err(error), .. } => (self.result, self.error) = (None, Some(error.to_string())),
-                Reply::Panicked { message: said, .. } => {
-                    self.error = Some(said.clone());
-                    message = Some(format!("Computing the bounds failed ({said}). Move the reflector to try again."));
-                }
-            }
-        }
-        message
+    fn compute(&self, (): &mut (), _: &Task) -> Result<BoundsResult, Failure> {
+        bounds_of(self.clone()).map_err(|e| e.to_string().into())
     }
 }
 

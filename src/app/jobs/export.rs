@@ -201,7 +201,7 @@ fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {
         "scene,reflectors,method,floor,normalisation,eta,squared_error,detection,false_alarm,target_blobs,output_blobs,milliseconds\n\
          \"{}\",{},{},{},{},{},{},{detection},{},{},{},{:.3}\n",
         state.editor.scene().name.replace('"', "'"),
-        result.request.scene.reflector_count(),
+        result.request.source.scene.reflector_count(),
         output.method,
         state.settings.floor,
         state.settings.normalisation,

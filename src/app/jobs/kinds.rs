@@ -1,47 +1,32 @@
-//! What kind of failure: what became of every object in the outputs on screen, and what isn't there; off the UI thread.
+//! What kind of failure: what became of every object in the outputs on screen, and what isn't there.
 
+use super::derived::{Derived, Failure, Query};
 use super::pipeline::Pipeline;
 use super::scene_maps::Truth;
+use super::source::Source;
+use crate::app::shared::Shared;
 use crate::app::state::{MethodSlot, Panel, State};
 use crate::evaluate::failure::{Cell, Failures, Footprints};
 #[cfg(test)]
 use crate::evaluate::failure::{Fate, Ghost};
 use crate::maps::RangeAngleMap;
 use crate::scene::Scene;
-use crate::task::{Reply, Task, Worker};
-use std::sync::Arc;
+use crate::task::Task;
 
 /// An output, and the threshold that says what of it is detected.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 struct Output {
-    lambda: Arc<RangeAngleMap>,
+    lambda: Shared<RangeAngleMap>,
     /// The map that is compared with the threshold: the output itself, or what a detector made of it.
-    judged: Arc<RangeAngleMap>,
+    judged: Shared<RangeAngleMap>,
     eta: f32,
 }
 
-impl Output {
-    fn same(&self, other: &Output) -> bool {
-        Arc::ptr_eq(&self.lambda, &other.lambda) && Arc::ptr_eq(&self.judged, &other.judged) && self.eta == other.eta
-    }
-}
-
-/// What is to be judged.
-#[derive(Clone)]
-struct Request {
+/// Outputs on screen, and what they are judged by.
+#[derive(Clone, PartialEq)]
+pub struct KindsQuery {
     truth: Truth,
     outputs: [Option<Output>; 2],
-}
-
-impl Request {
-    fn same(&self, other: &Request) -> bool {
-        let outputs = self.outputs.iter().zip(&other.outputs).all(|pair| match pair {
-            (Some(a), Some(b)) => a.same(b),
-            (None, None) => true,
-            _ => false,
-        });
-        outputs && Arc::ptr_eq(&self.truth.target.lambda, &other.truth.target.lambda)
-    }
 }
 
 /// What became of one object, or a blob where there is none.
@@ -59,111 +44,92 @@ pub struct Verdict {
 #[derive(Debug, Clone)]
 pub struct Fates {
     /// The scene.
-    pub scene: Arc<Scene>,
+    pub scene: Shared<Scene>,
     /// What is right and what is not.
     pub failures: Failures,
     /// Every object of the scene, in its order, then every ghost.
     pub verdicts: Vec<Verdict>,
     /// The threshold that was judged at.
     pub eta: f32,
-    output: Arc<RangeAngleMap>,
-    target: Arc<RangeAngleMap>,
+    output: Shared<RangeAngleMap>,
+    target: Shared<RangeAngleMap>,
 }
 
+/// Of either method's output.
 type Made = [Option<Fates>; 2];
 
-/// The worker, and what it found last of either method's output.
-pub struct Kinds {
-    worker: Worker<Request, Made>,
-    asked: Option<Request>,
-    shown: Made,
-}
-
-/// Footprints of the last target: several outputs and thresholds are judged by the same.
+/// What is kept from one query to the next.
 #[derive(Default)]
-struct Kept {
-    last: Option<(Arc<RangeAngleMap>, Footprints)>,
+pub struct KeptFates {
+    /// Footprints of the last target: several outputs and thresholds are judged by the same.
+    footprints: Option<(Shared<RangeAngleMap>, Footprints)>,
+    last: Made,
 }
 
-impl Kept {
+impl KeptFates {
     fn footprints(&mut self, truth: &Truth) -> &Footprints {
-        let Truth { radar, scene, target } = truth;
-        let fresh = || (target.lambda.clone(), Footprints::new(radar, scene, &target.lambda, target.scale));
-        let last = self.last.take().filter(|(of, _)| Arc::ptr_eq(of, &target.lambda));
-        &self.last.insert(last.unwrap_or_else(fresh)).1
+        let Truth { source: Source { radar, scene, .. }, target, scale } = truth;
+        let fresh = || (target.clone(), Footprints::new(radar, scene, target, *scale));
+        let last = self.footprints.take().filter(|(of, _)| of == target);
+        &self.footprints.insert(last.unwrap_or_else(fresh)).1
     }
 }
 
-impl Kinds {
-    /// Starts the worker, which waits; `wake` is called from its thread.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Kinds> {
-        let work = |kept: &mut Kept, request: Request, _: &Task| judge(kept.footprints(&request.truth), &request);
-        let worker = Worker::spawn("kinds of failure", Kept::default, work, wake)?;
-        Ok(Kinds { worker, asked: None, shown: [None, None] })
-    }
-
-    /// Asks for verdicts on the outputs on screen, where they are to be marked and belong to the maps.
-    pub fn ask(&mut self, state: &State, pipeline: &Pipeline) {
+impl KindsQuery {
+    /// The outputs on screen, where they are to be marked and belong to the maps.
+    pub fn of(state: &State, pipeline: &Pipeline) -> Option<Self> {
         let told = state.arrangement.shown().contains(&Panel::Failures) && state.row_on_screen().is_some();
         // The headline of an output is made once the scene rests: a drag costs nothing for it.
         if !(state.settings.show_kinds || told || pipeline.is_settled()) || !pipeline.wants_output() {
-            return;
+            return None;
         }
-        let Some(truth) = pipeline.truth() else { return };
+        let truth = pipeline.truth()?;
         let output = |slot| {
             let pair = pipeline.method(slot).output().map(|o| &o.pair)?;
-            let of_it = pair.target.as_ref().is_some_and(|target| Arc::ptr_eq(target, &truth.target.lambda));
+            let of_it = pair.target.as_ref() == Some(&truth.target);
             let (judged, eta) = pipeline.judged(state, slot).filter(|_| of_it)?;
-            Some(Output { lambda: pair.output.clone(), judged: judged.clone(), eta })
+            Some(Output { lambda: pair.output.clone(), judged: judged.into(), eta })
         };
-        let request = Request { outputs: MethodSlot::BOTH.map(output), truth };
-        let is_new = !self.asked.as_ref().is_some_and(|asked| asked.same(&request));
-        if is_new && request.outputs.iter().any(Option::is_some) {
-            self.worker.request(request.clone());
-            self.asked = Some(request);
-        }
-    }
-
-    /// What became of everything in a method's output, and whether that is the one on screen.
-    pub fn of(&self, slot: MethodSlot, pipeline: &Pipeline) -> Option<(&Fates, bool)> {
-        let fates = self.shown[slot as usize].as_ref()?;
-        let pair = &pipeline.method(slot).output()?.pair;
-        let of_target = pair.target.as_ref().is_some_and(|target| Arc::ptr_eq(target, &fates.target));
-        Some((fates, of_target && Arc::ptr_eq(&pair.output, &fates.output)))
-    }
-
-    /// Whether it judges.
-    pub fn is_busy(&self) -> bool {
-        self.worker.is_busy()
-    }
-
-    /// Takes in what was found. Returns a message for the user.
-    pub fn poll(&mut self) -> Option<String> {
-        let mut message = None;
-        for reply in self.worker.replies() {
-            match reply {
-                Reply::Done { result, .. } => {
-                    for (shown, made) in self.shown.iter_mut().zip(result) {
-                        *shown = made.or(shown.take());
-                    }
-                }
-                Reply::Panicked { message: said, .. } => {
-                    message =
-                        Some(format!("Telling kinds of failure apart failed ({said}). Change the scene to try again."));
-                }
-            }
-        }
-        message
+        let outputs = MethodSlot::BOTH.map(output);
+        Some(KindsQuery { outputs, truth })
     }
 }
 
-fn judge(footprints: &Footprints, request: &Request) -> Made {
-    let Truth { scene, target, .. } = &request.truth;
+impl Query for KindsQuery {
+    type Value = Made;
+    type State = KeptFates;
+    const THREAD: &'static str = "kinds of failure";
+    const WHAT: &'static str = "Telling kinds of failure apart";
+    const ADVICE: &'static str = "Change the scene to try again.";
+
+    fn compute(&self, kept: &mut KeptFates, _: &Task) -> Result<Made, Failure> {
+        if self.outputs.iter().all(Option::is_none) {
+            return Ok(kept.last.clone());
+        }
+        let made = judge(kept.footprints(&self.truth), self);
+        for (last, made) in kept.last.iter_mut().zip(made) {
+            *last = made.or(last.take());
+        }
+        Ok(kept.last.clone())
+    }
+}
+
+/// What became of everything in a method's output, and whether that is the one on screen and fresh.
+pub fn fates_of<'a>(
+    kinds: &'a Derived<KindsQuery>,
+    slot: MethodSlot,
+    pipeline: &Pipeline,
+) -> Option<(&'a Fates, bool)> {
+    let fates = kinds.value()?.ok()?[slot as usize].as_ref()?;
+    let pair = &pipeline.method(slot).output()?.pair;
+    let is_of_it = pair.target.as_ref() == Some(&fates.target) && pair.output == fates.output;
+    Some((fates, is_of_it && !pipeline.is_stale(slot.map())))
+}
+
+fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
+    let Truth { source: Source { scene, .. }, target, .. } = &request.truth;
     let fates = |output: &Output| {
-        let failures = footprints.judge_cells(&target.lambda, &output.lambda, &output.judged.above(output.eta));
+        let failures = footprints.judge_cells(target, &output.lambda, &output.judged.above(output.eta));
         let brightest = |cells: &[Cell]| {
             let lambda = |cell: &Cell| output.lambda.lambda[*cell];
             cells.iter().copied().max_by(|a, b| lambda(a).total_cmp(&lambda(b)))
@@ -172,7 +138,7 @@ fn judge(footprints: &Footprints, request: &Request) -> Made {
         let objects = footprints.cells().iter().enumerate().map(|(index, cells)| verdict(Some(index), cells));
         let ghosts = failures.ghosts.iter().map(|ghost| verdict(None, &ghost.cells));
         let verdicts = objects.chain(ghosts).collect();
-        let (scene, target) = (scene.clone(), target.lambda.clone());
+        let (scene, target) = (scene.clone(), target.clone());
         Fates { scene, verdicts, failures, eta: output.eta, output: output.lambda.clone(), target }
     };
     request.outputs.each_ref().map(|output| output.as_ref().map(fates))
@@ -184,46 +150,46 @@ impl Fates {
     pub fn made_up(scene: Scene, fates: &[Fate], ghosts: &[Cell]) -> Fates {
         let object = |index: usize| Verdict { object: Some(index), cells: 40, brightest: None };
         let ghost = |at: &Cell| Verdict { object: None, cells: 12, brightest: Some(*at) };
-        let nothing = || Arc::new(RangeAngleMap { lambda: ndarray::Array2::zeros((1, 1)) });
+        let nothing = || Shared::new(RangeAngleMap { lambda: ndarray::Array2::zeros((1, 1)) });
         let failures = Failures {
             objects: fates.to_vec(),
             covered: fates.iter().map(|fate| if *fate == Fate::Found { 1.0 } else { 0.0 }).collect(),
             ghosts: ghosts.iter().map(|at| Ghost { cells: vec![*at; 12] }).collect(),
         };
         let verdicts = (0..fates.len()).map(object).chain(ghosts.iter().map(ghost)).collect();
-        Fates { scene: Arc::new(scene), failures, verdicts, eta: 0.8, output: nothing(), target: nothing() }
+        Fates { scene: Shared::new(scene), failures, verdicts, eta: 0.8, output: nothing(), target: nothing() }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::ReadyMap;
     use crate::maps::{LogMaps, Normalisation};
     use crate::radar::Radar;
     use crate::signal::{Floor, simulate};
 
     /// Two points, as a radar sees them.
     fn truth(radar: Radar) -> Truth {
-        let scene = Arc::new(Scene::of_points([(-4.0, 12.0), (5.0, 20.0)]));
+        let scene = Shared::new(Scene::of_points([(-4.0, 12.0), (5.0, 20.0)]));
         let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
-        let lambda = Arc::new(full.normalise(Normalisation::MinMax));
-        Truth { radar, scene, target: ReadyMap { lambda, scale: full.scale(Normalisation::MinMax) } }
+        let target = Shared::new(full.normalise(Normalisation::MinMax));
+        let source = Source { radar, scene, recording: None, floor: Floor::Thesis };
+        Truth { source, target, scale: full.scale(Normalisation::MinMax) }
     }
 
     #[test]
     fn verdicts_are_those_of_the_evaluation() {
         let truth = truth(Radar::default());
-        let mut output = RangeAngleMap::clone(&truth.target.lambda);
+        let mut output = RangeAngleMap::clone(&truth.target);
         output.lambda.slice_mut(ndarray::s![.., 512..]).fill(0.0);
         output.lambda.slice_mut(ndarray::s![400..404, 200..210]).fill(0.95);
         output.lambda[[402, 205]] = 1.0;
-        let judged = Arc::new(output.clone());
-        let request = Request { truth, outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None] };
-        let Truth { radar, scene, target } = &request.truth;
-        let footprints = Footprints::new(radar, scene, &target.lambda, target.scale);
+        let judged = Shared::new(output.clone());
+        let request = KindsQuery { truth, outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None] };
+        let Truth { source: Source { radar, scene, .. }, target, scale } = &request.truth;
+        let footprints = Footprints::new(radar, scene, target, *scale);
         let [Some(fates), None] = judge(&footprints, &request) else { panic!("of the first alone") };
-        let expected = footprints.judge(&target.lambda, &output, 0.9);
+        let expected = footprints.judge(target, &output, 0.9);
         assert_eq!(fates.failures, expected);
         assert_eq!(fates.failures.objects, [Fate::Found, Fate::Missed]);
         let [_, _, ghost] = fates.verdicts.as_slice() else { panic!("{:?}", fates.verdicts) };
@@ -232,9 +198,10 @@ mod tests {
 
     #[test]
     fn footprints_are_made_once_a_target() {
-        let (truth, mut kept) = (truth(Radar { elements: 64, ..Radar::default() }), Kept::default());
+        let (truth, mut kept) = (truth(Radar { elements: 64, ..Radar::default() }), KeptFates::default());
         assert_eq!(kept.footprints(&truth).cells().len(), 2);
-        let of_the_same_target = Truth { scene: Arc::default(), ..truth };
+        let source = Source { scene: Shared::new(Scene::default()), ..truth.source.clone() };
+        let of_the_same_target = Truth { source, ..truth };
         assert_eq!(kept.footprints(&of_the_same_target).cells().len(), 2);
     }
 }

@@ -1,5 +1,6 @@
 //! Predictions judged and challenges measured, off the UI thread.
 
+use crate::app::shared::Shared;
 use crate::app::state::{Command, LessonCommand, LessonRun, State};
 use crate::app::widgets::textures::colour_table;
 use crate::lesson::{Guess, Judgement, Lesson, LessonError, MapName, Measured, Stage, Step};
@@ -13,22 +14,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What is to be judged.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 struct Request {
-    lesson: Arc<Lesson>,
+    lesson: Shared<Lesson>,
     step: usize,
     guess: Option<Guess>,
     radar: Radar,
-    scene: Arc<Scene>,
-}
-
-impl Request {
-    fn same(&self, other: &Request) -> bool {
-        Arc::ptr_eq(&self.lesson, &other.lesson)
-            && (self.step, self.guess) == (other.step, other.guess)
-            && self.radar == other.radar
-            && Arc::ptr_eq(&self.scene, &other.scene)
-    }
+    scene: Shared<Scene>,
 }
 
 /// What came of it.
@@ -145,13 +137,13 @@ impl Lessons {
             return;
         };
         let request = Request {
-            lesson: run.lesson.clone(),
+            lesson: (&run.lesson).into(),
             step: run.step,
             guess: run.guess,
             radar: state.radar().clone(),
-            scene: state.editor.scene().clone(),
+            scene: state.editor.scene().into(),
         };
-        if !self.asked.as_ref().is_some_and(|asked| asked.same(&request)) {
+        if self.asked.as_ref() != Some(&request) {
             self.asked = Some(request.clone());
             self.worker.request(request);
         }

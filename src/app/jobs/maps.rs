@@ -66,9 +66,12 @@ impl MapsJob {
                 Reply::Done { result: Err(Unfinished::Scene(error)), .. } => self.scene_error = Some(error.to_string()),
                 // What was asked for instead is on its way.
                 Reply::Done { result: Err(Unfinished::Cancelled(_)), .. } => {}
-                Reply::Panicked { message, .. } => messages.push(format!(
-                    "Computing the maps failed ({message}). The last maps stay; undo the last change (Ctrl+Z) or change the scene."
-                )),
+                Reply::Panicked { message, .. } => {
+                    self.waiting.get_or_insert_with(Instant::now);
+                    messages.push(format!(
+                        "Computing the maps failed ({message}). The last maps stay; undo the last change (Ctrl+Z) or change the scene."
+                    ));
+                }
             }
         }
         messages
@@ -95,13 +98,13 @@ impl MapsJob {
 
     /// Asks for maps, unless it was asked for just these; at rest if the scene rests. `held` while something is dragged.
     pub fn ask(&mut self, mut request: MapsRequest, held: bool) {
-        self.motion = self.rest.look(&request.scene, &request.radar, request.wanted.floor, held, Instant::now());
+        self.motion = self.rest.look(&request.source, held, Instant::now());
         // Maps that follow the hand come first: those at rest may take long, and would push a request that waits aside.
-        let follows = self.result.as_ref().is_some_and(|r| r.request.same_subject(&request));
+        let follows = self.result.as_ref().is_some_and(|r| r.request.source == request.source);
         request.at_rest = self.motion == Motion::AtRest && follows;
-        if !self.asked.as_ref().is_some_and(|a| a.same(&request)) {
+        if self.asked.as_ref() != Some(&request) {
             self.requests += 1;
-            if self.asked.as_ref().is_some_and(|a| !a.same_subject(&request)) {
+            if self.asked.as_ref().is_some_and(|a| a.source != request.source) {
                 self.make_way(held);
             }
             let task = if request.at_rest { self.settling.clone() } else { Task::default() };
@@ -154,7 +157,7 @@ impl MapsJob {
     /// Whether the maps are those of the scene on screen at rest.
     pub fn is_settled(&self) -> bool {
         let latest = self.asked.as_ref().zip(self.result.as_ref());
-        latest.is_some_and(|(asked, result)| result.frame.settled && asked.same(&result.request))
+        latest.is_some_and(|(asked, result)| result.frame.settled && *asked == result.request)
     }
 
     /// Whether they are being computed.

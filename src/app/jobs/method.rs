@@ -1,6 +1,8 @@
 //! One method at work on the scene on screen: what it was asked for, what it made last, or why it made nothing.
 
 use super::scene_maps::{MapsRequest, MapsResult, Pair};
+use super::source::Source;
+use crate::app::shared::Shared;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::platform::{self, Instant};
 use crate::radar::Radar;
@@ -10,7 +12,6 @@ use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstruction
 use crate::scene::Reflector;
 use crate::signal::TwoEnds;
 use crate::task::{Reply, Task, Worker};
-use std::sync::Arc;
 use std::time::Duration;
 
 /// A reconstruction that is slower than this is cancelled when the scene has moved on, unless it is being dragged: then the last one
@@ -18,10 +19,10 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_millis(400);
 
 /// What a method works on.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub struct Basis {
     radar: Radar,
-    ends: Arc<TwoEnds>,
+    ends: Shared<TwoEnds>,
     noise: NoisePrior,
     normalisation: Normalisation,
     snapshot_range_metres: Option<f64>,
@@ -30,10 +31,10 @@ pub struct Basis {
 impl Basis {
     /// What a method gets of a scene; `None` where nobody wanted its ends.
     pub fn of(result: &MapsResult) -> Option<Basis> {
-        let MapsRequest { radar, wanted, recording, .. } = &result.request;
+        let MapsRequest { source: Source { radar, recording, .. }, wanted, .. } = &result.request;
         Some(Basis {
             radar: radar.clone(),
-            ends: result.frame.ends.clone()?,
+            ends: result.frame.ends.as_ref()?.into(),
             noise: if recording.is_some() { NoisePrior::UNKNOWN } else { wanted.floor.into() },
             normalisation: wanted.normalisation,
             snapshot_range_metres: recording.as_ref().and_then(|r| r.range_metres),
@@ -63,13 +64,6 @@ impl Basis {
             task,
         }
     }
-
-    fn same(&self, other: &Basis) -> bool {
-        Arc::ptr_eq(&self.ends, &other.ends)
-            && (self.noise, self.normalisation) == (other.noise, other.normalisation)
-            && self.snapshot_range_metres == other.snapshot_range_metres
-            && self.radar == other.radar
-    }
 }
 
 /// What a method is asked for.
@@ -77,12 +71,14 @@ impl Basis {
 pub struct MethodRequest {
     /// Which document it is of.
     pub document: u64,
+    /// Where the samples come from.
+    pub source: Source,
     /// What it works on.
     pub basis: Basis,
     /// What it aims for; `None` where a recording has the two ends alone.
-    pub target: Option<Arc<RangeAngleMap>>,
+    pub target: Option<Shared<RangeAngleMap>>,
     /// The method.
-    pub method: Arc<dyn Reconstructor>,
+    pub method: Shared<dyn Reconstructor>,
     /// Whether what was found is to be listed.
     pub listed: bool,
     /// Whether the scene rests: the answer is then that of a method without a memory.
@@ -93,8 +89,8 @@ impl MethodRequest {
     /// Whether what was made for this one is an answer to the `other` too: one at rest answers one in motion, and the other way round
     /// only for a method without a memory.
     fn serves(&self, other: &MethodRequest) -> bool {
-        self.basis.same(&other.basis)
-            && self.method.name() == other.method.name()
+        self.basis == other.basis
+            && self.method == other.method
             && self.listed == other.listed
             && (self.at_rest || !other.at_rest || self.method.following().is_none())
     }
@@ -148,7 +144,7 @@ struct Kept {
     /// Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
     threads: Option<rayon::ThreadPool>,
     /// The method asked last, and the same with a memory.
-    follower: Option<(Arc<dyn Reconstructor>, Arc<dyn Reconstructor>)>,
+    follower: Option<(Shared<dyn Reconstructor>, Shared<dyn Reconstructor>)>,
 }
 
 impl Kept {
@@ -157,13 +153,13 @@ impl Kept {
     }
 
     fn work(&mut self, q: MethodRequest, task: &Task) -> MethodReply {
-        if self.follower.as_ref().is_none_or(|(of, _)| !Arc::ptr_eq(of, &q.method)) {
-            self.follower = q.method.following().map(|follower| (q.method.clone(), follower));
+        if self.follower.as_ref().is_none_or(|(of, _)| *of != q.method) {
+            self.follower = q.method.following().map(|follower| (q.method.clone(), follower.into()));
         }
         let method = self.follower.as_ref().map_or(&q.method, |(_, follower)| follower);
         let result = match &self.threads {
-            Some(threads) => threads.install(|| reconstruct(&q, method.as_ref(), task)),
-            None => reconstruct(&q, method.as_ref(), task),
+            Some(threads) => threads.install(|| reconstruct(&q, &***method, task)),
+            None => reconstruct(&q, &***method, task),
         };
         (q, result)
     }
@@ -175,6 +171,8 @@ pub struct MethodJob {
     asked: Option<MethodRequest>,
     /// Since when the output belongs to something else than the maps.
     outdated: Option<Instant>,
+    /// Whether a panel of the frame before drew something of it.
+    was_drawn: bool,
     output: Option<MethodResult>,
     refusal: Option<Refusal>,
     /// A time that nobody has taken yet: for which radar, of which method.
@@ -189,7 +187,7 @@ impl MethodJob {
     pub fn start(thread: &'static str, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<MethodJob> {
         let work = |kept: &mut Kept, q: MethodRequest, task: &Task| kept.work(q, task);
         let worker = Worker::spawn(thread, move || Kept::new(thread), work, wake)?;
-        Ok(MethodJob { worker, asked: None, outdated: None, output: None, refusal: None, time: None })
+        Ok(MethodJob { worker, asked: None, outdated: None, was_drawn: false, output: None, refusal: None, time: None })
     }
 
     /// Takes in what the worker made of the `latest` maps or earlier ones. Returns messages for the user.
@@ -224,7 +222,7 @@ impl MethodJob {
         took: Duration,
         latest: Option<&MapsResult>,
     ) {
-        let MethodRequest { document, basis, target, method, at_rest, .. } = request;
+        let MethodRequest { document, source, basis, target, method, at_rest, .. } = request;
         // A method with a memory is faster than the same from scratch, which is what somebody chooses by.
         if at_rest || method.following().is_none() {
             self.time = Some((basis.radar.clone(), method.name(), took));
@@ -233,12 +231,13 @@ impl MethodJob {
         if reflectors.is_empty() {
             reflectors = found.iter().flatten().map(Detection::reflector).collect();
         }
-        let latest = latest.filter(|r| Basis::of(r).is_some_and(|latest| latest.same(&basis)));
+        let latest = latest.filter(|r| Basis::of(r).is_some_and(|latest| latest == basis));
         let document = latest.map_or(document, |r| r.request.document);
         let pair = Pair {
+            source: latest.map_or(source, |r| r.request.source.clone()),
             target: latest.and_then(MapsResult::target).or(target),
-            output: Arc::new(lambda),
-            doubt: doubt.map(Arc::new),
+            output: Shared::new(lambda),
+            doubt: doubt.map(Shared::new),
         };
         self.refusal = None;
         let method = method.name();
@@ -259,17 +258,27 @@ impl MethodJob {
     /// New maps of the same samples, as when a scene comes to rest: the output stays, is theirs, and aims for their target.
     pub fn aim(&mut self, maps: &MapsResult) {
         if let Some(output) = &mut self.output
-            && Basis::of(maps).is_some_and(|basis| basis.same(&output.basis))
+            && Basis::of(maps).is_some_and(|basis| basis == output.basis)
         {
             output.document = maps.request.document;
+            output.pair.source.clone_from(&maps.request.source);
             output.pair.target = maps.target().or(output.pair.target.take());
         }
+    }
+
+    /// Notes whether a panel of this frame draws something of its output. What changed out of sight is not drawn: its age is not known.
+    pub fn look(&mut self, is_drawn: bool, source: &Source, method: Option<&str>) {
+        let is_current = |o: &MethodResult| o.pair.source == *source && Some(o.method) == method;
+        if is_drawn && !self.was_drawn && !self.output.as_ref().is_none_or(is_current) {
+            (self.output, self.asked) = (None, None);
+        }
+        self.was_drawn = is_drawn;
     }
 
     /// Asks for an output, unless it was asked for just that; `held` while something is dragged.
     pub fn ask(&mut self, request: MethodRequest, held: bool) {
         let current =
-            self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis.same(&request.basis));
+            self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis == request.basis);
         self.outdated = if current { None } else { self.outdated.or_else(|| Some(Instant::now())) };
         if !self.asked.as_ref().is_some_and(|a| a.serves(&request)) {
             if !held {
@@ -319,7 +328,7 @@ impl MethodJob {
     /// The method whose output is shown, where it is of the samples on screen and another method is at work on them.
     pub fn of_another_method(&self) -> Option<&'static str> {
         let (output, asked) = (self.output.as_ref()?, self.asked.as_ref()?);
-        let is_only_method = output.basis.same(&asked.basis) && output.method != asked.method.name();
+        let is_only_method = output.basis == asked.basis && output.method != asked.method.name();
         (is_only_method && self.is_busy()).then_some(output.method)
     }
 

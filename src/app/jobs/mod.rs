@@ -1,10 +1,12 @@
 //! Everything that works beside the window: each on a thread of its own, asked at the end of a frame for what its panels showed, and
 //! polled at the beginning of the next.
 
+mod age;
 mod bounds;
 mod calibration;
 mod camera;
 mod chirp;
+mod derived;
 mod detected;
 mod dialogs;
 mod doppler;
@@ -28,6 +30,7 @@ mod run_time;
 mod scene_maps;
 mod sentence;
 mod several;
+mod source;
 mod subject;
 mod theory;
 mod thresholds;
@@ -35,11 +38,15 @@ mod training;
 
 #[cfg(test)]
 pub use bounds::bounds_of;
-pub use bounds::{Bounds, BoundsRequest, BoundsResult};
-pub use calibration::{Calibrated, Calibration};
-pub use chirp::{ChirpResult, Chirps};
+pub use bounds::{BoundsRequest, BoundsResult};
+pub use calibration::Calibrated;
+use calibration::CalibrationQuery;
+use chirp::ChirpQuery;
+pub use chirp::ChirpResult;
+use derived::{Derived, Polled};
 pub use dialogs::{Dialogs, Purpose, Question};
-pub use doppler::{DopplerResult, Dopplers};
+use doppler::DopplerQuery;
+pub use doppler::DopplerResult;
 pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
 pub use export::Exports;
 #[cfg(test)]
@@ -49,18 +56,21 @@ pub use failures::{
     keep,
 };
 pub use frame_log::FrameLog;
-pub use kinds::{Fates, Kinds, Verdict};
+use kinds::KindsQuery;
+pub use kinds::{Fates, Verdict, fates_of};
 pub use lessons::Lessons;
 pub use method::Refusal;
 pub use method_times::MeasuredMethods;
-pub use phasors::{Phasors, PhasorsResult};
+use phasors::PhasorsQuery;
+pub use phasors::PhasorsResult;
 pub use pipeline::Pipeline;
 pub use recording::Recorder;
 use recording::Window;
 pub use run_time::RunTime;
 pub use scene_maps::Scores;
 pub use several::{SeveralMaps, Small};
-pub use theory::{Theory, TheoryResult};
+use theory::TheoryRequest;
+pub use theory::TheoryResult;
 pub use thresholds::Thresholds;
 pub use training::{Log, Training};
 
@@ -80,15 +90,15 @@ pub struct Jobs {
     /// Maps, pictures, outputs.
     pub pipeline: Pipeline,
     /// Bounds of one reflector.
-    pub bounds: Bounds,
+    pub bounds: Derived<BoundsRequest>,
     /// What every element contributes to the cell under the cursor.
-    pub phasors: Phasors,
+    pub phasors: Derived<PhasorsQuery>,
     /// The beat of one element.
-    pub chirps: Chirps,
+    pub chirps: Derived<ChirpQuery>,
     /// The range-Doppler map.
-    pub dopplers: Dopplers,
+    pub dopplers: Derived<DopplerQuery>,
     /// What the selected reflector tells of the elements.
-    pub calibration: Calibration,
+    pub calibration: Derived<CalibrationQuery>,
     /// Methods on test sets.
     pub evaluation: Evaluation,
     /// Thresholds that keep a rate of false alarms.
@@ -104,9 +114,9 @@ pub struct Jobs {
     /// One map for several values.
     pub several: SeveralMaps,
     /// What became of every object in the outputs.
-    pub kinds: Kinds,
+    pub kinds: Derived<KindsQuery>,
     /// What the formulas say of one reflector.
-    pub theory: Theory,
+    pub theory: Derived<TheoryRequest>,
     /// Answers being judged.
     pub lessons: Lessons,
     /// Files being written.
@@ -124,6 +134,14 @@ pub struct Jobs {
     was_done: bool,
 }
 
+/// The derived values of jobs that are borrowed either way.
+macro_rules! every_derived {
+    ($jobs:expr) => {{
+        let Jobs { bounds, phasors, chirps, dopplers, calibration, kinds, theory, .. } = $jobs;
+        [bounds, phasors, chirps, dopplers, calibration, kinds, theory]
+    }};
+}
+
 impl Jobs {
     /// Starts every thread. `folder` is where the autosave is kept; without it there is none.
     ///
@@ -133,11 +151,11 @@ impl Jobs {
         let wake = platform::waker(ctx);
         Ok(Jobs {
             pipeline: Pipeline::start(wake.clone())?,
-            bounds: Bounds::start(wake.clone())?,
-            phasors: Phasors::start(wake.clone())?,
-            chirps: Chirps::start(wake.clone())?,
-            dopplers: Dopplers::start(wake.clone())?,
-            calibration: Calibration::start(wake.clone())?,
+            bounds: Derived::start(wake.clone())?,
+            phasors: Derived::start(wake.clone())?,
+            chirps: Derived::start(wake.clone())?,
+            dopplers: Derived::start(wake.clone())?,
+            calibration: Derived::start(wake.clone())?,
             evaluation: Evaluation::start(wake.clone())?,
             thresholds: Thresholds::start(wake.clone())?,
             failures: Failures::start(folder, wake.clone())?,
@@ -145,8 +163,8 @@ impl Jobs {
             method_times: MeasuredMethods::start(wake.clone())?,
             training: Training::start(wake.clone())?,
             several: SeveralMaps::start(wake.clone())?,
-            kinds: Kinds::start(wake.clone())?,
-            theory: Theory::start(wake.clone())?,
+            kinds: Derived::start(wake.clone())?,
+            theory: Derived::start(wake.clone())?,
             lessons: Lessons::start(wake)?,
             exports: Exports::new(ctx.clone()),
             recorder: Recorder::start(ctx.clone())?,
@@ -158,16 +176,20 @@ impl Jobs {
         })
     }
 
+    fn derived(&self) -> [&dyn Polled; 7] {
+        every_derived!(self)
+    }
+
+    fn derived_mut(&mut self) -> [&mut dyn Polled; 7] {
+        every_derived!(self)
+    }
+
     /// Takes in what was finished since the last frame. Returns what is to be done with files that were chosen.
     pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
         let mut errors = platform::problems();
         errors.extend(self.pipeline.poll());
         self.pipeline.record_times(&mut state.method_times);
-        errors.extend(self.bounds.poll());
-        errors.extend(self.phasors.poll());
-        errors.extend(self.chirps.poll());
-        errors.extend(self.dopplers.poll());
-        errors.extend(self.calibration.poll());
+        errors.extend(self.derived_mut().into_iter().filter_map(|derived| derived.poll()));
         errors.extend(self.evaluation.poll());
         errors.extend(self.failures.poll());
         let (found, failed) = self.failures.search.poll();
@@ -178,8 +200,6 @@ impl Jobs {
         errors.extend(self.method_times.poll(state));
         errors.extend(self.training.poll());
         errors.extend(self.several.poll());
-        errors.extend(self.kinds.poll());
-        errors.extend(self.theory.poll());
         errors.extend(self.lessons.poll(state));
         let (begun, failed) = self.lessons.poll_files();
         errors.extend(failed);
@@ -208,28 +228,19 @@ impl Jobs {
         self.pipeline.ask(state);
         self.lessons.ask(state);
         self.several.ask(state);
-        self.kinds.ask(state, &self.pipeline);
-        self.theory.ask(state);
         let shown = state.arrangement.shown();
-        if let Some(later) = self.failures.ask(state, shown.contains(&Panel::Failures)) {
+        let draws = |panel| shown.contains(&panel);
+        if let Some(later) = self.failures.ask(state, draws(Panel::Failures)) {
             self.wake.request_repaint_after(later);
         }
-        if shown.contains(&Panel::Bounds) {
-            self.bounds.ask(state);
-        }
-        if shown.contains(&Panel::Phasors) {
-            self.phasors.ask(state, &self.pipeline);
-        }
-        if shown.contains(&Panel::Chirp) {
-            self.chirps.ask(state);
-        }
-        if shown.contains(&Panel::RangeDoppler) && state.radar().chirps > 1 {
-            self.dopplers.ask(state);
-        }
-        if shown.contains(&Panel::Elements) {
-            self.calibration.ask(state);
-        }
-        if shown.contains(&Panel::Training)
+        self.kinds.ask(KindsQuery::of(state, &self.pipeline));
+        self.theory.ask(TheoryRequest::of(state));
+        self.bounds.ask(draws(Panel::Bounds).then(|| BoundsRequest::of(state)).flatten());
+        self.phasors.ask(draws(Panel::Phasors).then(|| PhasorsQuery::of(state, &self.pipeline)).flatten());
+        self.chirps.ask(draws(Panel::Chirp).then(|| ChirpQuery::of(state)));
+        self.dopplers.ask(draws(Panel::RangeDoppler).then(|| DopplerQuery::of(state)).flatten());
+        self.calibration.ask(draws(Panel::Elements).then(|| CalibrationQuery::of(state)).flatten());
+        if draws(Panel::Training)
             && let Some(later) = self.training.look()
         {
             self.wake.request_repaint_after(later);
@@ -264,15 +275,9 @@ impl Jobs {
     /// Whether something that panels draw is still being computed.
     fn draws_more(&self) -> bool {
         self.pipeline.is_busy()
-            || self.bounds.is_busy()
-            || self.phasors.is_busy()
-            || self.chirps.is_busy()
-            || self.dopplers.is_busy()
-            || self.theory.is_busy()
+            || self.derived().into_iter().any(Polled::is_busy)
             || self.several.is_busy()
-            || self.kinds.is_busy()
             || self.lessons.is_reading()
-            || self.calibration.is_busy()
     }
 
     /// Keeps copies of what is unsaved, but not while something is dragged.

@@ -46,7 +46,7 @@ impl Painter {
     /// The picture of `subject`; the same [`Arc`] as before where nothing changed.
     pub fn paint(&mut self, radar: &Radar, kind: MapKind, subject: &Subject) -> Picture {
         if let Some((last, picture)) = self.cache.get(&kind)
-            && last.same(subject)
+            && *last == *subject
         {
             return picture.clone();
         }
@@ -54,7 +54,7 @@ impl Painter {
         let end = end_of(subject);
         let pixels = match subject.projection {
             Projection::RangeAngle => {
-                let minus = subject.minus.as_deref().map(|minus| radar.left_to_right(&minus.lambda));
+                let minus = subject.minus.as_ref().map(|minus| radar.left_to_right(&minus.lambda));
                 colour(subject, radar.left_to_right(&subject.map.lambda), minus, end)
             }
             Projection::Cartesian => {
@@ -63,7 +63,7 @@ impl Painter {
                     slot => slot.insert(cartesian::Projector::new(radar, rows)),
                 };
                 let flat = |map: &RangeAngleMap| projector.project(map).lambda;
-                let (map, minus) = (flat(&subject.map), subject.minus.as_deref().map(flat));
+                let (map, minus) = (flat(&subject.map), subject.minus.as_ref().map(|minus| flat(minus)));
                 colour(subject, map.view(), minus.as_ref().map(|minus| minus.view()), end)
             }
         };
@@ -173,6 +173,7 @@ fn fills(kinds: &[Detection], (rows, columns): (usize, usize), dark: bool) -> Ve
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::shared::Shared;
     use crate::app::state::DifferenceView;
     use ndarray::{Array2, array};
 
@@ -203,8 +204,8 @@ mod tests {
         }
     }
 
-    fn lambda(cells: Array2<f32>) -> Arc<RangeAngleMap> {
-        Arc::new(RangeAngleMap { lambda: cells })
+    fn lambda(cells: Array2<f32>) -> Shared<RangeAngleMap> {
+        Shared::new(RangeAngleMap { lambda: cells })
     }
 
     #[test]

@@ -8,11 +8,14 @@
 //!
 //! The second method works only while the panel that compares it with the first is in sight.
 
+use super::derived::STALE;
 use super::detected::DETECTED;
 use super::maps::MapsJob;
 use super::method::{Basis, MethodJob, MethodRequest, MethodResult, Refusal};
 use super::recorded::Unexplained;
 use super::scene_maps::{MapsRequest, MapsResult, Scores, Truth};
+use super::source::Source;
+use crate::app::shared::Shared;
 use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, Panel, State};
 use crate::engine::Wanted;
 use crate::evaluate::TARGET_ETA;
@@ -21,9 +24,6 @@ use crate::platform::Instant;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
-
-/// What is older than this on screen is marked as old: less would flicker.
-const STALE: Duration = Duration::from_millis(400);
 
 /// The workers of maps and methods.
 pub struct Pipeline {
@@ -77,8 +77,13 @@ impl Pipeline {
     /// Asks the workers for what the panels of this frame need, if that changed.
     pub fn ask(&mut self, state: &State) {
         let looked_at = LookedAt::of(state);
-        let request = self.maps_request(state, &looked_at);
-        let is_recorded = request.recording.is_some();
+        let source = Source::of(state);
+        for slot in MethodSlot::BOTH {
+            let method = state.method_in(slot).map(|method| method.name());
+            self.methods[slot as usize].look(looked_at.outputs[slot as usize], &source, method);
+        }
+        let request = self.maps_request(state, source, &looked_at);
+        let is_recorded = request.source.recording.is_some();
         self.maps.ask(request, state.editor.dragged().is_some());
         for slot in MethodSlot::BOTH {
             match looked_at.outputs[slot as usize] {
@@ -89,11 +94,10 @@ impl Pipeline {
         }
     }
 
-    fn maps_request(&self, state: &State, looked_at: &LookedAt) -> MapsRequest {
+    fn maps_request(&self, state: &State, source: Source, looked_at: &LookedAt) -> MapsRequest {
         let map = |kind| looked_at.pictures.contains(&kind);
         let all = looked_at.every_map;
         let output = looked_at.outputs.contains(&true);
-        let recording = state.editor.document().recording().cloned();
         let settings = &state.settings;
         let wanted = Wanted {
             floor: settings.floor,
@@ -104,7 +108,6 @@ impl Pipeline {
             full: map(MapKind::Target) || map(MapKind::TargetAbove) || output || map(MapKind::Unexplained),
             ends: output,
         };
-        let scene = state.scene();
         let is_read = |slot: MethodSlot| looked_at.outputs[slot as usize];
         let pair = |slot: MethodSlot| {
             let output = self.method(slot).output().filter(|o| o.radar() == state.radar());
@@ -114,8 +117,6 @@ impl Pipeline {
         let is_noise = settings.floor.has_level();
         MapsRequest {
             document: state.editor.document().id(),
-            radar: state.radar().clone(),
-            scene: scene.clone(),
             wanted,
             at_rest: false,
             pictures: looked_at.pictures.clone(),
@@ -127,23 +128,25 @@ impl Pipeline {
             target_eta: settings.target_eta,
             cfar: settings.cfar,
             etas: MethodSlot::BOTH.map(|slot| if is_read(slot) { self.eta(state, slot) } else { TARGET_ETA }),
-            scores: output && (recording.is_some() || !scene.objects.is_empty() || is_noise),
+            scores: output && (source.recording.is_some() || !source.scene.objects.is_empty() || is_noise),
             roc: looked_at.roc,
-            recording,
+            source,
         }
     }
 
     /// Asks for an output of the latest maps, unless it was asked for just that.
     fn ask_method(&mut self, state: &State, slot: MethodSlot, listed: bool) {
         let latest = self.maps.result().and_then(|r| {
-            let (target, about) = (r.target(), (r.request.at_rest, r.request.document));
+            let (target, about) = (r.target(), (r.request.at_rest, r.request.document, r.request.source.clone()));
             // A recording of the two ends has none; a scene has one as soon as somebody wants it.
-            (target.is_some() || r.request.recording.is_some()).then_some((Basis::of(r)?, target, about))
+            (target.is_some() || r.request.source.recording.is_some()).then_some((Basis::of(r)?, target, about))
         });
-        let Some(((basis, target, (at_rest, document)), method)) = latest.zip(state.method_in(slot).cloned()) else {
+        let Some(((basis, target, (at_rest, document, source)), method)) =
+            latest.zip(state.method_in(slot).map(Shared::from))
+        else {
             return;
         };
-        let request = MethodRequest { document, basis, target, method, listed, at_rest };
+        let request = MethodRequest { document, source, basis, target, method, listed, at_rest };
         self.methods[slot as usize].ask(request, state.editor.dragged().is_some());
     }
 
@@ -176,8 +179,8 @@ impl Pipeline {
     /// The scene of the latest maps and its target, where it is one of reflectors and not a recording.
     pub fn truth(&self) -> Option<Truth> {
         let MapsResult { request, frame, .. } = self.maps.result()?;
-        let target = frame.full.clone().filter(|_| request.recording.is_none())?;
-        Some(Truth { radar: request.radar.clone(), scene: request.scene.clone(), target })
+        let full = frame.full.as_ref().filter(|_| request.source.recording.is_none())?;
+        Some(Truth { source: request.source.clone(), target: (&full.lambda).into(), scale: full.scale })
     }
 
     /// Why the detector in use finds nothing.
@@ -189,9 +192,9 @@ impl Pipeline {
     /// middle of its two values; nothing while the detector has not seen the output yet.
     pub fn judged(&self, state: &State, slot: MethodSlot) -> Option<(&Arc<RangeAngleMap>, f32)> {
         let output = &self.method(slot).output()?.pair.output;
-        let Some(cfar) = state.settings.cfar else { return Some((output, self.eta(state, slot))) };
+        let Some(cfar) = state.settings.cfar else { return Some((&**output, self.eta(state, slot))) };
         let result = self.maps.result().filter(|r| r.request.cfar == Some(cfar))?;
-        let is_of_it = result.request.pairs[slot as usize].as_ref().is_some_and(|p| Arc::ptr_eq(&p.output, output));
+        let is_of_it = result.request.pairs[slot as usize].as_ref().is_some_and(|p| p.output == *output);
         Some((result.detected.outputs[slot as usize].as_ref().filter(|_| is_of_it)?, DETECTED))
     }
 
@@ -209,7 +212,7 @@ impl Pipeline {
             Some(CutMap { kind, map: map.lambda.clone(), scale: Some(map.scale) })
         });
         // A method aims for the target's Lambda, so its decibels are the target's.
-        let output = self.output().map(|o| CutMap { kind: MapKind::Output, map: o.pair.output.clone(), scale });
+        let output = self.output().map(|o| CutMap { kind: MapKind::Output, map: Arc::clone(&o.pair.output), scale });
         ready.chain(output).collect()
     }
 
@@ -328,7 +331,7 @@ impl LookedAt {
         let (compares, listed, roc) =
             (shown.contains(&Panel::Compare), shown.contains(&Panel::Found), shown.contains(&Panel::Roc));
         let every_map = shown.contains(&Panel::Cuts) || shown.contains(&Panel::Values);
-        let drawn = pictures.iter().any(|kind| kind.slot() == Some(MethodSlot::First));
+        let drawn = pictures.iter().any(|kind| kind.slot() == Some(MethodSlot::First)) || state.marks_output();
         LookedAt {
             outputs: [drawn || every_map || roc || listed || compares, compares],
             pictures,

@@ -1,10 +1,7 @@
 //! When the scene on screen rests: nothing is dragged, and nothing that the samples depend on has changed for a moment.
 
+use super::source::Source;
 use crate::platform::Instant;
-use crate::radar::Radar;
-use crate::scene::Scene;
-use crate::signal::Floor;
-use std::sync::Arc;
 use std::time::Duration;
 
 /// Longer than between two repeats of a held key, so that nudging stays as quick as dragging.
@@ -17,9 +14,7 @@ pub struct Rest {
 }
 
 struct Still {
-    scene: Arc<Scene>,
-    radar: Radar,
-    floor: Floor,
+    source: Source,
     since: Instant,
 }
 
@@ -37,16 +32,15 @@ pub enum Motion {
 
 impl Rest {
     /// Takes note of what is on screen at `now`; `held` while something is dragged.
-    pub fn look(&mut self, scene: &Arc<Scene>, radar: &Radar, floor: Floor, held: bool, now: Instant) -> Motion {
+    pub fn look(&mut self, source: &Source, held: bool, now: Instant) -> Motion {
         if held {
             self.last = None;
             return Motion::Held;
         }
-        let same = |s: &Still| Arc::ptr_eq(&s.scene, scene) && s.radar == *radar && s.floor == floor;
         let since = match &self.last {
-            Some(still) if same(still) => still.since,
+            Some(still) if still.source == *source => still.since,
             _ => {
-                self.last = Some(Still { scene: scene.clone(), radar: radar.clone(), floor, since: now });
+                self.last = Some(Still { source: source.clone(), since: now });
                 now
             }
         };
@@ -60,12 +54,19 @@ impl Rest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::shared::Shared;
+    use crate::radar::Radar;
+    use crate::scene::Scene;
+    use crate::signal::Floor;
 
     /// Looks at one of two scenes, this long after the first look.
     fn looks() -> impl FnMut(usize, Floor, bool, Duration) -> Motion {
-        let (radar, scenes) = (Radar::default(), [Arc::new(Scene::default()), Arc::new(Scene::default())]);
+        let scenes = [Scene::default(), Scene::default()].map(Shared::new);
         let (mut rest, start) = (Rest::default(), Instant::now());
-        move |scene, floor, held, after| rest.look(&scenes[scene], &radar, floor, held, start + after)
+        move |scene, floor, held, after| {
+            let source = Source { radar: Radar::default(), scene: scenes[scene].clone(), recording: None, floor };
+            rest.look(&source, held, start + after)
+        }
     }
 
     fn at(milliseconds: u64) -> Duration {

@@ -3,16 +3,15 @@
 use super::detected::{DETECTED, Detected, Detector};
 use super::painter::{Painter, Picture, largest_difference};
 use super::recorded::{RecordedMaps, Unexplained};
+use super::source::Source;
 use super::subject::{Paint, Subject};
+use crate::app::shared::Shared;
 use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, Frame, ReadyMap, Wanted};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs, squared_error};
-use crate::maps::RangeAngleMap;
 use crate::maps::cfar::Cfar;
+use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::picture::ColourMap;
-use crate::radar::Radar;
-use crate::recording::Recording;
-use crate::scene::Scene;
 use crate::signal::Unfinished;
 use crate::task::Task;
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,42 +19,25 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// An output and the target it aimed for: figures are always of such a pair, whatever has changed since.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
+    /// Where the samples come from that both are made of.
+    pub source: Source,
     /// The whole array's map; `None` where a recording has the two ends alone.
-    pub target: Option<Arc<RangeAngleMap>>,
+    pub target: Option<Shared<RangeAngleMap>>,
     /// What the method made of the ends of the same scene.
-    pub output: Arc<RangeAngleMap>,
+    pub output: Shared<RangeAngleMap>,
     /// How far off the method expects that to be, where it says.
-    pub doubt: Option<Arc<RangeAngleMap>>,
-}
-
-impl Pair {
-    fn same(&self, other: &Pair) -> bool {
-        same_target(&self.target, &other.target) && Arc::ptr_eq(&self.output, &other.output)
-    }
-}
-
-/// Whether both are the same map, or both are missing.
-fn same_target(a: &Option<Arc<RangeAngleMap>>, b: &Option<Arc<RangeAngleMap>>) -> bool {
-    match (a, b) {
-        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-        (None, None) => true,
-        _ => false,
-    }
+    pub doubt: Option<Shared<RangeAngleMap>>,
 }
 
 /// What the maps worker is asked for.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub struct MapsRequest {
     /// Which document all of it is of.
     pub document: u64,
-    /// The radar.
-    pub radar: Radar,
-    /// What stands before it, or is laid over the recording.
-    pub scene: Arc<Scene>,
-    /// What was measured in the place of the scene's echoes.
-    pub recording: Option<Arc<Recording>>,
+    /// Where the samples come from.
+    pub source: Source,
     /// Which maps, and how.
     pub wanted: Wanted,
     /// Whether the scene rests: its maps are then those of the command line, bit for bit.
@@ -82,38 +64,6 @@ pub struct MapsRequest {
     pub scores: bool,
     /// Whether the ROC is looked at.
     pub roc: bool,
-}
-
-impl MapsRequest {
-    /// Whether the samples of both are the same: what is made for the one isn't made in vain for the other.
-    pub fn same_subject(&self, other: &MapsRequest) -> bool {
-        let recording = match (&self.recording, &other.recording) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        };
-        recording
-            && Arc::ptr_eq(&self.scene, &other.scene)
-            && self.radar == other.radar
-            && self.wanted.floor == other.wanted.floor
-    }
-
-    /// Whether both would give the same result.
-    pub fn same(&self, other: &MapsRequest) -> bool {
-        let pairs = self.pairs.iter().zip(&other.pairs).all(|pair| match pair {
-            (Some(a), Some(b)) => a.same(b),
-            (None, None) => true,
-            _ => false,
-        });
-        pairs
-            && self.same_subject(other)
-            && (self.wanted, self.at_rest) == (other.wanted, other.at_rest)
-            && self.pictures == other.pictures
-            && (self.colours, self.projection) == (other.colours, other.projection)
-            && (self.difference, self.dark) == (other.difference, other.dark)
-            && (self.target_eta, self.etas, self.cfar) == (other.target_eta, other.etas, other.cfar)
-            && (self.scores, self.roc) == (other.scores, other.roc)
-    }
 }
 
 /// Figures of an output against its target.
@@ -151,20 +101,20 @@ pub struct MapsResult {
 }
 
 /// What outputs are judged by.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub struct Truth {
-    /// The radar.
-    pub radar: Radar,
-    /// What stands before it.
-    pub scene: Arc<Scene>,
+    /// Where its samples come from.
+    pub source: Source,
     /// What all of its elements see.
-    pub target: ReadyMap,
+    pub target: Shared<RangeAngleMap>,
+    /// Its scale.
+    pub scale: LambdaScale,
 }
 
 impl MapsResult {
     /// The map that a method aims for.
-    pub fn target(&self) -> Option<Arc<RangeAngleMap>> {
-        self.frame.full.as_ref().map(|full| full.lambda.clone())
+    pub fn target(&self) -> Option<Shared<RangeAngleMap>> {
+        self.frame.full.as_ref().map(|full| Shared::from(&full.lambda))
     }
 }
 
@@ -202,19 +152,19 @@ impl MapsState {
         let (frame, unexplained) = self.frame(&request, task)?;
         let shows = |kind| request.pictures.contains(&kind) || request.scores;
         let output =
-            |slot: usize, above| request.pairs[slot].as_ref().filter(|_| shows(above)).map(|pair| &pair.output);
+            |slot: usize, above| request.pairs[slot].as_ref().filter(|_| shows(above)).map(|pair| &*pair.output);
         let outputs = [output(0, MapKind::OutputAbove), output(1, MapKind::SecondAbove)];
         let needs_target = outputs.iter().any(Option::is_some) || shows(MapKind::TargetAbove);
         let detected = self.detector.detect(request.cfar, &frame, needs_target, outputs);
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
             if let Some(subject) = subject(&frame, unexplained.as_ref(), &request, &detected, kind) {
-                pictures.insert(kind, self.painter.paint(&request.radar, kind, &subject));
+                pictures.insert(kind, self.painter.paint(&request.source.radar, kind, &subject));
             }
         }
         self.painter.keep(|kind| request.pictures.contains(&kind));
         // What stands in the place of a recording's echoes says nothing of them.
-        let is_silent = request.recording.is_none() && request.scene.is_silent();
+        let is_silent = request.source.recording.is_none() && request.source.scene.is_silent();
         let mut scores = [None, None];
         for (slot, pair) in request.pairs.iter().enumerate().filter(|_| request.scores) {
             let judged = Judged {
@@ -236,8 +186,8 @@ impl MapsState {
         request: &MapsRequest,
         task: &Task,
     ) -> Result<(Frame, Option<Result<Unexplained, String>>), Unfinished> {
-        let MapsRequest { radar, scene, wanted, .. } = request;
-        if let Some(recording) = &request.recording {
+        let MapsRequest { source: Source { radar, scene, recording, .. }, wanted, .. } = request;
+        if let Some(recording) = recording {
             scene.validate(radar)?;
             let elements = &scene.disturbances.elements;
             let maps = match &mut self.recorded {
@@ -261,7 +211,7 @@ impl MapsState {
     }
 
     fn roc(&mut self, is_silent: bool, pair: &Pair) -> Option<Arc<Vec<RocPoint>>> {
-        if let Some(last) = self.roc.as_ref().filter(|r| r.pair.same(pair)) {
+        if let Some(last) = self.roc.as_ref().filter(|r| r.pair == *pair) {
             return Some(last.points.clone());
         }
         let points: Arc<Vec<RocPoint>> =
@@ -274,12 +224,12 @@ impl MapsState {
 /// Figures of a pair, which are kept; `None` where there is nothing to compare the output with.
 fn scored(kept: &mut Option<ScoresOf>, is_silent: bool, pair: &Pair, judged: &Judged<'_>) -> Option<Scores> {
     let Judged { etas, cfar, detected } = *judged;
-    if let Some(last) = kept.as_ref().filter(|s| s.pair.same(pair) && (s.etas, s.cfar) == (etas, cfar)) {
+    if let Some(last) = kept.as_ref().filter(|s| s.pair == *pair && (s.etas, s.cfar) == (etas, cfar)) {
         return Some(last.scores);
     }
     let target = pair.target.as_ref()?;
     let (above, [target_eta, output_eta]) = match cfar {
-        None => ((target, &pair.output), etas),
+        None => ((&**target, &*pair.output), etas),
         Some(_) => (detected?, [DETECTED; 2]),
     };
     // What the map of the target shows is what hits and misses are counted against.
@@ -320,7 +270,8 @@ fn subject(
     detected: &Detected,
     kind: MapKind,
 ) -> Option<Subject> {
-    let lambda = |map: &Option<ReadyMap>| map.as_ref().map(|m| m.lambda.clone());
+    let lambda = |map: &Option<ReadyMap>| map.as_ref().map(|m| Shared::from(&m.lambda));
+    let shared = |map: &Option<Arc<RangeAngleMap>>| map.as_ref().map(Shared::from);
     let slot = kind.slot().map(|slot| slot as usize);
     let pair = slot.and_then(|slot| request.pairs[slot].as_ref());
     let output = pair.map(|p| p.output.clone());
@@ -333,17 +284,17 @@ fn subject(
         MapKind::Output | MapKind::Second => (output, None, colours),
         MapKind::Doubt => (pair?.doubt.clone(), None, Paint::Doubt(request.colours)),
         MapKind::TargetAbove if request.cfar.is_some() => {
-            (detected.target.clone(), None, Paint::Above { eta: DETECTED, dark })
+            (shared(&detected.target), None, Paint::Above { eta: DETECTED, dark })
         }
         MapKind::TargetAbove => (lambda(&frame.full), None, Paint::Above { eta: request.target_eta, dark }),
         MapKind::OutputAbove | MapKind::SecondAbove => {
             let (output, eta) = match request.cfar {
                 None => (output, request.etas[slot?]),
-                Some(_) => (detected.outputs[slot?].clone(), DETECTED),
+                Some(_) => (shared(&detected.outputs[slot?]), DETECTED),
             };
             let target = match request.cfar {
                 None => pair?.target.clone(),
-                Some(_) => detected.target.clone().filter(|_| pair.is_some_and(|pair| pair.target.is_some())),
+                Some(_) => shared(&detected.target).filter(|_| pair.is_some_and(|pair| pair.target.is_some())),
             };
             let spans = |map: &ReadyMap| (20.0 * (map.scale.peak - map.scale.floor)) as f32;
             let decibels = frame.full.as_ref().filter(|_| request.cfar.is_none()).map_or(0.0, spans);

@@ -20,7 +20,7 @@ const APART: [f32; 2] = [1.0 / 32.0, 1.0 / 10.0];
 
 /// Where the peaks of a map are, how many cells are detected, or where a difference is largest.
 pub fn sentence(radar: &Radar, subject: &Subject) -> String {
-    let (map, minus) = (&subject.map.lambda, subject.minus.as_deref().map(|m| &m.lambda));
+    let (map, minus) = (&subject.map.lambda, subject.minus.as_ref().map(|m| &m.lambda));
     match (subject.paint, minus) {
         (Paint::Lambda(_), _) => peaks(radar, map),
         (Paint::Doubt(_), _) => doubt(radar, map),
@@ -101,18 +101,18 @@ fn largest_difference(radar: &Radar, map: &Array2<f32>, target: &Array2<f32>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::shared::Shared;
     use crate::app::state::{DifferenceView, Projection};
     use crate::maps::RangeAngleMap;
     use crate::picture::ColourMap;
-    use std::sync::Arc;
 
-    fn map(peaks: &[(usize, usize, f32)]) -> Arc<RangeAngleMap> {
+    fn map(peaks: &[(usize, usize, f32)]) -> Shared<RangeAngleMap> {
         let mut lambda = Array2::from_elem((512, 1024), 0.2f32);
         peaks.iter().for_each(|(bin, column, value)| lambda[(*bin, *column)] = *value);
-        Arc::new(RangeAngleMap { lambda })
+        Shared::new(RangeAngleMap { lambda })
     }
 
-    fn said(paint: Paint, map: Arc<RangeAngleMap>, minus: Option<Arc<RangeAngleMap>>) -> String {
+    fn said(paint: Paint, map: Shared<RangeAngleMap>, minus: Option<Shared<RangeAngleMap>>) -> String {
         let subject = Subject { map, minus, paint, projection: Projection::Cartesian };
         sentence(&Radar::default(), &subject)
     }

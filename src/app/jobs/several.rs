@@ -2,6 +2,7 @@
 
 use super::painter::Painter;
 use super::subject::{Paint, Subject};
+use crate::app::shared::Shared;
 use crate::app::state::{MapKind, Panel, Projection, State, Variant};
 use crate::maps::focus::map_of;
 use crate::maps::{Aperture, Normalisation, RangeAngleMap};
@@ -20,25 +21,14 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_millis(100);
 
 /// What is to be made.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 struct Request {
-    number: u64,
-    scene: Arc<Scene>,
+    scene: Shared<Scene>,
     variants: Vec<Variant>,
     map: MapKind,
     normalisation: Normalisation,
     colours: ColourMap,
     projection: Projection,
-}
-
-impl Request {
-    fn same(&self, other: &Request) -> bool {
-        Arc::ptr_eq(&self.scene, &other.scene)
-            && self.variants.len() == other.variants.len()
-            && self.variants.iter().zip(&other.variants).all(|(a, b)| a.same(b))
-            && (self.map, self.colours, self.projection) == (other.map, other.colours, other.projection)
-            && self.normalisation == other.normalisation
-    }
 }
 
 /// One of the maps, or why there is none.
@@ -64,7 +54,7 @@ pub struct Small {
 
 /// The worker, and the maps on screen.
 pub struct SeveralMaps {
-    worker: Worker<Request, ()>,
+    worker: Worker<(u64, Request), ()>,
     arriving: Receiver<Arrival>,
     asked: Option<Request>,
     shown: Vec<Small>,
@@ -79,7 +69,9 @@ impl SeveralMaps {
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<SeveralMaps> {
         let (done, arriving) = channel();
         let each = wake.clone();
-        let work = move |_: &mut (), request: Request, task: &Task| make(&request, task, &done, &each);
+        let work = move |_: &mut (), (number, request): (u64, Request), task: &Task| {
+            make(number, &request, task, &done, &each)
+        };
         let worker = Worker::spawn("several maps", || (), work, wake)?;
         Ok(SeveralMaps { worker, arriving, asked: None, shown: Vec::new(), requests: 0 })
     }
@@ -92,15 +84,14 @@ impl SeveralMaps {
         let settings = &state.settings;
         let variants = settings.several.variants(state.radar(), settings.floor, state.method(), &state.methods.all);
         let request = Request {
-            number: self.requests + 1,
-            scene: state.scene().clone(),
+            scene: state.scene().into(),
             variants,
             map: settings.several.map,
             normalisation: settings.normalisation,
             colours: settings.colours,
             projection: settings.projection,
         };
-        if self.asked.as_ref().is_some_and(|asked| asked.same(&request)) {
+        if self.asked.as_ref() == Some(&request) {
             return;
         }
         self.requests += 1;
@@ -108,7 +99,7 @@ impl SeveralMaps {
             self.worker.cancel_older_than(PATIENCE);
         }
         self.keep_pictures(&request.variants);
-        self.worker.request(request.clone());
+        self.worker.request((self.requests, request.clone()));
         self.asked = Some(request);
     }
 
@@ -136,7 +127,7 @@ impl SeveralMaps {
     /// Takes in what is finished. Returns a message for the user.
     pub fn poll(&mut self) -> Option<String> {
         for Arrival { request, label, made } in self.arriving.try_iter() {
-            let latest = self.asked.as_ref().is_some_and(|asked| asked.number == request);
+            let latest = self.requests == request;
             // While something is dragged, maps of the last but one request still show the movement.
             let of_value = |small: &&mut Small| small.variant.label == label && (latest || !small.is_current);
             if let Some(small) = self.shown.iter_mut().find(of_value) {
@@ -152,7 +143,7 @@ impl SeveralMaps {
     }
 }
 
-fn make(request: &Request, task: &Task, done: &Sender<Arrival>, wake: &impl Fn()) {
+fn make(number: u64, request: &Request, task: &Task, done: &Sender<Arrival>, wake: &impl Fn()) {
     for variant in &request.variants {
         if task.is_cancelled() {
             return;
@@ -162,7 +153,7 @@ fn make(request: &Request, task: &Task, done: &Sender<Arrival>, wake: &impl Fn()
             return;
         }
         // The window may be gone by now.
-        let _closed = done.send(Arrival { request: request.number, label: variant.label.clone(), made });
+        let _closed = done.send(Arrival { request: number, label: variant.label.clone(), made });
         wake();
     }
 }
@@ -190,7 +181,7 @@ fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMa
 
 fn picture(request: &Request, variant: &Variant, map: RangeAngleMap) -> Arc<ColorImage> {
     let paint = Paint::Lambda(request.colours);
-    let subject = Subject { map: Arc::new(map), minus: None, paint, projection: request.projection };
+    let subject = Subject { map: Shared::new(map), minus: None, paint, projection: request.projection };
     Painter::default().paint(&variant.radar, request.map, &subject).image
 }
 
@@ -201,12 +192,11 @@ mod tests {
     use crate::radar::Radar;
     use crate::signal::Floor;
 
-    fn request(parameter: Parameter, number: u64) -> Request {
+    fn request(parameter: Parameter) -> Request {
         let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
         let several = Several::default().with(parameter, &radar);
         Request {
-            number,
-            scene: Arc::new(Scene::of_points([(0.3, 1.2)])),
+            scene: Shared::new(Scene::of_points([(0.3, 1.2)])),
             variants: several.variants(&radar, Floor::Exact, None, &[]),
             map: several.map,
             normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
@@ -221,8 +211,8 @@ mod tests {
             [Parameter::Window, Parameter::Bandwidth, Parameter::Spacing, Parameter::Snr, Parameter::EndElements]
         {
             let (done, arriving) = channel();
-            let request = request(parameter, 1);
-            make(&request, &Task::default(), &done, &|| ());
+            let request = request(parameter);
+            make(1, &request, &Task::default(), &done, &|| ());
             let images: Vec<Arc<ColorImage>> = arriving.try_iter().map(|a| a.made.unwrap()).collect();
             assert_eq!(images.len(), request.variants.len());
             assert!(images.windows(2).all(|pair| pair[0].pixels != pair[1].pixels), "{parameter:?}");
@@ -234,7 +224,7 @@ mod tests {
         let (done, arriving) = channel();
         let task = Task::default();
         task.cancel();
-        make(&request(Parameter::Window, 1), &task, &done, &|| ());
+        make(1, &request(Parameter::Window), &task, &done, &|| ());
         assert_eq!(arriving.try_iter().count(), 0);
     }
 }

@@ -1,9 +1,9 @@
 //! What a picture shows, and how.
 
+use crate::app::shared::Shared;
 use crate::app::state::{DifferenceView, Projection};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
-use std::sync::Arc;
 
 /// How a map is painted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,26 +40,14 @@ pub enum Paint {
 }
 
 /// What one picture shows.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
     /// What is shown.
-    pub map: Arc<RangeAngleMap>,
+    pub map: Shared<RangeAngleMap>,
     /// Subtracted by [`Paint::Difference`]; the target of [`Paint::Detections`].
-    pub minus: Option<Arc<RangeAngleMap>>,
+    pub minus: Option<Shared<RangeAngleMap>>,
     /// How.
     pub paint: Paint,
     /// Over which coordinates.
     pub projection: Projection,
-}
-
-impl Subject {
-    /// Whether both would give the same picture.
-    pub fn same(&self, other: &Subject) -> bool {
-        let minus = match (&self.minus, &other.minus) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        };
-        minus && Arc::ptr_eq(&self.map, &other.map) && self.paint == other.paint && self.projection == other.projection
-    }
 }

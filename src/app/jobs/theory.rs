@@ -1,12 +1,13 @@
-//! What the formulas say of one reflector on every map, computed off the UI thread.
+//! What the formulas say of one reflector on every map.
 
 use super::bounds::subject;
-use crate::app::state::{Elements, Panel, State};
+use super::derived::{Failure, Query};
+use crate::app::state::{BoundsSettings, Elements, Panel, State};
 use crate::bounds::{cramer_rao, noise_variance};
 use crate::maps::Aperture;
 use crate::radar::{Decibels, End, Radar};
 use crate::scene::Reflector;
-use crate::task::{Reply, Task, Worker};
+use crate::task::Task;
 use crate::theory::{Ellipse, Overlay};
 
 /// What is looked at.
@@ -36,78 +37,33 @@ pub struct TheoryResult {
     pub ellipse: Option<Ellipse>,
 }
 
-fn work(request: TheoryRequest) -> TheoryResult {
-    let TheoryRequest { radar, reflector, elements, seed, snr, .. } = &request;
-    let apertures = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
-    let overlays = apertures.map(|aperture| Overlay::of(radar, reflector, aperture));
-    let ellipse = elements.layout(radar, *seed).ok().and_then(|layout| {
-        let variance = noise_variance(radar, &layout, reflector, *snr);
-        let bounds = cramer_rao(radar, &layout, std::slice::from_ref(reflector), variance).ok()?;
-        Ellipse::of(bounds.first()?)
-    });
-    TheoryResult { overlays, ellipse, request }
-}
-
-/// The worker, what it was asked last, and what it found last.
-pub struct Theory {
-    worker: Worker<TheoryRequest, TheoryResult>,
-    asked: Option<TheoryRequest>,
-    result: Option<TheoryResult>,
-}
-
-impl Theory {
-    /// Starts the worker, which waits; `wake` is called from its thread.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Theory> {
-        let work = |_: &mut (), request: TheoryRequest, _: &Task| work(request);
-        Ok(Theory { worker: Worker::spawn("theory", || (), work, wake)?, asked: None, result: None })
-    }
-
-    /// Asks for what is drawn over the maps on screen, if that changed; forgets it when nobody looks.
-    pub fn ask(&mut self, state: &State) {
+impl TheoryRequest {
+    /// The reflector that is drawn over the maps on screen; `None` where none is.
+    pub fn of(state: &State) -> Option<Self> {
         let looked_at = state.arrangement.shown().iter().any(|panel| matches!(panel, Panel::Map(_)));
-        let subject = subject(&state.editor).filter(|_| state.settings.show_theory && looked_at);
-        let Some((name, reflector)) = subject else {
-            (self.asked, self.result) = (None, None);
-            return;
-        };
-        let bounds = state.settings.bounds;
-        let request = TheoryRequest {
-            radar: state.radar().clone(),
-            name,
-            reflector,
-            elements: bounds.elements,
-            seed: bounds.seed,
-            snr: bounds.snr,
-        };
-        if self.asked.as_ref() != Some(&request) {
-            self.asked = Some(request.clone());
-            self.worker.request(request);
-        }
+        let (name, reflector) = subject(&state.editor).filter(|_| state.settings.show_theory && looked_at)?;
+        let BoundsSettings { elements, seed, snr, .. } = state.settings.bounds;
+        Some(TheoryRequest { radar: state.radar().clone(), name, reflector, elements, seed, snr })
     }
+}
 
-    /// What is to be drawn.
-    pub fn result(&self) -> Option<&TheoryResult> {
-        self.result.as_ref()
-    }
+impl Query for TheoryRequest {
+    type Value = TheoryResult;
+    type State = ();
+    const THREAD: &'static str = "theory";
+    const WHAT: &'static str = "Computing the theory";
+    const ADVICE: &'static str = "Move the reflector to try again.";
 
-    /// Whether it computes.
-    pub fn is_busy(&self) -> bool {
-        self.worker.is_busy()
-    }
-
-    /// Takes in what was found. Returns a message for the user.
-    pub fn poll(&mut self) -> Option<String> {
-        let mut message = None;
-        for reply in self.worker.replies() {
-            match reply {
-                // Nobody looks at it any more where nothing is asked.
-                Reply::Done { result, .. } => self.result = Some(result).filter(|_| self.asked.is_some()),
-                Reply::Panicked { message: said, .. } => {
-                    message = Some(format!("Computing the theory failed ({said}). Move the reflector to try again."));
-                }
-            }
-        }
-        message
+    fn compute(&self, (): &mut (), _: &Task) -> Result<TheoryResult, Failure> {
+        let TheoryRequest { radar, reflector, elements, seed, snr, .. } = self;
+        let apertures = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
+        let overlays = apertures.map(|aperture| Overlay::of(radar, reflector, aperture));
+        let ellipse = elements.layout(radar, *seed).ok().and_then(|layout| {
+            let variance = noise_variance(radar, &layout, reflector, *snr);
+            let bounds = cramer_rao(radar, &layout, std::slice::from_ref(reflector), variance).ok()?;
+            Ellipse::of(bounds.first()?)
+        });
+        Ok(TheoryResult { overlays, ellipse, request: self.clone() })
     }
 }
 
@@ -117,14 +73,15 @@ mod tests {
 
     /// Of a point this far ahead of the array.
     fn found(y_metres: f64) -> TheoryResult {
-        work(TheoryRequest {
+        let request = TheoryRequest {
             radar: Radar { elements: 64, samples: 32, ..Radar::default() },
             name: "point 1".to_owned(),
             reflector: Reflector { x_metres: 1.5, y_metres, reflectivity: 1.0 },
             elements: Elements::TwoEnds,
             seed: 0,
             snr: Decibels(20.0),
-        })
+        };
+        request.compute(&mut (), &Task::default()).unwrap()
     }
 
     #[test]

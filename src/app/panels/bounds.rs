@@ -25,10 +25,8 @@ pub struct Input<'a> {
     pub elements: usize,
     /// Whether there is a reflector ahead of the array.
     pub has_subject: bool,
-    /// What was found last.
-    pub result: Option<&'a BoundsResult>,
-    /// Why nothing was found.
-    pub error: Option<&'a str>,
+    /// What was found last, or why nothing was.
+    pub result: Option<Result<&'a BoundsResult, &'a str>>,
 }
 
 /// The picture on the graphics card.
@@ -50,13 +48,16 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
         if settings != input.settings {
             asked.push(ViewCommand::SetBounds(settings).into());
         }
-        if let Some(error) = input.error {
-            ui.colored_label(ui.visuals().error_fg_color, error);
-            return;
-        }
-        let Some(result) = input.result else {
-            ui.weak("computing…");
-            return;
+        let result = match input.result {
+            Some(Ok(result)) => result,
+            Some(Err(error)) => {
+                ui.colored_label(ui.visuals().error_fg_color, error);
+                return;
+            }
+            None => {
+                ui.weak("computing…");
+                return;
+            }
         };
         let texture = memory.texture.of(ui.ctx(), "ambiguity", &result.image, TextureOptions::LINEAR);
         strip(ui, &result.request.radar, &result.layout);
@@ -270,7 +271,7 @@ mod tests {
     fn another_choice_of_elements_is_asked_for() {
         let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
             let settings = BoundsSettings::default();
-            let input = Input { settings, elements: 64, has_subject: true, result: None, error: None };
+            let input = Input { settings, elements: 64, has_subject: true, result: None };
             let commands = show(ui, input, &mut state.0);
             state.1.extend(commands);
         };
@@ -300,7 +301,7 @@ mod tests {
         let result = crate::app::jobs::bounds_of(request);
         let draw = move |ui: &mut Ui, memory: &mut Memory| {
             let (settings, result) = (BoundsSettings::default(), result.as_ref().ok());
-            let input = Input { settings, elements: 64, has_subject: true, result, error: None };
+            let input = Input { settings, elements: 64, has_subject: true, result: result.map(Ok) };
             _ = show(ui, input, memory);
         };
         Harness::builder().with_size(size).build_ui_state(draw, Memory::default())

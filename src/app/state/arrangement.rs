@@ -7,7 +7,7 @@ use crate::lesson::Uses;
 use eframe::egui;
 use egui_tiles::{Container, LinearDir, Tile, TileId, Tree};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The panels of a task that is not on screen.
 #[derive(Serialize, Deserialize)]
@@ -34,6 +34,9 @@ pub struct Arrangement {
     /// Room that opened panels took from others.
     #[serde(default)]
     taken: Vec<Taken>,
+    /// The view in front of each tile that several share, where it is not the first.
+    #[serde(default)]
+    views: BTreeMap<Panel, Panel>,
     /// A panel that was opened in this frame: once it was laid out, it is given the room it needs.
     #[serde(skip)]
     opened: Option<Panel>,
@@ -57,6 +60,7 @@ impl Arrangement {
             before: None,
             others: Vec::new(),
             taken: Vec::new(),
+            views: BTreeMap::new(),
             opened: None,
             shown: BTreeSet::new(),
         }
@@ -134,9 +138,71 @@ impl Arrangement {
         self.maximised
     }
 
+    /// Whether a panel fills the window.
+    pub fn is_maximised(&self, panel: Panel) -> bool {
+        self.maximised == Some(panel.tile()) && self.is_in_front_of_tile(panel)
+    }
+
     /// Lets `panel` fill the window, or ends that.
     pub fn toggle_maximised(&mut self, panel: Panel) {
-        self.maximised = if self.maximised == Some(panel) { None } else { Some(panel) };
+        let is_maximised = self.is_maximised(panel);
+        self.bring_to_front(panel);
+        self.maximised = Some(panel.tile()).filter(|_| !is_maximised);
+    }
+
+    /// The view in front of each tile that several share, where it is not the first.
+    pub fn views(&self) -> &BTreeMap<Panel, Panel> {
+        &self.views
+    }
+
+    /// The view in front of a tile.
+    pub fn view(&self, tile: Panel) -> Panel {
+        self.views.get(&tile).copied().unwrap_or(tile)
+    }
+
+    /// Whether a panel is the view in front of its tile.
+    fn is_in_front_of_tile(&self, panel: Panel) -> bool {
+        self.view(panel.tile()) == panel
+    }
+
+    /// Puts a view in front of the tile that it shares with others.
+    pub fn bring_to_front(&mut self, view: Panel) {
+        if view.tile() == view {
+            self.views.remove(&view);
+        } else {
+            self.views.insert(view.tile(), view);
+        }
+    }
+
+    /// Takes out tiles of panels that became views of another's tile, as layouts kept from older versions have them. A view that was in
+    /// sight is in front.
+    pub fn join_views(&mut self) {
+        let trees = self.others.iter_mut().map(|left| &mut left.tree).chain([&mut self.tree]);
+        for tree in trees {
+            for view in Panel::all().into_iter().filter(|panel| panel.tile() != *panel) {
+                let Some(id) = tree.tiles.find_pane(&view) else { continue };
+                if tree.tiles.is_visible(id) {
+                    match tree.tiles.find_pane(&view.tile()) {
+                        Some(tile) => {
+                            if !tree.tiles.is_visible(tile) {
+                                self.views.insert(view.tile(), view);
+                            }
+                            tree.tiles.set_visible(tile, true);
+                        }
+                        None => {
+                            self.views.insert(view.tile(), view);
+                            tree.tiles.insert(id, Tile::Pane(view.tile()));
+                            continue;
+                        }
+                    }
+                }
+                tree.remove_recursively(id);
+            }
+        }
+        if let Some(view) = self.maximised.filter(|view| view.tile() != *view) {
+            self.bring_to_front(view);
+            self.maximised = Some(view.tile());
+        }
     }
 
     /// Ends that a panel fills the window.
@@ -144,9 +210,14 @@ impl Arrangement {
         self.maximised = None;
     }
 
-    /// Whether a panel has a visible tile (its tab may be behind another).
+    /// Whether a panel has a visible tile (its tab may be behind another), and is in front of it where it shares it.
     pub fn is_open(&self, panel: Panel) -> bool {
-        self.tree.tiles.find_pane(&panel).is_some_and(|id| self.tree.tiles.is_visible(id))
+        self.has_tile(panel) && self.is_in_front_of_tile(panel)
+    }
+
+    /// Whether the tile that shows a panel, or another view in its place, is visible.
+    pub fn has_tile(&self, panel: Panel) -> bool {
+        self.tree.tiles.find_pane(&panel.tile()).is_some_and(|id| self.tree.tiles.is_visible(id))
     }
 
     /// Hides a panel that is in sight; shows any other, its tab in front.
@@ -159,9 +230,13 @@ impl Arrangement {
     /// and its end brings the last one back.
     pub fn set_open(&mut self, panel: Panel, open: bool) {
         self.maximised = None;
-        let own = Task::of(panel).filter(|_| !self.is_open(panel) || !open);
+        if open {
+            self.bring_to_front(panel);
+        }
+        let (view, panel) = (panel, panel.tile());
+        let own = Task::of(panel).filter(|_| !self.has_tile(panel) || !open);
         match own {
-            Some(task) if open && task != self.task && self.wants_own(panel) => return self.change_for(panel, task),
+            Some(task) if open && task != self.task && self.wants_own(panel) => return self.change_for(view, task),
             Some(task) if !open && task == self.task && task != Task::Explore => {
                 let before = self.before.take().unwrap_or_default();
                 return self.change(before);
@@ -185,7 +260,7 @@ impl Arrangement {
     }
 
     fn set_pane_open(&mut self, id: TileId, panel: Panel, open: bool) {
-        let was_open = self.is_open(panel);
+        let was_open = self.has_tile(panel);
         self.tree.tiles.set_visible(id, open);
         if open {
             self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == panel));
@@ -231,7 +306,7 @@ impl Arrangement {
 
     /// Gives a panel that was opened the room it needs, once it was laid out; whether anything moved.
     pub fn make_room(&mut self) -> bool {
-        let in_sight = |panel: &Panel| self.shown.contains(panel);
+        let in_sight = |tile: &Panel| self.shown.contains(&self.views.get(tile).copied().unwrap_or(*tile));
         let Some(panel) = self.opened.take_if(|panel| in_sight(panel)) else { return false };
         let taken = room::make(&mut self.tree.tiles, panel);
         let moved = !taken.is_empty();
@@ -251,7 +326,7 @@ impl Arrangement {
         if unused(&Panel::Compare) && self.task == Task::Compare {
             self.switch(Task::Teach);
         }
-        let open = Panel::all().into_iter().filter(|p| unused(p) && self.is_open(*p));
+        let open = Panel::tiles().into_iter().filter(|p| unused(p) && self.has_tile(*p));
         let closed: Vec<(Panel, bool)> = open.map(|panel| (panel, self.is_in_front(panel))).collect();
         closed.iter().for_each(|(panel, _)| self.set_open(*panel, false));
         closed
@@ -313,7 +388,7 @@ mod tests {
     #[test]
     fn tools_are_closed_at_first() {
         let arrangement = Arrangement::default();
-        for panel in Panel::all() {
+        for panel in Panel::tiles() {
             let closed = [Panel::Timing, Panel::Map(MapKind::Doubt), Panel::Map(MapKind::Unexplained)].contains(&panel)
                 || Panel::TOOLS.contains(&panel);
             assert_eq!(arrangement.is_open(panel), !closed, "{panel:?}");
@@ -346,6 +421,45 @@ mod tests {
         arrangement.put_large(MapKind::Input1);
         assert_eq!(place(&arrangement, MapKind::Input1), largest);
         assert!(place(&arrangement, MapKind::Target).is_some_and(|target| Some(target) != largest));
+    }
+
+    #[test]
+    fn one_tile_shows_the_view_that_was_opened_last() {
+        let mut arrangement = Arrangement::default();
+        arrangement.set_open(Panel::Elements, true);
+        assert!(arrangement.is_open(Panel::Elements) && !arrangement.is_open(Panel::Radar));
+        arrangement.toggle(Panel::Radar);
+        assert!(arrangement.is_open(Panel::Radar) && !arrangement.is_open(Panel::Elements));
+        arrangement.shown.insert(Panel::Radar);
+        arrangement.toggle(Panel::Radar);
+        assert!([Panel::Radar, Panel::Elements].iter().all(|view| !arrangement.is_open(*view)));
+    }
+
+    #[test]
+    fn older_tiles_become_views() {
+        let mut arrangement = Arrangement::default();
+        let [radar, chirp] = [Panel::Radar, Panel::Chirp].map(|p| arrangement.tree.tiles.find_pane(&p).unwrap());
+        let older = |arrangement: &mut Arrangement, beside: TileId, panel: Panel| {
+            let tabs = arrangement.tree.tiles.parent_of(beside).unwrap();
+            let id = arrangement.tree.tiles.insert_pane(panel);
+            arrangement.tree.move_tile_to_container(id, tabs, usize::MAX, false);
+        };
+        older(&mut arrangement, radar, Panel::Elements);
+        older(&mut arrangement, chirp, Panel::RangeDoppler);
+        arrangement.tree.tiles.set_visible(chirp, true);
+        arrangement.join_views();
+        assert!(arrangement.is_open(Panel::Elements), "it was open");
+        assert!(arrangement.is_open(Panel::Chirp) && !arrangement.is_open(Panel::RangeDoppler), "both were open");
+        let tiles: Vec<Panel> = arrangement
+            .tree
+            .tiles
+            .tiles()
+            .filter_map(|t| match t {
+                Tile::Pane(panel) => Some(*panel),
+                Tile::Container(_) => None,
+            })
+            .collect();
+        assert!(tiles.iter().all(|panel| panel.tile() == *panel), "{tiles:?}");
     }
 
     fn tabs_of(arrangement: &Arrangement, panel: Panel) -> Option<TileId> {

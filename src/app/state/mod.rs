@@ -311,6 +311,21 @@ impl State {
         self.settings.method_eta.get(method.name()).copied().or(answer).unwrap_or_else(|| method.eta())
     }
 
+    /// Whether places where the method found something are drawn: over a recording always.
+    pub fn draws_found(&self) -> bool {
+        let is_recorded = self.editor.document().recording().is_some();
+        !self.is_predicting() && (is_recorded || (self.settings.show_found && self.finds_reflectors()))
+    }
+
+    /// Whether a panel in sight marks something of the method's output, which it then needs as if it drew the output.
+    pub fn marks_output(&self) -> bool {
+        let shown = self.arrangement.shown();
+        let marks_found = self.draws_found() && shown.contains(&Panel::Scene);
+        let marks_kinds = self.settings.show_kinds && !self.is_predicting();
+        let told = self.row_on_screen().is_some() && shown.contains(&Panel::Failures);
+        told || marks_found || (marks_kinds && self.pictured().contains(&MapKind::Target))
+    }
+
     /// The maps that a panel in sight draws.
     pub fn pictured(&self) -> BTreeSet<MapKind> {
         let shown = self.arrangement.shown();

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Everything that can be shown in a tile.
+/// Everything that can be shown, each in a tile of its own or as one of several views of a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Panel {
     /// The scene's canvas.
@@ -19,9 +19,9 @@ pub enum Panel {
     Map(MapKind),
     /// Range profile and angle cut through the cursor.
     Cuts,
-    /// Elements as they are built.
+    /// Elements as they are built; a view of [`Panel::Radar`].
     Elements,
-    /// An interferer and a mirror.
+    /// An interferer and a mirror; a view of [`Panel::Radar`].
     Disturbances,
     /// What the method found, as a list.
     Found,
@@ -33,15 +33,15 @@ pub enum Panel {
     Bounds,
     /// What every element contributes to the cell under the cursor.
     Phasors,
-    /// What is sent and what returns, as frequency against time, and the beat.
+    /// What is sent and what returns, as frequency against time, and the beat; the first view of the tile Waveform.
     Chirp,
-    /// Range against radial velocity, and the time at which the scene is looked at.
+    /// Range against radial velocity, and the time at which the scene is looked at; a view of [`Panel::Chirp`].
     RangeDoppler,
-    /// Methods on the tables' test sets.
+    /// Methods on the tables' test sets; a view of [`Panel::Failures`].
     Evaluation,
-    /// Scenes on which methods fail, row by row.
+    /// Scenes on which methods fail, row by row; the first view of the tile Evaluate.
     Failures,
-    /// Run time against error.
+    /// Run time against error; a view of [`Panel::Failures`].
     #[serde(alias = "Front")]
     RunTime,
     /// A training watched.
@@ -54,42 +54,91 @@ pub enum Panel {
     Several,
     /// Two methods on the scene on screen.
     Compare,
-    /// What every map has under the pointer.
+    /// What every map has under the pointer; a view of [`Panel::Cuts`].
     Values,
 }
 
 impl Panel {
-    /// Panels that are closed at first: each is a tool for a question of its own.
-    pub const TOOLS: [Panel; 17] = [
+    /// Tiles that are closed at first: each is a tool for a question of its own.
+    pub const TOOLS: [Panel; 11] = [
         Panel::Guide,
         Panel::Lesson,
         Panel::Failures,
         Panel::Radar,
-        Panel::Elements,
-        Panel::Disturbances,
         Panel::Found,
         Panel::Bounds,
         Panel::Phasors,
         Panel::Chirp,
-        Panel::RangeDoppler,
-        Panel::Evaluation,
-        Panel::RunTime,
-        Panel::Training,
         Panel::Several,
         Panel::Compare,
-        Panel::Values,
+        Panel::Training,
     ];
 
-    /// Tools for whoever develops methods: menus list them apart.
-    pub const RESEARCH: [Panel; 3] = [Panel::Evaluation, Panel::RunTime, Panel::Training];
+    /// Tiles for developers of the program and of methods: menus list them where *Developer* is ticked.
+    pub const DEVELOPER: [Panel; 2] = [Panel::Timing, Panel::Training];
 
-    /// All panels, in the order menus list them.
-    pub fn all() -> Vec<Panel> {
+    /// Tiles that are shared by several views, each with its name and its views, the first of which stands for the tile.
+    const SHARED: &'static [(&'static str, &'static [Panel])] = &[
+        ("Radar", &[Panel::Radar, Panel::Elements, Panel::Disturbances]),
+        ("Cuts", &[Panel::Cuts, Panel::Values]),
+        ("Waveform", &[Panel::Chirp, Panel::RangeDoppler]),
+        ("Evaluate", &[Panel::Failures, Panel::Evaluation, Panel::RunTime]),
+    ];
+
+    /// All panels that have a tile, in the order menus list them.
+    pub fn tiles() -> Vec<Panel> {
         let mut all = vec![Panel::Scene, Panel::Controls, Panel::Inspector, Panel::Objects];
         all.extend(MapKind::ALL.map(Panel::Map));
         all.extend([Panel::Cuts, Panel::Roc, Panel::Timing]);
         all.extend(Panel::TOOLS);
         all
+    }
+
+    /// All panels, the views of a tile side by side.
+    pub fn all() -> Vec<Panel> {
+        let views = |tile: Panel| {
+            if tile.views().is_empty() { vec![tile] } else { tile.views().to_vec() }
+        };
+        Panel::tiles().into_iter().flat_map(views).collect()
+    }
+
+    /// The views of the tile that this is one of; none where it has a tile to itself.
+    pub fn views(self) -> &'static [Panel] {
+        let shared = Panel::SHARED.iter().find(|(_, views)| views.contains(&self));
+        shared.map_or(&[], |(_, views)| *views)
+    }
+
+    /// The panel whose tile shows this one.
+    pub fn tile(self) -> Panel {
+        self.views().first().copied().unwrap_or(self)
+    }
+
+    /// Title of its tile.
+    pub fn tile_title(self) -> &'static str {
+        let shared = Panel::SHARED.iter().find(|(_, views)| views.contains(&self));
+        shared.map_or_else(|| self.title(), |(title, _)| *title)
+    }
+
+    /// Its name among the views of its tile.
+    pub fn view_title(self) -> &'static str {
+        match self {
+            Panel::Radar => "Constants",
+            Panel::Cuts => "Profiles",
+            Panel::Failures => "Rows",
+            Panel::Evaluation => "Tables",
+            other => other.title(),
+        }
+    }
+
+    /// What its tile is for.
+    pub fn describe_tile(self) -> &'static str {
+        match self.tile() {
+            Panel::Radar => "The radar's constants, its elements as they are built, and what disturbs it",
+            Panel::Cuts => "Range profile and angle cut of all maps through the cursor, and their values under it",
+            Panel::Chirp => "What is sent and what returns, the beat, and range against radial velocity",
+            Panel::Failures => "Methods on many scenes: every row, the printed tables, and run time against error",
+            other => other.describe(),
+        }
     }
 
     /// Its title.
@@ -202,6 +251,14 @@ pub enum MethodSlot {
 impl MethodSlot {
     /// Both.
     pub const BOTH: [MethodSlot; 2] = [MethodSlot::First, MethodSlot::Second];
+
+    /// The map that its method makes.
+    pub fn map(self) -> MapKind {
+        match self {
+            MethodSlot::First => MapKind::Output,
+            MethodSlot::Second => MapKind::Second,
+        }
+    }
 }
 
 impl MapKind {

@@ -27,20 +27,14 @@ pub fn least_size(panel: Panel) -> Vec2 {
     let [width, height] = match panel {
         Panel::Map(MapKind::Input0 | MapKind::Input1 | MapKind::Target | MapKind::Output) => [200.0, 140.0],
         Panel::Scene | Panel::Map(_) => [200.0, 140.0],
-        Panel::Inspector | Panel::Objects | Panel::Timing | Panel::Values => [250.0, 160.0],
-        Panel::Controls | Panel::Radar | Panel::Found => [260.0, 220.0],
-        Panel::Cuts | Panel::Roc => [260.0, 180.0],
+        Panel::Inspector | Panel::Objects | Panel::Timing => [250.0, 160.0],
+        Panel::Controls | Panel::Found => [260.0, 220.0],
+        Panel::Cuts | Panel::Values | Panel::Roc => [260.0, 180.0],
         Panel::Guide | Panel::Lesson => [300.0, 260.0],
-        Panel::Elements | Panel::Disturbances => [280.0, 260.0],
-        Panel::Bounds
-        | Panel::Phasors
-        | Panel::Chirp
-        | Panel::RangeDoppler
-        | Panel::RunTime
-        | Panel::Training
-        | Panel::Evaluation => [360.0, 280.0],
+        Panel::Radar | Panel::Elements | Panel::Disturbances => [280.0, 260.0],
+        Panel::Bounds | Panel::Phasors | Panel::Chirp | Panel::RangeDoppler | Panel::Training => [360.0, 280.0],
         Panel::Several => [420.0, 320.0],
-        Panel::Compare | Panel::Failures => [560.0, 320.0],
+        Panel::Compare | Panel::Failures | Panel::Evaluation | Panel::RunTime => [560.0, 320.0],
     };
     Vec2::new(width, height)
 }

@@ -145,6 +145,8 @@ pub struct Settings {
     pub several: Several,
     /// Two methods side by side.
     pub compare: Compare,
+    /// Whether menus list the panels for developers.
+    pub developer: bool,
     /// Folder of one's own scenes, where another than the usual one was chosen.
     pub own_scenes: Option<PathBuf>,
     /// Seed of the next random scene.
@@ -214,6 +216,7 @@ impl Default for Settings {
             chirp: ChirpSettings::default(),
             several: Several::default(),
             compare: Compare::default(),
+            developer: false,
             own_scenes: None,
             random_seed: 0,
             random_number: 0,

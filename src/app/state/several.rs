@@ -1,6 +1,7 @@
 //! One map several times: which constant differs from one to the next, and by what.
 
 use super::panel::MapKind;
+use crate::app::shared::Shared;
 use crate::radar::{Decibels, Radar, WindowFunction};
 use crate::reconstruct::Reconstructor;
 use crate::signal::Floor;
@@ -111,7 +112,7 @@ impl Default for Several {
 }
 
 /// One of the maps.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub struct Variant {
     /// What is different about it.
     pub label: String,
@@ -120,15 +121,7 @@ pub struct Variant {
     /// What lies beneath the reflectors.
     pub floor: Floor,
     /// The method, where it has a name of its own here.
-    pub method: Option<Arc<dyn Reconstructor>>,
-}
-
-impl Variant {
-    /// Whether both give the same map.
-    pub fn same(&self, other: &Variant) -> bool {
-        let name = |v: &Variant| v.method.as_ref().map(|m| m.name());
-        self.radar == other.radar && self.floor == other.floor && name(self) == name(other)
-    }
+    pub method: Option<Shared<dyn Reconstructor>>,
 }
 
 impl Several {
@@ -146,7 +139,12 @@ impl Several {
         method: Option<&Arc<dyn Reconstructor>>,
         methods: &[Arc<dyn Reconstructor>],
     ) -> Vec<Variant> {
-        let like = |label: String, radar: Radar, floor: Floor| Variant { label, radar, floor, method: method.cloned() };
+        let like = |label: String, radar: Radar, floor: Floor| Variant {
+            label,
+            radar,
+            floor,
+            method: method.map(Shared::from),
+        };
         let mut variants: Vec<Variant> = match self.parameter {
             Parameter::Window => WindowFunction::ALL
                 .into_iter()
@@ -155,7 +153,7 @@ impl Several {
             Parameter::Method => {
                 let chosen = |m: &&Arc<dyn Reconstructor>| self.methods.is_empty() || self.methods.contains(m.name());
                 let named = |m: &Arc<dyn Reconstructor>| Variant {
-                    method: Some(m.clone()),
+                    method: Some(m.into()),
                     ..like(m.name().to_owned(), radar.clone(), floor)
                 };
                 methods.iter().filter(chosen).map(named).collect()
@@ -170,7 +168,9 @@ impl Several {
                 .collect(),
         };
         variants.retain(|v| v.radar.validate().is_ok());
-        variants.dedup_by(|a, b| a.same(b));
+        // Rounded values may give one map twice.
+        let map = |v: &Variant| (v.radar.clone(), v.floor, v.method.clone());
+        variants.dedup_by(|a, b| map(a) == map(b));
         variants.truncate(MOST);
         variants
     }
@@ -241,7 +241,7 @@ mod tests {
                 _ => MOST,
             };
             assert_eq!(variants.len(), expected, "{parameter:?}");
-            assert!(variants.windows(2).all(|v| !v[0].same(&v[1]) && v[0].label != v[1].label), "{parameter:?}");
+            assert!(variants.windows(2).all(|v| v[0] != v[1] && v[0].label != v[1].label), "{parameter:?}");
         }
         let bandwidths = variants(&Several::default().with(Parameter::Bandwidth, &radar));
         assert!((bandwidths[0].radar.bandwidth_hz - 0.25e9).abs() < 1.0 && bandwidths[7].label == "4.00 GHz");

@@ -58,6 +58,7 @@ fn view_words(command: &ViewCommand) -> &'static str {
         ViewCommand::FitScene | ViewCommand::ResetMaps => "zoom reset view all home",
         ViewCommand::Method(_) | ViewCommand::NextMethod => "reconstruction algorithm network solver",
         ViewCommand::Flip => "compare blink swap",
+        ViewCommand::ToggleDeveloper => "research timing training",
         _ => "",
     }
 }
@@ -76,12 +77,16 @@ fn window_words(command: &WindowCommand) -> &'static str {
         WindowCommand::TogglePanel(Panel::Guide) => "help manual explain tutorial",
         WindowCommand::TogglePanel(Panel::Lesson) => "help teach learn tutorial course",
         WindowCommand::TogglePanel(Panel::Controls) => "options preferences method threshold",
+        WindowCommand::TogglePanel(Panel::Failures) => "evaluate campaign rows scenes",
+        WindowCommand::TogglePanel(Panel::Evaluation) => "evaluate tables thesis printed research",
+        WindowCommand::TogglePanel(Panel::RunTime) => "evaluate front speed research",
+        WindowCommand::TogglePanel(Panel::Timing | Panel::Training) => "developer research",
         WindowCommand::TogglePanel(Panel::Radar) => "bandwidth elements carrier constants",
         WindowCommand::TogglePanel(Panel::Chirp) => {
-            "fmcw sweep ramp beat signal frequency time spectrum fft interferer"
+            "waveform fmcw sweep ramp beat signal frequency time spectrum fft interferer"
         }
         WindowCommand::TogglePanel(Panel::RangeDoppler) => {
-            "velocity speed chirps timeline time play motion moving doppler"
+            "waveform velocity speed chirps timeline time play motion moving doppler"
         }
         WindowCommand::TogglePanel(Panel::Phasors) => "complex plane vector sum cornu spiral contributions elements",
         WindowCommand::TogglePanel(Panel::Bounds) => "cramer rao ambiguity crlb resolution",
@@ -127,13 +132,10 @@ fn view_menus(command: &ViewCommand) -> &'static [&'static str] {
         ViewCommand::ToggleProjection
         | ViewCommand::ToggleUnits
         | ViewCommand::ResetMaps
-        | ViewCommand::ToggleReflectors
-        | ViewCommand::ToggleFound
         | ViewCommand::ToggleFieldsOfView
-        | ViewCommand::ToggleTheory
-        | ViewCommand::ToggleKinds
         | ViewCommand::NextMethod => &["View"],
-        ViewCommand::Flip => &["Tools"],
+        overlay if ViewCommand::OVERLAYS.contains(overlay) => &["View", "Overlays"],
+        ViewCommand::Flip | ViewCommand::ToggleDeveloper => &["Tools"],
         _ => &[],
     }
 }
@@ -144,7 +146,9 @@ fn window_menus(command: &WindowCommand) -> &'static [&'static str] {
         WindowCommand::TogglePanel(Panel::Guide | Panel::Lesson)
         | WindowCommand::Help(_)
         | WindowCommand::ToggleCaptions => &["Help"],
-        WindowCommand::TogglePanel(panel) if Panel::RESEARCH.contains(panel) => &["Tools", "Research"],
+        // A tile of several views stands in the menu by a name of its own.
+        WindowCommand::TogglePanel(panel) if panel.title() != panel.tile_title() => &[],
+        WindowCommand::TogglePanel(panel) if Panel::DEVELOPER.contains(panel) => &["Tools"],
         WindowCommand::TogglePanel(panel) if Panel::TOOLS.contains(panel) => &["Tools"],
         WindowCommand::TogglePanel(_) => &["View", "Panels"],
         WindowCommand::Escape => &["Edit"],

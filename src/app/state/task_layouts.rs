@@ -75,27 +75,15 @@ fn explore() -> Tree<Panel> {
     let [in0, in1, target, output, target_above, output_above, difference, doubt, unexplained] =
         MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
     let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
-    let [guide, lesson, radar, elements, disturbances] =
-        [Panel::Guide, Panel::Lesson, Panel::Radar, Panel::Elements, Panel::Disturbances].map(&mut pane);
-    let of_results = [
-        Panel::Found,
-        Panel::Bounds,
-        Panel::Phasors,
-        Panel::Chirp,
-        Panel::RangeDoppler,
-        Panel::Evaluation,
-        Panel::RunTime,
-        Panel::Training,
-        Panel::Several,
-        Panel::Values,
-    ];
+    let [guide, lesson, radar] = [Panel::Guide, Panel::Lesson, Panel::Radar].map(&mut pane);
+    let of_results = [Panel::Found, Panel::Bounds, Panel::Phasors, Panel::Chirp, Panel::Training, Panel::Several];
     let tools = of_results.map(pane);
-    for closed in [timing, guide, lesson, radar, elements, disturbances, doubt, unexplained].iter().chain(&tools) {
+    for closed in [timing, guide, lesson, radar, doubt, unexplained].iter().chain(&tools) {
         tiles.set_visible(*closed, false);
     }
     let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
     let scene = tabs(&mut tiles, vec![scene]);
-    let controls = tabs(&mut tiles, vec![controls, radar, elements, disturbances, timing]);
+    let controls = tabs(&mut tiles, vec![controls, radar, timing]);
     // What is read while settings change stands beside them.
     let beside = tabs(&mut tiles, vec![guide, lesson]);
     let inspector = tabs(&mut tiles, vec![inspector, objects]);
@@ -117,7 +105,7 @@ fn compare() -> Tree<Panel> {
     let mut tiles = Tiles::default();
     let scene = tabs(&mut tiles, &[Panel::Scene]);
     let target = tabs(&mut tiles, &[Panel::Map(MapKind::Target)]);
-    let settings = tabs(&mut tiles, &[Panel::Controls, Panel::Inspector, Panel::Values]);
+    let settings = tabs(&mut tiles, &[Panel::Controls, Panel::Inspector, Panel::Cuts]);
     let left = column(&mut tiles, vec![scene, target, settings], &[1.0, 0.9, 1.0]);
     let compare = tabs(&mut tiles, &[Panel::Compare]);
     let root = row(&mut tiles, vec![left, compare], &[0.3, 0.7]);

@@ -20,6 +20,7 @@ impl State {
                 ViewCommand::Colours(colours) => Some(settings.colours == *colours),
                 ViewCommand::Normalise(normalisation) => Some(settings.normalisation == *normalisation),
                 ViewCommand::Detect(statistic) => Some(settings.cfar.map(|cfar| cfar.statistic) == *statistic),
+                ViewCommand::ToggleDeveloper => Some(settings.developer),
                 ViewCommand::ToggleReflectors => Some(settings.show_reflectors),
                 ViewCommand::ToggleFound => Some(settings.show_found),
                 ViewCommand::ToggleFieldsOfView => Some(settings.show_fields_of_view),
@@ -31,7 +32,7 @@ impl State {
             Command::Edit(EditCommand::SetCoordinates(coordinates)) => Some(settings.coordinates == *coordinates),
             Command::Window(command) => match command {
                 WindowCommand::TogglePanel(panel) => Some(self.arrangement.is_open(*panel)),
-                WindowCommand::Maximise(panel) => Some(self.arrangement.maximised() == Some(*panel)),
+                WindowCommand::Maximise(panel) => Some(self.arrangement.is_maximised(*panel)),
                 WindowCommand::ArrangeFor(task) => Some(self.arrangement.task() == *task),
                 WindowCommand::Present => Some(self.is_presenting()),
                 WindowCommand::ToggleTheme => Some(match settings.theme {

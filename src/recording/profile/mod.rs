@@ -12,8 +12,8 @@ pub(super) mod tests;
 
 use crate::radar::Radar;
 use commands::Commands;
+use error::MOST_SAMPLES;
 pub use error::ProfileError;
-use error::{MOST_CHIRPS, MOST_SAMPLES};
 use frames::{Frame, frames};
 use lines::Line;
 use num_complex::Complex64;

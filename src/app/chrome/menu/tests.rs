@@ -2,7 +2,7 @@ use super::*;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (Memory, Vec<Command>)> {
+fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'static, (Memory, Vec<Command>)> {
     let draw = move |ui: &mut Ui, asked: &mut (Memory, Vec<Command>)| {
         let input = Input {
             presents: false,
@@ -18,12 +18,20 @@ fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (Memory, Vec<C
             left: &[],
             task: Task::Explore,
             is_open: &|panel| panel == Panel::Scene,
-            is_on: &|command| (*command == ViewCommand::ToggleTheory.into()).then_some(true),
+            is_on: &|command| match command {
+                Command::View(ViewCommand::ToggleTheory) => Some(true),
+                Command::View(ViewCommand::ToggleDeveloper) => Some(developer),
+                _ => None,
+            },
         };
         let commands = show(ui, input, &mut asked.0);
         asked.1.extend(commands);
     };
     Harness::builder().with_size([width, 800.0]).build_ui_state(draw, (Memory::default(), vec![]))
+}
+
+fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (Memory, Vec<Command>)> {
+    bar_for(width, finds_reflectors, true)
 }
 
 fn bar(width: f32) -> Harness<'static, (Memory, Vec<Command>)> {
@@ -38,33 +46,32 @@ fn open(menu: &mut Harness<'_, (Memory, Vec<Command>)>, labels: &[&str]) {
 }
 
 #[test]
-fn tools_for_research_have_a_menu_of_their_own() {
-    let mut menu = bar(900.0);
+fn panels_for_developers_are_listed_where_their_switch_is_on() {
+    let mut menu = bar_for(900.0, true, false);
     open(&mut menu, &["Tools"]);
     let _tool = menu.get_by_label("Bounds");
-    for panel in Panel::RESEARCH {
+    for panel in Panel::DEVELOPER {
         assert!(menu.query_by_label(panel.title()).is_none(), "{panel:?}");
     }
-    open(&mut menu, &["Research", "Training"]);
+    let mut menu = bar(900.0);
+    open(&mut menu, &["Tools", "Training"]);
     assert_eq!(menu.state().1, [Command::Window(WindowCommand::OpenPanel(Panel::Training))]);
 }
 
 #[test]
-fn every_panel_stands_in_one_menu() {
+fn every_tile_stands_in_one_menu() {
     let mut found: Vec<Panel> = Vec::new();
-    for menus in [&["View", "Panels"][..], &["Tools"], &["Tools", "Research"], &["Help"]] {
+    for menus in [&["View", "Panels"][..], &["Tools"], &["Help"]] {
         let mut menu = bar(900.0);
         open(&mut menu, menus);
         let listed = |panel: &Panel| {
-            menu.query_all_by_role_and_label(egui::accesskit::Role::CheckBox, panel.title()).next().is_some()
+            menu.query_all_by_role_and_label(egui::accesskit::Role::CheckBox, panel.tile_title()).next().is_some()
         };
-        // A menu that leads to another stays open beside it.
         let before = found.len();
-        let own = Panel::all().into_iter().filter(listed).filter(|p| !(menus.len() == 2 && found.contains(p)));
-        found.extend(own.collect::<Vec<_>>());
+        found.extend(Panel::tiles().into_iter().filter(listed));
         assert!(found.len() > before, "{menus:?} has panels");
     }
-    let all = Panel::all();
+    let all = Panel::tiles();
     assert!(all.iter().all(|panel| found.iter().filter(|p| *p == panel).count() == 1), "{found:?}");
 }
 

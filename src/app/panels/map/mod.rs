@@ -118,6 +118,8 @@ pub struct Input<'a> {
 pub struct Shown {
     /// True reflectors.
     pub reflectors: bool,
+    /// Those that the method found.
+    pub found: bool,
     /// What the formulas say of the selected one.
     pub theory: bool,
     /// What became of every object.
@@ -357,12 +359,16 @@ fn bar_of(input: &Input<'_>) -> Bar {
 fn menu(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let kind = input.kind;
     let (shown, difference) = (input.shown, input.difference);
+    ui.menu_button("Overlays", |ui| {
+        let on = [shown.reflectors, shown.found, shown.theory, shown.kinds];
+        for (command, on) in ViewCommand::OVERLAYS.map(Command::from).into_iter().zip(on) {
+            let name = command.entry().map_or("", |listed| listed.name.as_ref());
+            ticked(ui, name, command.clone(), on, asked);
+        }
+    });
     for (command, on) in [
         (ViewCommand::ToggleProjection, Some(input.projection == Projection::Cartesian)),
         (ViewCommand::ToggleUnits, Some(input.units == Units::Decibels)),
-        (ViewCommand::ToggleReflectors, Some(shown.reflectors)),
-        (ViewCommand::ToggleTheory, Some(shown.theory)),
-        (ViewCommand::ToggleKinds, Some(shown.kinds)),
         (ViewCommand::ToggleAbsoluteDifference, Some(difference.absolute).filter(|_| kind.is_difference())),
         (ViewCommand::ToggleWholeDifference, Some(!difference.whole).filter(|_| kind.is_difference())),
     ] {

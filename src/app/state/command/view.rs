@@ -61,6 +61,8 @@ pub enum ViewCommand {
     TogglePlay,
     /// Which element's chirp is drawn, and how long it lasts.
     SetChirp(ChirpSettings),
+    /// List the panels for developers in menus, or not.
+    ToggleDeveloper,
     /// Draw true reflectors over the maps.
     MarkReflectors,
     /// Draw true reflectors over the maps or not.
@@ -87,4 +89,10 @@ pub enum ViewCommand {
     Method(&'static str),
     /// The next reconstruction method.
     NextMethod,
+}
+
+impl ViewCommand {
+    /// What switches each of the things that are drawn over maps.
+    pub const OVERLAYS: [ViewCommand; 4] =
+        [ViewCommand::ToggleReflectors, ViewCommand::ToggleFound, ViewCommand::ToggleTheory, ViewCommand::ToggleKinds];
 }

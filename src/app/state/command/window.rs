@@ -13,6 +13,8 @@ pub enum WindowCommand {
     ClosePanel(Panel),
     /// Show a panel, in front.
     OpenPanel(Panel),
+    /// Put this view in front of the tile that it shares with others.
+    OpenView(Panel),
     /// Let a panel fill the window, or end that.
     Maximise(Panel),
     /// Arrange the panels for a task, as they were left when it was on screen last.

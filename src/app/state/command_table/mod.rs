@@ -17,7 +17,7 @@ use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
 use eframe::egui::{Key, KeyboardShortcut};
-use entry::{command, key, named};
+use entry::{alt, command, key, named};
 use std::sync::OnceLock;
 
 /// Keys that show or hide a panel.
@@ -43,12 +43,12 @@ const PANEL_KEYS: &[(Panel, Key)] = &[
     (Panel::Training, Key::F12),
 ];
 
-/// Keys of [`Task::ALL`].
+/// Keys of [`Task::ALL`], with Alt.
 const TASK_KEYS: [Key; 4] = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
 
 fn arrange(task: Task, digit: Key) -> Entry {
     let name = format!("Arrange for: {}", task.name());
-    named(Command::Window(WindowCommand::ArrangeFor(task)), name, task.describe(), key(digit))
+    named(Command::Window(WindowCommand::ArrangeFor(task)), name, task.describe(), alt(digit))
 }
 
 fn random(kind: Kind) -> Entry {
@@ -149,9 +149,9 @@ impl Command {
     pub fn entry(&self) -> Option<&'static Entry> {
         let like = match self {
             Command::Edit(EditCommand::Add(kind, _)) => Command::Edit(EditCommand::Add(*kind, None)),
-            Command::Window(WindowCommand::OpenPanel(panel) | WindowCommand::ClosePanel(panel)) => {
-                Command::Window(WindowCommand::TogglePanel(*panel))
-            }
+            Command::Window(
+                WindowCommand::OpenPanel(panel) | WindowCommand::OpenView(panel) | WindowCommand::ClosePanel(panel),
+            ) => Command::Window(WindowCommand::TogglePanel(*panel)),
             other => other.clone(),
         };
         listed().iter().find(|e| e.command == like)

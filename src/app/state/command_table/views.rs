@@ -249,6 +249,12 @@ pub(super) const COMMANDS: &[Entry] = {
             key(Key::H),
         ),
         entry(
+            View(ViewCommand::ToggleDeveloper),
+            "Developer",
+            "List the panels for developers of the program and of methods: Timing and Training",
+            None,
+        ),
+        entry(
             View(ViewCommand::Flip),
             "Flip two maps",
             "Put the other of the two maps of the panel Compare in the place of the one on screen",

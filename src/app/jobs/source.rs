@@ -1,0 +1,100 @@
+//! Where the samples on screen come from.
+
+use super::recorded::seen_by;
+use crate::app::shared::Shared;
+use crate::app::state::State;
+use crate::radar::Radar;
+use crate::recording::Recording;
+use crate::scene::Scene;
+use crate::signal::{self, BeatSignal, Floor};
+
+/// What the samples depend on: two that are equal have the same samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// The radar.
+    pub radar: Radar,
+    /// What stands before it, or is laid over the recording.
+    pub scene: Shared<Scene>,
+    /// What was measured in the place of the scene's echoes.
+    pub recording: Option<Shared<Recording>>,
+    /// What lies beneath the echoes of a scene.
+    pub floor: Floor,
+}
+
+impl Source {
+    /// Those on screen.
+    pub fn of(state: &State) -> Source {
+        Source {
+            radar: state.radar().clone(),
+            scene: state.scene().into(),
+            recording: state.editor.document().recording().map(Shared::from),
+            floor: state.settings.floor,
+        }
+    }
+
+    /// The scene and the floor beneath it, where they are simulated.
+    ///
+    /// # Errors
+    /// A sentence for a recording.
+    pub fn simulated(&self) -> Result<(&Scene, Floor), String> {
+        match self.recording {
+            None => Ok((&**self.scene, self.floor)),
+            Some(_) => Err("A recording has one chirp, which tells no velocity.".to_owned()),
+        }
+    }
+
+    /// The samples of every element.
+    ///
+    /// # Errors
+    /// Why a scene can't be simulated, or `ends_alone` for a recording of the two ends.
+    pub fn signal(&self, ends_alone: &str) -> Result<BeatSignal, String> {
+        let Source { radar, scene, recording, floor } = self;
+        match recording {
+            None => signal::simulate(radar, scene, *floor, scene.noise_seed).map_err(|e| e.to_string()),
+            Some(recording) => match seen_by(recording, radar, &scene.disturbances.elements).signal() {
+                Some(signal) => Ok(signal.clone()),
+                None => Err(ends_alone.to_owned()),
+            },
+        }
+    }
+}
+
+/// Why a recording of the two ends shows nothing that every element is needed for.
+pub const EVERY_ELEMENT: &str = "The recording has the two ends alone; every element is needed here.";
+
+/// The samples of the last source: cursor, element and colours are chosen among many of one.
+#[derive(Default)]
+pub struct KeptSignal(Option<(Source, BeatSignal)>);
+
+impl KeptSignal {
+    /// The samples of `source`, simulated where they are not those of the last.
+    ///
+    /// # Errors
+    /// As [`Source::signal`].
+    pub fn of(&mut self, source: &Source) -> Result<&BeatSignal, String> {
+        let kept = match self.0.take() {
+            Some((of, signal)) if of == *source => (of, signal),
+            _ => (source.clone(), source.signal(EVERY_ELEMENT)?),
+        };
+        Ok(&self.0.insert(kept).1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_kept_while_their_source_stays() {
+        let scene = Shared::new(Scene::of_points([(0.2, 0.9)]));
+        let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
+        let source = Source { radar, scene, recording: None, floor: Floor::Thesis };
+        let mut kept = KeptSignal::default();
+        let at = |kept: &mut KeptSignal, source: &Source| kept.of(source).unwrap().samples.as_ptr();
+        let first = at(&mut kept, &source);
+        assert_eq!(at(&mut kept, &source.clone()), first);
+        let moved = Source { scene: Shared::new(Scene::of_points([(0.3, 0.9)])), ..source };
+        let before = kept.of(&moved).unwrap().samples.clone();
+        assert_ne!(before, KeptSignal::default().of(&Source { floor: Floor::Exact, ..moved }).unwrap().samples);
+    }
+}

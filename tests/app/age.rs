@@ -1,0 +1,122 @@
+//! What is drawn is of the scene on screen, or is marked as old.
+
+use crate::session::Session;
+use apertura::app::{Command, EditCommand, MapKind, Panel, RadarCommand, ViewCommand, WindowCommand};
+use apertura::radar::{Radar, WindowFunction};
+use apertura::reconstruct::{
+    About, Baseline, CAPON, ReconstructError, Reconstruction, Reconstructor, Request as MethodRequest,
+};
+use apertura::signal::{Floor, TwoEnds};
+use proptest::prelude::*;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A method that is slower than what may be drawn as fresh.
+struct Slow;
+
+impl Reconstructor for Slow {
+    fn about(&self) -> About {
+        About { name: "slow", description: "takes its time", told: "", eta: 0.5 }
+    }
+    fn estimate(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &MethodRequest,
+    ) -> Result<Reconstruction, ReconstructError> {
+        let began = Instant::now();
+        while began.elapsed() < Duration::from_millis(900) {
+            request.task.check()?;
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        Baseline.reconstruct(radar, ends, request)
+    }
+}
+
+/// Panels that draw something derived from the scene.
+const PANELS: [Panel; 14] = [
+    Panel::Map(MapKind::Output),
+    Panel::Map(MapKind::Output),
+    Panel::Map(MapKind::OutputAbove),
+    Panel::Map(MapKind::Target),
+    Panel::Map(MapKind::Input0),
+    Panel::Map(MapKind::Difference),
+    Panel::Cuts,
+    Panel::Bounds,
+    Panel::Phasors,
+    Panel::Chirp,
+    Panel::Elements,
+    Panel::Roc,
+    Panel::Compare,
+    Panel::Found,
+];
+
+/// What a user may do at random, whatever is shown and however often.
+fn action() -> impl Strategy<Value = Command> {
+    let window = prop_oneof![Just(WindowFunction::Hann), Just(WindowFunction::Hamming)];
+    let floor = prop_oneof![Just(Floor::Thesis), Just(Floor::Exact)];
+    prop_oneof![
+        4 => (-2.0..2.0f64, -2.0..2.0f64)
+            .prop_map(|(dx_metres, dy_metres)| Command::from(EditCommand::Nudge { dx_metres, dy_metres })),
+        1 => Just(EditCommand::Undo.into()),
+        1 => Just(EditCommand::SelectAll.into()),
+        1 => window.prop_map(|window| RadarCommand::SetWindow(window).into()),
+        1 => floor.prop_map(|floor| ViewCommand::SetFloor(floor).into()),
+        6 => (0..PANELS.len()).prop_map(|i| WindowCommand::TogglePanel(PANELS[i]).into()),
+        2 => (0..3usize).prop_map(|i| ViewCommand::Method(["baseline", "capon", "slow"][i]).into()),
+        1 => Just(ViewCommand::ToggleFound.into()),
+        1 => Just(ViewCommand::ToggleKinds.into()),
+        1 => Just(ViewCommand::ToggleTheory.into()),
+    ]
+}
+
+/// Longer than what is old may be drawn as fresh, and a few frames.
+const GRACE: Duration = Duration::from_millis(600);
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 6, max_shrink_iters: 40, ..ProptestConfig::default() })]
+
+    #[test]
+    fn nothing_older_than_the_scene_is_drawn_as_fresh(
+        actions in prop::collection::vec((action(), 0u32..4), 8..20),
+    ) {
+        let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON), Arc::new(Slow)]);
+        s.ask(EditCommand::SelectAll);
+        for (action, then) in actions {
+            let told = format!("after {action:?}");
+            s.app.state_mut().ask(action);
+            // Some actions follow at once, others after what is old must be marked, others at rest.
+            match then {
+                0 => s.app.step(),
+                1 => s.settle(),
+                _ => {
+                    let began = Instant::now();
+                    while began.elapsed() < GRACE {
+                        s.app.step();
+                        std::thread::sleep(Duration::from_millis(10));
+                    }
+                }
+            }
+            if then > 0 {
+                let old = s.state().drawn_as_fresh_but_old();
+                prop_assert!(old.is_empty(), "{old:?} {told}");
+            }
+        }
+    }
+}
+
+/// Where the output is closed, places that were found are still marked in the scene.
+#[test]
+fn found_places_follow_the_scene_while_the_output_is_closed() {
+    let mut s = Session::with_methods(vec![Arc::new(apertura::reconstruct::Omp::default())]);
+    for panel in [MapKind::Output, MapKind::OutputAbove, MapKind::Difference].map(Panel::Map) {
+        s.ask(WindowCommand::TogglePanel(panel));
+    }
+    s.ask(ViewCommand::ToggleFound);
+    let before = s.state().marked_found().to_vec();
+    assert!(!before.is_empty());
+    s.ask(EditCommand::SelectAll);
+    s.ask(EditCommand::Nudge { dx_metres: 3.0, dy_metres: 0.0 });
+    assert_ne!(s.state().marked_found(), before);
+    assert_eq!(s.state().drawn_as_fresh_but_old(), Vec::<String>::new());
+}
