@@ -8,13 +8,14 @@ use apertura::evaluate::Roc;
 use apertura::evaluate::trial::Trial;
 use apertura::methods;
 use apertura::radar::{Decibels, Radar};
-use apertura::reconstruct::{Reconstructor, Request};
+use apertura::reconstruct::search::{Nomp, Settings, Without, parts, without};
+use apertura::reconstruct::{Hybrid, Reconstructor, Request};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::scene::{Reflector, Scene};
 use apertura::signal::Floor;
 use clap::Parser;
-use rand_chacha::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::error::Error;
 use std::sync::Arc;
 
@@ -27,6 +28,12 @@ struct Args {
     /// Methods, separated by commas
     #[arg(long, value_delimiter = ',', default_value = "nomp,hybrid,live")]
     method: Vec<String>,
+    /// A rung, source or rule of the search: `nomp` is run with and without it, in place of the methods; `all` for each
+    #[arg(long)]
+    without: Vec<String>,
+    /// Parts are left out of `hybrid`, in place of `nomp`
+    #[arg(long, requires = "without")]
+    hybrid: bool,
     /// Kinds of scenes, separated by commas
     #[arg(long, value_delimiter = ',', default_value = "1,2,3")]
     set: Vec<Kind>,
@@ -72,7 +79,7 @@ struct Column {
     detections: Vec<f64>,
 }
 
-/// A column for each method.
+/// The methods, or the search as a whole and without each part that is named.
 fn columns(args: &Args) -> Result<Vec<Column>, Box<dyn Error>> {
     let column = |name: String, method| Column {
         name,
@@ -81,7 +88,28 @@ fn columns(args: &Args) -> Result<Vec<Column>, Box<dyn Error>> {
         milliseconds: Vec::new(),
         detections: Vec::new(),
     };
-    args.method.iter().map(|name| Ok(column(name.clone(), methods::by_name(name)?))).collect()
+    if args.without.is_empty() {
+        return args.method.iter().map(|name| Ok(column(name.clone(), methods::by_name(name)?))).collect();
+    }
+    let names = if args.without.iter().any(|name| name == "all") { parts() } else { args.without.clone() };
+    let fallback = methods::by_name("live");
+    let searching = |without: Without| -> Result<Arc<dyn Reconstructor>, Box<dyn Error>> {
+        let settings = Settings { without, ..Settings::default() };
+        Ok(match args.hybrid {
+            true => Arc::new(Hybrid::new(fallback.clone()?).with_settings(settings)),
+            false => Arc::new(Nomp::with_settings(settings)),
+        })
+    };
+    let mut found = vec![column("whole".into(), searching(Without::default())?)];
+    for name in names {
+        let mut left_out = Without::default();
+        for part in name.split('+') {
+            let known = || format!("no part is called {part}; there are {}", parts().join(", "));
+            left_out = left_out.and(without(part).ok_or_else(known)?);
+        }
+        found.push(column(format!("-{name}"), searching(left_out)?));
+    }
+    Ok(found)
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -139,7 +167,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 Some(points) => at_one_range(&radar, number, points),
                 None => generator.scene(*kind, number),
             };
-            let strongest = |reflectors: &[Reflector]| reflectors.iter().map(|r| r.reflectivity.abs()).fold(0.0, f64::max);
+            let strongest =
+                |reflectors: &[Reflector]| reflectors.iter().map(|r| r.reflectivity.abs()).fold(0.0, f64::max);
             let trial = Trial::new(&radar, &scene, floor, request.normalisation)?;
             for column in &mut columns {
                 let answer = trial.ask(&*column.method, &request)?;
