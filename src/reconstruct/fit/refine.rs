@@ -42,9 +42,6 @@ pub struct Limits {
 impl Limits {
     /// Of what more is to come beside: most of the way in a few steps.
     pub const ROUGH: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
-
-    /// Of what is all there: to where a step gains a ten-thousandth of what is left.
-    pub const FINE: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
 }
 
 /// Gains at the first and at the last end.

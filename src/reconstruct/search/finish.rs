@@ -180,7 +180,7 @@ fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool, settings
         return fit;
     }
     let ridge = if in_noise { NOISE_RIDGE } else { 0.0 };
-    let limits = Limits { least_gain: 1e-6, ridge, ..Limits::FINE };
+    let limits = Limits { iterations: 20, least_gain: 1e-6, ridge };
     let mut tied = bench.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, limits);
     if in_noise && tied.atoms.len() <= MAX_COMBED_ATOMS && !settings.lacks(Part::Teeth) {
         tied = combed(bench, samples, tied, limits);
