@@ -11,8 +11,11 @@ use apertura::radar::{Decibels, Radar};
 use apertura::reconstruct::search::{Nomp, Settings, Without, parts, without};
 use apertura::reconstruct::{Hybrid, Reconstructor, Request};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+use apertura::scene::{Reflector, Scene};
 use apertura::signal::Floor;
 use clap::Parser;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::error::Error;
 use std::sync::Arc;
 
@@ -43,9 +46,28 @@ struct Args {
     /// White noise this far beneath the samples in place of the thesis' floor
     #[arg(long)]
     snr_db: Option<f64>,
+    /// In place of each kind's scenes, as many points as this within one range bin
+    #[arg(long)]
+    points_at_one_range: Option<u32>,
+    /// Test scenes of this seed, in place of validation scenes
+    #[arg(long)]
+    test_seed: Option<u64>,
     /// Print every scene, not only the mean of each kind
     #[arg(long)]
     scenes: bool,
+}
+
+/// Scene `number` of `points` reflectors of 1 whose ranges from the array's centre differ by less than a range bin.
+fn at_one_range(radar: &Radar, number: u32, points: u32) -> Scene {
+    let mut random = ChaCha8Rng::seed_from_u64(u64::from(number));
+    let range = random.random_range(5.0..25.0);
+    let place = |_| {
+        let (cos, bins): (f64, f64) = (random.random_range(-0.8..0.8), random.random_range(-0.5..0.5));
+        let range = range + bins * radar.range_resolution_metres();
+        (range * cos, range * (1.0 - cos * cos).sqrt())
+    };
+    let places: Vec<(f64, f64)> = (0..points).map(place).collect();
+    Scene { noise_seed: u64::from(number), ..Scene::of_points(places) }
 }
 
 /// What one method did on all scenes of a kind.
@@ -136,11 +158,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let radar = Radar::default();
     let floor = args.snr_db.map_or(Floor::Thesis, |db| Floor::Snr(Decibels(db)));
     let request = Request { noise: floor.into(), ..Request::default() };
-    let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 0);
+    let purpose = if args.test_seed.is_some() { Purpose::Test } else { Purpose::Validation };
+    let generator = Generator::new(&radar, Reading::Program, purpose, args.test_seed.unwrap_or(0));
     let mut columns = columns(&args)?;
     for kind in &args.set {
         for number in args.first..args.first + args.count {
-            let scene = generator.scene(*kind, number);
+            let scene = match args.points_at_one_range {
+                Some(points) => at_one_range(&radar, number, points),
+                None => generator.scene(*kind, number),
+            };
+            let strongest =
+                |reflectors: &[Reflector]| reflectors.iter().map(|r| r.reflectivity.abs()).fold(0.0, f64::max);
             let trial = Trial::new(&radar, &scene, floor, request.normalisation)?;
             for column in &mut columns {
                 let answer = trial.ask(&*column.method, &request)?;
@@ -149,8 +177,9 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let error = answer.metrics.squared_error;
                 if args.scenes {
                     let found = answer.found.reflectors.len();
+                    let times = strongest(&answer.found.reflectors) / strongest(&scene.reflectors());
                     println!(
-                        "{kind:<9}{number:>3} {:>5} reflectors: {:<26} SE {error:>7.1} P_D {detection:>6.2} found {found:>4} {:>6.0} ms",
+                        "{kind:<9}{number:>3} {:>5} reflectors: {:<26} SE {error:>7.1} P_D {detection:>6.2} found {found:>4}, strongest {times:>6.2} times the true one, {:>6.0} ms",
                         scene.reflector_count(),
                         column.name,
                         answer.milliseconds

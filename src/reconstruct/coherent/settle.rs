@@ -128,7 +128,7 @@ impl<'a> Settled<'a> {
 
     pub(super) fn grower(&self) -> Grower<'_> {
         let Settled { radar, task, bench, detector, settings, .. } = self;
-        Grower { radar, bench, detector, settings, task, trace: None }
+        Grower { radar, bench, detector, settings, in_noise: false, task, trace: None }
     }
 
     /// What the reflectors leave of the samples.

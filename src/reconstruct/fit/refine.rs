@@ -39,6 +39,11 @@ pub struct Limits {
     pub ridge: f64,
 }
 
+impl Limits {
+    /// Of what more is to come beside: most of the way in a few steps.
+    pub const ROUGH: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
+}
+
 /// Gains at the first and at the last end.
 pub type Gains = [Complex64; 2];
 

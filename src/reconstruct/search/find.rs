@@ -56,7 +56,7 @@ fn find_with(
         Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings, trace: &trace };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
     let measure = followed.as_ref().filter(|f| !f.is_sure).and(previous).map(|p| p.left_by_search);
-    let answer = followed.map_or_else(|| climbed(&search), Ok)?;
+    let answer = search.ordered(followed.map_or_else(|| climbed(&search), Ok)?)?;
     request.task.check()?;
     request.task.set_progress(1.0);
     let found = finish(radar, &bench, &samples, answer, request, settings, scale)?;

@@ -3,30 +3,38 @@
 use super::settings::Settings;
 use super::state::Answer;
 use super::without::Part;
-use crate::radar::Radar;
+use crate::radar::{End, Radar};
 use crate::reconstruct::attempt::Attempt;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, Workbench, rows_of};
 use crate::reconstruct::{ReconstructError, Request};
+use crate::scene::Reflector;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Teeth tried to each side: the phase between the ends repeats every column of the full map.
-const TEETH: i32 = 6;
+const MAX_TEETH: i32 = 6;
 
 /// Most atoms whose teeth are tried one by one.
-const MOST_COMBED: usize = 12;
+const MAX_COMBED_ATOMS: usize = 12;
 
 /// Most reflectors of atoms whose gains are tied: beyond, all against all takes too long.
-const MOST_TIED: usize = 64;
+const MAX_TIED_REFLECTORS: usize = 64;
 
 /// Most reflectors that are fitted without a window, where all of them know of each other.
-const MOST_UNWINDOWED: usize = 40;
+const MAX_UNWINDOWED_REFLECTORS: usize = 40;
 
 /// Work granted to the refinement without a window.
-const MOST_WORK: usize = 50_000;
+const UNWINDOWED_WORK: usize = 50_000;
 
-/// Of the refinement with tied gains.
-const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6, ridge: 0.0 };
+/// What a tied gain costs over white noise, as a part of its echo's energy: gains of neighbours that noise tells apart by chance cancel for
+/// less.
+const NOISE_RIDGE: f64 = 0.02;
+
+/// Energy of an object over all that is heard at its range, as a ratio, from which on it is loud: noise adds a little to an echo alone.
+const LOUD_ENERGY_RATIO: f64 = 1.5;
+
+/// Energy that tied gains may leave over what each end's own leave, as a ratio.
+const TIED_COST_RATIO: f64 = 4.0;
 
 /// What was found in the samples.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,22 +107,14 @@ pub(super) fn finish(
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     let hearing = bench.hearing;
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
-    let flat_bench = (complete && reflectors <= MOST_UNWINDOWED && !settings.lacks(Part::Unwindowed))
-        .then(|| Workbench::new(radar, &vec![1.0; radar.samples], &request.task, MOST_WORK))
-        .map(|flat| flat.hearing(&samples.flat(&bench.sensor)));
+    let flat_bench = (complete && reflectors <= MAX_UNWINDOWED_REFLECTORS && !settings.lacks(Part::Unwindowed))
+        .then(|| Workbench::new(radar, &vec![1.0; radar.samples], &request.task, UNWINDOWED_WORK))
+        .map(|flat| flat.hearing(&samples.flat(&bench.sensor)).over(hearing));
     let bench = flat_bench.as_ref().unwrap_or(bench);
     let apart = if flat_bench.is_some() { bench.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
-    let mut best = apart.clone();
-    if complete && reflectors <= MOST_TIED && !settings.lacks(Part::Tied) {
-        let mut tied = bench.refine(samples, apart.atoms.clone(), apart.gains.clone(), Tie::Both, TIED);
-        if request.noise.is_white() && tied.atoms.len() <= MOST_COMBED && !settings.lacks(Part::Teeth) {
-            tied = combed(bench, samples, tied);
-        }
-        // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
-        if tied.cost() <= 4.0 * apart.cost() {
-            best = tied;
-        }
-    }
+    let is_tied = complete && !settings.lacks(Part::Tied);
+    let best = if is_tied { tied(bench, samples, apart, request.noise.is_white(), settings) } else { apart };
+    let best = if request.noise.is_white() { quieted(radar, bench, samples, best) } else { best };
     request.task.check()?;
     let residual = best.residual.flat(&bench.sensor);
     let noise_variance = hearing.noise_variance(radar, &residual);
@@ -135,6 +135,58 @@ pub(super) fn finish(
         complete,
         trace: Vec::new(),
     })
+}
+
+/// `fit` with a ridge on its gains that grows until no object is loud.
+fn quieted(radar: &Radar, bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
+    let are_tied = fit.gains.iter().all(|g| g[0] == g[1]);
+    let tie = if are_tied { Tie::Both } else { Tie::PerEnd };
+    for factor in [1.0, 3.0, 10.0, 30.0] {
+        if !are_loud(radar, bench, &fit).contains(&true) {
+            break;
+        }
+        fit = bench.solve(samples, fit.atoms, tie, factor * NOISE_RIDGE);
+    }
+    fit
+}
+
+/// For every object whether it has more energy than is heard at its range: a part of it is there only to cancel another.
+pub fn are_loud(radar: &Radar, bench: &Workbench, fit: &Fit) -> Vec<bool> {
+    let back: Vec<Gains> = fit.gains.iter().map(|g| g.map(|g| -g)).collect();
+    let heard = Profile::new(radar, &bench.without(&fit.residual, &fit.atoms, &back).residual.flat(&bench.sensor));
+    let weight = radar.end_elements as f64 * radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>();
+    let is_loud = |(atom, gains): (&Atom, &Gains)| {
+        let of_end = |(end, gain): (End, &Complex64)| {
+            let centre = radar.end_centre_metres(end);
+            let fall = |r: Reflector| ((r.x_metres - centre).powi(2) + r.y_metres.powi(2)).max(1e-6).powi(-2);
+            gain.norm_sqr() * atom.reflectors(1.0).map(fall).sum::<f64>()
+        };
+        let own: f64 = End::BOTH.into_iter().zip(gains).map(of_end).sum();
+        weight * own > LOUD_ENERGY_RATIO * heard.at(&rows_of(radar, atom))
+    };
+    fit.atoms.iter().zip(&fit.gains).map(is_loud).collect()
+}
+
+/// `fit` with one gain an object for both ends, on the right tooth of the comb, where it has few reflectors and the ends agree on them.
+fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool, settings: &Settings) -> Fit {
+    let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
+    if reflectors > MAX_TIED_REFLECTORS {
+        return fit;
+    }
+    let ridge = if in_noise { NOISE_RIDGE } else { 0.0 };
+    let limits = Limits { iterations: 20, least_gain: 1e-6, ridge };
+    let mut tied = bench.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, limits);
+    if in_noise && tied.atoms.len() <= MAX_COMBED_ATOMS && !settings.lacks(Part::Teeth) {
+        tied = combed(bench, samples, tied, limits);
+    }
+    if ridge > 0.0 {
+        // The ridge makes every gain smaller; of an echo alone it is known by how much.
+        tied.gains.iter_mut().for_each(|g| *g = g.map(|g| g * (1.0 + ridge)));
+        let left = bench.without(samples, &tied.atoms, &tied.gains);
+        (tied.residual, tied.energy) = (left.residual, left.energy);
+    }
+    // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
+    if tied.cost() <= TIED_COST_RATIO * fit.cost() { tied } else { fit }
 }
 
 /// For each atom of `fit` the energy that would be left more without it, over what `fit` leaves or noise holds around its range, in decades.
@@ -159,7 +211,7 @@ fn left_when_drawn(bench: &Workbench, samples: &Samples, fit: &Fit) -> Vec<Compl
 }
 
 /// Each point tried on the neighbouring teeth of the comb, the others staying where they are.
-fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
+fn combed(bench: &Workbench, samples: &Samples, fit: Fit, limits: Limits) -> Fit {
     let sensor = &bench.sensor;
     let between_ends = sensor.element_x[sensor.end_elements] - sensor.element_x[0];
     let tooth = sensor.wavelength_metres() / between_ends;
@@ -169,14 +221,14 @@ fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
         let range = x.hypot(y);
         let own = best.gains[i];
         let base = bench.without(&best.residual, &best.atoms[i..=i], &[[-own[0], -own[1]]]).residual;
-        let trials: Vec<Fit> = (-TEETH..=TEETH)
+        let trials: Vec<Fit> = (-MAX_TEETH..=MAX_TEETH)
             .into_par_iter()
             .filter(|k| *k != 0)
             .filter_map(|k| {
                 let cos = x / range + f64::from(k) * tooth;
                 let y_metres = range * (1.0 - cos * cos).max(0.0).sqrt();
                 let atom = Atom::Point { x_metres: range * cos, y_metres };
-                (cos.abs() < 1.0).then(|| bench.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, TIED))
+                (cos.abs() < 1.0).then(|| bench.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, limits))
             })
             .collect();
         let trial = trials.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
@@ -185,11 +237,11 @@ fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
             (best.residual, best.energy) = (trial.residual, trial.energy);
         }
     }
-    bench.refine(samples, best.atoms, best.gains, Tie::Both, TIED)
+    bench.refine(samples, best.atoms, best.gains, Tie::Both, limits)
 }
 
 /// Real reflectivities from complex gains: the phase all share belongs to the receiver, what is left of each gain is its sign.
-fn reflectivities(gains: &[[Complex64; 2]]) -> Vec<f64> {
+fn reflectivities(gains: &[Gains]) -> Vec<f64> {
     let mean: Vec<Complex64> = gains.iter().map(|g| (g[0] + g[1]) / 2.0).collect();
     let doubled: Complex64 = mean.iter().map(|g| g * g).sum();
     let common = Complex64::cis(-doubled.arg() / 2.0);

@@ -42,7 +42,7 @@ const NEEDED: f64 = 4.0;
 const SIDE_LOBE: f64 = 1e-4;
 
 /// Echoes that a look at the residual takes as long as.
-const LOOK: usize = 200;
+pub const LOOK_ECHOES: usize = 200;
 
 /// Work after which it is seen whether growing is worth while.
 const LOOK_BACK: usize = 3000;
@@ -66,6 +66,8 @@ pub struct Grower<'a> {
     pub detector: &'a Detector,
     /// Limits.
     pub settings: &'a Settings,
+    /// Whether white noise lies beneath the samples.
+    pub in_noise: bool,
     /// To be cancelled by.
     pub task: &'a Task,
     /// Where attempts are written down, if anywhere.
@@ -134,7 +136,7 @@ impl Grower<'_> {
         let mut look_back = (self.bench.work.done(), fit.cost());
         while fit.atoms.len() < self.settings.most_atoms && !self.bench.work.is_spent() {
             self.task.check()?;
-            self.bench.work.spend(LOOK);
+            self.bench.work.spend(LOOK_ECHOES);
             if fit.cost() < best.cost() {
                 best = fit.clone();
             }
@@ -199,7 +201,7 @@ impl Grower<'_> {
     }
 
     /// A point moved to its best place, at its own range or one wrap nearer or further out: ranges repeat, curvature does not.
-    fn placed(&self, fit: &Fit, [x_metres, y_metres]: [f64; 2]) -> (Atom, Gains) {
+    pub fn placed(&self, fit: &Fit, [x_metres, y_metres]: [f64; 2]) -> (Atom, Gains) {
         let own = Atom::Point { x_metres, y_metres };
         let wrap = self.radar.max_range_metres();
         let is_near = x_metres.hypot(y_metres) <= wrap;
@@ -239,7 +241,7 @@ impl Grower<'_> {
             if self.bench.work.is_spent() {
                 break;
             }
-            self.bench.work.spend(LOOK / 2);
+            self.bench.work.spend(LOOK_ECHOES / 2);
             let atoms: Vec<Atom> = group.iter().map(|&i| fit.atoms[i]).collect();
             let gains: Vec<Gains> = group.iter().map(|&i| fit.gains[i]).collect();
             let back: Vec<Gains> = gains.iter().map(|g| [-g[0], -g[1]]).collect();

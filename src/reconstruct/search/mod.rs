@@ -20,6 +20,7 @@
 //! | `grow` | the greedy loop over points |
 //! | `trace` | what the search tried, and what became of it |
 //! | `prune` | atoms that the rest can do without |
+//! | `relax` | how many echoes a group of neighbours holds, where there is noise |
 //! | `settings` | bounds on time and memory |
 //! | `without` | parts that an ablation leaves out |
 //! | `follow` | the answer from the last one, where little changed |
@@ -42,6 +43,7 @@ mod on_wall;
 mod over_noise;
 mod propose;
 mod prune;
+mod relax;
 mod rungs;
 mod settings;
 mod state;
@@ -64,7 +66,7 @@ pub(super) use grow::Grower;
 pub use ladder::{LADDER, Rung, parts, without};
 pub(super) use propose::peaks::Detector;
 pub use settings::Settings;
-pub use trace::{FOLLOWING, MOST_ATTEMPTS};
+pub use trace::{FOLLOWING, MOST_ATTEMPTS, ORDERING};
 pub use without::Without;
 
 use super::answer::{Reconstruction, Request};

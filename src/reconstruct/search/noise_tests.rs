@@ -5,8 +5,8 @@ use super::tests::squared_error;
 use super::*;
 use crate::maps::LogMaps;
 use crate::radar::Decibels;
-use crate::scene::Reflector;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
+use crate::scene::{Reflector, Scene};
 use crate::signal::floor::snr_noise_variance;
 use crate::signal::{Floor, simulate};
 
@@ -45,6 +45,37 @@ fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
             );
             assert!(searched < MOST * told, "{kind}, {snr_db} dB: {searched} for {told}");
         }
+    }
+}
+
+/// What is found of `scene` over noise this far beneath its echoes.
+fn found_in(scene: &Scene, snr_db: f64) -> Vec<Reflector> {
+    let (radar, floor) = (Radar::default(), Floor::Snr(Decibels(snr_db)));
+    let ends = simulate(&radar, scene, floor, scene.noise_seed).unwrap().two_ends(&radar);
+    let request = Request { noise: floor.into(), ..Request::default() };
+    Nomp::default().reconstruct(&radar, &ends, &request).unwrap().reflectors
+}
+
+#[test]
+fn four_points_at_one_range_are_four_over_noise() {
+    let place = |cos: f64, range: f64| (range * cos, range * (1.0 - cos * cos).sqrt());
+    let scene = Scene::of_points([(-0.6, 14.0), (-0.1, 14.01), (0.2, 13.98), (0.55, 14.02)].map(|(c, r)| place(c, r)));
+    let found = found_in(&scene, 40.0);
+    assert_eq!(found.len(), 4, "{found:?}");
+    for r in scene.reflectors() {
+        let near = |f: &Reflector| (f.x_metres - r.x_metres).hypot(f.y_metres - r.y_metres) < 0.1;
+        assert!(found.iter().any(near), "{r:?} in {found:?}");
+    }
+}
+
+#[test]
+fn over_noise_nothing_is_three_times_louder_than_the_loudest() {
+    let generator = Generator::new(&Radar::default(), Reading::Program, Purpose::Validation, 11);
+    for number in 0..4 {
+        let scene = generator.scene(Kind::Set2, number);
+        let loudest = |of: &[Reflector]| of.iter().map(|r| r.reflectivity.abs()).fold(0.0, f64::max);
+        let [found, there] = [loudest(&found_in(&scene, 40.0)), loudest(&scene.reflectors())];
+        assert!(found <= 3.0 * there, "{number}: {found} where {there} is");
     }
 }
 

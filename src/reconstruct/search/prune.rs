@@ -1,5 +1,6 @@
 //! Atoms that the rest can do without.
 
+use super::finish::are_loud;
 use super::grow::{Grower, tried};
 use super::trace::decades;
 use super::without::Part;
@@ -35,8 +36,9 @@ impl Grower<'_> {
             let least = rounding.max(LEAST_WORTH * self.bench.gain_noise(self.radar, &fit));
             let worth = self.bench.worths(&fit);
             let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
-            let mut order: Vec<usize> =
-                (0..fit.atoms.len()).filter(|&i| worth[i] < least || self.ran_away(&fit.atoms[i])).collect();
+            let is_loud = self.are_loud(&fit);
+            let is_needless = |i: &usize| worth[*i] < least || self.ran_away(&fit.atoms[*i]) || is_loud[*i];
+            let mut order: Vec<usize> = (0..fit.atoms.len()).filter(is_needless).collect();
             order.sort_by(|a, b| worth[*a].total_cmp(&worth[*b]));
             let mut gone: Vec<usize> = Vec::new();
             for i in order {
@@ -60,6 +62,14 @@ impl Grower<'_> {
             fit = self.refined(fit, &marked, APART_BINS, AFTER)?;
         }
         Ok(fit)
+    }
+
+    /// For every atom whether it has more energy than is heard at its range: a part of it is there only to cancel another.
+    fn are_loud(&self, fit: &Fit) -> Vec<bool> {
+        if !self.in_noise {
+            return vec![false; fit.atoms.len()];
+        }
+        are_loud(self.radar, self.bench, fit)
     }
 
     fn ran_away(&self, atom: &Atom) -> bool {

@@ -1,6 +1,7 @@
 //! What bounds a search.
 
 use super::without::{Part, Without};
+use crate::radar::Radar;
 
 /// Bounds on time and memory, and what counts as found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,4 +39,10 @@ impl Default for Settings {
             without: Without::default(),
         }
     }
+}
+
+/// Energy that an echo must explain, over what noise gives to one gain, as a ratio: four numbers an echo at the natural logarithm of the count
+/// of samples each, twice the Bayesian criterion, since the best of many thousand places is taken.
+pub fn price_of_an_echo(radar: &Radar) -> f64 {
+    4.0 * ((2 * radar.end_elements * radar.samples) as f64).ln()
 }

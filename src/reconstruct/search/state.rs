@@ -4,7 +4,7 @@ use super::grow::{Grower, ends_agree, tried};
 use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
-use super::trace::{Trace, decades};
+use super::trace::{ORDERING, Trace, decades};
 use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
@@ -85,9 +85,22 @@ impl Search<'_> {
             bench: self.bench,
             detector: self.detector,
             settings: self.settings,
+            in_noise: self.request.noise.is_white(),
             task: &self.request.task,
             trace: Some(self.trace),
         }
+    }
+
+    /// `answer` with as many echoes as noise lets be told apart, where there is noise.
+    pub fn ordered(&self, answer: Answer) -> Result<Answer, ReconstructError> {
+        if !self.request.noise.is_white() || answer.fit.atoms.is_empty() {
+            return Ok(answer);
+        }
+        self.trace.enter(ORDERING);
+        self.bench.work.grant(self.settings.most_work / 2);
+        let grower = self.grower();
+        let fit = grower.pruned(grower.relaxed(answer.fit)?)?;
+        Ok(Answer { is_sure: self.is_explained(&fit), fit })
     }
 
     /// `fit` brought to its end where all is there and not yet quite in its place: a map shows even what little is left.

@@ -9,6 +9,9 @@ pub const MOST_ATTEMPTS: usize = 400;
 /// The name that stands for a rung where the search began with the last answer.
 pub const FOLLOWING: &str = "last answer";
 
+/// The name that stands for a rung where echoes that noise hides from each other are counted anew.
+pub const ORDERING: &str = "count in noise";
+
 /// Decades from `before` to `after`; 0 where there is nothing to compare.
 pub fn decades(before: f64, after: f64) -> f64 {
     let decades = (before / after).log10();

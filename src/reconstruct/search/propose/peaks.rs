@@ -6,6 +6,7 @@
 use super::end_beams::{BEAMS_PER_ELEMENT, end_beams};
 use super::registered::Registered;
 use crate::radar::Radar;
+use crate::reconstruct::fit::Rows;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -15,6 +16,9 @@ const COLUMNS_PER_ELEMENT: usize = 10;
 
 /// One look at the residual finds no two places within this many range bins of each other: what the stronger leaves comes first.
 const ALONE_BINS: usize = 8;
+
+/// Range bins beyond rows that count as within.
+const EDGE_BINS: f64 = 1.0;
 
 /// Fewest cells of the common grid that are worth a task of their own.
 const LEAST_CELLS: usize = 4096;
@@ -81,6 +85,24 @@ impl Detector {
             next = strongest(strong.iter().copied());
         }
         found
+    }
+
+    /// The place (x, y; metres) of the greatest power that both ends hear in these rows, or at their edges.
+    pub fn strongest_within(&self, radar: &Radar, residual: &[Complex64], rows: &Rows) -> Option<[f64; 2]> {
+        let powers = self.powers(radar, residual);
+        let bins = self.bins as f64;
+        let is_within = |end: usize, bin: u32| {
+            let (low, high) = rows[end];
+            (f64::from(bin) - low + EDGE_BINS).rem_euclid(bins) <= high - low + 2.0 * EDGE_BINS
+        };
+        let near = |end: usize| (0..self.bins as u32).map(|bin| is_within(end, bin)).collect::<Vec<bool>>();
+        let [first, last] = [0, 1].map(near);
+        let is_near = |i: &u32| {
+            let [a, b] = &self.grid.bins;
+            first[a[*i as usize] as usize] && last[b[*i as usize] as usize]
+        };
+        let cells: Vec<(f32, u32)> = self.cells().filter(is_near).map(|i| (powers.of(i), i)).collect();
+        strongest(cells.into_iter()).map(|(_, i)| self.grid.places_metres[i as usize])
     }
 
     /// Whether the power exceeds `least` anywhere.
