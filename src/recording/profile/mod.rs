@@ -13,7 +13,7 @@ pub(super) mod tests;
 use crate::radar::Radar;
 use commands::Commands;
 pub use error::ProfileError;
-use error::{MOST_CHIRPS, MOST_SAMPLES};
+use error::MOST_SAMPLES;
 use frames::{Frame, frames};
 use lines::Line;
 use num_complex::Complex64;

@@ -1,3 +1,4 @@
+use super::error::MOST_CHIRPS;
 use super::*;
 use proptest::prelude::*;
 
