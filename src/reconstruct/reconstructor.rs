@@ -68,11 +68,22 @@ pub trait Reconstructor: Send + Sync {
         false
     }
 
-    /// Says at once whether the method can work on samples of `radar`: [`Reconstructor::check_radar`], and whether it knows such antennas.
+    /// How many elements each end must have.
+    fn fewest_end_elements(&self) -> usize {
+        3
+    }
+
+    /// Says at once whether the method can work on samples of `radar`: [`Reconstructor::check_radar`], whether the ends have elements enough,
+    /// and whether it knows such antennas.
     ///
     /// # Errors
     /// [`ReconstructError::Unusable`] says what is in the way.
     fn check_array(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        let (fewest, found) = (self.fewest_end_elements(), radar.end_elements);
+        if found < fewest {
+            let reason = format!("it needs {fewest} elements of each end or more, and this radar's ends have {found}");
+            return Err(self.unusable(reason));
+        }
         if radar.is_monostatic() || self.knows_pairs() {
             return self.check_radar(radar);
         }

@@ -52,6 +52,10 @@ impl Reconstructor for CoherentMethod {
         true
     }
 
+    fn fewest_end_elements(&self) -> usize {
+        2
+    }
+
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         if radar.end_elements > MOST_END_ELEMENTS {
             return Err(self.unusable(format!(
