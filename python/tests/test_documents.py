@@ -45,6 +45,7 @@ def test_the_half_hour_of_research_runs(monkeypatch, tmp_path, capsys):
     pytest.importorskip("torch")
     pytest.importorskip("matplotlib")
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "target").mkdir()  # the page's command for a dataset made it
     page = blocks("docs/data.md", "python")
     research = [block for block in page if "ap.data.Files" not in block]
     assert len(research) == len(page) - 1 == 6
