@@ -131,7 +131,7 @@ y_metres = 3.5
     fn a_solution_that_fails_is_refused_with_its_line() {
         let message = refused("y_metres = 3.5", "y_metres = 2.5");
         assert!(message.starts_with("line 24: step 1: the solution does not meet"), "{message}");
-        assert!(message.contains("range of object 1") && message.contains("2.5"), "{message}");
+        assert!(message.contains("for point 1") && message.contains("2.5"), "{message}");
     }
 
     #[test]

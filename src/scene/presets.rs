@@ -44,7 +44,7 @@ pub const ALL: &[Preset] = presets![
     "failure-live-merged",
     "failure-live-ghost",
     "failure-wrong-tooth",
-    "failure-hybrid-missed",
+    "failure-hybrid-merged",
     "failure-thesis-missed",
     "failure-thesis-merged",
     "failure-thesis-ghost",

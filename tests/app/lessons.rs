@@ -178,6 +178,7 @@ fn the_number_of_blobs_is_not_told_while_maps_are_hidden() {
     let mut s = Session::start();
     begin(&mut s, "what-a-network-can-know", 1);
     s.ask(ViewCommand::Method("baseline"));
+    s.ask(WindowCommand::OpenPanel(Panel::Controls));
     assert!(!shows(&s, " in the target, "));
     predict(&mut s, Guess::Choice(1), "Correct: ");
     step_until(&mut s, "figures come with the maps", |s| shows(s, " in the target, "));

@@ -47,7 +47,7 @@ fn both_presentations_enlarge_the_axes() {
     for modifiers in [Modifiers::NONE, Modifiers::SHIFT] {
         let mut s = Session::start();
         let tallest = |s: &Session, text: &str| {
-            let of = texts(s).into_iter().filter(|(t, _)| t.starts_with(text)).map(|(_, height)| height);
+            let of = texts(s).into_iter().filter(|(t, _)| t.contains(text)).map(|(_, height)| height);
             of.fold(0.0, f32::max)
         };
         let labels = ["range, m", "cos θ", "Λ", "baseline"];

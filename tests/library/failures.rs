@@ -27,7 +27,7 @@ const EXPLAINED: [(&str, &str, &[Kind]); 9] = [
     ("failure-live-merged", "live", &[Merged]),
     ("failure-live-ghost", "live", &[Ghost]),
     ("failure-wrong-tooth", "live", &[WrongTooth]),
-    ("failure-hybrid-missed", "hybrid", &[Missed]),
+    ("failure-hybrid-merged", "hybrid", &[Merged]),
     ("failure-thesis-missed", "thesis", &[Missed]),
     ("failure-thesis-merged", "thesis", &[Missed, Merged, Ghost]),
     ("failure-thesis-ghost", "thesis", &[Ghost]),

@@ -192,5 +192,5 @@ fn a_spacing_that_folds_directions_is_doubted() {
     let folder = tempfile::tempdir().unwrap();
     let _quarter = monostatic(UPWARDS[0], folder.path());
     let half = read(UPWARDS[0], folder.path(), "two-way", wavelength() / 2.0, "\"element\"");
-    assert!(half.doubts.iter().any(|d| d.contains("directions fold")), "{:?}", half.doubts);
+    assert!(half.doubts.iter().any(|d| d.contains("fold to the other side")), "{:?}", half.doubts);
 }

@@ -272,7 +272,7 @@ mod tests {
             window.state_mut().set_open(panel, true);
         }
         window.run_steps(3);
-        for (panel, title) in [(Panel::Training, "Training"), (Panel::Roc, "ROC"), (Panel::Chirp, "Waveform")] {
+        for (panel, title) in [(Panel::Phasors, "Phasors"), (Panel::Roc, "ROC"), (Panel::Chirp, "Waveform")] {
             window.state_mut().set_open(panel, true);
             window.run_steps(4);
             assert!(whole(&window, title), "{title}: {:?}", seen::texts(window.output()));

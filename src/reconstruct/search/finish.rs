@@ -26,8 +26,11 @@ const MAX_UNWINDOWED_REFLECTORS: usize = 40;
 /// Work granted to the refinement without a window.
 const UNWINDOWED_WORK: usize = 50_000;
 
-/// What a tied gain costs over white noise, as a part of its echo's energy: gains of neighbours that noise tells apart by chance cancel for
-/// less.
+/// Of the refinement with tied gains.
+const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6, ridge: 0.0 };
+
+/// What a gain of a loud object costs over white noise, as a part of its echo's energy: gains of neighbours that noise tells apart by chance
+/// cancel for less.
 const NOISE_RIDGE: f64 = 0.02;
 
 /// Energy of an object over all that is heard at its range, as a ratio, from which on it is loud: noise adds a little to an echo alone.
@@ -173,17 +176,9 @@ fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool, settings
     if reflectors > MAX_TIED_REFLECTORS {
         return fit;
     }
-    let ridge = if in_noise { NOISE_RIDGE } else { 0.0 };
-    let limits = Limits { iterations: 20, least_gain: 1e-6, ridge };
-    let mut tied = bench.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, limits);
+    let mut tied = bench.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
     if in_noise && tied.atoms.len() <= MAX_COMBED_ATOMS && !settings.lacks(Part::Teeth) {
-        tied = combed(bench, samples, tied, limits);
-    }
-    if ridge > 0.0 {
-        // The ridge makes every gain smaller; of an echo alone it is known by how much.
-        tied.gains.iter_mut().for_each(|g| *g = g.map(|g| g * (1.0 + ridge)));
-        let left = bench.without(samples, &tied.atoms, &tied.gains);
-        (tied.residual, tied.energy) = (left.residual, left.energy);
+        tied = combed(bench, samples, tied);
     }
     // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
     if tied.cost() <= TIED_COST_RATIO * fit.cost() { tied } else { fit }
@@ -211,7 +206,7 @@ fn left_when_drawn(bench: &Workbench, samples: &Samples, fit: &Fit) -> Vec<Compl
 }
 
 /// Each point tried on the neighbouring teeth of the comb, the others staying where they are.
-fn combed(bench: &Workbench, samples: &Samples, fit: Fit, limits: Limits) -> Fit {
+fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
     let sensor = &bench.sensor;
     let between_ends = sensor.element_x[sensor.end_elements] - sensor.element_x[0];
     let tooth = sensor.wavelength_metres() / between_ends;
@@ -228,7 +223,7 @@ fn combed(bench: &Workbench, samples: &Samples, fit: Fit, limits: Limits) -> Fit
                 let cos = x / range + f64::from(k) * tooth;
                 let y_metres = range * (1.0 - cos * cos).max(0.0).sqrt();
                 let atom = Atom::Point { x_metres: range * cos, y_metres };
-                (cos.abs() < 1.0).then(|| bench.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, limits))
+                (cos.abs() < 1.0).then(|| bench.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, TIED))
             })
             .collect();
         let trial = trials.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
@@ -237,7 +232,7 @@ fn combed(bench: &Workbench, samples: &Samples, fit: Fit, limits: Limits) -> Fit
             (best.residual, best.energy) = (trial.residual, trial.energy);
         }
     }
-    bench.refine(samples, best.atoms, best.gains, Tie::Both, limits)
+    bench.refine(samples, best.atoms, best.gains, Tie::Both, TIED)
 }
 
 /// Real reflectivities from complex gains: the phase all share belongs to the receiver, what is left of each gain is its sign.

@@ -216,7 +216,8 @@ impl<'a> Part<'a> {
         for chirp in &chirps[1..] {
             let other = line(chirp.profile).ok_or(ProfileError::Missing("profileCfg"))?;
             // The number itself differs; powers and gains (4 and 5, 11 on) may.
-            let same = |i: usize| other.values.get(i) == first.values.get(i);
+            // No number equals NaN, not even itself; it is told where it is read.
+            let same = |i: usize| other.values.get(i).map(|v| v.to_bits()) == first.values.get(i).map(|v| v.to_bits());
             if ![1, 2, 3, 4, 7, 9, 10].into_iter().all(same) {
                 let message = "the chirps of a frame follow profiles that differ; expected one profile for all of them";
                 return Err(ProfileError::Line { line: chirp.line, message: message.to_owned() });

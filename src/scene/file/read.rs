@@ -240,7 +240,7 @@ mod tests {
             ("\ncolour = 3", 2, vec!["colour", "object", "radar"]),
             ("[radar]\ncarier = \"one-way\"", 2, vec!["carier", "carrier"]),
             ("[radar]\nelements = 1024\ncarrier_hz = -5", 3, vec!["carrier_hz", "above 0"]),
-            ("[radar]\nelements = 3", 2, vec!["elements", "between 6"]),
+            ("[radar]\nelements = 1", 2, vec!["elements", "between 2"]),
             ("object = 3", 1, vec!["[[object]]"]),
             ("object = [3]", 1, vec!["object 1", "[[object]]"]),
             ("[[object]]\nx_metres = 1", 1, vec!["object 1", "kind", "gaussian"]),

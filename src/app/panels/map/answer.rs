@@ -53,9 +53,15 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, places: &Places) {
     label(painter, guess, guess_is_above, "your guess");
     label(painter, truth, !guess_is_above, "truth");
     let middle = guess + (truth - guess) / 2.0;
-    // Beside the line, where it is long enough not to stand over its ends.
+    // Beside the line, where it is long enough not to stand over its ends: above a line across, to the right of one that rises.
     if apart > 5.0 * REACH {
-        axes::text_on_patch(painter, middle + vec2(FREE, 0.0), Align2::LEFT_CENTER, distance);
+        let is_across = (truth.x - guess.x).abs() > (truth.y - guess.y).abs();
+        let (off, align) = if is_across {
+            (vec2(0.0, -2.0 * FREE), Align2::CENTER_BOTTOM)
+        } else {
+            (vec2(2.0 * FREE, 0.0), Align2::LEFT_CENTER)
+        };
+        axes::text_on_patch(painter, middle + off, align, distance);
     }
 }
 
