@@ -102,9 +102,12 @@ struct Cell {
     ratio: f64,
 }
 
+/// Transforms samples in place.
+type Transform = Box<dyn Fn(&mut [Complex64])>;
+
 /// The transform over loops.
 struct Cells {
-    transform: Box<dyn Fn(&mut [Complex64])>,
+    transform: Transform,
     weights: Vec<f64>,
 }
 

@@ -51,7 +51,7 @@ impl Found {
         let best = self.best();
         let mut all = vec![format!("{}.", capital(&best.described()))];
         let told =
-            best.evidence.iter().filter(|e| !e.sentence.is_empty() && !(e.kind == Kind::Config && e.log_odds < 0.0));
+            best.evidence.iter().filter(|e| !(e.sentence.is_empty() || e.kind == Kind::Config && e.log_odds < 0.0));
         all.extend(told.map(|e| format!("{}.", capital(&e.sentence))));
         all.push(self.decision());
         all.extend(self.notes.iter().cloned());

@@ -135,7 +135,7 @@ impl RadarProfile {
             && self.chirp_transmitters.iter().all(|m| m.count_ones() == 2 && *m == self.chirp_transmitters[0]);
         if let Some(phases) = &commands.phases {
             let bias = phases.real(0, "the range bias in metres")?;
-            if !(bias.abs() <= MOST_BIAS_METRES) {
+            if bias.is_nan() || bias.abs() > MOST_BIAS_METRES {
                 return Err(phases.fault(format!("the range bias is {bias}; expected metres")));
             }
             self.range_bias_metres = bias;

@@ -85,7 +85,7 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&Board>) -> Resu
         )
     }));
     let mut sentences = found.sentences();
-    sentences.extend(profile.iter().flat_map(|p| said(p)));
+    sentences.extend(profile.iter().flat_map(said));
     let about = text::About {
         data: &data,
         config: config.as_deref(),

@@ -100,7 +100,7 @@ mod tests {
                 assert!(text.rect.distance_to_pos(truth) > FREE, "{} lies over the blob", text.text);
             }
             let rings = drawn.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
-                Shape::Circle(circle) => Some(circle.clone()),
+                Shape::Circle(circle) => Some(*circle),
                 _ => None,
             });
             for ring in rings {
