@@ -11,6 +11,29 @@ use num_complex::Complex64;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 
+/// What chirps are simulated of.
+struct Chirps {
+    scene: apertura::scene::Scene,
+    radar: apertura::radar::Radar,
+    floor: Floor,
+    seed: u64,
+}
+
+impl Chirps {
+    /// The scene as it stands after `seconds`; what is not given is the scene's.
+    fn of(scene: &Scene, radar: Option<&Radar>, floor: &str, seed: Option<i128>, seconds: f64) -> PyResult<Self> {
+        if !seconds.is_finite() {
+            return Err(value(format!("seconds is {seconds}; expected a finite number")));
+        }
+        Ok(Chirps {
+            scene: scene.0.scene.at(seconds),
+            radar: radar.map_or_else(|| scene.0.radar.clone(), |r| r.0.clone()),
+            floor: named(floor)?,
+            seed: seed.map_or(Ok(scene.0.scene.noise_seed), |seed| whole("seed", seed))?,
+        })
+    }
+}
+
 /// Power over range and radial velocity, float64 `[samples, chirps]`, mean over up to 4 elements of each end. Row k is range
 /// `radar.range_metres[k]`, column k velocity `radar.velocity_metres_per_second[k]`.
 ///
@@ -35,14 +58,8 @@ pub fn range_doppler<'py>(
     seconds: f64,
     progress: work::Progress<'_, '_>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    if !seconds.is_finite() {
-        return Err(value(format!("seconds is {seconds}; expected a finite number")));
-    }
-    let floor: Floor = named(floor)?;
-    let radar = radar.map_or_else(|| scene.0.radar.clone(), |r| r.0.clone());
-    let seed = seed.map_or(Ok(scene.0.scene.noise_seed), |seed| whole("seed", seed))?;
-    let then = scene.0.scene.at(seconds);
-    let map = work::run(py, progress, |task| doppler::range_doppler_for(task, &radar, &then, floor, seed))?;
+    let Chirps { scene, radar, floor, seed } = Chirps::of(scene, radar, floor, seed, seconds)?;
+    let map = work::run(py, progress, |task| doppler::range_doppler_for(task, &radar, &scene, floor, seed))?;
     Ok(owned(py, map.map_err(|error: Unfinished| value(error))?.power))
 }
 
@@ -72,13 +89,7 @@ pub fn chirp_samples<'py>(
     seconds: f64,
     progress: work::Progress<'_, '_>,
 ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
-    if !seconds.is_finite() {
-        return Err(value(format!("seconds is {seconds}; expected a finite number")));
-    }
-    let floor: Floor = named(floor)?;
-    let radar = radar.map_or_else(|| scene.0.radar.clone(), |r| r.0.clone());
-    let seed = seed.map_or(Ok(scene.0.scene.noise_seed), |seed| whole("seed", seed))?;
-    let then = scene.0.scene.at(seconds);
-    let found = work::run(py, progress, |task| simulate_chirps_for(task, &radar, &then, floor, seed))?;
+    let Chirps { scene, radar, floor, seed } = Chirps::of(scene, radar, floor, seed, seconds)?;
+    let found = work::run(py, progress, |task| simulate_chirps_for(task, &radar, &scene, floor, seed))?;
     Ok(owned(py, found.map_err(|error: Unfinished| value(error))?.samples))
 }

@@ -29,7 +29,7 @@ enum MadeOf {
     /// A file of weights.
     Weights(PathBuf),
     /// A function, and what is said of it: description, told, answers and weights.
-    Function(Arc<Function>, Py<PyAny>, [String; 4]),
+    Function(Py<PyAny>, [String; 4]),
 }
 
 /// The method called `name`.
@@ -153,7 +153,7 @@ fn of_function(
     functions.retain(|function| function.strong_count() > 0);
     functions.push(Arc::downgrade(&inner));
     let texts = [description, told, answers, weights].map(str::to_owned);
-    Ok(Method { inner: inner.clone(), made_of: MadeOf::Function(inner, function.clone().unbind(), texts) })
+    Ok(Method { inner, made_of: MadeOf::Function(function.clone().unbind(), texts) })
 }
 
 /// Names of all methods.
@@ -306,7 +306,7 @@ impl Method {
                 fields.set_item("weights", path)?;
                 fields.set_item("called", self.inner.name())?;
             }
-            MadeOf::Function(_, function, texts) => {
+            MadeOf::Function(function, texts) => {
                 fields.set_item("function", function)?;
                 fields.set_item("name", self.inner.name())?;
                 fields.set_item("eta", self.inner.eta())?;

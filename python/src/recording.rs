@@ -46,7 +46,9 @@ impl Recording {
     #[pyo3(signature = (path, config=None))]
     fn open(path: PathBuf, config: Option<PathBuf>) -> PyResult<Self> {
         if config.is_some() && !recording::raw::is_raw(&path) {
-            return Err(errors::value("config is the .cfg of a raw capture; expected one (.bin, .dat or .raw) as path"));
+            return Err(errors::value(
+                "config is the .cfg of a raw capture; expected one (.bin, .dat or .raw) as path",
+            ));
         }
         let opened = match config {
             Some(config) => recording::raw::open(&path, Some(&config)),

@@ -9,7 +9,8 @@ use crate::maps::RangeAngleMap;
 /// Lambda beyond which a cell of the target counts as an object (thesis section 4.2).
 const TARGET_ETA: f32 = 0.9;
 
-/// Part of the answer's cells at or below [`TARGET_ETA`] that may exceed the threshold: P_FA of the answer against itself.
+/// Part of the answer's cells at or below [`TARGET_ETA`] that may exceed the threshold: P_FA of the answer against itself. A little below the 1 %
+/// that is wanted against the target.
 const FALSE_ALARM: f64 = 0.0092;
 
 /// Cells whose doubt decides how far below [`TARGET_ETA`] the threshold lies: those whose own Lambda is as near to it.
@@ -25,7 +26,8 @@ const EXACT_ETA: f32 = 0.896;
 const STEPS: usize = 4096;
 
 /// The threshold for an answer: no more of its own cells at or below 0.9 exceed it than 0.92 %, and no threshold is lower than the answer's
-/// doubt asks for. Rounded to three decimals, as people read it. Both constants from validation scenes (`examples/choose_eta.rs own`).
+/// doubt asks for. Rounded to three decimals, as people read it.
+/// `examples/experts.rs` prints the rates that follow.
 pub(crate) fn own_threshold(answer: &RangeAngleMap, doubt: Option<&RangeAngleMap>) -> f32 {
     let below = quantile(answer.lambda.iter().copied().filter(|v| *v <= TARGET_ETA), 1.0 - FALSE_ALARM).unwrap_or(0.0);
     let doubtful = doubt.map(|doubt| {
