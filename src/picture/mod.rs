@@ -15,6 +15,8 @@ mod directions;
 #[cfg(feature = "pictures")]
 mod doppler;
 #[cfg(feature = "pictures")]
+mod lettering;
+#[cfg(feature = "pictures")]
 mod map_panel;
 #[cfg(feature = "pictures")]
 mod panels;

@@ -2,6 +2,7 @@
 
 use super::canvas::{Area, Drawing, FAINT_INK, INK, PAPER, PictureError};
 use super::detections::{Detection, told_apart};
+use super::lettering::Lettered;
 use super::map_panel::{Cells, MapPanel};
 use super::scene_panel::{self, Content};
 use super::{ColourMap, text};
@@ -51,10 +52,10 @@ const MARGIN: i32 = 24;
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
 pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
-    text::register_fonts()?;
     let (width, height) = drawing.size();
     let mut buffer = vec![0; (width * height * 3) as usize];
-    drawing.draw(&BitMapBackend::with_buffer(&mut buffer, (width, height)).into_drawing_area())?;
+    let bitmap = Lettered::new(BitMapBackend::with_buffer(&mut buffer, (width, height)))?;
+    drawing.draw(&bitmap.into_drawing_area())?;
     RgbImage::from_raw(width, height, buffer).ok_or_else(|| PictureError::new("its buffer is too small"))
 }
 
@@ -63,9 +64,9 @@ pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
 pub fn render_svg(drawing: &impl Drawing) -> Result<String, PictureError> {
-    text::register_fonts()?;
     let mut svg = String::new();
-    drawing.draw(&SVGBackend::with_string(&mut svg, drawing.size()).into_drawing_area())?;
+    let lettered = Lettered::new(SVGBackend::with_string(&mut svg, drawing.size()))?;
+    drawing.draw(&lettered.into_drawing_area())?;
     Ok(svg)
 }
 

@@ -1,6 +1,7 @@
 //! Text on pictures, in fonts that come with the program: a picture looks the same on every machine.
 
 use super::canvas::{Area, PictureError};
+use super::lettering::{BOLD, NORMAL};
 use crate::platform::register_font;
 use plotters::prelude::*;
 use plotters::style::FontStyle;
@@ -24,9 +25,8 @@ pub fn register_fonts() -> Result<(), PictureError> {
     static DONE: OnceLock<Result<(), PictureError>> = OnceLock::new();
     DONE.get_or_init(|| {
         let broken = |_| PictureError::new("the embedded font is broken");
-        register_font(FAMILY, FontStyle::Normal, include_bytes!("../../assets/fonts/DejaVuSans.ttf"))
-            .map_err(broken)?;
-        register_font(FAMILY, FontStyle::Bold, include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf")).map_err(broken)
+        register_font(FAMILY, FontStyle::Normal, NORMAL).map_err(broken)?;
+        register_font(FAMILY, FontStyle::Bold, BOLD).map_err(broken)
     })
     .clone()
 }

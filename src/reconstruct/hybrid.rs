@@ -48,12 +48,12 @@ impl Hybrid {
         };
         // Both experts contradict each other over the whole range of their maps, of which a dynamic range cuts most off.
         let whole_range = Request { normalisation: Normalisation::MinMax, ..request.clone() };
-        let (mut expected, mut network) = maps(&whole_range)?;
-        let left = found.left_decades(radar, ends, &expected);
-        let weight = network_weight(&expected.map, &network.lambda, network.doubt.as_ref(), &left);
-        if request.normalisation != Normalisation::MinMax {
-            (expected, network) = maps(request)?;
-        }
+        let (whole, whole_network) = maps(&whole_range)?;
+        let left = found.left_decades(radar, ends, &whole);
+        let shown = (request.normalisation != Normalisation::MinMax).then(|| maps(request)).transpose()?;
+        let drawn = shown.as_ref().map_or(&whole.map, |(expected, _)| &expected.map);
+        let weight = network_weight(&whole.map, &whole_network.lambda, whole_network.doubt.as_ref(), &left, drawn);
+        let (expected, network) = shown.unwrap_or((whole, whole_network));
         let least_eta = network.least_eta.unwrap_or(0.0).max(expected.least_eta);
         let lambda = blended(expected.map, &network.lambda, &weight);
         let eta = own_threshold(&lambda, network.doubt.as_ref());

@@ -12,8 +12,8 @@ use rayon::prelude::*;
 /// than the network: a tenth of the power is half a decibel of the cell.
 const LEFT_DECADES: [f32; 2] = [-3.0, -1.0];
 
-/// Part of the cells with more left than drawn, between which the search isn't believed anywhere: such a scene is not made of what it
-/// looks for.
+/// Part of the shown cells with more left than drawn, between which the search isn't believed anywhere: such a scene is not made of what it
+/// looks for. Cells that a dynamic range cuts off say nothing of it.
 const UNEXPLAINED_PART: [f32; 2] = [0.7, 0.9];
 
 /// Weight of the network where the search leaves something and the two don't contradict each other. Their errors differ, so that the mean is
@@ -32,14 +32,17 @@ const AROUND: [usize; 2] = [2, 8];
 
 /// Weight of `network`'s map in each cell, 0 to 1, over `drawn`, the search's; both are Lambda on one scale, `[range bins, columns]`.
 /// `left_decades` is what the search leaves ([`Found::left_decades`](super::search::Found::left_decades)), and `doubt` what nine of ten
-/// errors of the network stay below. A network without doubt is believed wherever something is left.
+/// errors of the network stay below. A network without doubt is believed wherever something is left. `shown` is the search's map in the
+/// range that was asked for: its cells at 0 are cut off.
 pub fn network_weight(
     drawn: &RangeAngleMap,
     network: &RangeAngleMap,
     doubt: Option<&RangeAngleMap>,
     left_decades: &Array2<f32>,
+    shown: &RangeAngleMap,
 ) -> Array2<f32> {
-    let more_left = left_decades.iter().filter(|left| **left > 0.0).count() as f32 / left_decades.len().max(1) as f32;
+    let shown = || left_decades.iter().zip(&shown.lambda).filter(|(_, shown)| **shown > 0.0);
+    let more_left = shown().filter(|(left, _)| **left > 0.0).count() as f32 / shown().count().max(1) as f32;
     let nowhere = between(UNEXPLAINED_PART, more_left);
     let mut square = &drawn.lambda - &network.lambda;
     square.par_mapv_inplace(|v| v * v);
@@ -111,7 +114,7 @@ mod tests {
 
     fn weight(drawn: f32, network: f32, doubt: f32, left: f32) -> f32 {
         let left = Array2::from_elem((40, 60), left);
-        network_weight(&flat(drawn), &flat(network), Some(&flat(doubt)), &left)[[20, 30]]
+        network_weight(&flat(drawn), &flat(network), Some(&flat(doubt)), &left, &flat(drawn))[[20, 30]]
     }
 
     #[test]
@@ -132,14 +135,17 @@ mod tests {
     fn a_scene_that_is_mostly_unexplained_is_the_networks() {
         let mut left = Array2::from_elem((40, 60), 1.0);
         left.row_mut(3).fill(-9.0);
-        let weight = network_weight(&flat(0.2), &flat(0.9), Some(&flat(0.1)), &left);
-        assert_eq!(weight[[3, 5]], 1.0);
+        let weight = |shown| network_weight(&flat(0.2), &flat(0.9), Some(&flat(0.1)), &left, shown)[[3, 5]];
+        assert_eq!(weight(&flat(0.2)), 1.0);
+        let mut cut = flat(0.0);
+        cut.lambda.row_mut(3).fill(0.2);
+        assert_eq!(weight(&cut), 0.0, "what is cut off says nothing");
     }
 
     #[test]
     fn a_network_without_doubt_is_believed_where_something_is_left() {
         let left = Array2::from_elem((40, 60), -2.0);
-        let weight = network_weight(&flat(0.2), &flat(0.9), None, &left);
+        let weight = network_weight(&flat(0.2), &flat(0.9), None, &left, &flat(0.2));
         assert!((weight[[1, 1]] - 0.5).abs() < 1e-6);
         assert!((blended(flat(0.2), &flat(0.9), &weight).lambda[[1, 1]] - 0.55).abs() < 1e-6);
     }
