@@ -8,7 +8,7 @@ use crate::rows::{dict_of, list_of};
 use crate::scene::{Scene, purpose_of, reading_of, set_name};
 use crate::work::{self, Progress};
 use apertura::evaluate::campaign::{Campaign, CampaignError, Elements};
-use apertura::evaluate::rows::{KeptError, Row, RowFile, Wanted};
+use apertura::evaluate::rows::{KeptError, Row, RowFile, RunRows};
 use apertura::evaluate::sets::{Case, Listed, SceneSet};
 use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::Reconstructor;
@@ -168,7 +168,7 @@ impl Run {
     }
 
     fn open(&self, path: &Path, overwrite: bool) -> PyResult<RowFile> {
-        RowFile::open(path, &Wanted::new(&self.empty), overwrite).map_err(kept)
+        RowFile::open(path, &RunRows::new(&self.empty), overwrite).map_err(kept)
     }
 
     /// Finds the rows that `file` doesn't hold, and appends them to it.

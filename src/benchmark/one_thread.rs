@@ -1,7 +1,7 @@
 //! Run times of what the window computes most, on one thread: the native program and the page run the same, and `scripts/measure-page`
 //! compares them.
 
-use crate::engine::{Engine, Wanted};
+use crate::engine::{Engine, MapRequest};
 use crate::methods;
 use crate::platform::Instant;
 use crate::radar::Radar;
@@ -68,7 +68,7 @@ pub fn measure() -> Result<Vec<Timed>, String> {
             object.translate(DRAG_METRES, 0.0);
         }
         let mut engine = Engine::new(radar.clone());
-        let wanted = Wanted { floor: Floor::Exact, ends: false, ..Wanted::default() };
+        let wanted = MapRequest { floor: Floor::Exact, ends: false, ..MapRequest::default() };
         let mut update = |scene: &Scene, afresh: bool| {
             if afresh {
                 engine.forget();

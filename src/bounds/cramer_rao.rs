@@ -9,7 +9,7 @@
 
 use crate::radar::{Decibels, Layout, Pair, Radar};
 use crate::scene::Reflector;
-use crate::signal::path::{By, Change};
+use crate::signal::path::{By, PathChange};
 use crate::signal::phase::{Echo, EchoModel};
 use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::{Mat, Side};
@@ -156,8 +156,8 @@ const GAIN: usize = 2;
 /// One reflector's echo at one element, and how it changes with the reflector's place.
 struct PlacedEcho {
     echo: Echo,
-    /// Change with range and with cos(theta).
-    by: [Change; 2],
+    /// PathChange with range and with cos(theta).
+    by: [PathChange; 2],
     carrier_turns_per_metre: f64,
     beat_turns_per_metre: f64,
 }
@@ -168,7 +168,7 @@ impl PlacedEcho {
             echo: model.echo(pair, r),
             by: [By::Range, By::CosTheta].map(|by| {
                 let place = [r.x_metres, r.y_metres];
-                Change::of_point(pair, place, by).through(radar.pattern(), pair, place, by)
+                PathChange::of_point(pair, place, by).through(radar.pattern(), pair, place, by)
             }),
             carrier_turns_per_metre: radar.carrier_turns_per_metre(),
             beat_turns_per_metre: radar.beat_turns_per_metre(1.0),

@@ -41,7 +41,7 @@ pub struct Args {
 }
 
 /// Layouts that are listed.
-const LISTED: usize = 4;
+const MAX_LISTED_LAYOUTS: usize = 4;
 
 impl Args {
     /// Finds the layout, tells it, and writes the TOML.
@@ -102,7 +102,7 @@ fn described(imported: &Imported, doubts: &[String]) -> Value {
         Certainty::Likely => "likely",
         Certainty::Open => "open",
     };
-    let layouts: Vec<Value> = found.candidates.iter().take(LISTED).map(layout).collect();
+    let layouts: Vec<Value> = found.candidates.iter().take(MAX_LISTED_LAYOUTS).map(layout).collect();
     json!({
         "data": data.display().to_string(),
         "config": config.as_ref().map(|c| c.display().to_string()),

@@ -5,15 +5,15 @@
 //! how much is bounded as it goes, and the sum is made afresh before it could show.
 
 use super::amplitudes::Amplitudes;
-use super::bank::{Bank, Job};
-use super::frame::{Frame, Wanted};
-use super::report::{Report, Stage};
-use super::settled::Settled;
-use super::shown::Shown;
+use super::bank::{Bank, BankUpdate};
+use super::frame::{EngineFrame, MapRequest};
+use super::report::{EngineReport, EngineStage};
+use super::settled::SettledMaps;
+use super::shown::ShownMaps;
 use crate::maps::tolerance;
 use crate::platform::Instant;
 use crate::radar::Radar;
-use crate::scattering::Seen;
+use crate::scattering::SeenObject;
 use crate::scene::{Scene, SceneError};
 use crate::signal::plan::Sum;
 use crate::signal::simd::{LANES_F32, LANES_F64};
@@ -30,8 +30,8 @@ pub struct Engine {
     double: Option<Bank<f64, LANES_F64>>,
     /// The precision of the last maps.
     last: Option<Precision>,
-    shown: Option<Shown>,
-    settled: Option<Settled>,
+    shown: Option<ShownMaps>,
+    settled: Option<SettledMaps>,
     amplitudes: Amplitudes,
 }
 
@@ -109,7 +109,7 @@ impl Engine {
             .as_ref()
             .map_or(0, |s| s.decades.iter().flatten().count() + s.maps.iter().flatten().count() + s.spare.len());
         // Decades in f64 and Lambda in f32.
-        let settled = self.settled.as_ref().map_or(0, Settled::maps) * 3;
+        let settled = self.settled.as_ref().map_or(0, SettledMaps::maps) * 3;
         banks + (shown + settled) * cells
     }
 
@@ -118,7 +118,7 @@ impl Engine {
     ///
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
-    pub fn update(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
+    pub fn update(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
         self.update_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
     }
 
@@ -126,7 +126,7 @@ impl Engine {
     ///
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
-    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
+    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
         let begin = Instant::now();
         let is_focused = self.radar.focus_off_line && !self.radar.is_on_line();
         if is_focused || !scene.disturbances.is_none_to(&self.radar) {
@@ -135,7 +135,7 @@ impl Engine {
         scene.validate(&self.radar)?;
         self.settled = self.settled.take().filter(|settled| settled.has(scene, wanted));
         let mut frame = match &mut self.settled {
-            Some(settled) => settled.frame(wanted, Report::default()),
+            Some(settled) => settled.frame(wanted, EngineReport::default()),
             None => self.follow(task, scene, wanted)?,
         };
         frame.report.total = begin.elapsed();
@@ -147,7 +147,7 @@ impl Engine {
     ///
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
-    pub fn settle(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
+    pub fn settle(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
         self.settle_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
     }
 
@@ -155,12 +155,12 @@ impl Engine {
     ///
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
-    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
+    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
         let begin = Instant::now();
-        let mut report = Report::default();
+        let mut report = EngineReport::default();
         let settled = match self.settled.take().filter(|settled| settled.has(scene, wanted)) {
             Some(settled) => settled,
-            None => Settled::of(task, &self.radar, scene, wanted, &mut report)?,
+            None => SettledMaps::of(task, &self.radar, scene, wanted, &mut report)?,
         };
         let mut frame = self.settled.insert(settled).frame(wanted, report);
         frame.report.total = begin.elapsed();
@@ -168,26 +168,26 @@ impl Engine {
     }
 
     /// Brings what was shown last up to `scene`.
-    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
-        let mut report = Report::default();
+    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
+        let mut report = EngineReport::default();
         let visible = wanted.visible();
         let mut shown = self.recall(scene, wanted);
         if wanted.ends && shown.ends.is_none() {
             let start = Instant::now();
             shown.ends = Some(Arc::new(simulate_ends_for(task, &self.radar, scene, wanted.floor, wanted.seed)?));
-            report.computed(Stage::Ends, start.elapsed(), "summed at the two ends");
+            report.computed(EngineStage::Ends, start.elapsed(), "summed at the two ends");
         } else {
-            report.skipped(Stage::Ends, if wanted.ends { "the scene did not change" } else { "not looked at" });
+            report.skipped(EngineStage::Ends, if wanted.ends { "the scene did not change" } else { "not looked at" });
         }
         let missing = [0, 1, 2].map(|i| visible[i] && !shown.current[i]);
         if missing.contains(&true) {
             self.compute(task, scene, wanted, missing, &mut shown, &mut report)?;
         } else {
-            report.skipped(Stage::Signal, "the scene did not change");
-            report.skipped(Stage::Noise, "the scene did not change");
+            report.skipped(EngineStage::Signal, "the scene did not change");
+            report.skipped(EngineStage::Noise, "the scene did not change");
         }
         for i in (0..3).filter(|i| !missing[*i]) {
-            report.skipped(Stage::MAPS[i], if visible[i] { "the scene did not change" } else { "not looked at" });
+            report.skipped(EngineStage::MAPS[i], if visible[i] { "the scene did not change" } else { "not looked at" });
         }
         shown.normalise(visible, missing, wanted.normalisation, &mut report);
 
@@ -195,22 +195,22 @@ impl Engine {
         let (first, last, full) = (map(0), map(1), map(2));
         let ends = shown.ends.clone().filter(|_| wanted.ends);
         self.shown = Some(shown);
-        Ok(Frame { first, last, full, ends, settled: false, report })
+        Ok(EngineFrame { first, last, full, ends, settled: false, report })
     }
 
     /// Error of a sample that the maps may have.
-    fn tolerance(&self, wanted: &Wanted) -> f64 {
+    fn tolerance(&self, wanted: &MapRequest) -> f64 {
         self.forced.tolerance.unwrap_or_else(|| tolerance::tolerance_for(wanted.floor, wanted.normalisation))
     }
 
     /// What was shown last, if it is good enough for what is wanted; else its memory alone.
-    fn recall(&mut self, scene: &Scene, wanted: &Wanted) -> Shown {
+    fn recall(&mut self, scene: &Scene, wanted: &MapRequest) -> ShownMaps {
         let tolerance = self.tolerance(wanted);
         // Maps that are fine at a fixed range may be a trap when normalised by their minimum.
         let nothing = Sum { algorithm: Algorithm::Split, reflectors: 0, amplitude: 0.0 };
         let trap = self.last == Some(Precision::F32)
             && tolerance::refusal(Precision::F32, &nothing, wanted.floor, wanted.normalisation).is_some();
-        let same = |s: &Shown| {
+        let same = |s: &ShownMaps| {
             s.objects == scene.objects
                 && s.shadows == scene.shadows
                 && s.floor == wanted.floor
@@ -220,7 +220,7 @@ impl Engine {
         };
         match self.shown.take() {
             Some(shown) if same(&shown) => shown,
-            other => Shown::of(scene, wanted, tolerance, other),
+            other => ShownMaps::of(scene, wanted, tolerance, other),
         }
     }
 
@@ -229,12 +229,12 @@ impl Engine {
         &mut self,
         task: &Task,
         scene: &Scene,
-        wanted: &Wanted,
+        wanted: &MapRequest,
         missing: [bool; 3],
-        shown: &mut Shown,
-        report: &mut Report,
+        shown: &mut ShownMaps,
+        report: &mut EngineReport,
     ) -> Result<(), Cancelled> {
-        let seen = Seen::all(&self.radar, scene);
+        let seen = SeenObject::all(&self.radar, scene);
         let amplitude = self.amplitudes.bound(&self.radar, &seen);
         let mut chosen = Plan::cheapest(scene.echo_count(), amplitude, self.tolerance(wanted));
         let refusal = self.forced.precision.and_then(|forced| {
@@ -245,7 +245,7 @@ impl Engine {
             refusal
         });
         let (radar, forced) = (&self.radar, self.forced.algorithm);
-        let job = Job { task, radar, scene, seen: &seen, wanted, plan: chosen, forced, amplitude, missing };
+        let job = BankUpdate { task, radar, scene, seen: &seen, wanted, plan: chosen, forced, amplitude, missing };
         if self.last.replace(chosen.precision) != Some(chosen.precision) {
             // What the maps show was summed by the other bank.
             shown.decades.iter_mut().flatten().for_each(|kept| kept.stale = Rows::all(radar.samples));
@@ -256,7 +256,7 @@ impl Engine {
             Precision::F64 => self.double.get_or_insert_with(|| Bank::new(radar)).run(&job, maps, report)?,
         }
         if let Some(why) = refusal {
-            report.remark(Stage::Signal, why);
+            report.remark(EngineStage::Signal, why);
         }
         shown.current = [0, 1, 2].map(|i| shown.current[i] || missing[i]);
         Ok(())

@@ -1,6 +1,6 @@
 //! The incremental engine: what changed, what is looked at, and nothing else computed.
 //!
-//! [`Engine::update`] takes a scene and what is [`Wanted`] and gives a [`Frame`]. Results that did not change are the same
+//! [`Engine::update`] takes a scene and what is [`MapRequest`] and gives a [`EngineFrame`]. Results that did not change are the same
 //! [`Arc`](std::sync::Arc) as before, so whoever draws them can tell with `Arc::ptr_eq` that nothing needs drawing.
 //!
 //! What it keeps between updates leaves its rounding in the maps: less than anybody asked to see, but not the same bits as from scratch. The
@@ -16,6 +16,6 @@ mod report;
 mod settled;
 mod shown;
 
-pub use frame::{Frame, ReadyMap, Wanted};
+pub use frame::{EngineFrame, MapRequest, ReadyMap};
 pub use incremental::{Engine, Forced};
-pub use report::{Outcome, Report, Stage, StageReport};
+pub use report::{EngineReport, EngineStage, StageOutcome, StageReport};

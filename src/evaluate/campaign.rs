@@ -12,7 +12,7 @@ pub use error::{CampaignError, Unfit};
 use super::Target;
 use super::rows::{FORMAT, Row, Text, Whole};
 use super::sets::{Case, SceneSet};
-use super::trial::{Answer, Trial};
+use super::trial::{TimedAnswer, Trial};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
 use crate::radar::{Radar, check_layout};
@@ -22,7 +22,7 @@ use crate::scene::generate::{Generator, Purpose, Reading};
 use crate::signal::Floor;
 use crate::task::Task;
 use error::set_name;
-use job::Job;
+use job::SceneJob;
 use rayon::prelude::*;
 
 /// Which scenes methods are tried on.
@@ -113,7 +113,7 @@ impl Campaign {
         sets: &[SceneSet],
         methods: &[&dyn Reconstructor],
         task: &Task,
-        on_row: impl FnMut(&Row, &Trial, &Answer),
+        on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
     ) -> Result<Vec<Row>, CampaignError> {
         let empty = self.empty_rows(sets, methods)?;
         self.run_rest(sets, methods, &empty, &|_, _, _| false, task, on_row)
@@ -128,7 +128,7 @@ impl Campaign {
         sets: &[SceneSet],
         methods: &[&dyn Reconstructor],
         task: &Task,
-        on_row: impl FnMut(&Row, &Trial, &Answer),
+        on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
     ) -> Result<(Vec<Row>, Vec<Unfit>), CampaignError> {
         let empty = self.empty_rows(sets, methods)?;
         let mut unfit: Vec<Unfit> = Vec::new();
@@ -205,7 +205,7 @@ impl Campaign {
         empty: &[Vec<Row>],
         is_done: &dyn Fn(&str, u32, &str) -> bool,
         task: &Task,
-        on_row: impl FnMut(&Row, &Trial, &Answer),
+        on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
     ) -> Result<Vec<Row>, CampaignError> {
         self.run_through(sets, methods, empty, is_done, task, on_row, Err)
     }
@@ -219,7 +219,7 @@ impl Campaign {
         empty: &[Vec<Row>],
         is_done: &dyn Fn(&str, u32, &str) -> bool,
         task: &Task,
-        mut on_row: impl FnMut(&Row, &Trial, &Answer),
+        mut on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
         mut on_failure: impl FnMut(CampaignError) -> Result<(), CampaignError>,
     ) -> Result<Vec<Row>, CampaignError> {
         let generator = self.generator();
@@ -240,7 +240,7 @@ impl Campaign {
                 let trials: Result<Vec<Trial>, _> =
                     batch.par_iter().map(|&index| self.trial(set, &generator, index)).collect();
                 for (trial, &index) in trials?.iter().zip(batch) {
-                    let job = Job { cfar: self.cfar, set, index, trial, request: &request, empty };
+                    let job = SceneJob { cfar: self.cfar, set, index, trial, request: &request, empty };
                     if !std::mem::replace(&mut warm, true) {
                         // A method that fails here fails again where its row is asked for, if that is one of the rows.
                         methods.iter().for_each(|&method| drop(job.answer(method)));

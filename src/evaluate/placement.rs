@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     #[ignore = "minutes; prints the ratio at every signal-to-noise ratio"]
-    fn one_reflector_is_placed_as_well_as_the_bound_allows_at_every_snr() {
+    fn one_reflectors_place_reaches_the_bound_at_every_snr() {
         for snr in [0.0, 10.0, 20.0, 30.0, 40.0] {
             let p = placed(snr, 200);
             println!(

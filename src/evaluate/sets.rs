@@ -94,7 +94,7 @@ impl Folder {
         for entry in fs::read_dir(path).map_err(failed)? {
             let file = entry.map_err(failed)?.path();
             let hidden = file.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
-            if !hidden && file.is_file() && file::Format::of_path(&file).is_ok() {
+            if !hidden && file.is_file() && file::SceneFormat::of_path(&file).is_ok() {
                 files.push(file);
             }
         }

@@ -50,12 +50,12 @@ pub struct KeptThreshold {
     /// The threshold of Lambda.
     pub eta: f32,
     /// P_FA and P_D there.
-    pub tried: Tried,
+    pub tried: ThresholdMeans,
 }
 
 /// Means over scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tried {
+pub struct ThresholdMeans {
     /// Scenes with target cells.
     pub scenes: usize,
     /// P_FA, 0 to 1.
@@ -141,7 +141,7 @@ impl ThresholdSearch {
         let found = roc.keeping_false_alarm(self.rate());
         let RocPoint { eta, detection, false_alarm } =
             found.ok_or(ThresholdError::Unreached(self.false_alarm_percent))?;
-        Ok(KeptThreshold { eta, tried: Tried { scenes: roc.scenes(), false_alarm, detection } })
+        Ok(KeptThreshold { eta, tried: ThresholdMeans { scenes: roc.scenes(), false_alarm, detection } })
     }
 
     /// The rates at `eta` on `count` further scenes of each kind, which did not choose it.
@@ -155,8 +155,8 @@ impl ThresholdSearch {
         count: u32,
         task: &Task,
         on_part: impl FnMut(f32),
-    ) -> Result<Tried, ThresholdError> {
-        let mut sums = Tried { scenes: 0, false_alarm: 0.0, detection: 0.0 };
+    ) -> Result<ThresholdMeans, ThresholdError> {
+        let mut sums = ThresholdMeans { scenes: 0, false_alarm: 0.0, detection: 0.0 };
         self.each(method, [self.count, count], task, on_part, |target, output| {
             let (detection, false_alarm) = detection_rates(target, output, eta);
             if let Some(detection) = detection {
@@ -166,7 +166,7 @@ impl ThresholdSearch {
             }
         })?;
         let scenes = sums.scenes.max(1) as f64;
-        Ok(Tried { detection: sums.detection / scenes, false_alarm: sums.false_alarm / scenes, ..sums })
+        Ok(ThresholdMeans { detection: sums.detection / scenes, false_alarm: sums.false_alarm / scenes, ..sums })
     }
 
     /// How much of the rate is left to P_FA on `scenes` scenes, and to how many nine tenths of it would be, in words.

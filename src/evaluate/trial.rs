@@ -43,7 +43,7 @@ struct Facts {
 
 /// What a method made of a [`Trial`].
 #[derive(Debug, Clone)]
-pub struct Answer {
+pub struct TimedAnswer {
     /// What it found.
     pub found: Reconstruction,
     /// How long it took.
@@ -98,7 +98,7 @@ impl Trial {
     ///
     /// # Errors
     /// [`ReconstructError`] of the method.
-    pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<Answer, ReconstructError> {
+    pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<TimedAnswer, ReconstructError> {
         request.task.check()?;
         let start = Instant::now();
         let found = match &self.heard {
@@ -109,7 +109,7 @@ impl Trial {
         };
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         let eta = method.eta_of(&found);
-        Ok(Answer {
+        Ok(TimedAnswer {
             metrics: Metrics::of_echoes(!self.scene.is_silent(), &self.target, &found.lambda, eta),
             found,
             milliseconds,
@@ -123,12 +123,12 @@ impl Trial {
     }
 
     /// What kind of failure an answer is, if any.
-    pub fn failures(&self, answer: &Answer) -> Failures {
+    pub fn failures(&self, answer: &TimedAnswer) -> Failures {
         self.footprints().judge(&self.target, &answer.found.lambda, answer.eta)
     }
 
     /// Which echoes stand out in the target, and which of them an answer shows.
-    pub fn echoes(&self, answer: &Answer) -> EchoTally {
+    pub fn echoes(&self, answer: &TimedAnswer) -> EchoTally {
         echoes::tally(&self.radar, &self.scene, &self.target, &answer.found.lambda, &self.scale)
     }
 
@@ -137,7 +137,7 @@ impl Trial {
     ///
     /// # Errors
     /// [`CfarError`] where the detector can't work on the radar's maps.
-    pub fn cfar_metrics(&self, answer: &Answer, cfar: &Cfar) -> Result<Metrics, CfarError> {
+    pub fn cfar_metrics(&self, answer: &TimedAnswer, cfar: &Cfar) -> Result<Metrics, CfarError> {
         let detected = |map: &RangeAngleMap| Ok(cfar.detect_lambda(map, self.scale)?.as_map());
         let (target, output) = (detected(&self.target)?, detected(&answer.found.lambda)?);
         let by_cfar = Metrics::of_echoes(!self.scene.is_silent(), &target, &output, 0.5);
@@ -146,7 +146,7 @@ impl Trial {
 
     /// The row of an answer: `row`, which says what makes it, with all figures but those of a detector of constant false-alarm rate.
     /// `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
-    pub fn filled(&self, row: Row, answer: &Answer, false_alarm: f64) -> Row {
+    pub fn filled(&self, row: Row, answer: &TimedAnswer, false_alarm: f64) -> Row {
         let roc = Roc::of_echoes(!self.scene.is_silent(), &self.target, &answer.found.lambda);
         let facts = Facts::of(&self.radar, &self.scene);
         let failures = self.failures(answer);

@@ -1,7 +1,7 @@
 //! The process of a command: questions go in, answers come out, each on a thread of its own, so that a process that does neither holds nobody up.
 
 use super::command::CommandLine;
-use super::message::{Answer, read_answer};
+use super::message::{ExternalAnswer, read_answer};
 use super::tail::Tail;
 use crate::platform::{Instant, spawn};
 use crate::task::{Cancelled, Task};
@@ -13,7 +13,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 /// How often somebody who waits looks whether the work was cancelled.
-const LOOK: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 
 /// How long an ended process' last words are waited for.
 const LAST_WORDS: Duration = Duration::from_millis(500);
@@ -28,7 +28,7 @@ const MOST_UNASKED: u64 = 1 << 20;
 pub struct Process {
     child: Child,
     questions: Option<Sender<Vec<u8>>>,
-    answers: Receiver<io::Result<Option<Answer>>>,
+    answers: Receiver<io::Result<Option<ExternalAnswer>>>,
     stderr: Tail,
     /// Longest array that an answer may have.
     most_bytes: Arc<AtomicU64>,
@@ -42,16 +42,16 @@ pub struct Process {
 
 /// Why there is no answer.
 #[derive(Debug)]
-pub enum Failure {
+pub enum ProcessFailure {
     /// Somebody asked the work to stop; the process goes on.
     Cancelled,
     /// The process is of no further use.
     Broken(String),
 }
 
-impl From<Cancelled> for Failure {
+impl From<Cancelled> for ProcessFailure {
     fn from(_: Cancelled) -> Self {
-        Failure::Cancelled
+        ProcessFailure::Cancelled
     }
 }
 
@@ -130,11 +130,11 @@ impl Process {
     /// The next answer, for which the process may take `limit`.
     ///
     /// # Errors
-    /// [`Failure`], also where the process hangs, ended or wrote something else.
-    pub fn wait(&mut self, task: &Task, limit: Duration) -> Result<Answer, Failure> {
+    /// [`ProcessFailure`], also where the process hangs, ended or wrote something else.
+    pub fn wait(&mut self, task: &Task, limit: Duration) -> Result<ExternalAnswer, ProcessFailure> {
         loop {
             task.check()?;
-            match self.answers.recv_timeout(LOOK) {
+            match self.answers.recv_timeout(POLL_INTERVAL) {
                 Ok(Ok(Some(answer))) => {
                     self.pending = self.pending.saturating_sub(1);
                     self.since = Instant::now();
@@ -142,12 +142,14 @@ impl Process {
                 }
                 Ok(Ok(None)) | Err(RecvTimeoutError::Disconnected) => {
                     let status = self.ended();
-                    return Err(Failure::Broken(self.with_last_words(status, LAST_WORDS)));
+                    return Err(ProcessFailure::Broken(self.with_last_words(status, LAST_WORDS)));
                 }
-                Ok(Err(error)) => return Err(Failure::Broken(self.with_last_words(error.to_string(), LAST_WORDS / 5))),
+                Ok(Err(error)) => {
+                    return Err(ProcessFailure::Broken(self.with_last_words(error.to_string(), LAST_WORDS / 5)));
+                }
                 Err(RecvTimeoutError::Timeout) if self.since.elapsed() > limit => {
                     let hangs = format!("it gave no answer within {} s", limit.as_secs_f64());
-                    return Err(Failure::Broken(self.with_last_words(hangs, Duration::ZERO)));
+                    return Err(ProcessFailure::Broken(self.with_last_words(hangs, Duration::ZERO)));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
             }
@@ -160,7 +162,7 @@ impl Process {
         while began.elapsed() < LAST_WORDS {
             match self.child.try_wait() {
                 Ok(Some(status)) => return format!("it ended ({status}) before it answered"),
-                Ok(None) => std::thread::sleep(LOOK / 4),
+                Ok(None) => std::thread::sleep(POLL_INTERVAL / 4),
                 Err(_) => break,
             }
         }
@@ -186,7 +188,7 @@ impl Drop for Process {
         let began = Instant::now();
         while self.pending == 0 && began.elapsed() < FAREWELL {
             match self.child.try_wait() {
-                Ok(None) => std::thread::sleep(LOOK / 4),
+                Ok(None) => std::thread::sleep(POLL_INTERVAL / 4),
                 _ => break,
             }
         }

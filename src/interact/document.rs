@@ -6,7 +6,7 @@ use crate::platform::fs;
 use crate::radar::Radar;
 use crate::recording::{self, Recording, RecordingError, presets};
 use crate::scene::Scene;
-use crate::scene::file::{self, Format, Loss, SceneFile, SceneFileError};
+use crate::scene::file::{self, FileLoss, SceneFile, SceneFileError, SceneFormat};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -44,7 +44,7 @@ pub struct Document {
 }
 
 /// Name of the table of a scene file that says what the scene is laid over.
-const OVER: &str = "over";
+const BACKGROUND_TABLE: &str = "over";
 
 /// What a scene is laid over.
 #[derive(Debug, Serialize, Deserialize)]
@@ -109,7 +109,7 @@ impl Document {
     /// # Errors
     /// [`SceneFileError`] names the file, the line or key, and what was expected.
     pub fn read(path: &Path) -> Result<Self, SceneFileError> {
-        let (file, over) = file::load_beside::<Over>(path, OVER)?;
+        let (file, over) = file::load_beside::<Over>(path, BACKGROUND_TABLE)?;
         let path = whole_path(path);
         let mut document = Document::opened(&path, file);
         if let Some(Over { recording }) = over {
@@ -132,20 +132,20 @@ impl Document {
         if is_data || recording::file::is_recording_at(path) {
             return Err(SceneFileError::Recording { path: path.to_owned() });
         }
-        match own.filter(|_| Format::of_path(path).is_ok_and(|f| f == Format::Toml)) {
+        match own.filter(|_| SceneFormat::of_path(path).is_ok_and(|f| f == SceneFormat::Toml)) {
             None => file::save(path, &self.to_file()),
             Some(own) => {
                 let name = own.file_name().filter(|_| own.parent() == path.parent()).map_or(own, Path::new);
                 let over = Over { recording: name.to_string_lossy().into_owned() };
-                file::save_beside(path, &self.to_file(), OVER, &over)
+                file::save_beside(path, &self.to_file(), BACKGROUND_TABLE, &over)
             }
         }
     }
 
     /// What a file of `format` would not give back of it.
-    pub(super) fn losses(&self, format: Format) -> Vec<Loss> {
+    pub(super) fn losses(&self, format: SceneFormat) -> Vec<FileLoss> {
         let mut losses = format.losses(&self.to_file());
-        losses.extend((format == Format::Npz && self.measured.is_some()).then_some(Loss::Recording));
+        losses.extend((format == SceneFormat::Npz && self.measured.is_some()).then_some(FileLoss::Recording));
         losses
     }
 

@@ -6,7 +6,7 @@ use crate::scene::Scene;
 use std::sync::Arc;
 
 /// Steps that are kept.
-const LIMIT: usize = 500;
+const MAX_STEPS: usize = 500;
 
 /// Objects that are kept in all steps together, each scene counted once: some 300 MB.
 const OBJECT_LIMIT: usize = 4_000_000;
@@ -44,7 +44,7 @@ impl History {
         self.sealed = false;
         if !merges {
             self.done.push(Step { label: label.to_owned(), merge_key: merge_key.map(str::to_owned), before });
-            let kept = newest(&self.done, LIMIT, OBJECT_LIMIT);
+            let kept = newest(&self.done, MAX_STEPS, OBJECT_LIMIT);
             self.done.drain(..self.done.len() - kept);
         }
     }
@@ -129,7 +129,7 @@ mod tests {
         assert_eq!(newest(&different, 500, 5), 1, "the last step always stays");
         assert_eq!(newest(&[], 500, 5), 0);
         let mut history = History::default();
-        (0..LIMIT + 50).for_each(|_| history.push("edit", None, one.before.clone()));
-        assert_eq!(history.depth(), LIMIT);
+        (0..MAX_STEPS + 50).for_each(|_| history.push("edit", None, one.before.clone()));
+        assert_eq!(history.depth(), MAX_STEPS);
     }
 }

@@ -1,7 +1,7 @@
 //! Checkpoints: a run goes on from one as if it had never stopped.
 
 use super::recipe::Recipe;
-use super::run::{Progress, TrainError, file};
+use super::run::{RunProgress, TrainError, file};
 use super::students::Student;
 use crate::files::sha256;
 use burn::optim::ModuleOptimizer;
@@ -24,7 +24,7 @@ pub fn save<S: Student>(
     recipe: &Recipe,
     network: &S,
     optimizer: &ModuleOptimizer,
-    progress: &Progress,
+    progress: &RunProgress,
 ) -> Result<(), TrainError> {
     let next = folder.with_extension("next");
     if next.exists() {
@@ -59,7 +59,7 @@ pub fn save<S: Student>(
 #[derive(Debug)]
 pub struct Checkpoint {
     /// Where the run stands.
-    pub progress: Progress,
+    pub progress: RunProgress,
     /// SHA-256 of the file of weights.
     pub weights_sha256: String,
 }

@@ -14,13 +14,13 @@ pub enum Domain {
     /// One radar, and all whose samples are as its.
     Radar(Box<Radar>),
     /// All radars within limits.
-    Limits(Limits),
+    Limits(RadarLimits),
 }
 
-/// Limits of radars of one antenna an element, in both conventions and with all windows.
+/// RadarLimits of radars of one antenna an element, in both conventions and with all windows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Limits {
+pub struct RadarLimits {
     /// Elements of the whole array.
     pub elements: usize,
     /// Elements of an end.
@@ -163,7 +163,7 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<Difference> {
     .collect()
 }
 
-impl Limits {
+impl RadarLimits {
     /// Whether `radar` has these counts, and one antenna an element.
     pub(super) fn has_shape(&self, radar: &Radar) -> bool {
         self.shape(radar).next().is_none()

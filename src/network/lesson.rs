@@ -1,6 +1,6 @@
 //! A training example: input and target of one scene.
 
-use super::run::{Run, TrainError};
+use super::run::{TrainError, TrainingRun};
 use super::students::Student;
 use crate::maps::RangeAngleMap;
 use crate::scene::generate::{Generator, Kind};
@@ -13,7 +13,7 @@ use crate::signal::{Floor, simulate};
 pub(super) fn lesson<S: Student>(
     tables: &S::Tables,
     config: &S::Config,
-    run: &Run,
+    run: &TrainingRun,
     generator: &Generator,
     (kind, number): (Kind, u32),
     floor: impl Fn(u64) -> Floor,
@@ -35,7 +35,7 @@ mod tests {
     #[test]
     fn a_lesson_lies_over_noise_of_its_own() {
         let radar = Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() };
-        let run = Run {
+        let run = TrainingRun {
             folder: "none".into(),
             device: burn::tensor::Device::flex(),
             radar: radar.clone(),

@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_checkpoint_of_the_training_programs_gives_the_averaged_weights() {
+    fn a_pytorch_checkpoint_gives_the_averaged_weights() {
         let shipped = include_bytes!("../../assets/weights/thesis-1.safetensors");
         let found = read_weights(Path::new("training/checkpoints/thesis-1.pt")).unwrap();
         let (found, shipped) = (WeightFile::parse("x", &found).unwrap(), WeightFile::parse("y", shipped).unwrap());

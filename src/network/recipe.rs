@@ -2,7 +2,7 @@
 
 use super::floors::Floors;
 use super::live::LiveConfig;
-use super::losses::Loss;
+use super::losses::TrainingLoss;
 use super::thesis::ThesisConfig;
 use super::unet::UnetConfig;
 use crate::radar::Decibels;
@@ -92,7 +92,7 @@ pub struct Decay {
 /// So many training scenes of a kind.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Share {
+pub struct KindShare {
     /// The kind.
     pub kind: Kind,
     /// How many.
@@ -131,7 +131,7 @@ pub struct Recipe {
     /// Scenes a step.
     pub batch: usize,
     /// What is minimised.
-    pub loss: Loss,
+    pub loss: TrainingLoss,
     /// Validation scenes of each of the three sets.
     pub validation_scenes: u32,
     /// The network.
@@ -144,7 +144,7 @@ pub struct Recipe {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
     /// The training scenes. They, the validation and the test scenes come from disjoint random streams.
-    pub scenes: Vec<Share>,
+    pub scenes: Vec<KindShare>,
 }
 
 /// What is wrong with a recipe.
@@ -301,7 +301,7 @@ mod tests {
             assert_eq!(toml::from_str::<Recipe>(&toml::to_string(&recipe).unwrap()).unwrap(), recipe);
         }
         let two = Recipe::shipped("experiment-2").unwrap().unwrap();
-        assert_eq!((two.batch, two.epochs, two.loss), (32, 100, Loss::NormalisedSquare));
+        assert_eq!((two.batch, two.epochs, two.loss), (32, 100, TrainingLoss::NormalisedSquare));
         assert_eq!(two.training_scenes().len(), 8000);
         assert!((two.learning_rate(25) - 0.1 * 0.64).abs() < 1e-12);
         assert!(Recipe::shipped("nonsense").is_none());

@@ -3,7 +3,7 @@
 use super::live::constants::turn_columns;
 use super::live::features::{FeatureExtractor, LiveInput};
 use super::live::grid::{COLUMNS, ROWS};
-use super::live::{Live, LiveBatch, LiveConfig};
+use super::live::{LiveBatch, LiveConfig, LiveNetwork};
 use super::thesis::{Thesis, ThesisConfig};
 use super::unet::{Unet, UnetConfig};
 use crate::evaluate::TARGET_ETA;
@@ -169,14 +169,14 @@ impl Student for Unet {
     }
 }
 
-impl Student for Live {
+impl Student for LiveNetwork {
     type Config = LiveConfig;
     type Input = LiveInput;
     type Tables = FeatureExtractor;
     const NAME: &'static str = "live";
 
     fn fresh(config: &LiveConfig, device: &Device) -> Self {
-        Live::new(config, device)
+        LiveNetwork::new(config, device)
     }
 
     fn tables(_: &LiveConfig, radar: &Radar) -> Result<FeatureExtractor, ReconstructError> {

@@ -22,7 +22,7 @@ use std::sync::{Mutex, PoisonError};
 const THESIS_ETA: f32 = 0.7;
 
 /// What the thesis' networks learned beside the samples.
-const TOLD: &str =
+const TRAINED_ON: &str =
     "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor and never over thermal noise";
 
 /// The thesis' encoder-decoder with weights. Its output is Lambda as it stands: what it learned to answer, and what the thesis takes the
@@ -127,7 +127,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn about(&self) -> About {
-        About { name: self.name, description: self.description, told: TOLD, eta: self.eta }
+        About { name: self.name, description: self.description, told: TRAINED_ON, eta: self.eta }
     }
 
     fn finds_reflectors(&self) -> bool {
@@ -206,7 +206,7 @@ impl Reconstructor for UnetMethod {
         About {
             name: Unet::NAME,
             description: "the thesis' U-Net on thresholded Cartesian maps; bright cells are so rare that it learned to answer nothing",
-            told: TOLD,
+            told: TRAINED_ON,
             eta: 0.5,
         }
     }
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn a_threshold_keeps_the_cells_that_it_keeps_once_the_map_is_stretched() {
+    fn a_stretched_map_keeps_the_cells_over_its_threshold() {
         let map = Array2::from_shape_fn((16, 32), |(i, j)| 0.15 + 0.7 * ((i * 37 + j * 11) % 101) as f32 / 100.0);
         let stretched = Thesis::thresholded(map.clone());
         for eta in [0.1, 0.33, 0.701, 0.9] {

@@ -2,7 +2,7 @@
 
 use super::lesson::lesson;
 use super::recipe::Recipe;
-use super::run::{Progress, Run, TrainError};
+use super::run::{RunProgress, TrainError, TrainingRun};
 use super::students::Student;
 use super::weights::RADAR_ENTRY;
 use crate::evaluate::tables::PRINTED_EXPERIMENT_2;
@@ -39,7 +39,7 @@ pub fn validate<S: Student>(
     network: &S,
     recipe: &Recipe,
     config: &S::Config,
-    run: &Run,
+    run: &TrainingRun,
 ) -> Result<Validation, TrainError> {
     let tables = S::tables(config, &run.radar)?;
     let generator = Generator::new(&run.radar, Reading::Program, Purpose::Validation, recipe.seed);
@@ -82,8 +82,8 @@ pub fn validate<S: Student>(
 pub fn export<S: Student>(
     network: &S,
     recipe: &Recipe,
-    run: &Run,
-    progress: &Progress,
+    run: &TrainingRun,
+    progress: &RunProgress,
     validation: &Validation,
 ) -> Result<(), TrainError> {
     let path = run.folder.join("weights.safetensors");

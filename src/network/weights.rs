@@ -329,7 +329,7 @@ fn write<T: Serialize>(
 #[cfg(feature = "network")]
 mod tests {
     use super::*;
-    use crate::network::live::{Live, LiveConfig};
+    use crate::network::live::{LiveConfig, LiveNetwork};
     use burn::tensor::Device;
 
     const WEIGHTS: &[u8] = include_bytes!("../../tests/data/live_reference_weights.safetensors");
@@ -337,7 +337,7 @@ mod tests {
     fn load(bytes: &[u8], channels: [usize; 4]) -> Result<(), WeightsError> {
         let config = LiveConfig { channels, blocks: [1, 1, 1, 1], fine: 4 };
         let file = WeightFile::parse("test.safetensors", bytes)?;
-        file.load_into(&mut Live::new(&config, &Device::flex()), |_| false)
+        file.load_into(&mut LiveNetwork::new(&config, &Device::flex()), |_| false)
     }
 
     #[test]

@@ -16,7 +16,7 @@ impl PictureError {
 }
 
 /// What panels are drawn on.
-pub(super) type Area<B> = DrawingArea<B, Shift>;
+pub(super) type PanelArea<B> = DrawingArea<B, Shift>;
 
 pub(super) const INK: RGBColor = RGBColor(28, 32, 38);
 pub(super) const FAINT_INK: RGBColor = RGBColor(104, 112, 122);

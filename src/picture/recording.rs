@@ -1,8 +1,8 @@
 //! Pictures of recordings: the panels of a scene, or curves over direction where there is one snapshot.
 
 use super::canvas::Drawing;
-use super::compose::{ComposeError, Format, Style};
-use super::directions::{Curve, Directions, Mark};
+use super::compose::{ComposeError, PictureFormat, Style};
+use super::directions::{Curve, DirectionAxis, Mark};
 use super::{Panels, encode_png, render, render_svg};
 use crate::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap, Spectrum, channels_map};
 use crate::radar::{Carrier, Decibels, End, Radar};
@@ -47,7 +47,7 @@ pub fn compose_recording(
     recording: &Recording,
     method: &dyn Reconstructor,
     style: &Style,
-    format: Format,
+    format: PictureFormat,
 ) -> Result<Vec<u8>, ComposeError> {
     if recording.is_snapshot() {
         curves(recording, method, style, format)
@@ -56,10 +56,10 @@ pub fn compose_recording(
     }
 }
 
-fn bytes_of(drawing: &impl Drawing, format: Format) -> Result<Vec<u8>, ComposeError> {
+fn bytes_of(drawing: &impl Drawing, format: PictureFormat) -> Result<Vec<u8>, ComposeError> {
     Ok(match format {
-        Format::Png => encode_png(&render(drawing)?)?,
-        Format::Svg => render_svg(drawing)?.into_bytes(),
+        PictureFormat::Png => encode_png(&render(drawing)?)?,
+        PictureFormat::Svg => render_svg(drawing)?.into_bytes(),
     })
 }
 
@@ -77,7 +77,7 @@ fn panels(
     recording: &Recording,
     method: &dyn Reconstructor,
     style: &Style,
-    format: Format,
+    format: PictureFormat,
 ) -> Result<Vec<u8>, ComposeError> {
     let radar = &recording.radar;
     let ([first, last], full) = maps_of(recording);
@@ -125,7 +125,7 @@ fn curves(
     recording: &Recording,
     method: &dyn Reconstructor,
     style: &Style,
-    format: Format,
+    format: PictureFormat,
 ) -> Result<Vec<u8>, ComposeError> {
     let radar = &recording.radar;
     let ends = recording.two_ends();
@@ -157,7 +157,7 @@ fn curves(
         .collect();
     let about =
         format!("one snapshot at about {range} m, {} elements; found by {}: stems", radar.elements, method.name());
-    bytes_of(&Directions { name: &recording.name, about: &about, curves: &curves, found: &found }, format)
+    bytes_of(&DirectionAxis { name: &recording.name, about: &about, curves: &curves, found: &found }, format)
 }
 
 /// Angle from broadside, degrees.
@@ -221,7 +221,7 @@ mod tests {
     fn recordings_are_drawn_with_or_without_a_target() {
         let mut recording = Preset::by_id("chip-8").unwrap().load().unwrap();
         let svg = |r: &Recording| {
-            let bytes = compose_recording(r, &Baseline, &Style::default(), Format::Svg).unwrap();
+            let bytes = compose_recording(r, &Baseline, &Style::default(), PictureFormat::Svg).unwrap();
             String::from_utf8(bytes).unwrap()
         };
         assert!(svg(&recording).contains("Target: all 8 elements"));

@@ -1,7 +1,7 @@
 //! The half plane ahead of the array from above, in metres: the scene, or a map projected onto it (thesis figure 2-12).
 
 use super::ColourMap;
-use super::canvas::{Area, FAINT_INK, HAIRLINE, INK, PAPER, PictureError};
+use super::canvas::{FAINT_INK, HAIRLINE, INK, PAPER, PanelArea, PictureError};
 use super::text::{self, Weight};
 use crate::maps::{RangeAngleMap, cartesian::project};
 use crate::radar::{End, Radar};
@@ -15,7 +15,7 @@ const END: RGBColor = RGBColor(200, 62, 40);
 
 /// What lies in the half plane.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Content<'a> {
+pub(super) enum SceneContent<'a> {
     /// The reflectors of a scene.
     Scene(&'a Scene),
     /// A range-angle map, projected.
@@ -24,10 +24,10 @@ pub(super) enum Content<'a> {
 
 /// Draws the half plane out to the maximum range, equal scale on both axes, with range rings, angle spokes and the array.
 pub(super) fn draw<B: DrawingBackend>(
-    area: &Area<B>,
+    area: &PanelArea<B>,
     radar: &Radar,
     title: &str,
-    content: Content,
+    content: SceneContent,
 ) -> Result<(), PictureError> {
     text::line(area, (8, 0), title, 21, Weight::Bold, &INK)?;
     let max = radar.max_range_metres();
@@ -44,7 +44,7 @@ pub(super) fn draw<B: DrawingBackend>(
         .y_label_area_size(labels_y)
         .build_cartesian_2d(-max..max, -behind..tall - behind)
         .map_err(PictureError::new)?;
-    if let Content::Map(map, colours) = content {
+    if let SceneContent::Map(map, colours) = content {
         draw_map(&mut chart, radar, map, colours, metres)?;
     }
     chart
@@ -63,12 +63,12 @@ pub(super) fn draw<B: DrawingBackend>(
         .map_err(PictureError::new)?;
 
     let line = match content {
-        Content::Scene(_) => HAIRLINE.mix(1.0),
-        Content::Map(..) => HAIRLINE.mix(0.35),
+        SceneContent::Scene(_) => HAIRLINE.mix(1.0),
+        SceneContent::Map(..) => HAIRLINE.mix(0.35),
     };
     draw_rings_and_spokes(&mut chart, max, line)?;
     draw_array(&mut chart, radar)?;
-    if let Content::Scene(scene) = content {
+    if let SceneContent::Scene(scene) = content {
         draw_objects(&mut chart, scene, max)?;
     }
     Ok(())

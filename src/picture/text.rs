@@ -1,6 +1,6 @@
 //! Text on pictures, in fonts that come with the program: a picture looks the same on every machine.
 
-use super::canvas::{Area, PictureError};
+use super::canvas::{PanelArea, PictureError};
 use crate::platform::register_font;
 use plotters::prelude::*;
 use plotters::style::FontStyle;
@@ -42,7 +42,7 @@ pub(super) fn style(size: i32, weight: Weight, colour: &RGBColor) -> TextStyle<'
 
 /// One line of text, its top left corner at `at`.
 pub(super) fn line<B: DrawingBackend>(
-    area: &Area<B>,
+    area: &PanelArea<B>,
     at: (i32, i32),
     text: &str,
     size: i32,
@@ -54,7 +54,7 @@ pub(super) fn line<B: DrawingBackend>(
 
 /// Shortens `text` until it fits `width` pixels; an ellipsis stands for what is left out.
 pub(super) fn fitted<B: DrawingBackend>(
-    area: &Area<B>,
+    area: &PanelArea<B>,
     text: &str,
     size: i32,
     weight: Weight,
@@ -72,7 +72,7 @@ pub(super) fn fitted<B: DrawingBackend>(
 
 /// Lines broken at spaces to the area's width; what does not fit its height is left out, with an ellipsis.
 pub(super) fn paragraphs<B: DrawingBackend>(
-    area: &Area<B>,
+    area: &PanelArea<B>,
     at: (i32, i32),
     text: &str,
     size: i32,

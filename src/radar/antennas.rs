@@ -10,8 +10,8 @@ use std::fmt;
 use std::sync::Arc;
 
 /// Fewest and most elements, as for every radar.
-const FEWEST: usize = 2;
-const MOST: usize = 65536;
+const MIN_ELEMENTS: usize = 2;
+const MAX_ELEMENTS: usize = 65536;
 
 /// How far the elements that pairs make may stand off an even line, as a part of the spacing.
 const MOST_OFF: f64 = 0.01;
@@ -86,7 +86,7 @@ pub enum AntennasError {
         found: f64,
     },
     /// Too few or too many pairs.
-    #[error("{transmitters} transmitters and {receivers} receivers make {} elements; expected {FEWEST} to {MOST}", transmitters.saturating_mul(*receivers))]
+    #[error("{transmitters} transmitters and {receivers} receivers make {} elements; expected {MIN_ELEMENTS} to {MAX_ELEMENTS}", transmitters.saturating_mul(*receivers))]
     Count {
         /// Transmitters.
         transmitters: usize,
@@ -113,7 +113,7 @@ pub enum AntennasError {
     OnePlace,
     /// The places that pairs leave free make the line too long.
     #[error(
-        "the pairs stand on a line of {elements} places; expected as many as such antennas make, {FEWEST} to {MOST}"
+        "the pairs stand on a line of {elements} places; expected as many as such antennas make, {MIN_ELEMENTS} to {MAX_ELEMENTS}"
     )]
     Line {
         /// Places of the line, gaps too.
@@ -181,15 +181,15 @@ impl Antennas {
         check_places("transmitter_x_metres", transmitter_x_metres)?;
         check_places("receiver_x_metres", receiver_x_metres)?;
         let (transmitters, receivers) = (transmitter_x_metres.len(), receiver_x_metres.len());
-        if !(FEWEST..=MOST).contains(&transmitters.saturating_mul(receivers)) {
+        if !(MIN_ELEMENTS..=MAX_ELEMENTS).contains(&transmitters.saturating_mul(receivers)) {
             return Err(AntennasError::Count { transmitters, receivers });
         }
         let midpoints = Midpoints::of(transmitter_x_metres, receiver_x_metres);
         let spacing_metres = midpoints.spacing_metres()?;
         let elements = (midpoints.length_metres() / spacing_metres).round() + 1.0;
         // Antennas that stand apart make one place more at least than there are others beside the first; fewer are taken for one.
-        let fewest = (apart(transmitter_x_metres) + apart(receiver_x_metres) - 1).max(FEWEST);
-        if !(fewest as f64..=MOST as f64).contains(&elements) {
+        let fewest = (apart(transmitter_x_metres) + apart(receiver_x_metres) - 1).max(MIN_ELEMENTS);
+        if !(fewest as f64..=MAX_ELEMENTS as f64).contains(&elements) {
             return Err(AntennasError::Line { elements: elements as usize });
         }
         let mut pairs = vec![None; elements as usize];
@@ -216,7 +216,7 @@ impl Antennas {
     /// [`AntennasError`] where that is no array.
     pub fn filled(transmitters: usize, receivers: usize, spacing_metres: f64) -> Result<Self, AntennasError> {
         let line = |count: usize, apart: f64| -> Vec<f64> {
-            (0..count.min(MOST)).map(|i| (i as f64 - (count as f64 - 1.0) / 2.0) * apart).collect()
+            (0..count.min(MAX_ELEMENTS)).map(|i| (i as f64 - (count as f64 - 1.0) / 2.0) * apart).collect()
         };
         let apart = 2.0 * spacing_metres;
         Antennas::new(&line(transmitters, receivers as f64 * apart), &line(receivers, apart))

@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn draws_of_192_elements_scatter_by_five_per_cent_around_what_was_asked() {
+    fn draws_of_192_elements_scatter_by_five_per_cent() {
         let radar = Radar { elements: 192, ..Radar::default() };
         let asked = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.0 };
         let draws = 400;

@@ -7,7 +7,7 @@ use crate::maps::Aperture;
 use crate::maps::focus::map_of;
 use crate::radar::{BuiltArray, Radar};
 use crate::scene::Reflector;
-use crate::signal::path::Pairs;
+use crate::signal::path::PairBlocks;
 use crate::signal::phase::EchoModel;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use crate::signal::split::{CHUNK, Factors, STRIDE, add_products, fill_factors};
@@ -38,7 +38,7 @@ pub(super) fn of_echoes(
     let mut signal = BeatSignal::silence(radar);
     signal.samples.axis_chunks_iter_mut(Axis(0), W).into_par_iter().enumerate().for_each(|(block, mut rows)| {
         let element = |lane: usize| (block * W + lane).min(radar.elements - 1);
-        let pairs = Pairs::new(|lane| radar.pair(element(lane)));
+        let pairs = PairBlocks::new(|lane| radar.pair(element(lane)));
         let sum = Simd::chosen().run(Sum { model: &model, pairs, found, samples: radar.samples });
         for (lane, mut row) in rows.outer_iter_mut().enumerate() {
             for (out, v) in row.iter_mut().zip(&sum) {
@@ -66,7 +66,7 @@ pub(super) fn of_echoes(
 /// Echoes added up at neighbouring elements.
 struct Sum<'a> {
     model: &'a EchoModel,
-    pairs: Pairs<W>,
+    pairs: PairBlocks<W>,
     found: &'a [Gained],
     samples: usize,
 }

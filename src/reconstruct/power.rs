@@ -1,7 +1,7 @@
 //! From an estimate of the whole array's power to Lambda, over the floor that lies beneath it.
 
 use super::answer::{Reconstruction, Request};
-use super::noise_test::{cell_noise, least_eta};
+use super::significance::{cell_noise, least_eta};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Radar;
 use ndarray::{Array2, Zip};

@@ -4,7 +4,7 @@ use super::answer::{LayoutSamples, Reconstruction, Request};
 use super::error::ReconstructError;
 use super::family::Family;
 use super::hearing::ends_noise_variance;
-use super::noise_test::tested;
+use super::significance::tested;
 use super::trained::TrainedNoise;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
@@ -100,7 +100,7 @@ pub trait Reconstructor: Send + Sync {
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError>;
 
     /// Estimates the whole array's map from `ends`: checks them, scales them for [`Reconstructor::estimate`], takes the scale
-    /// off what was found, and raises the answer's threshold to where noise does not reach (`noise_test.rs`). Silence is answered
+    /// off what was found, and raises the answer's threshold to where noise does not reach (`significance`). Silence is answered
     /// with [`Reconstruction::silence`].
     ///
     /// # Errors

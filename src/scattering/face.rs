@@ -6,7 +6,7 @@
 
 use super::geometry::{V, hypotenuse, root};
 use super::transition::{slope, transition};
-use super::{Antennas, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
+use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
 
 /// An antenna on the line of a face is taken to be this far beside it, metres.
@@ -47,12 +47,12 @@ impl Face {
     }
 
     /// Its glint, the diffraction of its beginning and that of its end.
-    pub fn echoes(&self, wave: &Wave, antennas: &Antennas) -> [PathEcho; 3] {
+    pub fn echoes(&self, wave: &Wave, antennas: &AntennaPlaces) -> [PathEcho; 3] {
         self.lit_echoes(wave, antennas, [0.0, self.length_metres])
     }
 
     /// The same where only the stretch `lit_metres` along it is lit.
-    pub(super) fn lit_echoes(&self, wave: &Wave, antennas: &Antennas, lit_metres: [f64; 2]) -> [PathEcho; 3] {
+    pub(super) fn lit_echoes(&self, wave: &Wave, antennas: &AntennaPlaces, lit_metres: [f64; 2]) -> [PathEcho; 3] {
         let [low, high] = lit_metres;
         let seen = Heights::new(self, antennas);
         let silent = |u: f64, kind| PathEcho::silent(self.place(u).into(), kind);
@@ -119,7 +119,7 @@ struct Edge {
 }
 
 impl Heights {
-    fn new(face: &Face, antennas: &Antennas) -> Self {
+    fn new(face: &Face, antennas: &AntennaPlaces) -> Self {
         let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(|p| V::from(p) - face.from);
         let (ht, hr) = (t.dot(face.outward()), r.dot(face.outward()));
         Heights {

@@ -2,7 +2,7 @@
 //! Section Handbook*, chapter 4).
 
 use super::geometry::{V, root};
-use super::{Antennas, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
+use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
 
 /// Radii over the wavelength, as physical wave number times radius, from which on the next term improves the first.
@@ -26,7 +26,7 @@ impl Circle {
     }
 
     /// Its echo; none where an antenna stands inside. `refined` adds the next term of the series.
-    pub fn echo(&self, wave: &Wave, antennas: &Antennas, refined: bool) -> PathEcho {
+    pub fn echo(&self, wave: &Wave, antennas: &AntennaPlaces, refined: bool) -> PathEcho {
         let Circle { centre, radius_metres: radius, reflectivity } = *self;
         let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(|p| V::from(p) - centre);
         let (far_t, far_r) = (t.norm(), r.norm());

@@ -1,7 +1,7 @@
 //! What the echoes are held against: quadrature of physical optics over a face, and the exact series of a cylinder.
 
 use super::transition::EIGHTH_TURN;
-use super::{Antennas, REFERENCE_LENGTH_METRES};
+use super::{AntennaPlaces, REFERENCE_LENGTH_METRES};
 use crate::radar::Radar;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -27,7 +27,7 @@ pub fn face(
     radar: &Radar,
     [a, b]: [[f64; 2]; 2],
     r: f64,
-    antennas: &Antennas,
+    antennas: &AntennaPlaces,
     samples: &[usize],
     panel_radians: f64,
 ) -> Vec<Complex64> {

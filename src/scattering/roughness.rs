@@ -5,7 +5,7 @@
 
 use super::face::Face;
 use super::geometry::V;
-use super::{Antennas, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
+use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -54,7 +54,7 @@ impl RoughFace {
     }
 
     /// Adds the echo of every grain.
-    pub fn echoes(&self, wave: &Wave, antennas: &Antennas, out: &mut Vec<PathEcho>) {
+    pub fn echoes(&self, wave: &Wave, antennas: &AntennaPlaces, out: &mut Vec<PathEcho>) {
         let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(V::from);
         let outward = self.face.outward();
         out.extend(self.grains.iter().map(|grain| {

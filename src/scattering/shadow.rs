@@ -5,7 +5,7 @@
 
 use super::geometry::{V, hypotenuse, root};
 use super::transition::{passing, transition};
-use super::{Antennas, PathEcho, Wave};
+use super::{AntennaPlaces, PathEcho, Wave};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ const FADE: [f64; 2] = [3.0, FADED];
 pub(super) const FADED: f64 = 6.0;
 
 /// Most corners of an obstacle that need no memory of their own.
-const FEW: usize = 16;
+const MAX_INLINE_CORNERS: usize = 16;
 
 /// What hides: convex.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,8 +88,8 @@ impl Obstacle {
             }
             Convex::Corners(corners) => {
                 let seen = |c: &V| ((*c - antenna).dot(unit), unit.cross(*c - antenna));
-                if corners.len() <= FEW {
-                    let mut few = [(0.0, 0.0); FEW];
+                if corners.len() <= MAX_INLINE_CORNERS {
+                    let mut few = [(0.0, 0.0); MAX_INLINE_CORNERS];
                     few.iter_mut().zip(corners).for_each(|(f, c)| *f = seen(c));
                     edges.meet_outline(ray, &few[..corners.len()]);
                 } else {
@@ -216,7 +216,7 @@ impl Edges {
 }
 
 /// An echo as it is behind obstacles.
-pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &Antennas, mut echo: PathEcho) -> PathEcho {
+pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &AntennaPlaces, mut echo: PathEcho) -> PathEcho {
     if obstacles.is_empty() {
         return echo;
     }

@@ -176,7 +176,7 @@ fn hull(mut places: Vec<V>) -> Vec<V> {
 mod tests {
     use super::*;
     use crate::radar::ElementError;
-    use crate::scattering::{Antennas, Scatterer};
+    use crate::scattering::{AntennaPlaces, Scatterer};
     use crate::scene::{Block, Point, Polygon, Post, Wall};
     use proptest::prelude::*;
 
@@ -207,7 +207,7 @@ mod tests {
         radar: &Radar,
         object: &Object,
         hidden_by: &[Object],
-        antennas: &Antennas,
+        antennas: &AntennaPlaces,
     ) -> Vec<crate::scattering::PathEcho> {
         let mut out = Vec::new();
         Scatterer::new(radar, object, hidden_by).echoes(antennas, &mut out);
@@ -226,7 +226,7 @@ mod tests {
             let shape = screen.body().unwrap().shape();
             if !array.ways_to(&object).may_pass(&array.screen(&shape)) {
                 for n in [0, 100, 511, 800, 1023] {
-                    let antennas = Antennas::from(radar.pair(n));
+                    let antennas = AntennaPlaces::from(radar.pair(n));
                     let (free, behind) = (echoes(&radar, &object, &[], &antennas), echoes(&radar, &object, std::slice::from_ref(&screen), &antennas));
                     prop_assert_eq!(free, behind);
                 }
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_beside_the_ways_is_left_out_though_circles_around_both_meet() {
+    fn a_body_beside_the_ways_is_left_out() {
         let array = Array::of(&Radar::default(), &BuiltArray::default());
         let wall = Object::Wall(Wall::new(-8.0, 20.0, 16.0, 75.0));
         let may = |x: f64| {

@@ -21,7 +21,7 @@ pub use room::NoRoom;
 use super::{Line, Object, Point, Scene};
 use crate::radar::Radar;
 use beyond::BeyondField;
-use field::Field;
+use field::PlacementField;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -132,7 +132,9 @@ impl Generator {
             | Kind::Dynamic
             | Kind::Near
             | Kind::Fences
-            | Kind::Rain => Field { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng),
+            | Kind::Rain => {
+                PlacementField { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
+            }
             Kind::Bodies | Kind::Street | Kind::Rails | Kind::Occlusion | Kind::Rough => {
                 things::objects(kind, self.max_range, rng)
             }

@@ -20,7 +20,7 @@ use super::run::samples_of;
 use super::samples::BeatSignal;
 use super::unfinished::Unfinished;
 use crate::radar::{BuiltArray, Radar};
-use crate::scattering::{Echoing, PathEcho, Seen, Sources};
+use crate::scattering::{Echoing, PathEcho, SeenObject, Sources};
 use crate::scene::{Object, Scene, SceneError};
 use crate::task::Task;
 use ndarray::{Array2, Array3, Axis, concatenate, s};
@@ -164,8 +164,8 @@ fn part(radar: &Radar, scene: &Scene, keep: impl Fn(&Object) -> bool) -> Echoing
         let disturbances = scene.disturbances.clone();
         return Echoing::of(radar, &Scene { objects, disturbances, ..Scene::default() });
     }
-    let seen = Seen::all(radar, scene);
-    let kept: Vec<Seen> = seen.into_iter().filter(|seen| keep(&seen.object)).collect();
+    let seen = SeenObject::all(radar, scene);
+    let kept: Vec<SeenObject> = seen.into_iter().filter(|seen| keep(&seen.object)).collect();
     Echoing::seen(radar, &kept)
 }
 

@@ -10,7 +10,7 @@
 //! Where the radar has a link budget ([`crate::radar::budget`]), a level is one in its receivers: a sample `y` counts for what the radar
 //! equation has there.
 
-use super::path::{Pairs, plain_path};
+use super::path::{PairBlocks, plain_path};
 use super::samples::BeatSignal;
 use super::simd::{Kernel, LANES_F64, Lanes, Simd};
 use crate::radar::{DecibelMilliwatts, Decibels, Radar};
@@ -208,7 +208,7 @@ impl Kernel for BlockPowers<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let pairs = Pairs::new(|i| self.radar.pair(self.first_element + i));
+        let pairs = PairBlocks::new(|i| self.radar.pair(self.first_element + i));
         let mut total = Lanes::splat(0.0);
         for r in self.reflectors {
             let (range, mut amplitude) = plain_path(self.radar, &pairs, r);

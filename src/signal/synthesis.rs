@@ -6,9 +6,9 @@ use super::algorithm::Algorithm;
 use super::closed_form::ClosedForm;
 use super::floor::unit_noise;
 use super::gridded::{self, Gridding};
-use super::heard::{self, Heard};
+use super::heard::{self, HeardEchoes};
 use super::lane_fft::LaneFft;
-use super::path::{Pairs, Path};
+use super::path::{PairBlocks, Path};
 use super::phase::EchoModel;
 use super::plan::{BEST_TOLERANCE, Plan};
 use super::rows::Rows;
@@ -98,8 +98,8 @@ enum Method<T: Real> {
 }
 
 enum Scratch<T, const W: usize> {
-    Split(split::Scratch<T, W>),
-    Gridded(gridded::Scratch<T, W>, Vec<ComplexLanes<T, W>>),
+    Split(split::SplitScratch<T, W>),
+    Gridded(gridded::GriddedScratch<T, W>, Vec<ComplexLanes<T, W>>),
 }
 
 /// One block of samples.
@@ -115,9 +115,9 @@ impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
     #[inline(always)]
     fn samples<const FMA: bool>(self) -> &'b mut [ComplexLanes<T, W>] {
         let s = self.synthesis;
-        let pairs = Pairs::new(s.pair_of(self.first_element));
+        let pairs = PairBlocks::new(s.pair_of(self.first_element));
         let samples = s.radar.samples;
-        let heard = Heard::new(self.points, self.paths);
+        let heard = HeardEchoes::new(self.points, self.paths);
         match (self.scratch, &s.method) {
             (Scratch::Gridded(scratch, out), Method::Gridded(gridding)) => {
                 gridded::block_signal::<T, W, FMA>(gridding, &s.model, pairs, heard, scratch, out);
@@ -185,8 +185,8 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let s = self.synthesis;
-        let pairs = Pairs::new(s.pair_of(self.first_element));
-        let heard = Heard::new(self.points, self.paths);
+        let pairs = PairBlocks::new(s.pair_of(self.first_element));
+        let heard = HeardEchoes::new(self.points, self.paths);
         self.plan.add_block::<W, FMA>(&s.model, pairs, heard, self.quiet, self.cells);
     }
 }
@@ -235,8 +235,10 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
     fn scratch(&self) -> Scratch<T, W> {
         let samples = self.radar.samples;
         match self.method {
-            Method::Gridded(_) => Scratch::Gridded(gridded::Scratch::new(samples), vec![ComplexLanes::zero(); samples]),
-            Method::Split | Method::ClosedForm(_) => Scratch::Split(split::Scratch::new(samples)),
+            Method::Gridded(_) => {
+                Scratch::Gridded(gridded::GriddedScratch::new(samples), vec![ComplexLanes::zero(); samples])
+            }
+            Method::Split | Method::ClosedForm(_) => Scratch::Split(split::SplitScratch::new(samples)),
         }
     }
 

@@ -210,7 +210,7 @@ fn samples_of_another_radar_are_told() {
 }
 
 #[test]
-fn shipped_recordings_are_reconstructed_without_a_word_about_their_radar() {
+fn shipped_recordings_are_reconstructed_without_a_radar() {
     let folder = folder();
     let run = |input: &str, more: &[&str]| {
         apertura(&folder).arg("reconstruct").arg(input).args(["-o", "o.npz"]).args(more).assert()

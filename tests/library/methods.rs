@@ -14,7 +14,7 @@ use num_complex::Complex64;
 use std::time::{Duration, Instant};
 
 /// Longest any method may take for one map, even on a busy machine in an unoptimised build.
-const LONGEST: Duration = Duration::from_secs(120);
+const MAX_RUN_TIME: Duration = Duration::from_secs(120);
 
 /// Least difference between P_D and P_FA on a crowded scene.
 const LEAST_APART: f64 = 0.1;
@@ -42,7 +42,7 @@ fn run(method: &dyn Reconstructor, ends: &TwoEnds, what: &str) -> Reconstruction
     let answer = method
         .reconstruct(&radar(), ends, &Request::default())
         .unwrap_or_else(|error| panic!("{name} on {what}: {error}"));
-    assert!(start.elapsed() < LONGEST, "{name} on {what} took {:?}", start.elapsed());
+    assert!(start.elapsed() < MAX_RUN_TIME, "{name} on {what} took {:?}", start.elapsed());
     assert_eq!(answer.lambda.lambda.dim(), (512, 1024), "{name} on {what}");
     for ((row, column), v) in answer.lambda.lambda.indexed_iter() {
         assert!((0.0..=1.0).contains(v), "{name} on {what}: {v} at row {row}, column {column}");

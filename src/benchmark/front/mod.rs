@@ -131,7 +131,7 @@ impl FrontTask {
 
 /// What lies beneath the reflectors, and how decades become Lambda: no error of Lambda means anything without both.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Convention {
+pub struct MapConvention {
     /// The floor.
     #[serde(with = "as_text")]
     pub floor: Floor,
@@ -140,24 +140,26 @@ pub struct Convention {
     pub normalisation: Normalisation,
 }
 
-impl Convention {
+impl MapConvention {
     /// The thesis': its rounding floor, normalised from the smallest to the largest cell.
-    pub const THESIS: Convention = Convention { floor: Floor::Thesis, normalisation: Normalisation::MinMax };
+    pub const THESIS: MapConvention = MapConvention { floor: Floor::Thesis, normalisation: Normalisation::MinMax };
     /// Stable whatever the precision: no floor, 100 dB below the peak.
-    pub const FIXED_RANGE: Convention =
-        Convention { floor: Floor::Exact, normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)) };
+    pub const FIXED_RANGE: MapConvention = MapConvention {
+        floor: Floor::Exact,
+        normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)),
+    };
     /// No floor, normalised by the smallest cell: the picture's floor is the last bits of whatever computed it.
-    pub const NO_FLOOR: Convention = Convention { floor: Floor::Exact, normalisation: Normalisation::MinMax };
+    pub const NO_FLOOR: MapConvention = MapConvention { floor: Floor::Exact, normalisation: Normalisation::MinMax };
     /// Both of those that errors are given for.
-    pub const BOTH: [Convention; 2] = [Convention::FIXED_RANGE, Convention::THESIS];
+    pub const BOTH: [MapConvention; 2] = [MapConvention::FIXED_RANGE, MapConvention::THESIS];
 
     /// The convention that maps of this tolerance are good for, and timed with.
-    pub fn for_tolerance(tolerance: f64) -> Convention {
-        if tolerance >= 1e-6 { Convention::FIXED_RANGE } else { Convention::THESIS }
+    pub fn for_tolerance(tolerance: f64) -> MapConvention {
+        if tolerance >= 1e-6 { MapConvention::FIXED_RANGE } else { MapConvention::THESIS }
     }
 }
 
-impl fmt::Display for Convention {
+impl fmt::Display for MapConvention {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.floor, self.normalisation)
     }
@@ -183,7 +185,7 @@ mod as_text {
 pub struct LambdaError {
     /// What the maps are drawn by.
     #[serde(flatten)]
-    pub convention: Convention,
+    pub convention: MapConvention,
     /// Largest error of a cell.
     pub max: f64,
     /// Root of the mean squared error.
@@ -207,7 +209,7 @@ pub struct FrontRow {
     pub tolerance: f64,
     /// What the timed maps are drawn by.
     #[serde(flatten)]
-    pub convention: Convention,
+    pub convention: MapConvention,
     /// Median over the repeats.
     pub median_ms: f64,
     /// From the first to the third quartile of the repeats.
@@ -222,7 +224,7 @@ pub struct FrontRow {
     pub lambda_error: f64,
     /// Root of the mean squared error, likewise.
     pub lambda_rms_error: f64,
-    /// Errors of Lambda in every convention of [`Convention::BOTH`].
+    /// Errors of Lambda in every convention of [`MapConvention::BOTH`].
     pub lambda: Vec<LambdaError>,
     /// Largest resident size of the process while it ran, where the system tells.
     pub peak_bytes: Option<u64>,

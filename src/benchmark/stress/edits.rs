@@ -1,6 +1,6 @@
 //! Many random edits through the incremental engine: where they end, and what they leave in memory.
 
-use crate::engine::{Engine, Wanted};
+use crate::engine::{Engine, MapRequest};
 use crate::files::memory::resident_bytes;
 use crate::maps::tolerance::tolerance_for;
 use crate::radar::Radar;
@@ -47,7 +47,7 @@ fn random_object(rng: &mut impl RngExt) -> Object {
 ///
 /// # Errors
 /// [`SceneError`] when a random object happens to lie on an element.
-pub fn random_edits(radar: &Radar, wanted: &Wanted, edits: usize, seed: u64) -> Result<EditReport, SceneError> {
+pub fn random_edits(radar: &Radar, wanted: &MapRequest, edits: usize, seed: u64) -> Result<EditReport, SceneError> {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let mut engine = Engine::new(radar.clone());
     let mut scene = Scene { objects: (0..12).map(|_| random_object(&mut rng)).collect(), ..Scene::default() };

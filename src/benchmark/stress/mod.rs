@@ -10,8 +10,8 @@ pub use edits::{EditReport, random_edits};
 pub use scenes::{StressScene, all, moved_by_one_ulp};
 
 use super::front::reference::{JudgedProfiles, SEED, UnitNoise, difference, maps_of, profile};
-use super::front::{Convention, LambdaError};
-use crate::engine::{Engine, Forced, Wanted};
+use super::front::{LambdaError, MapConvention};
+use crate::engine::{Engine, Forced, MapRequest};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::scene::{Reflector, Scene, SceneError};
@@ -26,7 +26,7 @@ const TOLERANCES: [(Precision, f64); 2] = [(Precision::F32, 1e-6), (Precision::F
 /// The process may grow by this much over the edits after the first twentieth: what allocators keep.
 const MOST_GROWTH_BYTES: u64 = 16 << 20;
 /// The conventions that maps are drawn in: the two that errors are given for, and the trap.
-const CONVENTIONS: [Convention; 3] = [Convention::FIXED_RANGE, Convention::THESIS, Convention::NO_FLOOR];
+const CONVENTIONS: [MapConvention; 3] = [MapConvention::FIXED_RANGE, MapConvention::THESIS, MapConvention::NO_FLOOR];
 
 /// How much is tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -226,7 +226,7 @@ pub fn run(
         }
     }
     progress(scenes.len() as f32 / steps);
-    let wanted = Wanted { ends: false, ..Wanted::default() };
+    let wanted = MapRequest { ends: false, ..MapRequest::default() };
     let edits = random_edits(small, &wanted, request.edits, request.seed)
         .map_err(|e| StressFailure::Refusal { scene: "random edits", what: e.to_string() })?;
     progress(1.0);
@@ -282,7 +282,7 @@ fn fast_case(
     let mut signal_error = 0.0;
     for convention in CONVENTIONS {
         let (floor, normalisation) = (convention.floor, convention.normalisation);
-        let wanted = Wanted { floor, normalisation, seed: SEED, ends: false, ..Wanted::default() };
+        let wanted = MapRequest { floor, normalisation, seed: SEED, ends: false, ..MapRequest::default() };
         let frame = engine.update(&scene.scene, &wanted)?;
         let profile = |element| {
             // A scene without reflectors has no profiles to speak of.

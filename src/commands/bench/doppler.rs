@@ -1,7 +1,7 @@
 //! One object dragged while the range-Doppler panel is open: three maps and the map of 128 chirps after every move.
 
 use crate::commands::CommandError;
-use crate::engine::{Engine, Wanted};
+use crate::engine::{Engine, MapRequest};
 use crate::maps::doppler::range_doppler;
 use crate::radar::Radar;
 use crate::scene::Scene;
@@ -64,7 +64,7 @@ pub fn measure() -> Result<Vec<DopplerRow>, CommandError> {
 
 fn drag(points: usize) -> Result<DopplerRow, CommandError> {
     let radar = Radar { chirps: CHIRPS, ..Radar::default() };
-    let wanted = Wanted::default();
+    let wanted = MapRequest::default();
     let (mut engine, mut scene) = (Engine::new(radar.clone()), moving(points));
     let mut times = Vec::new();
     for step in 0..WARM_UP + MOVES {

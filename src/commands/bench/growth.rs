@@ -2,7 +2,7 @@
 
 use super::measured::measured;
 use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow, FrontTask};
-use crate::commands::figure::{Drawn, Figure, save, tick};
+use crate::commands::figure::{Drawing, DrawingResult, save, tick};
 use crate::commands::{CommandError, print};
 use crate::files::write_bytes;
 use crate::radar::counted;
@@ -71,12 +71,12 @@ impl Growth {
     }
 }
 
-impl Figure for Growth {
+impl Drawing for Growth {
     fn size(&self) -> (u32, u32) {
         (1000, 640)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
         let times = self.front.rows.iter().map(|r| r.median_ms);
         let (low, high) = times.fold((f64::INFINITY, 0.0f64), |(a, b), t| (a.min(t), b.max(t)));
         let most = COUNTS[COUNTS.len() - 1] as f64;

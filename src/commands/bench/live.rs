@@ -2,7 +2,7 @@
 
 use crate::commands::{CommandError, print};
 use crate::network;
-use crate::network::live::engine::Scratch;
+use crate::network::live::engine::LiveScratch;
 use crate::network::live::features::FeatureExtractor;
 use crate::radar::{Radar, counted};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
@@ -46,7 +46,7 @@ fn measure(scenes: u32) -> Result<Pass, CommandError> {
     let radar = Radar::default();
     let extractor = FeatureExtractor::new(&radar).map_err(CommandError::failed)?;
     let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
-    let mut scratch = Scratch::default();
+    let mut scratch = LiveScratch::default();
     let mut times = [const { Vec::new() }; 3];
     // The first scene warms up, and isn't counted.
     for number in 0..=scenes {

@@ -5,7 +5,7 @@ use super::following::{self, Followed};
 #[cfg(feature = "network")]
 use super::left_out::{self, LeftOut};
 use crate::commands::CommandError;
-use crate::commands::figure::{Drawn, Figure, save, save_numbers, tick};
+use crate::commands::figure::{Drawing, DrawingResult, save, save_numbers, tick};
 use crate::commands::print;
 use crate::evaluate::Estimate;
 use crate::evaluate::campaign::Campaign;
@@ -216,12 +216,12 @@ impl Spot {
     }
 }
 
-impl Figure for Report {
+impl Drawing for Report {
     fn size(&self) -> (u32, u32) {
         (1000, 640)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
         let dots: Vec<(f64, f64)> = self.methods.iter().map(MethodRow::mean).collect();
         let span = |values: &mut dyn Iterator<Item = f64>| {
             let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));

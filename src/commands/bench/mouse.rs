@@ -1,9 +1,9 @@
 //! One reflector dragged with the mouse: from the pointer's move, through the editor and the worker's thread, until three Lambda maps
 //! are back.
 
-use crate::benchmark::front::{Convention, scattered};
+use crate::benchmark::front::{MapConvention, scattered};
 use crate::commands::CommandError;
-use crate::engine::{Engine, Frame, Wanted};
+use crate::engine::{Engine, EngineFrame, MapRequest};
 use crate::interact::{Editor, Place, Snap};
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
@@ -34,7 +34,7 @@ pub struct MouseRow {
     of_pairs: bool,
     reflectors: usize,
     #[serde(flatten)]
-    convention: Convention,
+    convention: MapConvention,
     moves: usize,
     median_ms: f64,
     worst_ms: f64,
@@ -57,8 +57,8 @@ impl MouseRow {
     }
 }
 
-type Asked = (Arc<Scene>, Wanted);
-type Answer = Result<Frame, SceneError>;
+type Asked = (Arc<Scene>, MapRequest);
+type Answer = Result<EngineFrame, SceneError>;
 
 /// Drags in small and large scenes, over no floor and over the thesis', with the thesis' radar and with one of pairs.
 pub fn measure() -> Result<Vec<MouseRow>, CommandError> {
@@ -82,7 +82,7 @@ fn drags(radar: &Radar) -> Result<Vec<MouseRow>, CommandError> {
     .map_err(CommandError::failed)?;
     let mut rows = Vec::new();
     for reflectors in REFLECTORS {
-        for convention in Convention::BOTH {
+        for convention in MapConvention::BOTH {
             let [median_ms, worst_ms] = drag(&worker, &woken, reflectors, convention)?;
             let (elements, of_pairs) = (radar.elements, !radar.is_monostatic());
             rows.push(MouseRow { elements, of_pairs, reflectors, convention, moves: MOVES, median_ms, worst_ms });
@@ -96,10 +96,14 @@ fn drag(
     worker: &Worker<Asked, Answer>,
     woken: &Receiver<()>,
     reflectors: usize,
-    convention: Convention,
+    convention: MapConvention,
 ) -> Result<[f64; 2], CommandError> {
-    let wanted =
-        Wanted { floor: convention.floor, normalisation: convention.normalisation, ends: false, ..Wanted::default() };
+    let wanted = MapRequest {
+        floor: convention.floor,
+        normalisation: convention.normalisation,
+        ends: false,
+        ..MapRequest::default()
+    };
     let mut editor = Editor::new(scattered(reflectors));
     let shown = || -> Result<(), CommandError> {
         woken.recv().map_err(CommandError::failed)?;

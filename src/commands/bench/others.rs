@@ -1,8 +1,8 @@
 //! The same tasks by other tools: same scene, same maps, same accuracy, one thread on both sides.
 
-use crate::benchmark::front::{Convention, scattered};
+use crate::benchmark::front::{MapConvention, scattered};
 use crate::commands::{CommandError, print};
-use crate::engine::{Engine, Forced, Wanted};
+use crate::engine::{Engine, Forced, MapRequest};
 use crate::files::npz::write_npz;
 use crate::maps::channels_range_transform;
 use crate::radar::Radar;
@@ -17,8 +17,8 @@ use std::time::Instant;
 /// Elements whose samples are compared with the judge's.
 const JUDGED: [usize; 4] = [0, 341, 682, 1023];
 /// The tasks, by the name that the script knows, with how the maps are drawn and the error that a sample may have.
-const TASKS: [(&str, Convention, f64); 2] =
-    [("thesis", Convention::THESIS, 1e-12), ("fixed", Convention::FIXED_RANGE, 1e-6)];
+const TASKS: [(&str, MapConvention, f64); 2] =
+    [("thesis", MapConvention::THESIS, 1e-12), ("fixed", MapConvention::FIXED_RANGE, 1e-6)];
 
 /// Both tasks by all tools.
 #[derive(Debug, Serialize)]
@@ -31,7 +31,7 @@ pub struct Equal {
 struct EqualTask {
     task: &'static str,
     #[serde(flatten)]
-    convention: Convention,
+    convention: MapConvention,
     tolerance: f64,
     rows: Vec<Row>,
     /// Tools that are not installed, or why the script could not run.
@@ -118,19 +118,25 @@ impl Reference {
     }
 
     /// This program's time from nothing, the floor's noise included, and its error.
-    fn own(&self, radar: &Radar, convention: Convention, tolerance: f64, repeats: usize) -> Result<Row, CommandError> {
+    fn own(
+        &self,
+        radar: &Radar,
+        convention: MapConvention,
+        tolerance: f64,
+        repeats: usize,
+    ) -> Result<Row, CommandError> {
         let scene = scattered(self.count);
         let mut engine = Engine::new(radar.clone());
         engine.force(Forced { tolerance: Some(tolerance), ..Forced::default() });
         let mut times = Vec::new();
         for repeat in 0..=repeats {
-            let wanted = Wanted {
+            let wanted = MapRequest {
                 floor: convention.floor,
                 normalisation: convention.normalisation,
                 // Another seed is other noise, made inside the time.
                 seed: repeat as u64,
                 ends: false,
-                ..Wanted::default()
+                ..MapRequest::default()
             };
             engine.forget();
             let start = Instant::now();

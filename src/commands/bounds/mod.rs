@@ -12,7 +12,7 @@ use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};
 use crate::scene::Reflector;
 use crate::task::Task;
 use chart::{AmbiguityFigure, BoundsFigure, PlacementFigure};
-use report::{Bound, BoundRow, LayoutReport, Report, columns_to_cos};
+use report::{Bound, BoundRow, BoundsReport, LayoutReport, columns_to_cos};
 use std::path::PathBuf;
 
 /// Bound the error of any unbiased position estimate, and show which places are nearly indistinguishable, for several element layouts
@@ -112,7 +112,7 @@ impl Args {
             .map(|kind| Ok((*kind, kind.layout(&radar).map_err(CommandError::failed)?)))
             .collect::<Result<_, CommandError>>()?;
         let other = self.neighbour(&radar, centre)?;
-        let report = Report {
+        let report = BoundsReport {
             x_metres: reflector.x_metres,
             y_metres: reflector.y_metres,
             apart_columns: self.apart,

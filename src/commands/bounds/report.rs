@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// Everything the command says; its JSON.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct BoundsReport {
     pub x_metres: f64,
     pub y_metres: f64,
     pub apart_columns: f64,
@@ -76,7 +76,7 @@ fn cells(bound: Option<Bound>) -> String {
     }
 }
 
-impl Report {
+impl BoundsReport {
     pub fn print(&self) -> Result<(), CommandError> {
         print(&format!(
             "One reflector at ({}, {}) m, and another {} beside it",

@@ -6,7 +6,7 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 /// Counts maps and tells of them on standard error.
-pub struct Progress {
+pub struct MapProgress {
     bar: ProgressBar,
     /// How often a line is told; `None` on a terminal.
     every: Option<Duration>,
@@ -16,7 +16,7 @@ pub struct Progress {
     total: u64,
 }
 
-impl Progress {
+impl MapProgress {
     /// Of a run that makes `total` maps; off a terminal a line every so often.
     pub fn new(total: u64, every: Duration) -> Self {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} maps, {eta} left");
@@ -24,7 +24,7 @@ impl Progress {
         let bar = ProgressBar::new(total).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         let every = (!std::io::stderr().is_terminal()).then_some(every);
         let now = Instant::now();
-        Progress { bar, every, begun: now, told: now, done: 0, total }
+        MapProgress { bar, every, begun: now, told: now, done: 0, total }
     }
 
     /// A row is found.
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn a_line_says_how_much_is_left() {
-        let progress = Progress { done: 30, ..Progress::new(120, Duration::from_secs(30)) };
+        let progress = MapProgress { done: 30, ..MapProgress::new(120, Duration::from_secs(30)) };
         let line = progress.line("walls", Duration::from_secs(60));
         assert_eq!(line, "30 of 120 maps, now set walls; 60 seconds so far, about 3 minutes left");
     }

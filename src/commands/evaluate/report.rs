@@ -17,7 +17,7 @@ use std::fmt::Write;
 
 /// What the command found; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct EvaluationReport {
     count: usize,
     seed: Option<u64>,
     floor: Option<String>,
@@ -139,10 +139,10 @@ fn of_methods(rows: &[&Row], limit: Option<f64>) -> Vec<DoubtReport> {
     names(rows, |row| &row.method).into_iter().filter_map(|name| DoubtReport::of(name, rows, limit)).collect()
 }
 
-impl Report {
+impl EvaluationReport {
     /// The tables of `rows`, of whose whole run `missing` lacks. `limit` is the least squared error of a failure that doubt is to find; failures
     /// are the worst tenth without it.
-    pub fn of(rows: &[Row], missing: Vec<Lack>, limit: Option<f64>) -> Report {
+    pub fn of(rows: &[Row], missing: Vec<Lack>, limit: Option<f64>) -> EvaluationReport {
         let all: Vec<&Row> = rows.iter().collect();
         let sets: Vec<SetReport> = names(&all, |row| &row.set)
             .into_iter()
@@ -153,7 +153,7 @@ impl Report {
         let generated = rows.iter().find(|row| row.carrier.is_some());
         let usual = rows.iter().filter(|row| row.version.is_some()).min_by_key(|row| row.has_own_floor());
         let of_all = |column: Column| usual.map(|row| column.text(row));
-        Report {
+        EvaluationReport {
             count: sets.iter().flat_map(|s| &s.methods).map(|m| m.scenes).max().unwrap_or(0),
             seed,
             floor: of_all(Column::Floor),

@@ -22,12 +22,12 @@ pub use complete::{Completion, complete};
 pub use tokens::FilterError;
 
 use super::rows::Row;
-use expression::{Scenes, Truth};
+use expression::{Predicate, Scenes};
 
 /// An expression that is true or false of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filter {
-    root: Truth,
+    root: Predicate,
 }
 
 impl Filter {

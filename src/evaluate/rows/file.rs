@@ -1,7 +1,7 @@
 //! Rows written and read as CSV, with faults that name the line and the column.
 
 use super::lines::{LongLine, MAX_LINE_BYTES, MAX_ROWS, ShortLines};
-use super::{Column, FORMAT, Kind, Row};
+use super::{CellKind, Column, FORMAT, Row};
 use csv::StringRecord;
 use std::collections::HashSet;
 use std::io::{self, Read, Write};
@@ -80,7 +80,7 @@ pub enum RowError {
 
 /// Rows as a file has them.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Table {
+pub struct RowTable {
     /// The rows of whole lines.
     pub rows: Vec<Row>,
     /// Whether the file ends within a line: its writer was stopped, or the file was cut.
@@ -102,11 +102,11 @@ pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
 ///
 /// # Errors
 /// As [`read_rows`].
-pub fn read_table(input: impl Read) -> Result<Table, RowError> {
+pub fn read_table(input: impl Read) -> Result<RowTable, RowError> {
     read(ShortLines::new(input, true))
 }
 
-fn read(mut lines: ShortLines<impl Read>) -> Result<Table, RowError> {
+fn read(mut lines: ShortLines<impl Read>) -> Result<RowTable, RowError> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&mut lines);
     let header = reader.headers().map_err(of_csv)?.clone();
     if let Some(missing) = Column::all().find(|column| !column.is_optional() && place(&header, *column).is_none()) {
@@ -126,7 +126,7 @@ fn read(mut lines: ShortLines<impl Read>) -> Result<Table, RowError> {
         rows.push(row);
     }
     drop(reader);
-    Ok(Table { rows, is_cut: lines.is_cut, whole_bytes: lines.whole_bytes })
+    Ok(RowTable { rows, is_cut: lines.is_cut, whole_bytes: lines.whole_bytes })
 }
 
 fn place(header: &StringRecord, column: Column) -> Option<usize> {
@@ -154,9 +154,9 @@ fn of_cells(header: &StringRecord, record: &StringRecord, error: csv::Error) -> 
             _ => error.to_string(),
         };
         let expected = match column.kind() {
-            Kind::Whole => "a whole number from 0",
-            Kind::Real => "a finite number",
-            Kind::Text => said.rsplit_once("expected ").map_or(said.as_str(), |(_, expected)| expected),
+            CellKind::Whole => "a whole number from 0",
+            CellKind::Real => "a finite number",
+            CellKind::Text => said.rsplit_once("expected ").map_or(said.as_str(), |(_, expected)| expected),
         };
         return of_cell(header, record, column, expected);
     }

@@ -1,7 +1,7 @@
 //! The file of rows that a run appends to and resumes from.
 
 use super::{
-    Column, MergeError, Row, Table, Text, WHY_NO_OTHER_FORMAT, header, merge, read_table, row_writer, write_rows,
+    Column, MergeError, Row, RowTable, Text, WHY_NO_OTHER_FORMAT, header, merge, read_table, row_writer, write_rows,
 };
 use crate::files::write_atomically;
 use std::collections::{HashMap, HashSet};
@@ -50,16 +50,16 @@ pub fn key(row: &Row) -> Key {
 }
 
 /// The rows that a run makes.
-pub struct Wanted {
+pub struct RunRows {
     /// For each set and method, what makes its rows: one without figures.
     empty: HashMap<(Text, Text), Row>,
 }
 
-impl Wanted {
+impl RunRows {
     /// The rows of a run whose [`Campaign::empty_rows`](crate::evaluate::campaign::Campaign::empty_rows) these are.
-    pub fn new(empty: &[Vec<Row>]) -> Wanted {
+    pub fn new(empty: &[Vec<Row>]) -> RunRows {
         let named = |row: &Row| ((row.set.clone(), row.method.clone()), row.clone());
-        Wanted { empty: empty.iter().flatten().map(named).collect() }
+        RunRows { empty: empty.iter().flatten().map(named).collect() }
     }
 
     /// Why a row is not one of this run's.
@@ -103,7 +103,7 @@ impl RowFile {
     ///
     /// # Errors
     /// [`KeptError`] for a file that holds anything else, and for one that another process writes.
-    pub fn open(path: &Path, wanted: &Wanted, overwrite: bool) -> Result<RowFile, KeptError> {
+    pub fn open(path: &Path, wanted: &RunRows, overwrite: bool) -> Result<RowFile, KeptError> {
         if path.exists() && !path.is_file() {
             let source = io::Error::new(io::ErrorKind::InvalidInput, "is no file; expected the name of a file");
             return Err(on_file(path)(source));
@@ -114,7 +114,7 @@ impl RowFile {
         if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
             return Err(KeptError::Busy(path.to_owned()));
         }
-        let table = if overwrite { Table::default() } else { present(path, &file, wanted)? };
+        let table = if overwrite { RowTable::default() } else { present(path, &file, wanted)? };
         file.set_len(table.whole_bytes).map_err(on_file(path))?;
         file.seek(SeekFrom::End(0)).map_err(on_file(path))?;
         let out = row_writer(file, table.whole_bytes == 0).map_err(on_file(path))?;
@@ -155,14 +155,14 @@ fn refused(path: &Path, why: &str) -> KeptError {
 }
 
 /// The rows of this run that a file holds.
-fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, KeptError> {
+fn present(path: &Path, mut file: &File, wanted: &RunRows) -> Result<RowTable, KeptError> {
     let header = header();
     let mut start = Vec::new();
     file.take(header.len() as u64).read_to_end(&mut start).map_err(on_file(path))?;
     file.rewind().map_err(on_file(path))?;
     // A run that was stopped before its first line was whole.
     if start.len() < header.len() && header.as_bytes().starts_with(&start) {
-        return Ok(Table::default());
+        return Ok(RowTable::default());
     }
     let table = read_table(file).map_err(|e| refused(path, &e.to_string()))?;
     let mut seen = HashSet::new();

@@ -12,9 +12,9 @@ mod merge;
 mod order;
 mod whole;
 
-pub use cell::{Kind, Text, Value};
-pub use file::{RowError, Table, header, read_rows, read_table, row_writer, write_rows};
-pub use kept::{KeptError, Key, RowFile, Wanted, key, write_merged};
+pub use cell::{CellKind, Text, Value};
+pub use file::{RowError, RowTable, header, read_rows, read_table, row_writer, write_rows};
+pub use kept::{KeptError, Key, RowFile, RunRows, key, write_merged};
 pub use lacks::{Lack, lacks};
 pub use lines::MAX_ROWS;
 pub use merge::{MergeError, merge};
@@ -28,7 +28,7 @@ use crate::maps::cfar::Cfar;
 use crate::radar::Carrier;
 use crate::scene::generate::{self, Purpose, Reading};
 use crate::signal::Floor;
-use cell::{Cell, by_text, unless_file};
+use cell::{CellValue, by_text, unless_file};
 use columns::columns;
 
 /// Number of the format of rows, which stands in each. Before format 2 the floor "thesis" had another level ([`WHY_NO_OTHER_FORMAT`]). Tables

@@ -61,7 +61,7 @@ impl Rule {
 
 /// What was found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Shared {
+pub struct SharedTrait {
     /// Bad rows.
     pub bad: usize,
     /// All rows.
@@ -79,7 +79,7 @@ pub struct Shared {
 ///
 /// # Errors
 /// [`FilterError`] where `bad` is no filter.
-pub fn rules(rows: &[Row], bad: &str) -> Result<Shared, FilterError> {
+pub fn rules(rows: &[Row], bad: &str) -> Result<SharedTrait, FilterError> {
     let names: BTreeSet<&str> = rows.iter().map(|row| &*row.method).collect();
     let names: Vec<&str> = names.into_iter().collect();
     let mut is_bad = vec![false; rows.len()];
@@ -89,7 +89,7 @@ pub fn rules(rows: &[Row], bad: &str) -> Result<Shared, FilterError> {
     let [suggesting, testing] = [half(false), half(true)];
     let suggested: Vec<Rule> = BEFOREHAND.into_iter().filter_map(|column| table.best(column, &suggesting)).collect();
     let tested: Vec<Rule> = suggested.iter().filter_map(|rule| table.judged(&rule.text, &names, &testing)).collect();
-    Ok(Shared {
+    Ok(SharedTrait {
         bad: is_bad.iter().filter(|b| **b).count(),
         rows: rows.len(),
         tried: suggested.len(),

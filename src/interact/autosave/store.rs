@@ -27,17 +27,17 @@ struct Kept {
 
 /// The documents that copies are wanted of.
 #[derive(Debug, Clone)]
-pub(super) struct Plan {
+pub(super) struct StartPlan {
     /// The one on screen, if it is unsaved.
     on_screen: Option<Document>,
     /// Those that another took the place of, the latest last.
     left: Vec<Document>,
 }
 
-impl Plan {
-    pub(super) fn of(editor: &Editor) -> Plan {
+impl StartPlan {
+    pub(super) fn of(editor: &Editor) -> StartPlan {
         let on_screen = editor.is_modified().then(|| editor.document().clone());
-        Plan { on_screen, left: editor.left().to_vec() }
+        StartPlan { on_screen, left: editor.left().to_vec() }
     }
 
     fn documents(&self) -> impl Iterator<Item = &Document> {
@@ -45,12 +45,12 @@ impl Plan {
     }
 
     /// Whether the files would be the same ones with the same content.
-    pub(super) fn is_same(&self, other: &Plan) -> bool {
+    pub(super) fn is_same(&self, other: &StartPlan) -> bool {
         self.has_same_documents(other) && self.documents().zip(other.documents()).all(|(a, b)| a.untouched_since(b))
     }
 
     /// Whether the files would be the same ones.
-    pub(super) fn has_same_documents(&self, other: &Plan) -> bool {
+    pub(super) fn has_same_documents(&self, other: &StartPlan) -> bool {
         self.left.len() == other.left.len()
             && self.on_screen.is_some() == other.on_screen.is_some()
             && self.documents().zip(other.documents()).all(|(a, b)| a.id() == b.id())
@@ -67,16 +67,16 @@ struct Behind {
 
 /// The files of one slot. Copies of this value speak of the same files.
 #[derive(Debug, Clone)]
-pub(super) struct Store {
+pub(super) struct AutosaveStore {
     folder: PathBuf,
     stem: String,
     /// Copies of left documents that are on disk.
     behind: Arc<Mutex<Vec<Behind>>>,
 }
 
-impl Store {
-    pub(super) fn new(folder: &Path, stem: String) -> Store {
-        Store { folder: folder.to_owned(), stem, behind: Arc::default() }
+impl AutosaveStore {
+    pub(super) fn new(folder: &Path, stem: String) -> AutosaveStore {
+        AutosaveStore { folder: folder.to_owned(), stem, behind: Arc::default() }
     }
 
     fn on_screen_path(&self) -> PathBuf {
@@ -129,7 +129,7 @@ impl Store {
     }
 
     /// Makes the files what `plan` says: writes first, deletes then, so that at no moment a document is in no file.
-    pub(super) fn carry_out(&mut self, plan: &Plan) -> Result<(), String> {
+    pub(super) fn carry_out(&mut self, plan: &StartPlan) -> Result<(), String> {
         if plan.documents().next().is_some() {
             fs::create_dir_all(&self.folder).map_err(|e| format!("{}: {e}", self.folder.display()))?;
         }

@@ -3,7 +3,7 @@
 use super::Editor;
 use crate::interact::Selection;
 use crate::interact::document::{self, Document, Restored};
-use crate::scene::file::{Format, Loss, SceneFileError};
+use crate::scene::file::{FileLoss, SceneFileError, SceneFormat};
 use std::path::Path;
 
 /// Unsaved documents that are kept after another took their place; the oldest make room.
@@ -15,7 +15,7 @@ pub enum Saved {
     /// The file holds all of it and is its own from now on.
     Whole,
     /// The file holds a copy without these; the document stays where it was, as unsaved as it was.
-    Copy(Vec<Loss>),
+    Copy(Vec<FileLoss>),
 }
 
 impl Editor {
@@ -49,8 +49,8 @@ impl Editor {
     ///
     /// # Errors
     /// [`SceneFileError::Extension`] for a name that says no format.
-    pub fn losses(&self, path: &Path) -> Result<Vec<Loss>, SceneFileError> {
-        Ok(self.document.losses(Format::of_path(path)?))
+    pub fn losses(&self, path: &Path) -> Result<Vec<FileLoss>, SceneFileError> {
+        Ok(self.document.losses(SceneFormat::of_path(path)?))
     }
 
     /// Whether `path` is the document's own file and holds something else by now than what was read from it or written to it here: another

@@ -10,7 +10,7 @@ pub(super) const FOLD: usize = FINE / COARSE;
 /// Columns of the coarse head's side-lobe sources.
 pub(super) const WIDE: usize = 128;
 /// Channels between the coarse and the fine half of the decoder.
-pub(super) const WIDENED: usize = 8;
+pub(super) const DECODER_CHANNELS: usize = 8;
 
 /// Channels and residual blocks of each level.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

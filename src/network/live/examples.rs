@@ -82,7 +82,7 @@ pub struct Examples {
 
 /// What the sparse array hears.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Heard {
+pub enum EndSamples {
     /// The two ends.
     Ends(TwoEnds),
     /// The elements of a layout, `[elements, samples]`.
@@ -99,7 +99,7 @@ pub struct Example {
     /// Its radar.
     pub radar: Radar,
     /// What the sparse array hears, by elements that may be off.
-    pub heard: Heard,
+    pub heard: EndSamples,
     /// The live network's input, where it is made.
     pub input: Option<LiveInput>,
     /// Half the log10 of the mean power of what is heard.
@@ -113,8 +113,8 @@ impl Example {
     /// The samples of the two ends; `None` where a layout was asked for.
     pub fn ends(&self) -> Option<&TwoEnds> {
         match &self.heard {
-            Heard::Ends(ends) => Some(ends),
-            Heard::Elements(_) => None,
+            EndSamples::Ends(ends) => Some(ends),
+            EndSamples::Elements(_) => None,
         }
     }
 
@@ -269,8 +269,8 @@ impl Examples {
         }
         let measured = simulated(&scene, floor)?;
         let heard = match layout {
-            None => Heard::Ends(measured.two_ends(&radar)),
-            Some(layout) => Heard::Elements(measured.samples.select(Axis(0), layout)),
+            None => EndSamples::Ends(measured.two_ends(&radar)),
+            Some(layout) => EndSamples::Elements(measured.samples.select(Axis(0), layout)),
         };
         let gain = heard.gain().ok_or(ExampleError::Silent { index })?;
         let input = self.input(&radar, &heard).map_err(|source| ExampleError::Input { index, source })?;
@@ -292,8 +292,8 @@ impl Examples {
         Ok(Example { kind, floor, heard, input, gain, targets: maps, radar })
     }
 
-    fn input(&self, radar: &Radar, heard: &Heard) -> Result<Option<LiveInput>, ReconstructError> {
-        let Heard::Ends(ends) = heard else { return Ok(None) };
+    fn input(&self, radar: &Radar, heard: &EndSamples) -> Result<Option<LiveInput>, ReconstructError> {
+        let EndSamples::Ends(ends) = heard else { return Ok(None) };
         match &self.extractor {
             _ if !self.has_features() => Ok(None),
             Some(extractor) => extractor.extract(ends).map(Some),
@@ -302,17 +302,17 @@ impl Examples {
     }
 }
 
-impl Heard {
+impl EndSamples {
     /// Half the log10 of the mean power; `None` of silence.
     fn gain(&self) -> Option<f64> {
         let mean = |power: f64, samples: usize| (power > 0.0).then(|| 0.5 * (power / samples as f64).log10());
         match self {
             // The sum of the live network's features, to the bit.
-            Heard::Ends(ends) => {
+            EndSamples::Ends(ends) => {
                 let power = ends.first.iter().chain(&ends.last).map(|v| v.norm_sqr()).sum::<f64>();
                 mean(power, ends.first.len() + ends.last.len())
             }
-            Heard::Elements(samples) => mean(samples.iter().map(|v| v.norm_sqr()).sum::<f64>(), samples.len()),
+            EndSamples::Elements(samples) => mean(samples.iter().map(|v| v.norm_sqr()).sum::<f64>(), samples.len()),
         }
     }
 }

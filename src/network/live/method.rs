@@ -2,7 +2,7 @@
 
 use super::config::LiveConfig;
 use super::constants::turn_columns;
-use super::engine::{Decades, LiveEngine, Scratch};
+use super::engine::{Decades, LiveEngine, LiveScratch};
 use super::features::{FeatureExtractor, LiveInput};
 use super::grid::{COLUMNS, ROWS};
 use crate::maps::{LambdaScale, RangeAngleMap};
@@ -22,7 +22,7 @@ pub const NAME: &str = "live";
 
 /// What the method with the shipped weights says of itself.
 const DESCRIPTION: &str = "a small network that draws the whole array's map from matched filters of both ends";
-const TOLD: &str = "scenes drawn as the generators of all kinds draw them, with the radar of table 3.1, a third of them over thermal noise \
+const TRAINED_ON: &str = "scenes drawn as the generators of all kinds draw them, with the radar of table 3.1, a third of them over thermal noise \
     at signal-to-noise ratios of 10 to 60 dB, the others over the rounding of the thesis' program";
 
 /// Buffers kept for later passes; each takes some 30 MB.
@@ -38,7 +38,7 @@ pub struct LiveMethod {
     extractor: Mutex<Option<Arc<FeatureExtractor>>>,
     /// Buffers that nobody uses. They are taken out for a pass and not locked while it runs: other threads, and the thread itself
     /// where rayon hands it another caller's work, take others.
-    idle: Mutex<Vec<Scratch>>,
+    idle: Mutex<Vec<LiveScratch>>,
     eta: f32,
     weights: Weights,
     trained: Domain,
@@ -112,7 +112,7 @@ impl LiveMethod {
     /// The map in decades, and how far off the network expects Lambda to be.
     fn decades_by(
         &self,
-        forward: fn(&LiveEngine, &LiveInput, &mut Scratch) -> Decades,
+        forward: fn(&LiveEngine, &LiveInput, &mut LiveScratch) -> Decades,
         radar: &Radar,
         ends: &TwoEnds,
     ) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
@@ -176,7 +176,7 @@ impl Reconstructor for LiveMethod {
         About {
             name: self.name,
             description: if is_shipped { DESCRIPTION } else { "the live network with weights from a file" },
-            told: if is_shipped { TOLD } else { "what its weights were trained on, which their file says" },
+            told: if is_shipped { TRAINED_ON } else { "what its weights were trained on, which their file says" },
             eta: self.eta,
         }
     }

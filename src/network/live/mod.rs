@@ -50,4 +50,4 @@ mod winograd;
 pub use config::LiveConfig;
 pub use method::LiveMethod;
 #[cfg(feature = "network")]
-pub use module::{Live, LiveBatch};
+pub use module::{LiveBatch, LiveNetwork};

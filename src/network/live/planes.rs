@@ -39,19 +39,19 @@ pub(super) fn rectified(v: f32) -> f32 {
 }
 
 #[derive(Debug)]
-pub(super) struct Context {
+pub(super) struct PlaneContext {
     pub(super) row: Packed,
     pub(super) col: Packed,
 }
 
 #[derive(Debug)]
-pub(super) struct Block {
+pub(super) struct PlaneBlock {
     pub(super) conv1: Conv3x3,
     pub(super) conv2: Conv3x3,
-    pub(super) context: Option<Context>,
+    pub(super) context: Option<PlaneContext>,
 }
 
-impl Block {
+impl PlaneBlock {
     pub(super) fn forward(&self, x: &mut Plane, hidden: &mut Plane, pool: &mut Vec<f32>, mixed: &mut Vec<f32>) {
         hidden.reset(x.h, x.w, self.conv1.output());
         self.conv1.run(
@@ -68,7 +68,7 @@ impl Block {
     }
 }
 
-impl Context {
+impl PlaneContext {
     pub(super) fn forward(&self, x: &mut Plane, pool: &mut Vec<f32>, mixed: &mut Vec<f32>) {
         let (h, w, c) = (x.h, x.w, x.c);
         pool.resize((h + w) * 2 * c, 0.0);

@@ -1,7 +1,7 @@
 //! Radars of training scenes: one, or one drawn for each scene.
 
 use super::grid::{COLUMNS, ELEMENTS, ROWS};
-use crate::network::domain::{Domain, Limits, migration_bins};
+use crate::network::domain::{Domain, RadarLimits, migration_bins};
 use crate::radar::{Convention, LinkBudget, Radar, WindowFunction};
 use crate::scene::generate::Purpose;
 use rand::{RngExt, SeedableRng};
@@ -17,7 +17,7 @@ pub enum Radars {
 }
 
 /// Radars that the live network can be trained for.
-pub const DRAWN: Limits = Limits {
+pub const DRAWN: RadarLimits = RadarLimits {
     elements: COLUMNS,
     end_elements: ELEMENTS,
     samples: ROWS,

@@ -16,7 +16,7 @@ mod upward;
 use super::kernels::convolution::padded;
 use super::thesis::{Thesis, ThesisConfig};
 use super::weights::{WeightFile, WeightsError};
-use layers::Layers;
+use layers::ThesisLayers;
 use pictures::{Bordered, Parted};
 use towers::CHANNELS;
 
@@ -26,8 +26,8 @@ const TOWERS: [(&str, usize); 2] = [("layer3x3", 3), ("layer5x5", 5)];
 /// The thesis' network, packed for [`super::kernels`].
 #[derive(Debug)]
 pub struct ThesisEngine {
-    towers: [Vec<towers::Stage>; 2],
-    upward: Vec<upward::Stage>,
+    towers: [Vec<towers::TowerLevel>; 2],
+    upward: Vec<upward::UpwardLevel>,
     last: upward::Last,
     config: ThesisConfig,
 }
@@ -51,11 +51,12 @@ impl ThesisEngine {
     pub fn new(file: &WeightFile, config: &ThesisConfig) -> Result<Self, WeightsError> {
         let renamed = Thesis::in_our_names(file)?;
         let file = &WeightFile::parse(file.name(), &renamed)?;
-        let layers = Layers { file };
+        let layers = ThesisLayers { file };
         let ThesisConfig { filters, levels, .. } = *config;
-        let [first, second] = TOWERS.map(|(name, size)| towers::Stage::tower(layers, name, size, [filters, levels]));
+        let [first, second] =
+            TOWERS.map(|(name, size)| towers::TowerLevel::tower(layers, name, size, [filters, levels]));
         let end = levels.saturating_sub(1);
-        let upward = (0..end).map(|level| upward::Stage::new(layers, level, [2 * filters; 2]));
+        let upward = (0..end).map(|level| upward::UpwardLevel::new(layers, level, [2 * filters; 2]));
         let engine = ThesisEngine {
             towers: [first?, second?],
             upward: upward.collect::<Result<_, _>>()?,

@@ -51,12 +51,12 @@ impl Parted {
         &self.data[row * self.line() + (odd * self.part() + MARGIN - before) * self.c..]
     }
 
-    /// Fills the picture and its margin: `write` gets the number of each row and a [`Line`] to put it into, and a buffer of its thread.
-    pub(super) fn fill(&mut self, write: impl Fn(usize, &mut Line<'_>, &mut Vec<f32>) + Sync) {
+    /// Fills the picture and its margin: `write` gets the number of each row and a [`PictureLine`] to put it into, and a buffer of its thread.
+    pub(super) fn fill(&mut self, write: impl Fn(usize, &mut PictureLine<'_>, &mut Vec<f32>) + Sync) {
         let (size, part, c) = (self.line(), self.part(), self.c);
         let inside = Self::MARGIN_ROWS * size..(Self::MARGIN_ROWS + self.h) * size;
         self.data[inside].par_chunks_mut(size).enumerate().for_each_init(Vec::new, |buffer, (y, cells)| {
-            let mut line = Line { cells, part, c };
+            let mut line = PictureLine { cells, part, c };
             write(y, &mut line, buffer);
             line.close();
         });
@@ -74,13 +74,13 @@ fn beyond(at: usize, margin: usize, size: usize) -> usize {
 }
 
 /// A line of a [`Parted`] picture.
-pub(super) struct Line<'a> {
+pub(super) struct PictureLine<'a> {
     cells: &'a mut [f32],
     part: usize,
     c: usize,
 }
 
-impl Line<'_> {
+impl PictureLine<'_> {
     /// The channels of cell `x`.
     pub(super) fn cell(&mut self, x: usize) -> &mut [f32] {
         &mut self.cells[(x % 2 * self.part + MARGIN + x / 2) * self.c..][..self.c]

@@ -1,6 +1,6 @@
 //! The way down: dilated circular convolutions, each with ReLU and a 2x2 max-pool.
 
-use super::layers::Layers;
+use super::layers::ThesisLayers;
 use super::pictures::{Bordered, Parted};
 use crate::network::kernels::convolution::Packed;
 use crate::network::kernels::vector::{LANES, Loop, Vector, run};
@@ -15,25 +15,25 @@ const POOLED: usize = 4;
 
 /// One level of a tower.
 #[derive(Debug)]
-pub(super) struct Stage {
+pub(super) struct TowerLevel {
     kernel: Packed,
     /// Rows and columns of the kernel.
     size: usize,
     output: usize,
 }
 
-impl Stage {
+impl TowerLevel {
     /// A tower called `name` of `levels` stages with kernels of `size` by `size` cells and `filters` outputs each. Its input has four channels.
     pub(super) fn tower(
-        layers: Layers<'_>,
+        layers: ThesisLayers<'_>,
         name: &str,
         size: usize,
         [filters, levels]: [usize; 2],
-    ) -> Result<Vec<Stage>, WeightsError> {
+    ) -> Result<Vec<TowerLevel>, WeightsError> {
         let stage = |level: usize| {
             let input = if level == 0 { CHANNELS } else { filters };
             let [weights, bias] = layers.conv(&format!("down.{name}.{level}"), [filters, input, size, size])?;
-            Ok(Stage { kernel: Packed::new(&weights, &bias, [input; 2], [size; 2], 1), size, output: filters })
+            Ok(TowerLevel { kernel: Packed::new(&weights, &bias, [input; 2], [size; 2], 1), size, output: filters })
         };
         (0..levels).map(stage).collect()
     }

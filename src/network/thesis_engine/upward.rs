@@ -3,7 +3,7 @@
 //! The output's cell `Y` sees the input's cells `i` with `Y = 2 i - 1 + k` for the kernel's rows `k` from 0 to 3. So an even one sees two
 //! rows of the input, through the kernel's rows 3 and 1, and an odd one two rows through 2 and 0; likewise for columns.
 
-use super::layers::Layers;
+use super::layers::ThesisLayers;
 use super::pictures::Bordered;
 use crate::network::kernels::convolution::{Packed, padded};
 use crate::network::kernels::vector::{LANES, Loop, Vector, run};
@@ -19,13 +19,17 @@ const _: () = assert!(SIZE * SIZE == LANES, "the last kernel's products of a cel
 
 /// One level: a 2x2 convolution for even and odd rows and, within those, columns.
 #[derive(Debug)]
-pub(super) struct Stage {
+pub(super) struct UpwardLevel {
     parts: [[Packed; 2]; 2],
 }
 
-impl Stage {
-    /// Stage `level` with so many input and output channels.
-    pub(super) fn new(layers: Layers<'_>, level: usize, [input, output]: [usize; 2]) -> Result<Stage, WeightsError> {
+impl UpwardLevel {
+    /// UpwardLevel `level` with so many input and output channels.
+    pub(super) fn new(
+        layers: ThesisLayers<'_>,
+        level: usize,
+        [input, output]: [usize; 2],
+    ) -> Result<UpwardLevel, WeightsError> {
         let [weights, bias] = layers.transposed(&format!("up.upconv.{level}"), [input, output, SIZE, SIZE])?;
         let part = |rows: [usize; 2], columns: [usize; 2]| {
             let weight = |o: usize, i: usize| {
@@ -35,7 +39,7 @@ impl Stage {
             let taps: Vec<f32> = (0..output).flat_map(|o| (0..input).flat_map(move |i| weight(o, i))).collect();
             Packed::new(&taps, &bias, [input, padded(input)], [2, 2], 1)
         };
-        Ok(Stage { parts: ROWS.map(|rows| ROWS.map(|columns| part(rows, columns))) })
+        Ok(UpwardLevel { parts: ROWS.map(|rows| ROWS.map(|columns| part(rows, columns))) })
     }
 
     /// Channels of an output cell.
@@ -87,8 +91,8 @@ pub(super) struct Last {
 }
 
 impl Last {
-    /// Stage `level` with so many input channels.
-    pub(super) fn new(layers: Layers<'_>, level: usize, input: usize) -> Result<Last, WeightsError> {
+    /// UpwardLevel `level` with so many input channels.
+    pub(super) fn new(layers: ThesisLayers<'_>, level: usize, input: usize) -> Result<Last, WeightsError> {
         let [weights, bias] = layers.transposed(&format!("up.upconv.{level}"), [input, 1, SIZE, SIZE])?;
         let taps: Vec<f32> = (0..LANES).flat_map(|tap| weights.iter().skip(tap).step_by(LANES)).copied().collect();
         let products = Packed::new(&taps, &[0.0; LANES], [input, padded(input)], [1, 1], 1);
@@ -96,7 +100,7 @@ impl Last {
     }
 
     /// The products of what `before` makes of `from`, or of `from` itself where there is no level before the last.
-    pub(super) fn multiply(&self, before: Option<&Stage>, from: &Bordered, products: &mut Bordered) {
+    pub(super) fn multiply(&self, before: Option<&UpwardLevel>, from: &Bordered, products: &mut Bordered) {
         let simd = Simd::chosen();
         let twice = if before.is_some() { 2 } else { 1 };
         products.reset(twice * from.h, twice * from.w, LANES);

@@ -5,7 +5,7 @@
 //! its range and angle at each block, and the phase that its distance gives. That is the near-field matched filter of Cafforio, Prati and Rocca ("SAR data focusing using seismic
 //! migration techniques", 1991) with an interpolator instead of a sum over samples.
 
-use super::cells::Cells;
+use super::cells::GridCells;
 use crate::maps::centred_spectrum;
 use crate::radar::{End, Radar, hann};
 use crate::reconstruct::seen::seen_by;
@@ -83,7 +83,7 @@ fn blocks(radar: &Radar) -> Vec<Range<usize>> {
 }
 
 /// Why the tables can't be made for `radar`, where they would fill too much memory.
-pub(super) fn too_large(radar: &Radar, cells: &Cells<'_>) -> Option<String> {
+pub(super) fn too_large(radar: &Radar, cells: &GridCells<'_>) -> Option<String> {
     let (bins, directions) = cells.dim();
     let bytes = 2 * blocks(radar).len() * bins * directions * size_of::<Place>();
     (bytes > MOST_TABLE_BYTES).then(|| {
@@ -92,7 +92,7 @@ pub(super) fn too_large(radar: &Radar, cells: &Cells<'_>) -> Option<String> {
 }
 
 impl Backprojector {
-    pub fn new(radar: &Radar, cells: &Cells<'_>, window: RangeWindow) -> Self {
+    pub fn new(radar: &Radar, cells: &GridCells<'_>, window: RangeWindow) -> Self {
         let rows = ROWS_PER_BIN * radar.samples;
         let blocks = blocks(radar);
         let longest = blocks.iter().map(Range::len).max().unwrap_or(1);
@@ -143,7 +143,7 @@ impl Backprojector {
 }
 
 /// Where a block around element `origin` sees every cell.
-fn places(radar: &Radar, cells: &Cells<'_>, origin: usize, rows: usize, columns: usize) -> Array2<Place> {
+fn places(radar: &Radar, cells: &GridCells<'_>, origin: usize, rows: usize, columns: usize) -> Array2<Place> {
     let turns_per_metre = radar.turns_per_metre((radar.samples / 2) as f64);
     // Turns from one element to the next for cos(theta) = 1.
     let per_element = -radar.carrier_turns_per_metre() * radar.element_spacing_metres;

@@ -1,16 +1,16 @@
 //! Sparse reconstruction with an l1 penalty, by FISTA.
 
 use super::backprojector::{Backprojector, RangeWindow, too_large};
-use super::cells::{Cell, Cells};
+use super::cells::{GridCell, GridCells};
 use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::ends_noise_variance;
-use crate::reconstruct::noise_test::decades_above_cells;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::too_many_folds;
+use crate::reconstruct::significance::decades_above_cells;
 use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::{Array2, Zip};
 use num_complex::Complex64;
@@ -29,7 +29,7 @@ pub struct Fista {
     /// Penalty, as a part of the one that would leave no reflector at all, but no less than what keeps noise out. The default is by
     /// examples/choose_eta.rs.
     pub penalty: f64,
-    /// Cells that are candidates; at most 4096 are taken, whose Gram matrix fills 268 MB.
+    /// GridCells that are candidates; at most 4096 are taken, whose Gram matrix fills 268 MB.
     pub candidates: usize,
     /// Iterations.
     pub iterations: usize,
@@ -69,21 +69,21 @@ struct Problem {
 /// `least` is heard, as the correlation with a unit echo.
 fn candidates(
     radar: &Radar,
-    cells: &Cells<'_>,
+    cells: &GridCells<'_>,
     heard_of: [Array2<Complex64>; 2],
     count: usize,
-    known: &[Cell],
+    known: &[GridCell],
     least: f64,
-) -> Vec<Cell> {
+) -> Vec<GridCell> {
     let [first, last] = heard_of;
     // Weighted as unit atoms: a far reflector's echo is weak, its atom is not.
     let scale = 0.5 * (radar.samples * radar.end_elements) as f64;
     let power = Zip::from(&first).and(&last).par_map_collect(|a, b| scale * (a + b).norm_sqr());
     let known: HashSet<(usize, usize)> = known.iter().map(|cell| (cell.bin, cell.direction)).collect();
-    let mut heard: Vec<(usize, Cell, f64)> = power
+    let mut heard: Vec<(usize, GridCell, f64)> = power
         .indexed_iter()
         .enumerate()
-        .map(|(i, ((bin, direction), power))| (i, Cell { bin, direction }, *power))
+        .map(|(i, ((bin, direction), power))| (i, GridCell { bin, direction }, *power))
         .filter(|(_, cell, power)| *power > least * least && cells.may_hold(*cell))
         .filter(|(_, cell, _)| !known.contains(&(cell.bin, cell.direction)))
         .collect();
@@ -109,8 +109,8 @@ enum Penalty {
 impl Problem {
     /// Of the echoes of the cells `chosen`.
     fn new(
-        cells: &Cells<'_>,
-        chosen: &[Cell],
+        cells: &GridCells<'_>,
+        chosen: &[GridCell],
         ends: &TwoEnds,
         penalty: Penalty,
         request: &Request,
@@ -249,12 +249,12 @@ impl Reconstructor for Fista {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        let why = too_many_folds(radar).or_else(|| too_large(radar, &Cells::new(radar)));
+        let why = too_many_folds(radar).or_else(|| too_large(radar, &GridCells::new(radar)));
         why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let cells = Cells::heard_by(radar, ends);
+        let cells = GridCells::heard_by(radar, ends);
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
         let count = self.candidates.min(MOST_CANDIDATES);
         let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_that_were_not_chosen_at_first_are_added_where_they_are_needed() {
+    fn cells_that_are_needed_are_added_later() {
         let radar = Radar::default();
         // The near one fills all of the first few cells.
         let scene = Scene::of_points([(3.0, 7.0), (-5.0, 16.0)]);
@@ -320,7 +320,7 @@ mod tests {
         let scene = Scene::of_points([(3.0, 12.0), (-5.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let request = Request::default();
-        let cells = Cells::heard_by(&radar, &ends);
+        let cells = GridCells::heard_by(&radar, &ends);
         let heard = Backprojector::new(&radar, &cells, RangeWindow::None).amplitudes(&ends);
         let chosen = candidates(&radar, &cells, heard, 300, &[], 0.0);
         let problem = Problem::new(&cells, &chosen, &ends, Penalty::Part { part: 0.02, least: 0.0 }, &request).unwrap();

@@ -30,10 +30,10 @@ fn worst(found: &[Complex64], expected: &[Complex64]) -> f64 {
 }
 
 /// What a pair of antennas hears of objects that hide each other.
-fn heard(radar: &Radar, objects: &[Object], antennas: &Antennas) -> Vec<PathEcho> {
+fn heard(radar: &Radar, objects: &[Object], antennas: &AntennaPlaces) -> Vec<PathEcho> {
     let scene = Scene { objects: objects.to_vec(), ..Scene::default() };
     let mut out = Vec::new();
-    for one in Seen::all(radar, &scene) {
+    for one in SeenObject::all(radar, &scene) {
         one.scatterer(radar).echoes(antennas, &mut out);
     }
     out

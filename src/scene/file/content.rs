@@ -85,23 +85,23 @@ pub enum SceneFileError {
 
 /// The two kinds of scene file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum SceneFormat {
     /// Everything, readable.
     Toml,
     /// Positions only, as the thesis author's program reads and writes them.
     Npz,
 }
 
-impl Format {
+impl SceneFormat {
     /// The format that a file's name asks for.
     ///
     /// # Errors
     /// [`SceneFileError::Extension`] for any ending but `.toml` and `.npz`.
-    pub fn of_path(path: &Path) -> Result<Format, SceneFileError> {
+    pub fn of_path(path: &Path) -> Result<SceneFormat, SceneFileError> {
         let extension = path.extension().map(|e| e.to_ascii_lowercase());
         match extension.as_deref().and_then(|e| e.to_str()) {
-            Some("toml") => Ok(Format::Toml),
-            Some("npz") => Ok(Format::Npz),
+            Some("toml") => Ok(SceneFormat::Toml),
+            Some("npz") => Ok(SceneFormat::Npz),
             _ => Err(SceneFileError::Extension { path: path.to_owned() }),
         }
     }

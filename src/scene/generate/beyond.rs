@@ -67,7 +67,7 @@ const STEP_BINS: Range<f64> = 0.4..4.0;
 const CROWD_POINTS: Range<f64> = 10.0..301.0;
 /// Nearest and farthest range of a place, metres and part of the maximum range.
 const NEAREST_METRES: f64 = 2.0;
-const FARTHEST: f64 = 0.93;
+const MAX_RANGE_PART: f64 = 0.93;
 /// Least sine of the angle to the array's axis.
 const LEAST_SINE: f64 = 0.1;
 /// Most that a step of a jittered wall is off, and most turn of a bent wall from its one end to the other.
@@ -194,7 +194,7 @@ impl BeyondField {
     }
 
     fn ring(&self, rng: &mut ChaCha8Rng) -> Vec<Point> {
-        let range = rng.random_range(NEAREST_METRES..FARTHEST * self.max_range_metres);
+        let range = rng.random_range(NEAREST_METRES..MAX_RANGE_PART * self.max_range_metres);
         let most = (1.0 - LEAST_SINE * LEAST_SINE).sqrt();
         let at = |rng: &mut ChaCha8Rng| {
             let range = range + self.bin_metres * rng.random_range(-0.5..0.5);
@@ -207,7 +207,7 @@ impl BeyondField {
     }
 
     fn place(&self, rng: &mut ChaCha8Rng) -> Place {
-        let range = rng.random_range(NEAREST_METRES..FARTHEST * self.max_range_metres);
+        let range = rng.random_range(NEAREST_METRES..MAX_RANGE_PART * self.max_range_metres);
         let margin = LEAST_SINE.asin();
         let angle = rng.random_range(margin..PI - margin);
         [range * angle.cos(), range * angle.sin()]
@@ -215,7 +215,7 @@ impl BeyondField {
 
     fn holds(&self, [x, y]: Place) -> bool {
         let range = x.hypot(y);
-        (NEAREST_METRES..=FARTHEST * self.max_range_metres).contains(&range) && y >= LEAST_SINE * range
+        (NEAREST_METRES..=MAX_RANGE_PART * self.max_range_metres).contains(&range) && y >= LEAST_SINE * range
     }
 }
 

@@ -10,7 +10,7 @@ use std::ops::Range;
 pub(super) const MAX_DYNAMIC_DECIBELS: f64 = 60.0;
 
 /// (x, y) in metres.
-pub(super) type Place = [f64; 2];
+pub(super) type GroundPlace = [f64; 2];
 
 /// How strong the points of a group are beside each other.
 #[derive(Debug, Clone, Copy)]
@@ -93,16 +93,16 @@ impl Steps {
 
 /// A way through the field: straight, an arc, or with a bend.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Way {
-    start: Place,
+pub(super) struct Track {
+    start: GroundPlace,
     heading_degrees: f64,
     degrees_per_metre: f64,
     /// After how many metres it turns, and by how much.
     bend: Option<[f64; 2]>,
 }
 
-impl Way {
-    pub(super) fn random(start: Place, length_metres: f64, rng: &mut ChaCha8Rng) -> Self {
+impl Track {
+    pub(super) fn random(start: GroundPlace, length_metres: f64, rng: &mut ChaCha8Rng) -> Self {
         // Much along a road leads straight ahead, or nearly so.
         let heading_degrees = match rng.random_range(0..10) {
             0..=2 => 90.0,
@@ -115,11 +115,11 @@ impl Way {
             5..=7 => degrees_per_metre = rng.random_range(-270.0..270.0) / length_metres,
             _ => bend = Some([length_metres * rng.random_range(0.2..0.8), rng.random_range(-120.0..120.0)]),
         }
-        Way { start, heading_degrees, degrees_per_metre, bend }
+        Track { start, heading_degrees, degrees_per_metre, bend }
     }
 
     /// Points after these steps, `side_metres` to the left of the way.
-    pub(super) fn points(&self, steps_metres: impl IntoIterator<Item = f64>, side_metres: f64) -> Vec<Place> {
+    pub(super) fn points(&self, steps_metres: impl IntoIterator<Item = f64>, side_metres: f64) -> Vec<GroundPlace> {
         let ([mut x, mut y], mut gone) = (self.start, 0.0);
         let step = |length: f64| {
             let turned = self.bend.filter(|[after, _]| gone > *after).map_or(0.0, |[_, degrees]| degrees);

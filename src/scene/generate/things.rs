@@ -10,7 +10,7 @@ const CAR_METRES: [f64; 2] = [4.5, 1.8];
 /// Nearest range of a body's middle, metres.
 const NEAREST_METRES: f64 = 5.0;
 /// Farthest range, as a part of the maximum range.
-const FARTHEST: f64 = 0.85;
+const MAX_RANGE_PART: f64 = 0.85;
 /// How far bodies keep from each other and from the array's axis, metres.
 const APART_METRES: f64 = 0.5;
 /// Places that are tried for a body before it is left out.
@@ -18,7 +18,7 @@ const TRIES: usize = 100;
 
 /// The objects of a scene of `kind`, one of [`Kind::THINGS`], before a radar of this maximum range; none for the others.
 pub(super) fn objects(kind: Kind, max_range_metres: f64, rng: &mut ChaCha8Rng) -> Vec<Object> {
-    let mut things = Things { far: FARTHEST * max_range_metres, objects: Vec::new() };
+    let mut things = Things { far: MAX_RANGE_PART * max_range_metres, objects: Vec::new() };
     match kind {
         Kind::Bodies => {
             for _ in 0..rng.random_range(1..=3) {
@@ -119,7 +119,7 @@ pub(super) fn has_room(object: &Object, others: &[Object], far_metres: f64) -> b
 
 impl Things {
     fn has_room(&self, object: &Object) -> bool {
-        has_room(object, &self.objects, self.far / FARTHEST)
+        has_room(object, &self.objects, self.far / MAX_RANGE_PART)
     }
 
     /// Adds what `make` makes at a random place where it has room.

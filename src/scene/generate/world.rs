@@ -2,7 +2,7 @@
 //!
 //! It covers what the named kinds hold and much between them, and draws none of them: they stay tests.
 
-use super::laws::{MAX_DYNAMIC_DECIBELS, Place, Steps, Strengths, Way, log_uniform};
+use super::laws::{GroundPlace, MAX_DYNAMIC_DECIBELS, Steps, Strengths, Track, log_uniform};
 use super::things::{self, has_room};
 use crate::radar::Radar;
 use crate::scene::shape::direction;
@@ -95,8 +95,8 @@ impl World {
         &self,
         rng: &mut ChaCha8Rng,
         count: usize,
-        draw: fn(&World, usize, &mut ChaCha8Rng) -> Vec<Place>,
-    ) -> Vec<Place> {
+        draw: fn(&World, usize, &mut ChaCha8Rng) -> Vec<GroundPlace>,
+    ) -> Vec<GroundPlace> {
         let mut places = Vec::new();
         for _ in 0..TRIES {
             places = draw(self, count, rng);
@@ -109,13 +109,13 @@ impl World {
     }
 
     /// Points along a way; one time in four half of them along another beside it.
-    fn curve(&self, count: usize, rng: &mut ChaCha8Rng) -> Vec<Place> {
+    fn curve(&self, count: usize, rng: &mut ChaCha8Rng) -> Vec<GroundPlace> {
         let step = match rng.random::<bool>() {
             true => self.bin_metres * log_uniform(STEP_BINS, rng),
             false => log_uniform(STEP_METRES, rng),
         };
         let steps = Steps::random(rng);
-        let way = Way::random(self.place(rng.random_range(0..5), rng), count as f64 * step, rng);
+        let way = Track::random(self.place(rng.random_range(0..5), rng), count as f64 * step, rng);
         let row = |count: usize, side: f64, rng: &mut ChaCha8Rng| {
             let lengths: Vec<f64> = (0..count).map(|_| step * steps.next(rng)).collect();
             way.points(lengths, side)
@@ -130,13 +130,13 @@ impl World {
     }
 
     /// Points around a place: a normal or an even distribution, or an outline, longer than wide and turned anyhow.
-    fn cloud(&self, count: usize, rng: &mut ChaCha8Rng) -> Vec<Place> {
+    fn cloud(&self, count: usize, rng: &mut ChaCha8Rng) -> Vec<GroundPlace> {
         let [x, y] = self.place(rng.random_range(0..5), rng);
         let long = log_uniform(0.05..6.0f64.min(self.max_range_metres / 4.0), rng);
         let wide = long * log_uniform(0.1..1.0, rng);
         let [cos, sin] = direction(rng.random_range(0.0..360.0));
         let shape = rng.random_range(0..5);
-        let offset = |rng: &mut ChaCha8Rng| -> Place {
+        let offset = |rng: &mut ChaCha8Rng| -> GroundPlace {
             let even = |rng: &mut ChaCha8Rng| rng.random_range(-1.0..1.0);
             let turn = TAU * rng.random::<f64>();
             let radius = rng.random::<f64>().sqrt();
@@ -150,7 +150,7 @@ impl World {
                 _ => [if rng.random() { 1.0 } else { -1.0 }, even(rng)],
             }
         };
-        let place = |[u, v]: Place| {
+        let place = |[u, v]: GroundPlace| {
             let [u, v] = [u * long, v * wide];
             [x + u * cos - v * sin, y + u * sin + v * cos]
         };
@@ -193,7 +193,7 @@ impl World {
     }
 
     /// A place in the field, whose range follows one of five laws.
-    fn place(&self, law: u32, rng: &mut ChaCha8Rng) -> Place {
+    fn place(&self, law: u32, rng: &mut ChaCha8Rng) -> GroundPlace {
         let far = FARTHEST_PLACE * self.max_range_metres;
         loop {
             let range = match law {
@@ -210,14 +210,14 @@ impl World {
         }
     }
 
-    fn holds(&self, [x, y]: Place) -> bool {
+    fn holds(&self, [x, y]: GroundPlace) -> bool {
         let beside = (x.abs() - self.half_aperture_metres).max(0.0);
         y >= 0.0 && beside.hypot(y) >= CLEAR_METRES && x.hypot(y) <= FARTHEST_POINT * self.max_range_metres
     }
 }
 
 /// A polygon of 3 to 8 corners around a place.
-fn star([x, y]: Place, radius_metres: f64, rng: &mut ChaCha8Rng) -> Object {
+fn star([x, y]: GroundPlace, radius_metres: f64, rng: &mut ChaCha8Rng) -> Object {
     let count = rng.random_range(3..=8);
     let corner = |i: usize| {
         let turn = TAU * (i as f64 + rng.random_range(-0.2..0.2)) / count as f64;

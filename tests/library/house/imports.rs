@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 type Module = Vec<String>;
 
 /// Names are followed through so many others; `use a::a` would lead round for ever.
-const DEEPEST: usize = 8;
+const MAX_IMPORT_DEPTH: usize = 8;
 
 /// One file of `src`.
 struct File {
@@ -114,7 +114,7 @@ impl House {
 
     /// Where a path starts: the module, and what is left of the path.
     fn start<'a>(&self, module: &[String], path: &'a [String], depth: usize) -> Option<(Module, &'a [String])> {
-        let (first, mut rest) = path.split_first().filter(|_| depth <= DEEPEST)?;
+        let (first, mut rest) = path.split_first().filter(|_| depth <= MAX_IMPORT_DEPTH)?;
         let mut at = module.to_vec();
         match first.as_str() {
             "crate" => at.clear(),

@@ -34,9 +34,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Precision of features and target.
+/// DatasetPrecision of features and target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Precision {
+pub enum DatasetPrecision {
     /// float16: 11 bits, half the space.
     #[default]
     Half,
@@ -44,13 +44,13 @@ pub enum Precision {
     Single,
 }
 
-impl FromStr for Precision {
+impl FromStr for DatasetPrecision {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
         match name {
-            "f16" | "float16" => Ok(Precision::Half),
-            "f32" | "float32" => Ok(Precision::Single),
+            "f16" | "float16" => Ok(DatasetPrecision::Half),
+            "f32" | "float32" => Ok(DatasetPrecision::Single),
             _ => Err(format!("unknown precision \"{name}\"; expected f16 or f32")),
         }
     }
@@ -58,7 +58,7 @@ impl FromStr for Precision {
 
 /// What of an example is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum ExamplePart {
     /// What is heard: samples of both ends, or of the elements of a layout.
     Ends,
     /// The live network's input.
@@ -67,49 +67,49 @@ pub enum Part {
     Target(Target),
 }
 
-impl Part {
+impl ExamplePart {
     /// What is written of examples before `radars` where nothing else is asked for: without the live network's input where that needs another radar,
     /// or hears no two ends.
-    pub fn usual(radars: &Radars, layout: Option<&[usize]>) -> Vec<Part> {
+    pub fn usual(radars: &Radars, layout: Option<&[usize]>) -> Vec<ExamplePart> {
         let fits = layout.is_none()
             && match radars {
                 Radars::Fixed(radar) => DRAWN.has_shape(radar),
                 Radars::Random => true,
             };
-        let features = fits.then_some(Part::Features);
-        [Part::Ends].into_iter().chain(features).chain(Target::USUAL.map(Part::Target)).collect()
+        let features = fits.then_some(ExamplePart::Features);
+        [ExamplePart::Ends].into_iter().chain(features).chain(Target::USUAL.map(ExamplePart::Target)).collect()
     }
 
     fn arrays(self, layout: Option<usize>) -> Vec<ArrayKind> {
         match self {
-            Part::Ends => vec![layout.map_or(ArrayKind::Ends, ArrayKind::Layout)],
-            Part::Features => {
+            ExamplePart::Ends => vec![layout.map_or(ArrayKind::Ends, ArrayKind::Layout)],
+            ExamplePart::Features => {
                 vec![ArrayKind::Fine, ArrayKind::Coarse, ArrayKind::Rows, ArrayKind::Scalars, ArrayKind::Constants]
             }
-            Part::Target(target) => vec![ArrayKind::Target(target)],
+            ExamplePart::Target(target) => vec![ArrayKind::Target(target)],
         }
     }
 }
 
 /// As [`FromStr`] reads it.
-impl fmt::Display for Part {
+impl fmt::Display for ExamplePart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Part::Ends => "ends",
-            Part::Features => "features",
-            Part::Target(target) => target.array(),
+            ExamplePart::Ends => "ends",
+            ExamplePart::Features => "features",
+            ExamplePart::Target(target) => target.array(),
         })
     }
 }
 
-impl FromStr for Part {
+impl FromStr for ExamplePart {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
         match name {
-            "ends" => Ok(Part::Ends),
-            "features" => Ok(Part::Features),
-            _ if name.starts_with("target") => name.parse().map(Part::Target),
+            "ends" => Ok(ExamplePart::Ends),
+            "features" => Ok(ExamplePart::Features),
+            _ if name.starts_with("target") => name.parse().map(ExamplePart::Target),
             _ => Err(format!(
                 "unknown array \"{name}\"; expected ends, features, target_ideal, target_measured or target_calibrated"
             )),
@@ -155,9 +155,9 @@ pub struct DatasetRequest {
     /// The elements that are heard, in the place of the two ends.
     pub layout: Option<Vec<usize>>,
     /// Of features and targets.
-    pub precision: Precision,
+    pub precision: DatasetPrecision,
     /// What of an example is written.
-    pub parts: Vec<Part>,
+    pub parts: Vec<ExamplePart>,
     /// Examples of a shard; as many are in memory at once, some 6 MB each.
     pub shard: u32,
 }
@@ -286,9 +286,11 @@ fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
 
 /// One maker of examples for each kind.
 fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, DatasetError> {
-    let targets =
-        request.parts.iter().filter_map(|part| if let Part::Target(target) = part { Some(*target) } else { None });
-    let features = if request.parts.contains(&Part::Features) { Features::Needed } else { Features::No };
+    let targets = request
+        .parts
+        .iter()
+        .filter_map(|part| if let ExamplePart::Target(target) = part { Some(*target) } else { None });
+    let features = if request.parts.contains(&ExamplePart::Features) { Features::Needed } else { Features::No };
     let of_all = ExamplesRequest {
         purpose,
         seed: request.seed,
@@ -310,7 +312,7 @@ fn write_shard(
     number: usize,
     examples: &[Example],
     (arrays, radar): (&[ArrayKind], &Radar),
-    precision: Precision,
+    precision: DatasetPrecision,
 ) -> Result<BTreeMap<String, FileEntry>, DatasetError> {
     let name_of = |array: &ArrayKind| format!("{split}/{number:05}.{}.npy", array.name());
     let write = |array: &ArrayKind| {
