@@ -89,7 +89,6 @@ fn main() -> Outcome {
 }
 
 impl Arguments {
-    /// What the methods make of a scene, against the map of the array as it should be.
     fn answers(&self, kind: Kind, floor: Floor, number: u32) -> Outcome<Vec<TimedAnswer>> {
         let radar = Radar::default();
         let scene = self.scene(kind, number);

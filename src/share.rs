@@ -25,9 +25,7 @@ pub const VERSION: &str = "1";
 pub const MOST_BYTES: usize = 4 << 20;
 /// Most letters that are looked at: TOML that can't be packed at all.
 pub const MOST_LETTERS: usize = 6 << 20;
-/// Name of the table beside the scene.
 const KEY: &str = "shared";
-/// A map is never shown larger than this part of it fills a panel.
 const LEAST_PART: f32 = 0.005;
 
 /// A scene, its radar, and how they are looked at.
@@ -89,7 +87,6 @@ pub struct VisiblePart {
 }
 
 impl Default for VisiblePart {
-    /// All of it.
     fn default() -> Self {
         VisiblePart { left: 0.0, bottom: 0.0, right: 1.0, top: 1.0 }
     }
@@ -107,6 +104,7 @@ pub struct LessonPlace {
 
 /// Why a text can't be opened, or something not be written as one.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum ShareError {
     /// It doesn't begin as such a text does.
     #[error("the text begins with \"{0}\"; expected \"{PREFIX}{VERSION}:\"")]
@@ -130,12 +128,7 @@ pub enum ShareError {
     Unusable(#[from] SceneError),
     /// Something it says of the view can't be.
     #[error("the text's {field} {problem}")]
-    View {
-        /// Which.
-        field: &'static str,
-        /// What is wrong with it, and what was expected.
-        problem: String,
-    },
+    View { field: &'static str, problem: String },
     /// A number of the scene can't be written.
     #[error("the scene can't be written as text: {0}")]
     Unwritable(String),
@@ -148,7 +141,6 @@ pub fn is_shared(text: &str) -> bool {
 
 impl SharedScene {
     /// The text.
-    ///
     /// # Errors
     /// [`ShareError::Large`] and [`ShareError::Unwritable`] for a scene with more than fits, or a number that TOML can't hold.
     pub fn to_text(&self) -> Result<String, ShareError> {
@@ -164,7 +156,6 @@ impl SharedScene {
     }
 
     /// Reads a text, in bounded memory.
-    ///
     /// # Errors
     /// [`ShareError`] says what is wrong and what was expected.
     pub fn from_text(text: &str) -> Result<SharedScene, ShareError> {

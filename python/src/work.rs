@@ -24,7 +24,6 @@ pub struct Finder<E, T>(Sender<Event<E, T>>);
 
 impl<E, T> Finder<E, T> {
     pub fn found(&self, event: E) {
-        // Nobody listens any more once the work is done, and then nothing is found.
         let _ = self.0.send(Event::Found(event));
     }
 }

@@ -23,9 +23,7 @@ const STEP_METRES: f64 = 0.01;
 /// A scene to be measured; its first object is the one that is dragged.
 #[derive(Debug, Clone)]
 pub struct BodyCase {
-    /// What it is called.
     pub name: String,
-    /// The scene.
     pub scene: Scene,
 }
 
@@ -65,29 +63,21 @@ impl BodyCase {
     }
 }
 
-/// What was measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BodyTimes {
     /// Median time of the bare transform on one thread over the whole run, milliseconds.
     pub bare_fft_ms: f64,
-    /// Threads that made the maps.
     pub threads: usize,
-    /// Their instructions.
     pub simd: Simd,
-    /// One a scene and convention.
     pub rows: Vec<BodyRow>,
 }
 
-/// The times of one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BodyRow {
-    /// Name of the [`BodyCase`].
     pub scene: String,
-    /// Its objects.
     pub objects: usize,
     /// Echoes that they give an element at most.
     pub echoes: usize,
-    /// Floor and normalisation; they say which precision the maps need.
     #[serde(flatten)]
     pub convention: MapConvention,
     /// Median time of three maps when nothing of the scene is known, milliseconds.
@@ -99,7 +89,6 @@ pub struct BodyRow {
 }
 
 /// Measures three maps of every case, each at most `repeats` times and over both conventions. `on_row` is called with each row.
-///
 /// # Errors
 /// [`SceneError`] when the radar can't see a scene.
 pub fn measure(
@@ -164,7 +153,6 @@ fn measured(radar: &Radar, case: &BodyCase, convention: MapConvention, repeats: 
     })
 }
 
-/// What the engine says of the signal of a frame.
 fn said(frame: &EngineFrame) -> String {
     let signal = frame.report.stages.iter().find(|stage| stage.stage == EngineStage::Signal);
     match signal.map(|stage| &stage.outcome) {

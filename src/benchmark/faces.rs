@@ -12,12 +12,10 @@ use std::fmt;
 
 /// Elements and samples that are compared are so many apart.
 const JUDGED_STRIDE: usize = 16;
-/// Runs whose median counts.
 const REPEATS: usize = 5;
 /// Phase over a panel of the quadrature that errors are told against, radians; the rule has 8 points a panel.
 const FINEST_RADIANS: f64 = 1.0;
 
-/// How the samples of a face are computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FaceFormula {
     /// A glint and two ends, of constant amplitudes: what the program does.
@@ -29,7 +27,6 @@ pub enum FaceFormula {
 }
 
 impl FaceFormula {
-    /// All that are measured.
     pub const ALL: [FaceFormula; 5] = [
         FaceFormula::ClosedForm,
         FaceFormula::Tilted,
@@ -49,10 +46,8 @@ impl fmt::Display for FaceFormula {
     }
 }
 
-/// One way on one face.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FaceRow {
-    /// The face.
     pub face: &'static str,
     /// [`FaceFormula`] as text.
     pub way: String,
@@ -71,7 +66,6 @@ const FACES: [(&str, [[f64; 2]; 2]); 5] = [
     ("10 m along the road, 4 m beside it", [[4.0, 6.0], [4.0, 16.0]]),
 ];
 
-/// Measures every way on every face, on the calling thread.
 pub fn measure(radar: &Radar) -> Vec<FaceRow> {
     let samples: Vec<usize> = (0..radar.samples).step_by(JUDGED_STRIDE).collect();
     let elements: Vec<AntennaPlaces> =

@@ -78,7 +78,6 @@ const THERMAL: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 const TICK: Duration = Duration::from_millis(100);
 
 impl Args {
-    /// Writes the dataset.
     pub fn run(self) -> Result<(), CommandError> {
         let [from, to] = THERMAL;
         let radars = Radars::Fixed(Box::new(self.radar.load()?.0));

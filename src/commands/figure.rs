@@ -17,7 +17,6 @@ pub trait Drawing {
     /// Width and height in pixels.
     fn size(&self) -> (u32, u32);
 
-    /// Draws it on a white area of that size.
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B>;
 }
 

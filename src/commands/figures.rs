@@ -30,7 +30,6 @@ pub struct Args {
 }
 
 impl Args {
-    /// Draws the figures.
     pub fn run(self) -> Result<(), CommandError> {
         let chosen = self.chosen()?;
         let folder = self.output.join("figures");

@@ -44,7 +44,6 @@ pub struct Args {
 const MAX_LISTED_LAYOUTS: usize = 4;
 
 impl Args {
-    /// Finds the layout, tells it, and writes the TOML.
     pub fn run(self) -> Result<(), CommandError> {
         let board = self.board.as_deref().map(board).transpose()?;
         let imported = raw::import(&self.file, self.config.as_deref(), board).map_err(CommandError::failed)?;

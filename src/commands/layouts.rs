@@ -59,16 +59,13 @@ struct Row {
     layout: String,
     elements: usize,
     lobes: Option<Lobes>,
-    /// By set.
     squared_error: Vec<Estimate>,
-    /// P_D by set.
     detection: Vec<Option<f64>>,
     #[serde(skip)]
     cut: (Vec<f64>, Vec<f64>),
 }
 
 impl Args {
-    /// Measures, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
         let radar = Radar::default();
         let layouts: Vec<Layout> = self

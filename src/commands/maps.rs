@@ -81,7 +81,6 @@ pub struct Args {
 }
 
 impl Args {
-    /// Simulates the scene, or reads the recording, and writes its maps.
     pub fn run(self) -> Result<(), CommandError> {
         let output = Output::of_path(&self.output)?;
         self.own.start()?;
@@ -151,7 +150,6 @@ impl Args {
         }
     }
 
-    /// The output of the method asked for; `None` if none was asked for.
     fn estimate(
         &self,
         radar: &Radar,
@@ -168,7 +166,6 @@ impl Args {
         self.method.as_deref().map_or_else(|| Ok(usual()), |name| methods::by_name(name).map_err(CommandError::failed))
     }
 
-    /// How a recording is drawn; a scene's floor is its own.
     fn style(&self) -> Style {
         Style { floor: Floor::default(), normalisation: self.normalisation, colours: self.colours, eta: None }
     }

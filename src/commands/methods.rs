@@ -19,7 +19,6 @@ pub struct Args {
 const WIDTH: usize = 27;
 
 impl Args {
-    /// Prints the list.
     pub fn run(self) -> Result<(), CommandError> {
         let input = self.input.as_deref().map(InputArgs::load).transpose()?;
         let methods = all();

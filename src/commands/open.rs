@@ -58,7 +58,6 @@ impl Args {
         draw_instead(&input, method)
     }
 
-    /// Opens the app and returns when it is closed.
     #[cfg(feature = "app")]
     fn open_window(self, started: Instant) -> Result<(), WindowError> {
         use crate::app::{self, AppError};
@@ -100,9 +99,7 @@ fn shortened(message: &str) -> String {
 
 /// Why the app did not open.
 enum WindowError {
-    /// There is no window to be had here.
     NoWindow(String),
-    /// There is, but the app could not start.
     #[cfg(feature = "app")]
     Failed(crate::app::AppError),
 }

@@ -104,7 +104,6 @@ impl Args {
         self.write(&radar, &scene, &map, format)
     }
 
-    /// The map of the loops of a recording's frame.
     fn of_recording(&self, format: Option<PictureFormat>) -> Result<(), CommandError> {
         let told = [
             ("--chirps", self.chirps.is_some()),

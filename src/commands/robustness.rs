@@ -149,7 +149,6 @@ fn csv(rows: &[RobustnessRow]) -> String {
             .to_owned();
     for r in rows {
         let errors = (r.squared_error.mean, r.squared_error.standard_error);
-        // Writing to a string can't fail.
         let _ = writeln!(
             out,
             "{},{},{},{},{},{:.2},{:.2},{:.4},{:.5}",
@@ -237,7 +236,6 @@ impl Drawing for RobustnessFigure<'_> {
                 let own = self.rows.iter().filter(|r| r.method == method.name());
                 own.map(|r| (r.scale + aside, bar_of(r).map(|v| v.max(bottom))))
             };
-            // A bar from end to end, with a cap across either.
             let lines = bars().flat_map(|(x, [low, _, high])| {
                 let cap = move |y| vec![(x - step, y), (x + step, y)];
                 [vec![(x, low), (x, high)], cap(low), cap(high)]

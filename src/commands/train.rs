@@ -88,7 +88,6 @@ impl Args {
         }
     }
 
-    /// The recipe that is named; where none is, that of the run to go on with.
     fn recipe(&self) -> Result<Recipe, CommandError> {
         if let (None, Some(folder)) = (&self.recipe, &self.resume) {
             return checkpoint::recipe(&folder.join(CHECKPOINT)).map_err(CommandError::failed);

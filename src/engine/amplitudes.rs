@@ -4,7 +4,6 @@ use crate::radar::Radar;
 use crate::scattering::SeenObject;
 use crate::signal::plan;
 
-/// The objects of one scene, each with the bound of its amplitudes.
 #[derive(Debug, Default)]
 pub(super) struct Amplitudes {
     known: Vec<(SeenObject, f64)>,

@@ -15,7 +15,6 @@ use crate::signal::{Algorithm, Floor, Plan, Rows, floor};
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 
-/// One update, as the caches see it.
 pub(super) struct BankUpdate<'a> {
     pub task: &'a Task,
     pub radar: &'a Radar,
@@ -63,7 +62,6 @@ impl BankUpdate<'_> {
         [bounds.iter().sum(), counted.sum()]
     }
 
-    /// What is said of maps of which these rows were made.
     fn made(&self, rows: &Rows, over_noise: bool) -> String {
         let all = self.radar.samples;
         match rows.count() {
@@ -79,12 +77,10 @@ impl BankUpdate<'_> {
     }
 }
 
-/// A map's decades as they were last computed.
 pub(super) struct KeptDecades {
     pub decades: FastLogMap,
     /// Rows that no longer show what the sums hold.
     pub stale: Rows,
-    /// Whether noise lies beneath it.
     over_noise: bool,
     /// Decades of its silent cells.
     silence: f32,
@@ -101,13 +97,11 @@ impl KeptDecades {
     }
 }
 
-/// Profiles of some objects, with the variance of their part of the thesis' floor.
 pub(super) struct Group<T, const W: usize> {
     objects: Vec<SeenObject>,
     pub(super) profiles: BlockProfiles<T, W>,
     /// Largest [`BankUpdate::quiet`] that any of them was summed with, where quiet echoes have few rows.
     quiet: f64,
-    /// `None` until somebody asks.
     variance: Option<Vec<f64>>,
 }
 
@@ -126,13 +120,11 @@ impl<T: Real, const W: usize> Group<T, W> {
         self.objects = objects.to_vec();
     }
 
-    /// Variance of the thesis' floor beneath these objects, at every element.
     fn variance(&mut self, radar: &Radar) -> &[f64] {
         let objects = &self.objects;
         self.variance.get_or_insert_with(|| floor::thesis_noise_variance(radar, &Echoing::seen(radar, objects)))
     }
 
-    /// Holds nothing any more.
     fn clear(&mut self) {
         self.objects.clear();
         self.profiles.clear();
@@ -140,7 +132,6 @@ impl<T: Real, const W: usize> Group<T, W> {
         self.variance = None;
     }
 
-    /// Adds (`sign` = 1) or takes away (-1) what another group holds, but for the list of objects.
     fn add(&mut self, other: &Self, sign: f64) {
         self.profiles.add(&other.profiles, sign);
         self.quiet = self.quiet.max(other.quiet);
@@ -151,21 +142,16 @@ impl<T: Real, const W: usize> Group<T, W> {
     }
 }
 
-/// Caches in one precision.
 pub(super) struct Bank<T: Real, const W: usize> {
     maker: MapMaker<T, W>,
     syntheses: Vec<Synthesis<T, W>>,
-    /// Objects at rest.
     pub(super) rest: Group<T, W>,
-    /// Objects being edited.
     pub(super) active: Group<T, W>,
-    /// Where objects that leave the sum at rest are evaluated.
     leaving: Group<T, W>,
     built: Option<Built>,
     noise: Option<(u64, BlockProfiles<T, W>)>,
 }
 
-/// How the sum at rest was made.
 struct Built {
     tolerance: f64,
     forced: Option<Algorithm>,
@@ -220,7 +206,6 @@ impl<T: Real, const W: usize> Bank<T, W> {
     }
 
     /// Brings those of `maps` that the job misses up to the job's scene, row by row where only few changed.
-    ///
     /// # Errors
     /// [`Cancelled`]: nothing is held any more, and `maps` are of no use.
     pub fn run(

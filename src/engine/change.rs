@@ -3,7 +3,6 @@
 
 use crate::scattering::SeenObject;
 
-/// What has to be done so that two groups of objects become a scene.
 pub(super) struct SceneChange {
     /// Whether the active ones are added to the sum at rest first.
     pub settles: bool,

@@ -26,14 +26,12 @@ pub struct MapRequest {
 }
 
 impl MapRequest {
-    /// Which maps are looked at: first end, last end, whole array.
     pub(super) fn visible(&self) -> [bool; 3] {
         [self.first, self.last, self.full]
     }
 }
 
 impl Default for MapRequest {
-    /// All three maps and the samples of the ends, in the thesis' conventions.
     fn default() -> Self {
         MapRequest {
             floor: Floor::Thesis,

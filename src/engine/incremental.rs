@@ -28,7 +28,6 @@ pub struct Engine {
     forced: Forced,
     single: Option<Bank<f32, LANES_F32>>,
     double: Option<Bank<f64, LANES_F64>>,
-    /// The precision of the last maps.
     last: Option<Precision>,
     shown: Option<ShownMaps>,
     settled: Option<SettledMaps>,
@@ -115,7 +114,6 @@ impl Engine {
 
     /// Computes what is wanted of `scene`; what did not change since the last call is the same `Arc` as then. A scene that was settled
     /// stays so. A disturbed one is settled at once: what it is made of isn't the sum of its objects. So is one whose maps are focused.
-    ///
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn update(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
@@ -123,7 +121,6 @@ impl Engine {
     }
 
     /// [`Engine::update`], unless `task` is cancelled before it is done: then the next update starts from scratch.
-    ///
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
     pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
@@ -144,7 +141,6 @@ impl Engine {
 
     /// Computes what is wanted of `scene` as every command does, by [`crate::signal::simulate`] and the plain transforms in f64: the same
     /// bits whatever the engine computed before. Several times slower than an update; for scenes at rest, and whenever figures are made.
-    ///
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn settle(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
@@ -152,7 +148,6 @@ impl Engine {
     }
 
     /// [`Engine::settle`], unless `task` is cancelled before it is done; updates go on from where they were.
-    ///
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
     pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
@@ -167,7 +162,6 @@ impl Engine {
         Ok(frame)
     }
 
-    /// Brings what was shown last up to `scene`.
     fn follow(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
         let mut report = EngineReport::default();
         let visible = wanted.visible();
@@ -224,7 +218,6 @@ impl Engine {
         }
     }
 
-    /// Computes those decades of `shown` that are `missing`, in the precision that the planner or somebody else chose.
     fn compute(
         &mut self,
         task: &Task,

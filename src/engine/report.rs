@@ -79,7 +79,6 @@ impl EngineReport {
         self.stages.push(StageReport { stage, took: Duration::ZERO, outcome: StageOutcome::Skipped(why) });
     }
 
-    /// Adds to what is said of a stage that ran.
     pub(super) fn remark(&mut self, stage: EngineStage, remark: &str) {
         for s in self.stages.iter_mut().filter(|s| s.stage == stage) {
             if let StageOutcome::Computed(what) = &mut s.outcome {

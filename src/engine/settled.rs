@@ -28,7 +28,6 @@ pub(super) struct SettledMaps {
 
 impl SettledMaps {
     /// Computes what is wanted of `scene`, and adds to `report` what it cost.
-    ///
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, or `task` was cancelled.
     pub fn of(

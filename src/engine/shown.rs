@@ -12,7 +12,6 @@ use crate::signal::{Floor, Rows, TwoEnds};
 use ndarray::Array2;
 use std::sync::Arc;
 
-/// What the last frame showed, and for which scene.
 pub(super) struct ShownMaps {
     pub objects: Vec<Object>,
     pub shadows: bool,

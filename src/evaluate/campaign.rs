@@ -55,7 +55,6 @@ pub struct Campaign {
 }
 
 impl Default for Campaign {
-    /// The tables' conventions: 100 test scenes over the thesis floor.
     fn default() -> Self {
         Campaign {
             radar: Radar::default(),
@@ -91,7 +90,6 @@ impl Campaign {
     /// Scenes are simulated in parallel, reconstructions run one after another, so that their times are those of a map alone on
     /// the machine: in an order that is drawn anew for every scene, after each has made one map that is not timed. The figures, times apart,
     /// don't depend on the order nor on the number of threads.
-    ///
     /// # Errors
     /// [`CampaignError`] names the scene, and the method that failed or was cancelled through `task`.
     pub fn run(
@@ -105,7 +103,6 @@ impl Campaign {
     }
 
     /// [`Campaign::run`], with what each row was made of.
-    ///
     /// # Errors
     /// As [`Campaign::run`].
     pub fn run_watched(
@@ -120,7 +117,6 @@ impl Campaign {
     }
 
     /// [`Campaign::run_watched`] that goes on without a method where it fails on a scene; the rows that there are, and what failed.
-    ///
     /// # Errors
     /// As [`Campaign::run`], but for methods that fail.
     pub fn run_fit(
@@ -139,7 +135,6 @@ impl Campaign {
     }
 
     /// For each set, one row a method that says what makes the rows of this campaign and has no figures yet.
-    ///
     /// # Errors
     /// [`CampaignError`] for a folder whose scenes can't be read, for a kind that finds no room before the radar, and for a set or method that is
     /// there twice.
@@ -195,7 +190,6 @@ impl Campaign {
 
     /// [`Campaign::run_watched`] without the rows that are there already: `is_done` says of a set, a scene and a method whether one is.
     /// `empty` are [`Campaign::empty_rows`].
-    ///
     /// # Errors
     /// As [`Campaign::run`].
     pub fn run_rest(
@@ -253,7 +247,6 @@ impl Campaign {
     }
 
     /// For each set and method, on how many of the scenes the method was trained on other noise, in words; nothing where on none.
-    ///
     /// # Errors
     /// [`CampaignError`] names a scene that can't be read.
     pub fn untrained(&self, sets: &[SceneSet], methods: &[&dyn Reconstructor]) -> Result<Vec<String>, CampaignError> {
@@ -289,7 +282,6 @@ impl Campaign {
     }
 
     /// Reads or makes a scene, simulates it, and finds where its objects show.
-    ///
     /// # Errors
     /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {

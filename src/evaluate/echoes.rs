@@ -73,14 +73,11 @@ impl EchoTally {
     }
 }
 
-/// An echo as the middle of the array hears it, where the map shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Shown {
     bin: f64,
     column: f64,
-    /// Half of its width, columns.
     half_columns: f64,
-    /// dB below the strongest.
     below_db: f64,
 }
 

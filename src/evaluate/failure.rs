@@ -138,7 +138,6 @@ impl Footprints {
             cells.sort_unstable();
             cells.dedup();
         }
-        // Where nothing reflects, whatever the target shows is noise, and a blob of the output at its place is a ghost all the same.
         let shown = target.above(if scene.is_silent() { 1.0 } else { TARGET_ETA });
         Footprints { objects, echoes, target: Blobs::of(&shown) }
     }
@@ -176,7 +175,6 @@ impl Footprints {
         Failures { objects, covered, ghosts }
     }
 
-    /// The first object that shares a blob of the output with object `i`, but not one of the target.
     fn merged(&self, i: usize, fates: &[Fate], found: &Blobs) -> Option<usize> {
         let blob = |blobs: &Blobs, of: usize| blobs.most_of(&self.objects[of]);
         let (shown, seen) = (blob(&self.target, i)?, blob(found, i)?);
@@ -210,7 +208,6 @@ impl Footprints {
     }
 }
 
-/// The fate of one object, whatever its neighbours', and the part of its footprint that is detected.
 fn alone(cells: &[CellIndex], target: &RangeAngleMap, output: &RangeAngleMap, found: &Blobs) -> (Fate, f64) {
     if cells.is_empty() {
         return (Fate::Hidden, 0.0);
@@ -221,7 +218,6 @@ fn alone(cells: &[CellIndex], target: &RangeAngleMap, output: &RangeAngleMap, fo
         let hits = cells.iter().filter(|&&cell| found.labels[at(cell, shift)] != 0).count();
         hits as f64 / cells.len() as f64
     };
-    // With its edges: inside, a target above its threshold is nearly flat.
     let error = |shift: i32| -> f64 {
         let edges = cells.iter().flat_map(|&cell| [-MOST_TEETH, 0, MOST_TEETH].map(|edge| at(cell, edge)));
         edges.map(|cell| f64::from(output.lambda[at(cell, shift)] - target.lambda[cell]).powi(2)).sum()
@@ -239,7 +235,6 @@ fn alone(cells: &[CellIndex], target: &RangeAngleMap, output: &RangeAngleMap, fo
     (fate, part)
 }
 
-/// The fate of a body by its echoes that stand out, the strongest first, and the part of them that is detected.
 fn body(echoes: &[Vec<CellIndex>], found: &Blobs) -> (Fate, f64) {
     let is_seen = |cells: &Vec<CellIndex>| cells.iter().any(|cell| found.labels[*cell] != 0);
     let part = echoes.iter().filter(|cells| is_seen(cells)).count() as f64 / echoes.len() as f64;

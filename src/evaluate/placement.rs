@@ -36,7 +36,6 @@ impl Placement {
 }
 
 /// Places `reflector` from the two ends in `trials` draws of thermal noise of `snr`.
-///
 /// # Errors
 /// [`ReconstructError::Unusable`] where the reflector has no bound (it lies on the array's axis, or has no echo);
 /// [`ReconstructError::Cancelled`] through `task`.

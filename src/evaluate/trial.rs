@@ -30,7 +30,6 @@ pub struct Trial {
     footprints: OnceLock<Footprints>,
 }
 
-/// What can be said of a scene without simulating it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Facts {
     objects: usize,
@@ -56,7 +55,6 @@ pub struct TimedAnswer {
 
 impl Trial {
     /// Simulates `scene` over `floor`, the noise picked by the scene's seed.
-    ///
     /// # Errors
     /// [`SceneError`] when the radar can't see the scene.
     pub fn new(radar: &Radar, scene: &Scene, floor: Floor, normalisation: Normalisation) -> Result<Trial, SceneError> {
@@ -64,7 +62,6 @@ impl Trial {
     }
 
     /// [`Trial::new`] with another map that answers are held against, and with the samples of the elements of `layout` beside those of the ends.
-    ///
     /// # Errors
     /// As [`Trial::new`].
     pub fn against(
@@ -95,7 +92,6 @@ impl Trial {
     }
 
     /// Lets `method` try, and judges what it makes.
-    ///
     /// # Errors
     /// [`ReconstructError`] of the method.
     pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<TimedAnswer, ReconstructError> {
@@ -134,7 +130,6 @@ impl Trial {
 
     /// SE, P_D and P_FA of what `cfar` detects in an answer, against what it detects in the target, in the place of both thresholds. Lambda is
     /// brought to power on the target's scale.
-    ///
     /// # Errors
     /// [`CfarError`] where the detector can't work on the radar's maps.
     pub fn cfar_metrics(&self, answer: &TimedAnswer, cfar: &Cfar) -> Result<Metrics, CfarError> {

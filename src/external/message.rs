@@ -12,13 +12,10 @@ use std::io::{self, BufRead, Read};
 /// Version of questions and answers.
 pub const VERSION: u32 = 1;
 
-/// Longest line of JSON, bytes.
 const MOST_LINE_BYTES: u64 = 64 * 1024;
 
-/// Longest header of an array, bytes.
 const HEADER_BYTES: u64 = 4096 + 16;
 
-/// Arrays of one answer at most.
 const MOST_ARRAYS: usize = 4;
 
 #[derive(Debug, Serialize)]
@@ -125,7 +122,6 @@ pub fn most_array_bytes(radar: &Radar) -> u64 {
 }
 
 /// Reads one answer; its arrays have at most `most_bytes` each. `None` where the process closed its standard output between answers.
-///
 /// # Errors
 /// [`io::ErrorKind::InvalidData`] says what it wrote instead; others are the pipe's.
 pub fn read_answer(from: &mut impl BufRead, most_bytes: &dyn Fn() -> u64) -> io::Result<Option<ExternalAnswer>> {
@@ -174,7 +170,6 @@ fn rubbish(bytes: &[u8], why: &str) -> io::Error {
 
 impl ExternalAnswer {
     /// Its map of `[samples, elements]` finite cells.
-    ///
     /// # Errors
     /// What is wrong with it.
     pub fn map(&self, radar: &Radar) -> Result<Map, String> {
@@ -208,7 +203,6 @@ impl ExternalAnswer {
     }
 }
 
-/// Real numbers `[range bins, columns]`.
 fn numbers(name: &str, bytes: &[u8]) -> Result<Array2<f64>, String> {
     let damaged = |why: String| format!("its array \"{name}\" can't be read: {why}");
     npy::check(bytes).map_err(damaged)?;

@@ -12,37 +12,24 @@ use std::io;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::Duration;
 
-/// Threshold where neither the process nor its answers have one: the thesis'.
 const USUAL_ETA: f32 = 0.9;
 
-/// Longest name, characters.
 const LONGEST_NAME: usize = 40;
 
-/// Longest of the other texts, characters.
 const LONGEST_TEXT: usize = 400;
 
-/// How often somebody looks whether the process is free.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 /// Why a command is no method.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum StartError {
     /// The system can't start it.
     #[error("{command}: it can't be started: {source}")]
-    System {
-        /// The command.
-        command: String,
-        /// What the system says.
-        source: io::Error,
-    },
+    System { command: String, source: io::Error },
     /// It is no method: it hangs, it ended, it answers something else.
     #[error("{command}: {reason}")]
-    NoMethod {
-        /// The command.
-        command: String,
-        /// Why.
-        reason: String,
-    },
+    NoMethod { command: String, reason: String },
 }
 
 /// A method that a process of its own computes, one request at a time.
@@ -50,19 +37,16 @@ pub struct ExternalMethod {
     command: CommandLine,
     about: About,
     weights: Option<Weights>,
-    /// For each answer, and for the start.
     limit: Duration,
     process: Mutex<State>,
 }
 
-/// The process, and the number of the last question.
 struct State {
     process: Option<Process>,
     asked: u64,
 }
 
 /// Starts a command and asks it who it is. Starting and each answer may take `limit`. `task` stops the start.
-///
 /// # Errors
 /// [`StartError`] with the end of the process' standard error.
 pub fn start(command: CommandLine, limit: Duration, task: &Task) -> Result<ExternalMethod, StartError> {
@@ -78,7 +62,6 @@ pub fn start(command: CommandLine, limit: Duration, task: &Task) -> Result<Exter
     Ok(ExternalMethod { command, about, weights, limit, process: Mutex::new(state) })
 }
 
-/// What a process that was just started says of itself.
 fn greeted(process: &mut Process, task: &Task, limit: Duration) -> Result<AnswerHeader, ProcessFailure> {
     process.ask(message::hello(), 0);
     let ExternalAnswer { line, .. } = process.wait(task, limit)?;
@@ -90,7 +73,6 @@ fn greeted(process: &mut Process, task: &Task, limit: Duration) -> Result<Answer
     }
 }
 
-/// Who the process is, with texts that live as long as the program.
 fn who(line: AnswerHeader) -> Result<(About, Option<Weights>), String> {
     let AnswerHeader { name, description, told, weights, eta, .. } = line;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
@@ -127,7 +109,6 @@ fn check_eta(eta: f32) -> Result<(), String> {
 }
 
 impl ExternalMethod {
-    /// The process, once nobody else asks it.
     fn state(&self, task: &Task) -> Result<MutexGuard<'_, State>, ProcessFailure> {
         loop {
             task.check()?;
@@ -179,7 +160,6 @@ impl ExternalMethod {
         Ok(answer)
     }
 
-    /// What the answer says; the process answered wrongly where this fails.
     fn read(&self, answer: &ExternalAnswer, radar: &Radar, request: &Request) -> Result<Reconstruction, String> {
         let lambda = match answer.map(radar)? {
             Map::Lambda(lambda) => RangeAngleMap { lambda },

@@ -12,13 +12,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-/// How often somebody who waits looks whether the work was cancelled.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 
-/// How long an ended process' last words are waited for.
 const LAST_WORDS: Duration = Duration::from_millis(500);
 
-/// How long a process that was told to end may take.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// Longest array of an answer that comes before a question says how long it may be, bytes.
@@ -30,11 +27,9 @@ pub struct Process {
     questions: Option<Sender<Vec<u8>>>,
     answers: Receiver<io::Result<Option<ExternalAnswer>>>,
     stderr: Tail,
-    /// Longest array that an answer may have.
     most_bytes: Arc<AtomicU64>,
     /// Questions without an answer yet.
     pub pending: u32,
-    /// Who started it: it is nothing to a fork of this program.
     owner: u32,
     /// When it was last asked with nothing pending, or last answered.
     since: Instant,
@@ -57,7 +52,6 @@ impl From<Cancelled> for ProcessFailure {
 
 impl Process {
     /// Starts the command.
-    ///
     /// # Errors
     /// Where the system can't start it.
     pub fn start(command: &CommandLine) -> io::Result<Process> {
@@ -128,7 +122,6 @@ impl Process {
     }
 
     /// The next answer, for which the process may take `limit`.
-    ///
     /// # Errors
     /// [`ProcessFailure`], also where the process hangs, ended or wrote something else.
     pub fn wait(&mut self, task: &Task, limit: Duration) -> Result<ExternalAnswer, ProcessFailure> {
@@ -156,7 +149,6 @@ impl Process {
         }
     }
 
-    /// How the process ended.
     fn ended(&mut self) -> String {
         let began = Instant::now();
         while began.elapsed() < LAST_WORDS {

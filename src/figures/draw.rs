@@ -18,7 +18,6 @@ const TITLE_PIXELS: i32 = 34;
 const BAR_PIXELS: i32 = 58;
 
 /// The sheet as a PNG file's bytes.
-///
 /// # Errors
 /// [`PictureError`] when it can't be drawn or encoded.
 pub fn png(sheet: &Sheet) -> Result<Vec<u8>, PictureError> {
@@ -32,7 +31,6 @@ pub fn png(sheet: &Sheet) -> Result<Vec<u8>, PictureError> {
 }
 
 /// The sheet as SVG text: lines and words stay sharp, cells are bitmaps in it.
-///
 /// # Errors
 /// [`PictureError`] when it can't be drawn.
 pub fn svg(sheet: &Sheet) -> Result<String, PictureError> {
@@ -163,7 +161,6 @@ fn draw_cells<B: DrawingBackend>(cells: &SheetCells, area: &SheetArea<B>) -> She
     Ok(())
 }
 
-/// RGB pixels, top row first; of several cells under one pixel the brightest shows (of a diverging map, the one furthest from the middle).
 fn paint(cells: &SheetCells, width: usize, height: usize) -> Vec<u8> {
     let (rows, columns) = cells.values.dim();
     let under = |i: usize, n: usize, all: usize| {

@@ -3,7 +3,6 @@
 use super::sheet::{Ink, Sheet, SheetPanel, SketchShape};
 use super::source::{FigureError, SceneSource};
 
-/// Half the angle of the drawn fields of view, degrees from broadside.
 const HALF_ANGLE_DEGREES: f64 = 50.0;
 
 /// Fields of view of both ends, the distance between them drawn forty times too large.

@@ -3,7 +3,6 @@
 use super::sheet::{Series, Sheet, SheetAxis, SheetPanel, Stroke};
 use super::source::{FigureError, SceneSource};
 
-/// Points of the signals.
 const LENGTH: usize = 512;
 
 fn deltas(places: &[usize], height: f64) -> Vec<f64> {

@@ -14,7 +14,6 @@ fn colour(ink: Ink) -> RGBColor {
     }
 }
 
-/// Places of the plane in pixels of the area, with a margin.
 struct Scale {
     left: f64,
     bottom: f64,
@@ -42,7 +41,6 @@ impl Scale {
     }
 }
 
-/// Draws the shapes, the last on top.
 pub(super) fn draw<B: DrawingBackend>(sketch: &Sketch, area: &SheetArea<B>) -> SheetDrawn<B> {
     let scale = Scale::new(sketch, area.dim_in_pixel());
     sketch.shapes.iter().try_for_each(|shape| draw_shape(shape, &scale, area))

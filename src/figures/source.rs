@@ -53,7 +53,6 @@ impl SceneSource {
     }
 
     /// The scene over `floor`, seed 0.
-    ///
     /// # Errors
     /// [`FigureError::Scene`].
     pub fn see_over(&self, scene: Scene, floor: Floor) -> Result<ScenePictures, FigureError> {
@@ -64,7 +63,6 @@ impl SceneSource {
     }
 
     /// The scene over the thesis' floor.
-    ///
     /// # Errors
     /// [`FigureError::Scene`].
     pub fn see(&self, scene: Scene) -> Result<ScenePictures, FigureError> {
@@ -72,7 +70,6 @@ impl SceneSource {
     }
 
     /// A preset over the thesis' floor.
-    ///
     /// # Errors
     /// [`FigureError`] when there is no such preset or it can't be simulated.
     pub fn preset(&self, id: &str) -> Result<ScenePictures, FigureError> {
@@ -80,7 +77,6 @@ impl SceneSource {
     }
 
     /// Test scene `number` of a set (seed 0) over the thesis' floor.
-    ///
     /// # Errors
     /// [`FigureError::Scene`].
     pub fn test_scene(&self, kind: Kind, number: u32) -> Result<ScenePictures, FigureError> {
@@ -88,7 +84,6 @@ impl SceneSource {
     }
 
     /// What a method makes of the two ends.
-    ///
     /// # Errors
     /// [`FigureError`] when there is no such method or it fails.
     pub fn output(&self, method: &str, seen: &ScenePictures) -> Result<RangeAngleMap, FigureError> {
@@ -157,7 +152,6 @@ impl Default for SceneSource {
 }
 
 /// The scene of a preset.
-///
 /// # Errors
 /// [`FigureError::Missing`] when there is none of that name.
 pub fn preset(id: &str) -> Result<Scene, FigureError> {

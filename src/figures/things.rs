@@ -7,7 +7,6 @@ use std::f64::consts::TAU;
 
 const PANEL: (u32, u32) = (520, 400);
 
-/// Corners that a circle is drawn with.
 const CIRCLE_CORNERS: usize = 48;
 
 /// A cylinder and a cube at an angle, as both ends and the whole array see them.
@@ -17,7 +16,6 @@ pub fn cylinder_and_cube(source: &SceneSource) -> Result<Sheet, FigureError> {
 }
 
 /// A wall that hides a point from the last end and not from the first.
-///
 /// # Errors
 /// [`FigureError::Scene`].
 pub fn behind_a_wall(source: &SceneSource) -> Result<Vec<SheetPanel>, FigureError> {
@@ -42,7 +40,6 @@ fn with_maps(source: &SceneSource, seen: &ScenePictures, title: &str) -> Vec<She
     ]
 }
 
-/// Outlines of bodies, and points, over x and y.
 fn outlines(source: &SceneSource, title: &str, scene: &Scene) -> SheetPanel {
     let extent = source.radar.max_range_metres();
     let pair = |p: [f64; 2]| (p[0], p[1]);

@@ -6,7 +6,6 @@ use std::io;
 use std::path::Path;
 
 /// SHA-256 of the file at `path`, hexadecimal.
-///
 /// # Errors
 /// Whatever the system says when the file can't be read.
 pub fn of_file(path: &Path) -> io::Result<String> {

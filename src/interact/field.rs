@@ -94,7 +94,6 @@ pub struct SharedField {
     pub is_same: bool,
 }
 
-/// What every object has after all else.
 const MOTION: &[Field] = &[Field::VelocityX, Field::VelocityY];
 
 impl Field {
@@ -220,12 +219,10 @@ impl Field {
     }
 }
 
-/// The nearest speed that an object can have, metres a second.
 fn speed(value: f64) -> f64 {
     value.clamp(-MAX_SPEED_METRES_PER_SECOND, MAX_SPEED_METRES_PER_SECOND)
 }
 
-/// The nearest size that a body can have, metres.
 fn size(metres: f64) -> f64 {
     metres.clamp(MIN_SIZE_METRES, MAX_SIZE_METRES)
 }

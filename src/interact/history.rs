@@ -5,13 +5,11 @@ use super::selection::Selection;
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// Steps that are kept.
 const MAX_STEPS: usize = 500;
 
 /// Objects that are kept in all steps together, each scene counted once: some 300 MB.
 const OBJECT_LIMIT: usize = 4_000_000;
 
-/// A document as it was.
 #[derive(Debug, Clone)]
 pub(super) struct Snapshot {
     pub document: Document,
@@ -69,7 +67,6 @@ impl History {
         self.done.len()
     }
 
-    /// Every document that undo and redo may bring back.
     pub(super) fn documents_mut(&mut self) -> impl Iterator<Item = &mut Document> {
         self.done.iter_mut().chain(&mut self.undone).map(|s| &mut s.before.document)
     }

@@ -19,9 +19,7 @@ pub enum SelectionMode {
 #[derive(Debug, Clone, Default)]
 pub struct Selection {
     picked: BTreeSet<usize>,
-    /// Where a range begins.
     anchor: Option<usize>,
-    /// What was picked last.
     latest: Option<usize>,
 }
 

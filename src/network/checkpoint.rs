@@ -9,14 +9,12 @@ use burn::store::{BurnpackStore, ModuleSnapshot};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Names inside a checkpoint.
 pub(super) const MODEL: &str = "model.bpk";
 const OPTIMIZER: &str = "optimizer.bpk";
 const PROGRESS: &str = "progress.toml";
 const RECIPE: &str = "recipe.toml";
 
 /// Replaces the checkpoint at `folder` in one step.
-///
 /// # Errors
 /// [`TrainError`] when it can't be written; the older one is still there then.
 pub fn save<S: Student>(
@@ -65,7 +63,6 @@ pub struct Checkpoint {
 }
 
 /// The recipe of the run whose checkpoint is at `folder`.
-///
 /// # Errors
 /// [`TrainError`] when there is no checkpoint or its recipe can't be read.
 pub fn recipe(folder: &Path) -> Result<Recipe, TrainError> {
@@ -86,7 +83,6 @@ fn there(folder: &Path) -> PathBuf {
 }
 
 /// Loads the checkpoint at `folder` into network and optimizer and says where the run stands.
-///
 /// # Errors
 /// [`TrainError`] when it is missing, damaged, or of another recipe.
 pub fn load<S: Student>(

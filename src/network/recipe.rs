@@ -53,7 +53,6 @@ pub enum Optimizer {
 }
 
 impl Optimizer {
-    /// A fresh optimizer of burn's.
     pub(super) fn fresh(&self) -> ModuleOptimizer {
         match self {
             Optimizer::Sgd { momentum, .. } => {
@@ -149,32 +148,18 @@ pub struct Recipe {
 
 /// What is wrong with a recipe.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum RecipeError {
     /// It is not TOML, or misses or misspells something.
     #[error("recipe {name}: {reason}")]
-    Syntax {
-        /// Name of the recipe or file.
-        name: String,
-        /// What the parser says, with line and column.
-        reason: String,
-    },
+    Syntax { name: String, reason: String },
     /// A value makes no sense.
     #[error("recipe {name}: {field} is {value}; expected {expected}")]
-    Value {
-        /// Name of the recipe or file.
-        name: String,
-        /// The field.
-        field: &'static str,
-        /// Its value.
-        value: String,
-        /// What it must be.
-        expected: &'static str,
-    },
+    Value { name: String, field: &'static str, value: String, expected: &'static str },
 }
 
 impl Recipe {
     /// Reads and checks a recipe; `name` is for messages.
-    ///
     /// # Errors
     /// [`RecipeError`] says what is wrong and where.
     pub fn parse(name: &str, text: &str) -> Result<Recipe, RecipeError> {
@@ -237,7 +222,6 @@ impl Recipe {
         self.check_network(name)
     }
 
-    /// As `check`, of the network's size.
     fn check_network(&self, name: &str) -> Result<(), RecipeError> {
         let fail = |field, value: &dyn std::fmt::Display, expected| {
             Err(RecipeError::Value { name: name.to_owned(), field, value: value.to_string(), expected })

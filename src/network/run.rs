@@ -104,33 +104,17 @@ impl RunProgress {
 
 /// Why training stopped early or could not start.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum TrainError {
     /// The loss is NaN or infinite.
     #[error("the loss is {loss} at step {step}; the last good checkpoint is kept in {}", folder.display())]
-    NotFinite {
-        /// The step.
-        step: u64,
-        /// The loss.
-        loss: f32,
-        /// The run's folder.
-        folder: PathBuf,
-    },
+    NotFinite { step: u64, loss: f32, folder: PathBuf },
     /// A file could not be read or written.
     #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
+    File { path: PathBuf, source: std::io::Error },
     /// A checkpoint can't be used.
     #[error("checkpoint {}: {reason}", path.display())]
-    Checkpoint {
-        /// The checkpoint.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
+    Checkpoint { path: PathBuf, reason: String },
     /// No step was taken.
     #[error(
         "no step was taken, so the weights would be random; give the run steps and minutes, or write them all the same with --untrained"
@@ -138,10 +122,7 @@ pub enum TrainError {
     Untrained,
     /// The folder already holds another run.
     #[error("{} already holds a run; go on with it with --resume, or choose another folder", folder.display())]
-    Occupied {
-        /// The folder.
-        folder: PathBuf,
-    },
+    Occupied { folder: PathBuf },
     /// The recipe is unsound.
     #[error(transparent)]
     Recipe(#[from] RecipeError),
@@ -153,7 +134,6 @@ pub enum TrainError {
     Input(#[from] ReconstructError),
 }
 
-/// For `map_err`: an error about the file `path`.
 pub(super) fn file(path: &Path) -> impl FnOnce(std::io::Error) -> TrainError {
     let path = path.to_owned();
     move |source| TrainError::File { path, source }

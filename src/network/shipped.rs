@@ -43,7 +43,6 @@ fn load_shipped(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
 }
 
 /// The network whose weights the file at `path` holds: safetensors, or a PyTorch checkpoint of the thesis' or the live network.
-///
 /// # Errors
 /// [`WeightsError`] when the file can't be read, is damaged, or belongs to no network of ours.
 pub fn from_file(path: &Path, backend: Backend) -> Result<Arc<dyn Reconstructor>, WeightsError> {

@@ -34,13 +34,11 @@ pub trait Student: Module + Clone {
     type Tables: Send + Sync;
 
     /// Makes the tables.
-    ///
     /// # Errors
     /// [`ReconstructError`] for a radar that the network can't serve.
     fn tables(config: &Self::Config, radar: &Radar) -> Result<Self::Tables, ReconstructError>;
 
     /// The input made of the two ends' samples.
-    ///
     /// # Errors
     /// [`ReconstructError`] on samples it can't use.
     fn input(tables: &Self::Tables, ends: &TwoEnds) -> Result<Self::Input, ReconstructError>;

@@ -18,10 +18,8 @@ use burn::tensor::Device;
 use ndarray::{Array2, Array3};
 use std::sync::{Mutex, PoisonError};
 
-/// The thesis' own threshold, for weights that name none.
 const THESIS_ETA: f32 = 0.7;
 
-/// What the thesis' networks learned beside the samples.
 const TRAINED_ON: &str =
     "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor and never over thermal noise";
 
@@ -40,7 +38,6 @@ pub struct ThesisMethod {
     pub provenance: Provenance,
 }
 
-/// Who computes the network.
 #[derive(Debug)]
 enum Network {
     /// The engine without a framework, with buffers that nobody uses. They are taken out for a pass and not locked while it runs: another thread
@@ -62,7 +59,6 @@ impl Network {
         Ok(Network::Burn { network: Box::new(Thesis::load(file, config, &device)?.folded()), device })
     }
 
-    /// The answer to one scene.
     fn estimate(&self, method: &'static str, input: ThesisInput) -> Result<Array2<f32>, ReconstructError> {
         let size = input.size;
         match self {
@@ -83,7 +79,6 @@ impl Network {
 impl ThesisMethod {
     /// The network with the weights of `file`, whose tensors decide its width and depth: computed by an engine of its own, or by burn where
     /// `backend` is not the default one.
-    ///
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
     pub fn new(
@@ -184,7 +179,6 @@ pub struct UnetMethod {
 
 impl UnetMethod {
     /// The shipped architecture with the weights of `file`, computed by `backend`.
-    ///
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile, backend: Backend) -> Result<Self, WeightsError> {
@@ -245,7 +239,6 @@ impl Reconstructor for UnetMethod {
     }
 }
 
-/// One scene through a network, as an array.
 fn estimate<S: Student>(
     network: &S,
     method: &'static str,
@@ -258,7 +251,6 @@ fn estimate<S: Student>(
     in_rows(method, size, values.map_err(unusable)?)
 }
 
-/// The cells of a map, row-major, as an array.
 fn in_rows(
     method: &'static str,
     [rows, columns]: [usize; 2],

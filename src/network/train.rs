@@ -21,7 +21,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Trains by `recipe` until it ends or `run` says stop. `resume` goes on from the folder's checkpoint; `watch` is told after every step.
-///
 /// # Errors
 /// [`TrainError`].
 pub fn train<S: Student>(
@@ -85,12 +84,10 @@ pub fn train<S: Student>(
     Ok(progress)
 }
 
-/// Refuses weights that no step moved, unless the run asks for them.
 fn refuse_untrained(run: &TrainingRun, is_trained: bool) -> Result<(), TrainError> {
     if is_trained || run.untrained { Ok(()) } else { Err(TrainError::Untrained) }
 }
 
-/// Network, optimizer and progress of a run that starts, or goes on from the checkpoint `from`; its new part is recorded.
 fn begin<S: Student>(
     recipe: &Recipe,
     config: &S::Config,
@@ -110,7 +107,6 @@ fn begin<S: Student>(
     Ok((network, optimizer, progress))
 }
 
-/// One step over `lessons`: the network that has moved, or the one that was given where the loss is not finite; and the loss.
 fn step<S: Student>(
     network: S,
     optimizer: &mut ModuleOptimizer,
@@ -145,7 +141,6 @@ fn target_tensor(targets: &[RangeAngleMap], device: &Device) -> Tensor<3> {
     Tensor::from_data(TensorData::new(values, vec![targets.len(), rows, columns]), device)
 }
 
-/// The run's CSV log.
 struct Log {
     path: PathBuf,
     file: fs::File,

@@ -32,7 +32,6 @@ pub struct Validation {
 }
 
 /// Figures on validation scenes, which share no random stream with training or test scenes.
-///
 /// # Errors
 /// [`TrainError`] when a scene can't be simulated or the network can't use it.
 pub fn validate<S: Student>(
@@ -76,7 +75,6 @@ pub fn validate<S: Student>(
 }
 
 /// Writes `weights.safetensors`, with its record, into the run's folder.
-///
 /// # Errors
 /// [`TrainError::Checkpoint`] when it can't be written.
 pub fn export<S: Student>(

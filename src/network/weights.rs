@@ -46,7 +46,6 @@ impl Provenance {
     }
 
     /// The radars of the training scenes: those of the entry [`DOMAIN_ENTRY`], else that of [`RADAR_ENTRY`], else table 3.1's.
-    ///
     /// # Errors
     /// [`WeightsError::Store`] where an entry of the file `name` can't be read.
     pub fn domain(&self, name: &str) -> Result<Domain, WeightsError> {
@@ -72,83 +71,34 @@ impl Provenance {
 
 /// Why a weight file can't be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum WeightsError {
     /// The file could not be read.
     #[error("{file}: {reason}")]
-    File {
-        /// Name of the file.
-        file: String,
-        /// What the system said.
-        reason: String,
-    },
+    File { file: String, reason: String },
     /// The file is not safetensors at all.
     #[error("{file} is not a safetensors file: {reason}")]
-    NotSafetensors {
-        /// Name of the file.
-        file: String,
-        /// What its first bytes lack.
-        reason: String,
-    },
+    NotSafetensors { file: String, reason: String },
     /// The file looks like a PyTorch checkpoint and can't be read as one.
     #[error("{file} is not a PyTorch checkpoint that can be read: {reason}")]
-    NotPytorch {
-        /// Name of the file.
-        file: String,
-        /// What the reader said.
-        reason: String,
-    },
+    NotPytorch { file: String, reason: String },
     /// The file ends early or goes on too long.
     #[error("{file} holds {found} bytes; its header promises {expected}; it was truncated or damaged")]
-    Length {
-        /// Name of the file.
-        file: String,
-        /// Bytes found.
-        found: usize,
-        /// Bytes promised by the header.
-        expected: usize,
-    },
+    Length { file: String, found: usize, expected: usize },
     /// The file is for another network.
     #[error("{file} holds weights of \"{found}\"; expected \"{expected}\"")]
-    Foreign {
-        /// Name of the file.
-        file: String,
-        /// Network named in the file.
-        found: String,
-        /// Network wanted.
-        expected: String,
-    },
+    Foreign { file: String, found: String, expected: String },
     /// The file names no network, and its tensors are those of none of ours.
     #[error(
         "{file} names no network, and none of ours has its tensors ({count} in all): {names}; expected weights of {expected}"
     )]
-    Unknown {
-        /// Name of the file.
-        file: String,
-        /// How many tensors it holds.
-        count: usize,
-        /// Names of the first.
-        names: String,
-        /// Networks that would do.
-        expected: String,
-    },
+    Unknown { file: String, count: usize, names: String, expected: String },
     /// A tensor that the network needs is missing, or one it doesn't know is there.
     #[error("{file}: tensor \"{tensor}\" {problem}")]
-    Tensor {
-        /// Name of the file.
-        file: String,
-        /// Name of the tensor.
-        tensor: String,
-        /// What is wrong with it, and what was expected.
-        problem: String,
-    },
+    Tensor { file: String, tensor: String, problem: String },
     /// The store refused the file.
     #[error("{file}: {reason}")]
-    Store {
-        /// Name of the file.
-        file: String,
-        /// What the store said.
-        reason: String,
-    },
+    Store { file: String, reason: String },
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -188,7 +138,6 @@ pub struct WeightFile<'a> {
 
 impl<'a> WeightFile<'a> {
     /// Reads the header of the file called `name` and checks its length.
-    ///
     /// # Errors
     /// [`WeightsError`] when it isn't safetensors or is cut short.
     pub fn parse(name: &str, bytes: &'a [u8]) -> Result<Self, WeightsError> {
@@ -245,7 +194,6 @@ impl<'a> WeightFile<'a> {
     }
 
     /// Checks that every tensor of the file is one that `known` accepts.
-    ///
     /// # Errors
     /// [`WeightsError::Tensor`] names the first that is none.
     #[cfg(feature = "network")]
@@ -266,7 +214,6 @@ impl<'a> WeightFile<'a> {
     }
 
     /// The same file with other tensor names.
-    ///
     /// # Errors
     /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub fn renamed(&self, rename: impl Fn(&str) -> String) -> Result<Vec<u8>, WeightsError> {
@@ -281,7 +228,6 @@ impl<'a> WeightFile<'a> {
     }
 
     /// Checks that the file holds weights of `network`.
-    ///
     /// # Errors
     /// [`WeightsError::Foreign`] otherwise.
     pub fn expect_network(&self, network: &str) -> Result<(), WeightsError> {

@@ -53,7 +53,6 @@ pub enum ComposeError {
 }
 
 /// Reconstructs and draws all panels; the bytes of a file.
-///
 /// # Errors
 /// [`ComposeError`] when the method fails or the panels can't be drawn.
 pub fn compose(

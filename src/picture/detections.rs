@@ -80,7 +80,6 @@ const RIM_CELLS: usize = 3;
 const SPECK_CELLS: usize = 8;
 /// What stands out of the target by this much is there, although its threshold hides it, decibels.
 const STANDS_OUT_DB: f32 = 10.0;
-/// How far around a blob the target's surroundings reach, cells.
 const SURROUNDING_CELLS: usize = 5;
 
 /// What each cell of an output above `etas[0]` is beside a target above `etas[1]`, both `[range bins, columns]`, row by row.

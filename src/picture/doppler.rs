@@ -8,11 +8,9 @@ use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
 use plotters::prelude::*;
 
-/// Size of the picture, pixels.
 const SIZE: (u32, u32) = (900, 700);
 
 /// The bytes of a file with the map, its axes and what its colours stand for.
-///
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
 pub fn compose_range_doppler(

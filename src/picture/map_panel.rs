@@ -11,15 +11,12 @@ use plotters::prelude::*;
 /// What a panel paints: cells `[range bins, columns]` as they are drawn, the leftmost column first.
 #[derive(Debug, Clone)]
 pub(super) enum MapCells<'a> {
-    /// Lambda in colours, with a colour bar.
     Lambda(ArrayView2<'a, f32>, ColourMap),
-    /// The cells above a threshold.
     Above(ArrayView2<'a, f32>, f32),
     /// The output above its threshold: hits, misses and false alarms.
     Detections(Array2<CellVerdict>),
 }
 
-/// A map and its title.
 #[derive(Debug, Clone)]
 pub(super) struct MapPanel<'a> {
     pub title: String,
@@ -32,7 +29,6 @@ const HIT: Rgb = [245, 245, 240];
 const TITLE_HEIGHT: i32 = 40;
 const BAR_SPACE: i32 = 62;
 
-/// What the two axes of a map count, from end to end.
 pub(super) struct MapAxes {
     /// To the right, rising.
     pub x: [f64; 2],
@@ -157,7 +153,6 @@ fn colour_bar<B: DrawingBackend>(
     text::line(area, (x, y - 24), "\u{39b}", 17, Weight::Normal, &INK)
 }
 
-/// What the colours of a detection panel mean, at the right of its title.
 fn legend<B: DrawingBackend>(area: &PanelArea<B>) -> Result<(), PictureError> {
     let (width, _) = area.dim_in_pixel();
     let mut x = width as i32 - BAR_SPACE;

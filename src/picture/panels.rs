@@ -47,7 +47,6 @@ const LEFT: i32 = 700;
 const MARGIN: i32 = 24;
 
 /// Draws a picture on a bitmap; the panels are 2180 x 1120 pixels.
-///
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
 pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
@@ -59,7 +58,6 @@ pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
 }
 
 /// Draws the same picture as SVG: lines and text stay sharp at any size, the maps are bitmaps in it.
-///
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
 pub fn render_svg(drawing: &impl Drawing) -> Result<String, PictureError> {
@@ -110,7 +108,6 @@ impl<'a> Panels<'a> {
         text::line(root, (LEFT + 62, 30), self.about, 20, text::Weight::Normal, &FAINT_INK)
     }
 
-    /// Three maps above; below them the output and both thresholds, or the output and its threshold where there is no target.
     fn map_panels(&self) -> Vec<MapPanel<'a>> {
         let elements = |end| {
             let range = self.radar.end_range(end);
@@ -137,7 +134,6 @@ impl<'a> Panels<'a> {
         panels
     }
 
-    /// What each cell of the output is beside the target.
     fn told_apart(&self, target: ArrayView2<'_, f32>, output: ArrayView2<'_, f32>) -> Array2<CellVerdict> {
         let mut kinds = told_apart(output, target, [self.eta, TARGET_ETA], 0.0).into_iter();
         Array2::from_shape_simple_fn(output.dim(), || kinds.next().unwrap_or(CellVerdict::Nothing))

@@ -40,7 +40,6 @@ pub fn maps_of(recording: &Recording) -> ([LogMap; 2], Option<LogMap>) {
 }
 
 /// Reconstructs from the recording's two ends and draws what it shows; the bytes of a file.
-///
 /// # Errors
 /// [`ComposeError`] when the method fails or the picture can't be drawn.
 pub fn compose_recording(
@@ -160,7 +159,6 @@ fn curves(
     bytes_of(&DirectionAxis { name: &recording.name, about: &about, curves: &curves, found: &found }, format)
 }
 
-/// Angle from broadside, degrees.
 fn degrees(cos_theta: f64) -> f64 {
     cos_theta.clamp(-1.0, 1.0).asin().to_degrees()
 }

@@ -13,12 +13,9 @@ use std::f64::consts::PI;
 const ARRAY: RGBColor = RGBColor(120, 128, 138);
 const END: RGBColor = RGBColor(200, 62, 40);
 
-/// What lies in the half plane.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum SceneContent<'a> {
-    /// The reflectors of a scene.
     Scene(&'a Scene),
-    /// A range-angle map, projected.
     Map(&'a RangeAngleMap, ColourMap),
 }
 
@@ -76,7 +73,6 @@ pub(super) fn draw<B: DrawingBackend>(
 
 type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// Paints a map, `metres` a pixel, onto the half plane.
 fn draw_map<B: DrawingBackend>(
     chart: &mut Chart<B>,
     radar: &Radar,
@@ -96,7 +92,6 @@ fn draw_map<B: DrawingBackend>(
     Ok(())
 }
 
-/// A ring every 10 m, the edge of the range, and a spoke every quarter of cos(theta).
 fn draw_rings_and_spokes<B: DrawingBackend>(
     chart: &mut Chart<B>,
     max: f64,
@@ -120,7 +115,6 @@ fn draw_rings_and_spokes<B: DrawingBackend>(
     Ok(())
 }
 
-/// The whole array, and its two ends.
 fn draw_array<B: DrawingBackend>(chart: &mut Chart<B>, radar: &Radar) -> Result<(), PictureError> {
     let element = |n: usize| (radar.element_x_metres(n), 0.0);
     let whole = LineSeries::new([element(0), element(radar.elements - 1)], ARRAY.stroke_width(5));
@@ -159,7 +153,6 @@ fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64
     Ok(())
 }
 
-/// A body's outline, closed, (x, y) in metres.
 fn outline(shape: &Shape) -> Vec<(f64, f64)> {
     match shape {
         Shape::Wall([a, b]) => vec![(a[0], a[1]), (b[0], b[1])],

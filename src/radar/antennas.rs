@@ -9,7 +9,6 @@ use super::{Convention, Pair, Radar};
 use std::fmt;
 use std::sync::Arc;
 
-/// Fewest and most elements, as for every radar.
 const MIN_ELEMENTS: usize = 2;
 const MAX_ELEMENTS: usize = 65536;
 
@@ -25,7 +24,6 @@ const MOST_DIVISIONS: usize = 4;
 /// How far the middle of the line may lie off x = 0 without being moved there, as a part of the spacing.
 const CENTRED: f64 = 1e-6;
 
-/// Farthest that an antenna may stand off the line, metres either way.
 const MOST_Y_METRES: f64 = 1.0;
 
 /// Transmitters and receivers whose pairs make a line of elements at even places along x.
@@ -37,10 +35,8 @@ const MOST_Y_METRES: f64 = 1.0;
 pub struct Antennas {
     transmitter_x_metres: Arc<[f64]>,
     receiver_x_metres: Arc<[f64]>,
-    /// As long as the list of x.
     transmitter_y_metres: Arc<[f64]>,
     receiver_y_metres: Arc<[f64]>,
-    /// Numbers of transmitter and receiver of each element; nothing at a gap.
     pairs: Arc<[Option<[usize; 2]>]>,
 }
 
@@ -56,58 +52,26 @@ impl fmt::Debug for Antennas {
 
 /// Why antennas make no array.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum AntennasError {
     /// A list is empty or holds something that is no place.
     #[error("{list} has {found}; expected finite numbers, at least one")]
-    Places {
-        /// Which list.
-        list: &'static str,
-        /// What was found.
-        found: String,
-    },
+    Places { list: &'static str, found: String },
     /// A list of y is not as long as that of x.
     #[error("{list} has {found} numbers; expected {expected}, one for each antenna")]
-    Length {
-        /// Which list.
-        list: &'static str,
-        /// How many it has.
-        found: usize,
-        /// How many antennas there are.
-        expected: usize,
-    },
+    Length { list: &'static str, found: usize, expected: usize },
     /// An antenna stands too far off the line.
     #[error("number {} of {list} is {found}; expected at most {MOST_Y_METRES} m off the line, either way", index + 1)]
-    OffLine {
-        /// Which list.
-        list: &'static str,
-        /// Which number of it, from 0.
-        index: usize,
-        /// The number.
-        found: f64,
-    },
+    OffLine { list: &'static str, index: usize, found: f64 },
     /// Too few or too many pairs.
     #[error("{transmitters} transmitters and {receivers} receivers make {} elements; expected {MIN_ELEMENTS} to {MAX_ELEMENTS}", transmitters.saturating_mul(*receivers))]
-    Count {
-        /// Transmitters.
-        transmitters: usize,
-        /// Receivers.
-        receivers: usize,
-    },
+    Count { transmitters: usize, receivers: usize },
     /// The pairs don't stand on one even line.
     #[error(
         "the midpoint of transmitter {} and receiver {} stands {:.3} mm off the even line, whose places are {:.3} mm apart; expected at most {:.3} mm",
         transmitter + 1, receiver + 1, off_metres * 1e3, spacing_metres * 1e3, MOST_OFF * spacing_metres * 1e3
     )]
-    Uneven {
-        /// Number of the transmitter.
-        transmitter: usize,
-        /// Number of the receiver.
-        receiver: usize,
-        /// How far it stands off.
-        off_metres: f64,
-        /// Distance between neighbouring places.
-        spacing_metres: f64,
-    },
+    Uneven { transmitter: usize, receiver: usize, off_metres: f64, spacing_metres: f64 },
     /// All pairs stand at one place.
     #[error("all pairs have one midpoint; expected a line of them")]
     OnePlace,
@@ -115,10 +79,7 @@ pub enum AntennasError {
     #[error(
         "the pairs stand on a line of {elements} places; expected as many as such antennas make, {MIN_ELEMENTS} to {MAX_ELEMENTS}"
     )]
-    Line {
-        /// Places of the line, gaps too.
-        elements: usize,
-    },
+    Line { elements: usize },
 }
 
 /// The pairs from left to right, and where the midpoint of each stands.
@@ -174,7 +135,6 @@ impl Midpoints {
 
 impl Antennas {
     /// Antennas at these places, metres along x. The middle of the line that their pairs make is moved to x = 0.
-    ///
     /// # Errors
     /// [`AntennasError`] where their pairs make no line of 2 to 65536 even places.
     pub fn new(transmitter_x_metres: &[f64], receiver_x_metres: &[f64]) -> Result<Self, AntennasError> {
@@ -211,7 +171,6 @@ impl Antennas {
 
     /// Receivers two spacings apart and transmitters a whole row of receivers apart, so that the pairs make one line of
     /// `transmitters * receivers` elements.
-    ///
     /// # Errors
     /// [`AntennasError`] where that is no array.
     pub fn filled(transmitters: usize, receivers: usize, spacing_metres: f64) -> Result<Self, AntennasError> {
@@ -294,7 +253,6 @@ impl Antennas {
     }
 }
 
-/// How many places of the list differ.
 fn apart(places: &[f64]) -> usize {
     let mut sorted = places.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -355,7 +313,6 @@ impl Radar {
     }
 
     /// The physical radar of `transmitters` and `receivers` whose pairs make one filled line, its other constants those of `self`.
-    ///
     /// # Errors
     /// [`AntennasError`] where that is no array.
     pub fn of_pairs(self, transmitters: usize, receivers: usize) -> Result<Self, AntennasError> {

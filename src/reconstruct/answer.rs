@@ -39,7 +39,6 @@ pub struct LayoutSamples {
 }
 
 impl Default for Request {
-    /// The thesis' conventions.
     fn default() -> Self {
         Request {
             noise: NoisePrior::Rounding,

@@ -16,17 +16,14 @@ use ndarray::Axis;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Elements side by side.
 const W: usize = LANES_F64;
 
-/// A place and the complex gain found for it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gained {
     pub reflector: Reflector,
     pub gain: Complex64,
 }
 
-/// The whole array's map of `found` in `ends`, over the measured noise.
 pub(super) fn of_echoes(
     radar: &Radar,
     ends: &TwoEnds,
@@ -63,7 +60,6 @@ pub(super) fn of_echoes(
     }
 }
 
-/// Echoes added up at neighbouring elements.
 struct Sum<'a> {
     model: &'a EchoModel,
     pairs: PairBlocks<W>,

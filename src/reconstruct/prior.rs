@@ -24,7 +24,6 @@ pub enum NoisePrior {
 }
 
 impl From<Floor> for NoisePrior {
-    /// What is told of a simulated floor: which kind it is, and not how loud.
     fn from(floor: Floor) -> Self {
         match floor {
             Floor::Thesis => NoisePrior::Rounding,

@@ -7,7 +7,6 @@ use crate::radar::{Pair, Radar};
 /// Far fields away at which a wave counts as plane: its front is curved by less than 1e-5 wavelengths over the array.
 pub(super) const FAR_AWAY: f64 = 1e4;
 
-/// Where a place lies in the polar grid of a point of the array's axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PolarView {
     /// Distance in metres.

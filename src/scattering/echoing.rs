@@ -91,7 +91,6 @@ impl SeenObject {
         self.object.echo_count()
     }
 
-    /// Whether its echoes are those of its reflectors, and nothing hides them.
     fn is_points(&self) -> bool {
         self.object.body().is_none() && self.hidden_by.is_empty()
     }

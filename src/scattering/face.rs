@@ -36,12 +36,10 @@ impl Face {
         Face { from, along: (to - from) * length_metres.recip(), length_metres, is_two_sided, reflectivity }
     }
 
-    /// Unit vector to its outside.
     pub(super) fn outward(&self) -> V {
         self.along.right()
     }
 
-    /// The place `u` metres along it.
     pub(super) fn place(&self, u: f64) -> V {
         self.from + self.along * u
     }
@@ -102,7 +100,6 @@ struct Heights {
     outside: bool,
 }
 
-/// The specular point.
 struct Foot {
     along_metres: f64,
     range_metres: f64,

@@ -148,7 +148,6 @@ pub struct PathEcho {
 }
 
 impl PathEcho {
-    /// No echo, from this place.
     pub(crate) fn silent(place_metres: [f64; 2], kind: EchoKind) -> Self {
         PathEcho {
             range_metres: 0.0,
@@ -166,7 +165,6 @@ impl PathEcho {
         self.amplitude != Complex64::default()
     }
 
-    /// This echo, its amplitude times a number.
     pub(crate) fn times(self, factor: Complex64) -> Self {
         PathEcho { amplitude: self.amplitude * factor, tilt: self.tilt * factor, ..self }
     }

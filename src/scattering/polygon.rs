@@ -16,7 +16,6 @@ pub struct Outline {
     faces: Vec<Face>,
     /// Corners that point inwards.
     inner: Vec<usize>,
-    /// The same, for each corner.
     is_inner: Vec<bool>,
 }
 
@@ -82,7 +81,6 @@ impl Outline {
         }
     }
 
-    /// Whether an arm of its own stands between `place` and an antenna.
     pub(super) fn hides(&self, place: V, antennas: &AntennaPlaces) -> bool {
         let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(V::from);
         self.faces.iter().any(|face| {
@@ -93,7 +91,6 @@ impl Outline {
         })
     }
 
-    /// Whether any of its corners points inwards.
     pub(super) fn has_inner_corners(&self) -> bool {
         !self.inner.is_empty()
     }

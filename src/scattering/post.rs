@@ -8,7 +8,6 @@ use num_complex::Complex64;
 /// Radii over the wavelength, as physical wave number times radius, from which on the next term improves the first.
 const LEAST_REFINED: f64 = 5.0;
 
-/// Steps of Newton's method from the bisector of the two directions.
 const STEPS: usize = 3;
 
 /// A circle.

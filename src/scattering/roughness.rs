@@ -17,7 +17,6 @@ pub fn coherent(wave: &Wave, deviation_metres: f64, cos_incidence: f64) -> f64 {
     (-(wave.radians_per_metre * deviation_metres * cos_incidence).powi(2) / 2.0).exp()
 }
 
-/// A place that a rough face scatters from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Grain {
     place: V,
@@ -30,7 +29,6 @@ struct Grain {
 pub struct RoughFace {
     face: Face,
     deviation_metres: f64,
-    /// Length that each grain stands for, metres.
     share_metres: f64,
     grains: Vec<Grain>,
 }

@@ -15,14 +15,12 @@ const FADE: [f64; 2] = [3.0, FADED];
 /// Fresnel's measure from which on an edge has no effect at all.
 pub(super) const FADED: f64 = 6.0;
 
-/// Most corners of an obstacle that need no memory of their own.
 const MAX_INLINE_CORNERS: usize = 16;
 
 /// What hides: convex.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstacle {
     shape: Convex,
-    /// A circle around it.
     centre: V,
     radius_metres: f64,
 }
@@ -30,7 +28,6 @@ pub struct Obstacle {
 #[derive(Debug, Clone, PartialEq)]
 enum Convex {
     Circle,
-    /// Corners, in order; the two ends of a wall.
     Corners(Vec<V>),
 }
 
@@ -65,7 +62,6 @@ impl Obstacle {
         Obstacle { shape: Convex::Corners(corners), centre, radius_metres }
     }
 
-    /// What passes on `way`.
     fn passage(&self, way: &Way) -> Passage {
         let Way { antenna, unit, widest_square, ref ray } = *way;
         let full = ray.full;
@@ -124,11 +120,8 @@ impl Way {
     }
 }
 
-/// A way, with lengths in metres.
 struct Ray {
-    /// To the place.
     full: f64,
-    /// And on behind it.
     whole: f64,
     half_kappa: f64,
 }
@@ -153,7 +146,6 @@ impl Ray {
     }
 }
 
-/// The outermost edges that were met.
 struct Edges {
     top: f64,
     low: f64,
@@ -215,7 +207,6 @@ impl Edges {
     }
 }
 
-/// An echo as it is behind obstacles.
 pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &AntennaPlaces, mut echo: PathEcho) -> PathEcho {
     if obstacles.is_empty() {
         return echo;

@@ -10,7 +10,6 @@ use super::shadow::FADED;
 use crate::radar::{BuiltArray, Radar};
 use crate::scene::{Object, Shape};
 
-/// The array, as what bodies stand before.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Array {
     /// The corners of a rectangle that no antenna stands beyond, metres.
@@ -19,7 +18,6 @@ pub(super) struct Array {
     faded: f64,
 }
 
-/// What may hide something: a convex hull, or a circle.
 #[derive(Debug, Clone)]
 pub(super) struct Screen {
     corners: Vec<V>,
@@ -29,7 +27,6 @@ pub(super) struct Screen {
     farthest: f64,
 }
 
-/// All ways from the array to an object.
 #[derive(Debug, Clone)]
 pub(super) struct Ways {
     hull: Vec<V>,

@@ -53,7 +53,6 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// A number of its own, for keys of random streams.
     pub(crate) fn number(self) -> u8 {
         match self {
             Purpose::Training => 1,
@@ -74,7 +73,6 @@ pub struct Generator {
     seed: u64,
 }
 
-/// Points in each of the tables' lines.
 const LINE_POINTS: usize = 75;
 
 impl Generator {
@@ -147,7 +145,6 @@ impl Generator {
         Scene { name, noise_seed: self.noise_seed(kind, number), objects, ..Scene::default() }
     }
 
-    /// A random point: normal range and normal angle, both clipped as the author's program clips them.
     fn point(&self, rng: &mut ChaCha8Rng) -> Object {
         let normal: f64 = StandardNormal.sample(rng);
         let range = self.max_range / 2.0 + 0.3 * self.max_range * normal;

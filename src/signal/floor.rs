@@ -134,7 +134,6 @@ pub fn thesis_noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>)
 /// Variance of an echo's rounding, for each unit of its power and of the squared ulp of its phase.
 const THESIS_ROUNDING: f64 = 1.0 / 12.0;
 
-/// Phase that the thesis' program rounds, for each metre.
 fn thesis_radians_per_metre(radar: &Radar) -> f64 {
     radar.carrier_radians_per_metre().abs()
 }

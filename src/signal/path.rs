@@ -21,7 +21,6 @@ pub struct PairBlocks<const W: usize> {
     receiver_x_metres: Lanes<f64, W>,
     /// y of transmitters and receivers; `None` where all stand on the array's line.
     y_metres: Option<[Lanes<f64, W>; 2]>,
-    /// Whether every pair is one antenna.
     is_monostatic: bool,
 }
 
@@ -65,9 +64,7 @@ impl From<Pair> for PairBlocks<1> {
 /// Range and complex amplitude of one echo at `W` pairs.
 #[derive(Debug, Clone, Copy)]
 pub struct Path<const W: usize> {
-    /// Half the way there and back, metres.
     pub(super) range_metres: Double<Lanes<f64, W>>,
-    /// Amplitude, real.
     pub(super) amplitude: Lanes<f64, W>,
     /// Turns by which the amplitude's phase is not 0; `None` where it is 0 in every lane.
     pub(super) turns: Option<Lanes<f64, W>>,
@@ -146,7 +143,6 @@ fn leg<const W: usize, const FMA: bool>(
     sum(root, residual.zip(root, |a, b| a / (2.0 * b)))
 }
 
-/// Range and amplitude of a point in plain f64, for whatever forms no phase of them.
 #[inline(always)]
 pub(super) fn plain_path<const W: usize>(
     radar: &Radar,

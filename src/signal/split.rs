@@ -71,7 +71,6 @@ impl<T: Real, const W: usize> SplitScratch<T, W> {
     }
 }
 
-/// Beat signal of all that is `heard` at `pairs`, one vector a sample.
 #[inline(always)]
 pub(super) fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     model: &EchoModel,

@@ -102,7 +102,6 @@ enum Scratch<T, const W: usize> {
     Gridded(gridded::GriddedScratch<T, W>, Vec<ComplexLanes<T, W>>),
 }
 
-/// One block of samples.
 struct Block<'a, 'b, T: Real, const W: usize> {
     synthesis: &'a Synthesis<T, W>,
     first_element: usize,
@@ -129,7 +128,6 @@ impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
     }
 }
 
-/// Samples, written as rows of f64.
 struct ToRows<'a, 'b, T: Real, const W: usize>(Block<'a, 'b, T, W>, &'b mut [Complex64]);
 
 impl<T: Real, const W: usize> Kernel for ToRows<'_, '_, T, W> {
@@ -146,7 +144,6 @@ impl<T: Real, const W: usize> Kernel for ToRows<'_, '_, T, W> {
     }
 }
 
-/// Samples of a block, or those already in place, windowed and transformed over range.
 struct ToProfiles<'a, 'b, T: Real, const W: usize>(
     &'a Synthesis<T, W>,
     Option<Block<'a, 'b, T, W>>,
@@ -169,7 +166,6 @@ impl<T: Real, const W: usize> Kernel for ToProfiles<'_, '_, T, W> {
     }
 }
 
-/// Profiles of a block in closed form, added to what is there.
 struct AddProfiles<'a, 'b, T: Real, const W: usize> {
     synthesis: &'a Synthesis<T, W>,
     plan: &'a ClosedForm<T>,
@@ -218,7 +214,6 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         Synthesis { array: array.clone(), ..self }
     }
 
-    /// The antennas of lanes 0, 1 and so on of the block that begins with `first_element`.
     fn pair_of(&self, first_element: usize) -> impl Fn(usize) -> Pair {
         move |lane| self.array.pair(&self.radar, first_element + lane)
     }

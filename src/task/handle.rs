@@ -42,7 +42,6 @@ impl Task {
     }
 
     /// Stops a computation with `?` when it was cancelled.
-    ///
     /// # Errors
     /// [`Cancelled`] after [`Task::cancel`].
     pub fn check(&self) -> Result<(), Cancelled> {

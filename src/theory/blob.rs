@@ -7,11 +7,9 @@ use crate::maps::{Aperture, Spectrum};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
 
-/// Parts that a column is looked at in.
 const FINE: usize = 8;
 /// Steps to a bin while looking for the peak.
 const STEPS_PER_BIN: f64 = 4.0;
-/// Golden ratio's smaller part.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
 
 /// A ripple below this is not reported as a side lobe: it is below every floor but the exact one. A blob that the near field draws out
@@ -42,7 +40,6 @@ pub struct SideLobe {
     pub level: Decibels,
 }
 
-/// A row in fine columns, seen from its highest.
 struct Profile {
     /// Magnitudes, the highest first, rising columns, all around the map.
     cells: Vec<f64>,

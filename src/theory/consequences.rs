@@ -3,7 +3,6 @@
 use super::{WindowPattern, fold_period_cos, squint_factor};
 use crate::radar::{Decibels, Radar};
 
-/// Half power, in decibels.
 const HALF_POWER: Decibels = Decibels(3.010_299_956_639_812);
 
 /// The consequences of one radar's constants (thesis table 3.1 and section 2.2).

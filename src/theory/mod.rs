@@ -65,7 +65,6 @@ impl MapPlace {
     }
 }
 
-/// Elements that a map is made of.
 fn elements(radar: &Radar, aperture: Aperture) -> Range<usize> {
     match aperture {
         Aperture::Full => 0..radar.elements,
@@ -73,7 +72,6 @@ fn elements(radar: &Radar, aperture: Aperture) -> Range<usize> {
     }
 }
 
-/// Position of the middle of an aperture on the x axis, metres.
 fn centre_metres(radar: &Radar, aperture: Aperture) -> f64 {
     match aperture {
         Aperture::Full => 0.0,

@@ -7,7 +7,6 @@ use crate::scene::Reflector;
 
 /// How far below its peak a streak is followed.
 pub const STREAK: Decibels = Decibels(20.0);
-/// Teeth of the comb on either side.
 const TEETH_DRAWN: usize = 3;
 /// Wrap partners are looked for up to so many maximum ranges.
 const WRAPS: f64 = 3.0;
@@ -45,7 +44,6 @@ impl Overlay {
     }
 }
 
-/// Where what stands on the next teeth would show on the whole array's map.
 fn teeth(radar: &Radar, reflector: &Reflector) -> Vec<MapPlace> {
     let place = radar.polar_of(reflector.x_metres, reflector.y_metres);
     let cell = |cos: f64| {

@@ -12,7 +12,6 @@ use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Points of a path.
 const POINTS: usize = 65;
 
 /// How far one reflector is drawn out.

@@ -22,7 +22,6 @@ const SLOW_REPEATS: [usize; 2] = [3, 1];
 /// More reflectors than this take the slow algorithms minutes: they are left out.
 const MOST_PLAIN: usize = 1000;
 
-/// One row to be measured.
 #[derive(Clone, Copy)]
 struct Job {
     task: FrontTask,
@@ -35,7 +34,6 @@ struct Job {
 ///
 /// `on_row` is called with the part that is done (0 to 1) and each new row, in order. As soon as `cancelled` says so, what is measured by
 /// then is returned. Everything runs on the calling thread and rayon's.
-///
 /// # Errors
 /// [`SceneError`] when the radar can't see the scenes.
 pub fn measure(
@@ -127,13 +125,11 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
     jobs
 }
 
-/// All three maps, drawn by `convention`.
 fn wanted(convention: MapConvention) -> MapRequest {
     let MapConvention { floor, normalisation } = convention;
     MapRequest { floor, normalisation, seed: SEED, ends: false, ..MapRequest::default() }
 }
 
-/// One of the fast algorithms, by the live engine.
 fn fast_row(
     radar: &Radar,
     scene: &Scene,

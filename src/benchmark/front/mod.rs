@@ -24,20 +24,16 @@ use std::str::FromStr;
 /// tolerance nor single precision nor dragging, and give one row for each number of reflectors up to 1000.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontRequest {
-    /// Numbers of reflectors.
     pub reflectors: Vec<usize>,
     /// Errors allowed, relative to the peak.
     pub tolerances: Vec<f64>,
-    /// Who takes part.
     pub entrants: Vec<Entrant>,
-    /// What is timed.
     pub tasks: Vec<FrontTask>,
     /// Timed repeats of every measurement; 0 counts as 1.
     pub repeats: usize,
 }
 
 impl FrontRequest {
-    /// All there is, for these numbers of reflectors.
     pub fn full(reflectors: Vec<usize>, repeats: usize) -> Self {
         FrontRequest {
             reflectors,
@@ -65,9 +61,7 @@ impl FrontRequest {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum Entrant {
-    /// Whatever the planner chooses.
     Planned,
-    /// This algorithm.
     Forced(Algorithm),
 }
 
@@ -115,12 +109,10 @@ impl TryFrom<String> for Entrant {
 pub enum FrontTask {
     /// Nothing of the scene is known before.
     Scratch,
-    /// One of the reflectors moved.
     Drag,
 }
 
 impl FrontTask {
-    /// "scratch" or "drag".
     pub fn name(self) -> &'static str {
         match self {
             FrontTask::Scratch => "scratch",
@@ -132,10 +124,8 @@ impl FrontTask {
 /// What lies beneath the reflectors, and how decades become Lambda: no error of Lambda means anything without both.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MapConvention {
-    /// The floor.
     #[serde(with = "as_text")]
     pub floor: Floor,
-    /// The normalisation.
     #[serde(with = "as_text")]
     pub normalisation: Normalisation,
 }
@@ -150,7 +140,6 @@ impl MapConvention {
     };
     /// No floor, normalised by the smallest cell: the picture's floor is the last bits of whatever computed it.
     pub const NO_FLOOR: MapConvention = MapConvention { floor: Floor::Exact, normalisation: Normalisation::MinMax };
-    /// Both of those that errors are given for.
     pub const BOTH: [MapConvention; 2] = [MapConvention::FIXED_RANGE, MapConvention::THESIS];
 
     /// The convention that maps of this tolerance are good for, and timed with.
@@ -183,23 +172,17 @@ mod as_text {
 /// How far three maps are from the exact path's, over one floor and normalisation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LambdaError {
-    /// What the maps are drawn by.
     #[serde(flatten)]
     pub convention: MapConvention,
-    /// Largest error of a cell.
     pub max: f64,
-    /// Root of the mean squared error.
     pub rms: f64,
 }
 
 /// One measurement: a point of the front.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FrontRow {
-    /// What was timed.
     pub task: FrontTask,
-    /// Reflectors in the scene.
     pub reflectors: usize,
-    /// Who computed.
     pub algorithm: Entrant,
     /// What the planner chose for the whole scene, or the algorithm again.
     pub chosen: Algorithm,
@@ -207,16 +190,13 @@ pub struct FrontRow {
     pub precision: Precision,
     /// Error asked for, relative to the peak.
     pub tolerance: f64,
-    /// What the timed maps are drawn by.
     #[serde(flatten)]
     pub convention: MapConvention,
-    /// Median over the repeats.
     pub median_ms: f64,
     /// From the first to the third quartile of the repeats.
     pub spread_ms: f64,
     /// Fastest of the repeats.
     pub fastest_ms: f64,
-    /// Repeats.
     pub repeats: usize,
     /// Largest error of a range cell against the judge (every range bin of a few elements), relative to the largest.
     pub signal_error: f64,
@@ -235,10 +215,7 @@ pub struct FrontRow {
 pub struct Front {
     /// Median time of a bare 512 x 1024 single-precision transform on one thread, in the same run.
     pub bare_fft_ms: f64,
-    /// Threads the maps were computed on.
     pub threads: usize,
-    /// Instructions used.
     pub simd: Simd,
-    /// The measurements.
     pub rows: Vec<FrontRow>,
 }

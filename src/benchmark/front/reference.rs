@@ -22,14 +22,11 @@ pub(in crate::benchmark) const SEED: u64 = 0;
 /// phasor split in f64 stands in, which the tests hold to the last bits.
 const MOST_EXACT: usize = 300;
 
-/// The truth about one scene.
 pub(in crate::benchmark) struct Reference {
-    /// The scene's reflectors.
     pub reflectors: Vec<Reflector>,
     profiles: JudgedProfiles,
     /// The exact path's maps, one triple for each of [`MapConvention::BOTH`].
     maps: [[RangeAngleMap; 3]; 2],
-    /// The floor's noise before it is scaled.
     pub noise: UnitNoise,
 }
 
@@ -93,7 +90,6 @@ impl JudgedProfiles {
     }
 }
 
-/// How far two triples of maps, drawn by `convention`, are apart.
 pub(in crate::benchmark) fn difference(
     convention: MapConvention,
     a: [&RangeAngleMap; 3],
@@ -144,7 +140,6 @@ impl UnitNoise {
     }
 }
 
-/// Range profile of one channel's samples.
 pub(in crate::benchmark) fn profile(
     radar: &Radar,
     samples: ArrayView2<'_, Complex64>,
@@ -154,7 +149,6 @@ pub(in crate::benchmark) fn profile(
     Some(channels_range_transform(radar, row).profiles.into_iter().collect())
 }
 
-/// The three maps of a frame; `None` if one was not wanted.
 pub(in crate::benchmark) fn maps_of(frame: &EngineFrame) -> Option<[&RangeAngleMap; 3]> {
     let [a, b, c] = APERTURES.map(|a| frame.map(a).map(|m| m.lambda.as_ref()));
     Some([a?, b?, c?])

@@ -18,7 +18,6 @@ const COLOURS: [RGBColor; 5] = [
     RGBColor(30, 70, 160),
 ];
 
-/// Sizes of the crowds.
 const COUNTS: [usize; 6] = [3, 10, 30, 100, 300, 1000];
 
 #[derive(serde::Serialize)]
@@ -92,7 +91,6 @@ struct Chart {
     times: BodyTimes,
 }
 
-/// A line of the chart: what it is called, its colour, and objects and multiples of the bare transform.
 type Line = (&'static str, RGBColor, Vec<(f64, f64)>);
 
 impl Chart {

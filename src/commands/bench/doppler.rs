@@ -8,16 +8,11 @@ use crate::scene::Scene;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Chirps of the radar.
 const CHIRPS: usize = 128;
-/// Numbers of points, each of which moves.
 const POINTS: [usize; 2] = [10, 100];
-/// Moves that are timed.
 const MOVES: usize = 20;
-/// Moves before those.
 const WARM_UP: usize = 2;
 
-/// Times with one number of points.
 #[derive(Debug, Serialize)]
 pub struct DopplerRow {
     points: usize,
@@ -28,7 +23,6 @@ pub struct DopplerRow {
 }
 
 impl DopplerRow {
-    /// A line of the table.
     pub fn line(&self) -> String {
         format!(
             "dragging one of {:>3} moving points, {} chirps: {:.1} ms from the move to the range-Doppler map and three maps \
@@ -43,7 +37,6 @@ impl DopplerRow {
     }
 }
 
-/// Points at ranges of 5 to 35 m, each with a velocity of its own.
 fn moving(points: usize) -> Scene {
     let mut scene = Scene::of_points((0..points).map(|i| {
         let part = (i as f64 + 0.5) / points as f64;
@@ -57,7 +50,6 @@ fn moving(points: usize) -> Scene {
     scene
 }
 
-/// Drags one point in a small and in a large scene.
 pub fn measure() -> Result<Vec<DopplerRow>, CommandError> {
     POINTS.into_iter().map(drag).collect()
 }

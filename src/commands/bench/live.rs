@@ -10,15 +10,12 @@ use crate::signal::{Floor, simulate};
 use serde::Serialize;
 use std::time::Instant;
 
-/// Test scenes that are timed.
 const SCENES: u32 = 15;
 
-/// Median times over test scenes of set 2.
 #[derive(Debug, Serialize)]
 struct Pass {
     threads: usize,
     scenes: u32,
-    /// The matched filters that the network reads.
     features_milliseconds: f64,
     /// The network as it ships: what doesn't show in a scene's map is left out.
     forward_milliseconds: f64,
@@ -26,7 +23,6 @@ struct Pass {
     dense_forward_milliseconds: f64,
 }
 
-/// Measures and prints.
 pub fn run(json: bool) -> Result<(), CommandError> {
     let pass = measure(SCENES)?;
     if json {

@@ -105,16 +105,12 @@ pub struct Args {
 struct Report<'a> {
     #[serde(flatten)]
     front: &'a Front,
-    /// One reflector dragged, from the pointer's move to three maps.
     mouse: Vec<mouse::MouseRow>,
-    /// The same with a range-Doppler map besides.
     doppler: Vec<doppler::DopplerRow>,
-    /// The same tasks by other tools; none if nobody asked.
     others: Option<Equal>,
 }
 
 impl Args {
-    /// Measures, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
         let repeats = self.repeats as usize;
         if self.methods {

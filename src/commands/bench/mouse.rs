@@ -13,24 +13,18 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Instant;
 
-/// Reflectors of the scenes.
 const REFLECTORS: [usize; 2] = [10, 300];
-/// Moves that are timed.
 const MOVES: usize = 100;
 /// Moves before those: the reflector leaves the sum at rest.
 const WARM_UP: usize = 4;
 /// Metres of scene beneath a point of the view, as in a canvas of some 600 points.
 const METRES_PER_POINT: f64 = 0.1;
 
-/// Transmitters and receivers of the radar of pairs.
 const PAIRS: [usize; 2] = [12, 16];
 
-/// One scene.
 #[derive(Debug, Serialize)]
 pub struct MouseRow {
-    /// Elements of the radar.
     elements: usize,
-    /// Whether they are pairs of a transmitter and a receiver.
     of_pairs: bool,
     reflectors: usize,
     #[serde(flatten)]
@@ -76,7 +70,6 @@ fn drags(radar: &Radar) -> Result<Vec<MouseRow>, CommandError> {
         "maps",
         move || Engine::new(own.clone()),
         |engine, (scene, wanted): Asked, _| engine.update(&scene, &wanted),
-        // Nobody listens any more once all is measured.
         move || wake.send(()).unwrap_or_default(),
     )
     .map_err(CommandError::failed)?;

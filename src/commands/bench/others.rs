@@ -14,7 +14,6 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-/// Elements whose samples are compared with the judge's.
 const JUDGED: [usize; 4] = [0, 341, 682, 1023];
 /// The tasks, by the name that the script knows, with how the maps are drawn and the error that a sample may have.
 const TASKS: [(&str, MapConvention, f64); 2] =
@@ -26,7 +25,6 @@ pub struct Equal {
     tasks: Vec<EqualTask>,
 }
 
-/// One task.
 #[derive(Debug, Serialize)]
 struct EqualTask {
     task: &'static str,
@@ -34,21 +32,17 @@ struct EqualTask {
     convention: MapConvention,
     tolerance: f64,
     rows: Vec<Row>,
-    /// Tools that are not installed, or why the script could not run.
     missing: Vec<String>,
 }
 
-/// One tool's three maps of one scene.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Row {
     tool: String,
     reflectors: usize,
     median_ms: f64,
-    /// Largest error of a range cell of the judged elements, relative to the largest.
     signal_error: f64,
 }
 
-/// What the script prints.
 #[derive(Deserialize)]
 struct Printed {
     rows: Vec<Row>,
@@ -92,7 +86,6 @@ fn run(script: &Path, task: &str, folder: &Path, counts: &[usize]) -> Result<Pri
     serde_json::from_slice(&output.stdout).map_err(|e| format!("{} printed something else: {e}", script.display()))
 }
 
-/// One scene with the judge's samples.
 struct Reference {
     count: usize,
     /// Range profiles of the judged elements, `[elements, bins]`.
@@ -100,7 +93,6 @@ struct Reference {
 }
 
 impl Reference {
-    /// Judges the scene, and writes it with its samples as `COUNT.npz` into `folder`.
     fn write(radar: &Radar, count: usize, folder: &Path) -> Result<Reference, CommandError> {
         use rayon::prelude::*;
         let reflectors = scattered(count).reflectors();
@@ -117,7 +109,6 @@ impl Reference {
         Ok(Reference { count, profiles: channels_range_transform(radar, samples.view()).profiles })
     }
 
-    /// This program's time from nothing, the floor's noise included, and its error.
     fn own(
         &self,
         radar: &Radar,

@@ -25,7 +25,6 @@ const COLOURS: [RGBColor; 7] = [
 /// Position error over signal-to-noise ratio.
 type ErrorChart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, LogCoord<f64>>>;
 
-/// What stands beside the axes of an [`ErrorChart`], and what they span.
 struct ErrorAxes {
     caption: &'static str,
     snr_db: Range<f64>,
@@ -138,9 +137,7 @@ impl Drawing for PlacementFigure<'_> {
 
 /// Ambiguity functions over range and cos(theta), a panel a layout.
 pub struct AmbiguityFigure<'a> {
-    /// Scales the axes.
     pub radar: &'a Radar,
-    /// The reflector.
     pub centre: Polar,
     /// Names and patches around the reflector.
     pub patches: &'a [(String, Ambiguity)],

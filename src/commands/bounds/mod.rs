@@ -69,7 +69,6 @@ pub struct Args {
     output: Option<PathBuf>,
 }
 
-/// A place before the radar.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     x_metres: f64,
@@ -101,7 +100,6 @@ fn apart(text: &str) -> Result<f64, String> {
 }
 
 impl Args {
-    /// Computes, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
         let radar = Radar::default();
         let reflector = Reflector { x_metres: self.at.x_metres, y_metres: self.at.y_metres, reflectivity: 1.0 };
@@ -138,7 +136,6 @@ impl Args {
         report.print()
     }
 
-    /// The second reflector.
     fn neighbour(&self, radar: &Radar, centre: Polar) -> Result<Reflector, CommandError> {
         let column = columns_to_cos(radar);
         let cos = centre.cos_theta + self.apart * column;

@@ -138,7 +138,6 @@ pub struct Args {
 }
 
 impl Args {
-    /// Runs every method over every set, or reads rows, and prints the tables.
     pub fn run(self) -> Result<(), CommandError> {
         let (rows, missing) = if self.merge.is_empty() { (self.measure()?, Vec::new()) } else { self.merged()? };
         let report = EvaluationReport::of(&rows, missing, self.failures_from);
@@ -209,7 +208,6 @@ impl Args {
         }
     }
 
-    /// The rows that were found before, which standard error tells of.
     fn done(&self, file: Option<&RowFile>, maps: u64) -> HashSet<Key> {
         let done: HashSet<Key> = file.iter().flat_map(|file| file.present.iter().map(key)).collect();
         if let (Some(path), false) = (&self.rows, done.is_empty()) {
@@ -222,7 +220,6 @@ impl Args {
         done
     }
 
-    /// The rows of all files, and what lacks of their runs.
     fn merged(&self) -> Result<(Vec<Row>, Vec<Lack>), CommandError> {
         let (mut tables, mut problems) = (Vec::new(), Vec::new());
         for path in &self.merge {

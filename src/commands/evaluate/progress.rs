@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 /// Counts maps and tells of them on standard error.
 pub struct MapProgress {
     bar: ProgressBar,
-    /// How often a line is told; `None` on a terminal.
     every: Option<Duration>,
     begun: Instant,
     told: Instant,
@@ -20,14 +19,12 @@ impl MapProgress {
     /// Of a run that makes `total` maps; off a terminal a line every so often.
     pub fn new(total: u64, every: Duration) -> Self {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} maps, {eta} left");
-        // indicatif hides the bar where standard error is a file or a pipe.
         let bar = ProgressBar::new(total).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         let every = (!std::io::stderr().is_terminal()).then_some(every);
         let now = Instant::now();
         MapProgress { bar, every, begun: now, told: now, done: 0, total }
     }
 
-    /// A row is found.
     pub fn row(&mut self, row: &Row) {
         self.done += 1;
         self.bar.set_message(row.set.to_string());
@@ -44,7 +41,6 @@ impl MapProgress {
         format!("{} of {} maps, now set {set}; {so_far} so far, about {left} left", self.done, self.total)
     }
 
-    /// Takes the bar away.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }

@@ -10,7 +10,6 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-/// All methods on one scene.
 pub(super) struct SceneJob<'a> {
     /// The campaign's detector, if it has one.
     pub cfar: Option<Cfar>,
@@ -33,7 +32,6 @@ impl SceneJob<'_> {
         })
     }
 
-    /// The row of a method's answer.
     fn row(&self, empty: &Row, answer: &TimedAnswer) -> Result<Row, CampaignError> {
         let empty = Row { index: self.index, ..empty.clone() };
         let row = self.trial.filled(empty, answer, self.set.false_alarm());

@@ -41,7 +41,6 @@ pub enum Arithmetic {
     Over,
 }
 
-/// A scene's key: set, seed, number.
 type Key<'a> = (&'a str, u64, u32);
 
 /// Every row by its scene and method.

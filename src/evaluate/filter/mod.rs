@@ -32,7 +32,6 @@ pub struct Filter {
 
 impl Filter {
     /// Reads an expression about rows of `methods`.
-    ///
     /// # Errors
     /// [`FilterError`] points at the mistake and says what was expected there.
     pub fn parse(text: &str, methods: &[impl AsRef<str>]) -> Result<Filter, FilterError> {

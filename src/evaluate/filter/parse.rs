@@ -5,12 +5,10 @@ use super::tokens::{FilterError, OPERAND, SIGNS, Token, error, tokens};
 use crate::evaluate::rows::Column;
 use std::fmt::Write;
 
-/// Brackets and signs may be nested so deep.
 const DEEPEST_NESTING: usize = 50;
 /// Longest expression, characters.
 const LONGEST_EXPRESSION: usize = 2000;
 
-/// Reads a whole expression about rows of `methods`.
 pub(super) fn parse(text: &str, methods: &[&str]) -> Result<Predicate, FilterError> {
     let characters: Vec<char> = text.chars().collect();
     if characters.len() > LONGEST_EXPRESSION {
@@ -27,7 +25,6 @@ pub(super) fn parse(text: &str, methods: &[&str]) -> Result<Predicate, FilterErr
     }
 }
 
-/// What brackets may hold.
 enum Part {
     Truth(Predicate),
     Term(Term),
@@ -140,7 +137,6 @@ impl Parser<'_> {
         Ok(Part::Truth(Predicate::Compare(Box::new(left), how, Box::new(right))))
     }
 
-    /// `a + b`
     fn sum(&mut self) -> Result<Part, FilterError> {
         self.arithmetic(Self::product, &[("+", Arithmetic::Plus), ("-", Arithmetic::Minus)])
     }

@@ -104,10 +104,8 @@ impl fmt::Display for Value<'_> {
     }
 }
 
-/// A type of cells.
 pub(super) trait CellValue {
     const KIND: CellKind;
-    /// Whether a row may be without it.
     const IS_OPTIONAL: bool = false;
 
     fn value(&self) -> Value<'_>;
@@ -143,7 +141,6 @@ impl<T: CellValue> CellValue for Option<T> {
 impl CellValue for EchoCounts {
     const KIND: CellKind = CellKind::Text;
 
-    /// Those of all classes together.
     fn value(&self) -> Value<'_> {
         Value::Number(self.0.iter().sum::<usize>() as f64)
     }
@@ -172,7 +169,6 @@ cells! {
     Text: Purpose, Reading, Carrier => |v| Value::Text(serde_name(v).into());
 }
 
-/// The name that serde gives a value without fields, as scene files have it.
 fn serde_name(value: impl Serialize) -> String {
     serde_json::to_value(value).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }

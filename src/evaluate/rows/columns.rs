@@ -69,7 +69,6 @@ macro_rules! columns {
         }
 
         impl Row {
-            /// Lets its texts be those of `texts`, to which new ones are added.
             fn share(&mut self, texts: &mut std::collections::HashSet<Text>) {
                 $(self.$figure.share(texts);)+
                 $(self.$origin.share(texts);)+

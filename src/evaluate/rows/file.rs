@@ -13,7 +13,6 @@ pub fn header() -> String {
 
 /// Writes each row that is [serialised](csv::Writer::serialize) as a line; `begins` with the names of the columns, or goes on beneath other
 /// rows. [`csv::Writer::flush`] after a row hands on whole lines, so that a run that is stopped keeps what it has found.
-///
 /// # Errors
 /// What `out` says.
 pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<W>> {
@@ -24,7 +23,6 @@ pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<
 }
 
 /// Writes a whole table.
-///
 /// # Errors
 /// What `out` says.
 pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) -> io::Result<()> {
@@ -35,44 +33,23 @@ pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) 
 
 /// Why a file's rows can't be used.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum RowError {
     /// It can't be read.
     #[error("{0}")]
     Io(io::Error),
     /// Names are missing in its first line.
     #[error("line 1: there is no column \"{missing}\"; expected {}", header().trim_end())]
-    Header {
-        /// The first column that is missing.
-        missing: &'static str,
-    },
+    Header { missing: &'static str },
     /// A cell holds something else than it should.
     #[error("line {line}, column {column}: \"{found}\"; expected {expected}")]
-    Cell {
-        /// Line, from 1.
-        line: u64,
-        /// Name of the column.
-        column: &'static str,
-        /// What stands there.
-        found: String,
-        /// What should.
-        expected: String,
-    },
+    Cell { line: u64, column: &'static str, found: String, expected: String },
     /// Rows are of a later format.
     #[error("line {line}: the row is of format {found}; this program reads up to format {FORMAT}")]
-    Later {
-        /// Line, from 1.
-        line: u64,
-        /// The format.
-        found: u32,
-    },
+    Later { line: u64, found: u32 },
     /// A line is no row.
     #[error("line {line}: {message}")]
-    Line {
-        /// Line, from 1.
-        line: u64,
-        /// What is wrong, and what was expected.
-        message: String,
-    },
+    Line { line: u64, message: String },
     /// There are too many.
     #[error("there are more than {MAX_ROWS} rows; split the file")]
     TooMany,
@@ -91,7 +68,6 @@ pub struct RowTable {
 
 /// Reads what [`write_rows`] wrote, also in format 1 and before. Columns may stand in any order, and others beside them; those that are
 /// [optional](Column::is_optional) may be missing.
-///
 /// # Errors
 /// [`RowError`] names the line and the column.
 pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
@@ -99,7 +75,6 @@ pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
 }
 
 /// [`read_rows`] without a last line that has no end, which may hold half a row.
-///
 /// # Errors
 /// As [`read_rows`].
 pub fn read_table(input: impl Read) -> Result<RowTable, RowError> {
@@ -143,7 +118,6 @@ fn of_cell(header: &StringRecord, record: &StringRecord, column: Column, expecte
     RowError::Cell { line: line(record), column: column.name(), found, expected: expected.to_owned() }
 }
 
-/// The error of a line, by the first cell that can't be read alone.
 fn of_cells(header: &StringRecord, record: &StringRecord, error: csv::Error) -> RowError {
     for column in Column::all() {
         let Some(cell) = place(header, column).and_then(|place| record.get(place)) else { continue };

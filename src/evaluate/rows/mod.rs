@@ -198,7 +198,6 @@ impl Row {
     }
 
     /// Checks what the types of the cells leave open.
-    ///
     /// # Errors
     /// The column that can't be used, and what was expected there.
     fn check(&self) -> Result<(), (Column, &'static str)> {

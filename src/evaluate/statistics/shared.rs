@@ -76,7 +76,6 @@ pub struct SharedTrait {
 ///
 /// Scenes of even number suggest rules: of each column the cut, or the name, that separates best. Scenes of odd number test them. Of those
 /// that hold, at most [`DISCOVERY_RATE`] are expected to be chance (Benjamini and Hochberg, J. R. Statist. Soc. B 57, 1995).
-///
 /// # Errors
 /// [`FilterError`] where `bad` is no filter.
 pub fn rules(rows: &[Row], bad: &str) -> Result<SharedTrait, FilterError> {
@@ -124,7 +123,6 @@ impl Table<'_> {
         judged.flatten().min_by(|a, b| a.p_value.total_cmp(&b.p_value)).filter(|rule| rule.p_value < DISCOVERY_RATE)
     }
 
-    /// The rule on other rows, read from its own text, so that what is tested is what a click applies.
     fn judged(&self, text: &str, methods: &[&str], on: &[usize]) -> Option<Rule> {
         let matching = Filter::parse(text, methods).ok()?.matching(self.rows);
         let matching: std::collections::HashSet<usize> = matching.into_iter().collect();
@@ -143,7 +141,6 @@ impl Table<'_> {
     }
 }
 
-/// Whether a rule is true of a row.
 type Truth = Box<dyn Fn(&Row) -> bool>;
 
 /// Rules about a column: each as a filter, and as a function.

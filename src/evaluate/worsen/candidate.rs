@@ -7,7 +7,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
 
-/// Candidates that don't know of each other.
 pub(super) const BATCH: u32 = 8;
 /// Part of the candidates that is drawn anywhere within reach.
 const ANYWHERE_PART: f64 = 1.0 / 3.0;
@@ -24,7 +23,6 @@ const GROWTH_STEPS: u32 = 256;
 /// How often other noise is drawn.
 const OTHER_NOISE: f64 = 0.25;
 
-/// Where a search stands.
 pub(super) struct WorseningState {
     /// Scale of steps, as a part of the reach.
     pub step: f64,
@@ -33,7 +31,6 @@ pub(super) struct WorseningState {
 }
 
 impl WorseningSearch {
-    /// Candidate `n`, from the state before its batch.
     pub(super) fn candidate(&self, start: &Scene, state: &WorseningState, n: u32) -> Scene {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(u64::from(n) + 1);
@@ -109,13 +106,11 @@ fn normal(rng: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(rng)
 }
 
-/// A place in a disc, all parts of it alike.
 fn in_disc(rng: &mut ChaCha8Rng, radius: f64) -> [f64; 2] {
     let (angle, part) = (TAU * rng.random::<f64>(), rng.random::<f64>().sqrt());
     [radius * part * angle.cos(), radius * part * angle.sin()]
 }
 
-/// How far two objects' centres lie apart, metres.
 pub(super) fn distance(a: &Object, b: &Object) -> f64 {
     let ([ax, ay], [bx, by]) = (a.centre_metres(), b.centre_metres());
     (bx - ax).hypot(by - ay)

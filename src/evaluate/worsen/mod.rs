@@ -24,7 +24,6 @@ const REPAIR_PART: f64 = 0.2;
 impl WorseningSearch {
     /// Searches near `scene` for `method`. `on_try` is called after every batch with the tries made and the path so far; when it answers false,
     /// the search ends there.
-    ///
     /// # Errors
     /// [`WorsenError`] when the start itself can't be tried. Candidates that can't be simulated are passed over.
     pub fn run(
@@ -82,7 +81,6 @@ impl WorseningSearch {
         Ok(WorseningOutcome { path: state.path, tries: state.tries })
     }
 
-    /// Nothing is left to repair.
     fn is_reached(&self, state: &WorseningState) -> bool {
         self.aim == Aim::Repair && state.path.len() == 1 && self.is_right(&state.path[0], &state.path[0])
     }

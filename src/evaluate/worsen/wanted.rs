@@ -81,7 +81,6 @@ pub struct WorseningSearch {
 }
 
 impl Default for WorseningSearch {
-    /// 256 scenes in the tables' conventions, objects moved by up to 2 m.
     fn default() -> Self {
         WorseningSearch {
             radar: Radar::default(),
@@ -130,18 +129,14 @@ impl WorseningOutcome {
 
 /// Why a search ended with nothing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum WorsenError {
     /// The start can't be simulated.
     #[error("{0}")]
     Scene(#[from] SceneError),
     /// The method failed.
     #[error("{method}: {source}")]
-    Method {
-        /// Its name.
-        method: &'static str,
-        /// Why.
-        source: ReconstructError,
-    },
+    Method { method: &'static str, source: ReconstructError },
     /// Nothing to move.
     #[error("the scene is empty; expected an object to move")]
     Empty,

@@ -27,7 +27,6 @@ const MIN_COPY_INTERVAL: Duration = Duration::from_millis(250);
 /// Most windows that keep copies at once.
 const SLOTS: u32 = 64;
 
-/// Whether a copy was written, or why not.
 type Answer = Result<(), String>;
 
 /// The copies of one window.
@@ -36,10 +35,8 @@ pub struct Autosave {
     /// Where files are written on a thread of their own.
     jobs: Option<Sender<StartPlan>>,
     answers: (Sender<Answer>, Receiver<Answer>),
-    /// Jobs whose answers are out.
     pending: usize,
     thread: Option<JoinHandle<()>>,
-    /// What the thread was asked for last, and when.
     last: Option<(StartPlan, Instant)>,
     /// Held while the window lives; the system lets go of it however the process ends. Last, so that the thread ends before.
     _lock: Option<fs::Lock>,
@@ -49,7 +46,6 @@ impl Autosave {
     /// Takes the first slot in `folder` that no other window holds: one with copies that a dead window left comes first.
     ///
     /// Where the file system has no locks, the first slot is shared.
-    ///
     /// # Errors
     /// When the system can't start a thread.
     pub fn claim(folder: &Path) -> std::io::Result<Autosave> {
@@ -90,7 +86,6 @@ impl Autosave {
     }
 
     /// Keeps copies at once and waits until they are on disk: the window is closing.
-    ///
     /// # Errors
     /// Which file could not be written, and why.
     pub fn keep_now(&mut self, editor: &Editor) -> Result<(), String> {
@@ -165,7 +160,6 @@ fn writer(
     std::thread::Builder::new().name("autosave".to_owned()).spawn(work).map(|thread| (jobs, thread))
 }
 
-/// The name of the slot's files, and the lock on it where there are locks.
 fn claim_slot(folder: &Path) -> (String, Option<fs::Lock>) {
     let name = |slot: u32| if slot == 1 { "autosave".to_owned() } else { format!("autosave-{slot}") };
     let lock_path = |slot: u32| -> PathBuf { folder.join(format!("{}.lock", name(slot))) };

@@ -10,7 +10,6 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Name of the table in each file that is the autosave's own.
 const TABLE: &str = "document";
 
 /// Where a document belongs.
@@ -20,15 +19,12 @@ struct Kept {
     /// Its own file. A path that is not Unicode is not kept: the document comes back untitled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     path: Option<String>,
-    /// The recording that it is laid over.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     recording: Option<String>,
 }
 
-/// The documents that copies are wanted of.
 #[derive(Debug, Clone)]
 pub(super) struct StartPlan {
-    /// The one on screen, if it is unsaved.
     on_screen: Option<Document>,
     /// Those that another took the place of, the latest last.
     left: Vec<Document>,
@@ -44,12 +40,10 @@ impl StartPlan {
         self.left.iter().chain(&self.on_screen)
     }
 
-    /// Whether the files would be the same ones with the same content.
     pub(super) fn is_same(&self, other: &StartPlan) -> bool {
         self.has_same_documents(other) && self.documents().zip(other.documents()).all(|(a, b)| a.untouched_since(b))
     }
 
-    /// Whether the files would be the same ones.
     pub(super) fn has_same_documents(&self, other: &StartPlan) -> bool {
         self.left.len() == other.left.len()
             && self.on_screen.is_some() == other.on_screen.is_some()
@@ -57,7 +51,6 @@ impl StartPlan {
     }
 }
 
-/// A copy on disk of a document that another took the place of.
 #[derive(Debug)]
 struct Behind {
     path: PathBuf,
@@ -70,7 +63,6 @@ struct Behind {
 pub(super) struct AutosaveStore {
     folder: PathBuf,
     stem: String,
-    /// Copies of left documents that are on disk.
     behind: Arc<Mutex<Vec<Behind>>>,
 }
 
@@ -87,7 +79,6 @@ impl AutosaveStore {
         self.folder.join(format!("{}.behind-{number}.toml", self.stem))
     }
 
-    /// Numbers of the copies of left documents, rising.
     fn behind_numbers(&self) -> Vec<u64> {
         let prefix = format!("{}.behind-", self.stem);
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
@@ -98,7 +89,6 @@ impl AutosaveStore {
         numbers
     }
 
-    /// Whether a window left copies here.
     pub(super) fn has_copies(&self) -> bool {
         fs::exists(&self.on_screen_path()) || !self.behind_numbers().is_empty()
     }
@@ -180,7 +170,6 @@ fn read(path: &Path) -> Result<Document, SceneFileError> {
     Ok(document)
 }
 
-/// Deletes a file; not there is as good as deleted.
 fn remove(path: &Path) -> Result<(), String> {
     match fs::remove_file(path) {
         Err(error) if ![ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => {
@@ -190,7 +179,6 @@ fn remove(path: &Path) -> Result<(), String> {
     }
 }
 
-/// Renames what can't be read, so that it is neither read again nor overwritten.
 fn set_aside(path: &Path, error: &SceneFileError) -> String {
     let free = (1u32..).map(|n| path.with_extension(format!("broken-{n}.txt"))).find(|p| !fs::exists(p));
     match free.filter(|aside| fs::rename(path, aside).is_ok()) {

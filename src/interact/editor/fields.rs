@@ -21,7 +21,6 @@ impl Editor {
     }
 
     /// Changes a number of every selected object that has it. Changes of one number in a row are one step until [`Editor::seal`].
-    ///
     /// # Errors
     /// [`SceneError::TooMany`] where the scene would hold more than can be simulated; nothing changes then.
     pub fn set_field(&mut self, field: Field, change: FieldChange) -> Result<(), SceneError> {

@@ -42,7 +42,6 @@ pub struct FastLogMap {
     pub min: f32,
     /// Largest cell.
     pub max: f32,
-    /// Smallest and largest cell of every row.
     rows: Vec<(f32, f32)>,
 }
 
@@ -146,10 +145,8 @@ impl<T: Real, const W: usize> MapMaker<T, W> {
     }
 }
 
-/// A few rows of one map.
 struct Part<'a> {
     cells: &'a mut [f32],
-    /// Smallest and largest cell of each row.
     extremes: &'a mut [(f32, f32)],
 }
 
@@ -168,7 +165,6 @@ struct Group<'a, 'b, T: Real, const W: usize> {
 }
 
 impl<T: Real, const W: usize> Kernel for Group<'_, '_, T, W> {
-    /// Smallest and largest cell of each map.
     type Output = [(f32, f32); 3];
 
     #[inline(always)]

@@ -12,11 +12,9 @@ use crate::signal::simd::powers::{each, power_of_ten};
 use ndarray::Array2;
 use rayon::prelude::*;
 
-/// What the head's tensors begin with.
 const PREFIX: &str = "doubt.";
 /// Numbers that the head says of a coarse cell.
 const DOUBTS_PER_CELL: usize = FINE / COARSE;
-/// Columns of the map that one of them is for.
 const COLUMNS_PER_DOUBT: usize = COLUMNS / FINE;
 
 /// Decades between which what is said of a cell counts.
@@ -34,7 +32,6 @@ pub struct DoubtHead {
 
 impl DoubtHead {
     /// The head of `file` on a picture of `channels` channels; `None` where the file has none.
-    ///
     /// # Errors
     /// [`WeightsError`] names the tensor that is missing or of another shape.
     pub fn new(file: &WeightFile, channels: usize) -> Result<Option<Self>, WeightsError> {
@@ -52,8 +49,6 @@ impl DoubtHead {
         }))
     }
 
-    /// The error of Lambda, `[512, 1024]`, that nine of ten cells of scenes like the training scenes stay below, from the picture that the
-    /// network's heads read.
     pub(super) fn read(&self, picture: &Plane) -> RangeAngleMap {
         let lanes = self.conv2.output();
         let mut said = vec![0.0; ROWS * COARSE * lanes];
@@ -84,7 +79,6 @@ impl DoubtHead {
     }
 }
 
-/// Mean of the numbers, summed in a fixed order: the number of threads doesn't change it.
 fn mean(numbers: impl ExactSizeIterator<Item = f32>) -> f64 {
     let count = numbers.len() as f64;
     numbers.map(f64::from).sum::<f64>() / count

@@ -20,7 +20,6 @@ use crate::signal::simd::powers::{each, logarithm, power_of_ten};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Fine columns in a coarse one, and map columns in a fine one.
 const FOLD: usize = FINE / COARSE;
 const _: () = assert!(FOLD == CELLS && COLUMNS_PER_FINE == CELLS, "layers that spread a cell do so over four");
 const COLUMNS_PER_FINE: usize = COLUMNS / FINE;
@@ -48,7 +47,6 @@ pub struct LiveEngine {
     fine1: Conv3x3,
     fine2: Packed,
     row_sources: Packed,
-    /// Side lobes under the window of Hann, and under each other one where the file has them.
     lobes: Vec<WindowLobes>,
     scalar1: Packed,
     scalar2: Packed,
@@ -71,7 +69,6 @@ pub struct LiveScratch {
 
 impl LiveEngine {
     /// Packs the weights of `file`, which must fit `config`.
-    ///
     /// # Errors
     /// [`WeightsError`] names the tensor that is missing or of another shape.
     pub fn new(file: &WeightFile, config: &LiveConfig) -> Result<Self, WeightsError> {
@@ -199,7 +196,6 @@ impl LiveEngine {
     }
 }
 
-/// Heads and side-lobe sources to decades, with the part of the side lobes in range that was computed.
 fn decode(
     kernels: &WindowLobes,
     heads: &Plane,
@@ -251,10 +247,8 @@ fn add_lobes_in_angle(rows: &[f32], floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE
     }
 }
 
-/// Rows of the map that one processor does at once.
 const ROWS_AT_ONCE: usize = 8;
 
-/// Cells of the map in one of the wide sources.
 const COLUMNS_PER_SOURCE: usize = COLUMNS / WIDE;
 
 /// Amplitudes that these channels of neighbouring cells say, side by side.

@@ -56,7 +56,6 @@ pub enum Features {
 }
 
 impl Default for ExamplesRequest {
-    /// What the live network learns from the thesis' set 3: the calibrated target of training scenes over the thesis' floor.
     fn default() -> Self {
         ExamplesRequest {
             mixture: Mixture::of(Kind::Set3),
@@ -143,34 +142,21 @@ pub enum ExamplesError {
 
 /// Why there is no example.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum ExampleError {
     /// The scene can't be simulated, or the task was cancelled.
     #[error("example {index}: {source}")]
-    Scene {
-        /// Number of the example.
-        index: u32,
-        /// Why.
-        source: Unfinished,
-    },
+    Scene { index: u32, source: Unfinished },
     /// The network can't use its samples.
     #[error("example {index}: {source}")]
-    Input {
-        /// Number of the example.
-        index: u32,
-        /// Why.
-        source: ReconstructError,
-    },
+    Input { index: u32, source: ReconstructError },
     /// Nothing is heard.
     #[error("example {index}: the samples are silent; put a reflector into the scene")]
-    Silent {
-        /// Number of the example.
-        index: u32,
-    },
+    Silent { index: u32 },
 }
 
 impl Examples {
     /// Examples as they are asked for.
-    ///
     /// # Errors
     /// [`ExamplesError`] names the kind, the radar or the element that can't be.
     pub fn new(mut request: ExamplesRequest) -> Result<Self, ExamplesError> {
@@ -218,7 +204,6 @@ impl Examples {
     }
 
     /// Example `index`.
-    ///
     /// # Errors
     /// [`ExampleError`], also soon after `task` was cancelled.
     pub fn example(&self, index: u32, task: &Task) -> Result<Example, ExampleError> {
@@ -229,7 +214,6 @@ impl Examples {
     }
 
     /// Example `index` of a scene that somebody else made. Its noise is picked by seed, purpose and `index`.
-    ///
     /// # Errors
     /// As [`Examples::example`].
     pub fn example_of(&self, scene: Scene, index: u32, task: &Task) -> Result<Example, ExampleError> {

@@ -63,7 +63,6 @@ pub struct FeatureExtractor {
 
 impl FeatureExtractor {
     /// Tables for `radar`.
-    ///
     /// # Errors
     /// [`ReconstructError::Unusable`] for ends of a single element or fewer than [`LEAST_SAMPLES`] samples.
     pub fn new(radar: &Radar) -> Result<Self, ReconstructError> {
@@ -93,7 +92,6 @@ impl FeatureExtractor {
     }
 
     /// The tensors of the samples of two ends.
-    ///
     /// # Errors
     /// [`ReconstructError`] on samples of the wrong shape or not finite, and on silence.
     pub fn extract(&self, ends: &TwoEnds) -> Result<LiveInput, ReconstructError> {

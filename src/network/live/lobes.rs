@@ -8,10 +8,8 @@ use super::reading::circulant;
 use crate::network::kernels::convolution::PRODUCT_COLUMNS;
 use crate::network::weights::{WeightFile, WeightsError};
 
-/// Side lobes under one window.
 #[derive(Debug)]
 pub(super) struct WindowLobes {
-    /// In range.
     pub(super) columns: RangeLobes,
     /// `[128 / 32, 128, 32]`: in angle.
     pub(super) rows: Vec<f32>,

@@ -185,7 +185,6 @@ fn decades_in<const D: usize>(x: Tensor<D>) -> Tensor<D> {
     ((x + 3.0) / 3.0).clamp(-4.0, 2.0)
 }
 
-/// A head's output as amplitudes.
 fn amplitudes(x: Tensor<3>) -> Tensor<3> {
     ((x * 3.0 - 3.0).clamp(-18.0, 4.0) * LN_10).exp()
 }
@@ -210,7 +209,6 @@ fn fold_columns(x: Tensor<4>, r: usize) -> Tensor<4> {
     x.reshape([n, c, h, w / r, r]).permute([0, 1, 4, 2, 3]).reshape([n, c * r, h, w / r])
 }
 
-/// The inverse of [`fold_columns`].
 fn spread_columns(x: Tensor<4>, r: usize) -> Tensor<4> {
     let [n, c, h, w] = x.dims();
     x.reshape([n, c / r, r, h, w]).permute([0, 1, 3, 4, 2]).reshape([n, c / r, h, w * r])

@@ -6,7 +6,6 @@ use crate::network::kernels::vector::LANES;
 use crate::signal::simd::{Kernel, Lanes, Simd};
 use rayon::prelude::*;
 
-/// Channels-last picture: `[h, w, c]`.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Plane {
     pub(super) h: usize,
@@ -21,13 +20,11 @@ impl Plane {
         self.data.resize(h * w * c, 0.0);
     }
 
-    /// Copies line `y` through ReLU.
     pub(super) fn read_rectified(&self, y: usize, line: &mut [f32]) {
         let size = self.w * self.c;
         line.iter_mut().zip(&self.data[y * size..]).for_each(|(to, v)| *to = rectified(*v));
     }
 
-    /// Puts everything through ReLU.
     pub(super) fn rectify(&mut self) {
         self.data.par_chunks_mut(1 << 15).for_each(|part| part.iter_mut().for_each(|v| *v = rectified(*v)));
     }

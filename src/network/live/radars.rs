@@ -29,7 +29,6 @@ pub const DRAWN: RadarLimits = RadarLimits {
     half_power_width_degrees: [40.0, 150.0],
 };
 
-/// Part of the scenes that table 3.1's radar sees.
 const THESIS_SHARE: f64 = 0.25;
 /// Parts of the other radars that have the filled spacing, a window of Hann, and a pattern.
 const FILLED_SHARE: f64 = 0.5;
@@ -90,7 +89,6 @@ impl Radars {
     }
 }
 
-/// A radar within [`DRAWN`].
 fn drawn(rng: &mut ChaCha8Rng) -> Radar {
     loop {
         let carrier_hz = log_uniform(DRAWN.carrier_hz, rng);

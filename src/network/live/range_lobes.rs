@@ -27,7 +27,6 @@ pub(super) struct RangeLobes {
     reach: Vec<[f32; 2]>,
 }
 
-/// What one processor keeps from block to block.
 #[derive(Default)]
 struct Kept {
     /// `[512, BLOCK]`

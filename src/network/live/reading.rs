@@ -9,14 +9,12 @@ use crate::network::weights::{WeightFile, WeightsError};
 /// Cells that one becomes in the layers that spread it.
 pub(super) const CELLS: usize = 4;
 
-/// Where layers come from. Their errors name the tensor that is missing or of another shape.
 #[derive(Clone, Copy)]
 pub(super) struct LiveLayers<'a> {
     pub(super) file: &'a WeightFile<'a>,
 }
 
 impl LiveLayers<'_> {
-    /// Weights and bias.
     pub(super) fn tensors(&self, name: &str, shape: &[usize]) -> Result<[Vec<f32>; 2], WeightsError> {
         let tensor = |part: &str, shape: &[usize]| self.file.tensor(&format!("{name}.{part}"), shape);
         Ok([tensor("weight", shape)?, tensor("bias", &shape[..1])?])
@@ -64,7 +62,6 @@ impl LiveLayers<'_> {
         Ok(Packed::new(&weights, &bias, [input, padded(input)], [kernel; 2], kernel))
     }
 
-    /// A 1x1 convolution whose output is `channels` of each of the cells that one becomes.
     pub(super) fn up(&self, name: &str, input: usize, channels: usize) -> Result<Packed, WeightsError> {
         let [weights, bias] = self.tensors(name, &[CELLS * channels, input, 1, 1])?.map(|v| cell_by_cell(&v, channels));
         Ok(Packed::new(&weights, &bias, [input, padded(input)], [1, 1], 1))
@@ -76,7 +73,6 @@ impl LiveLayers<'_> {
         Ok(Packed::new(&weights, &bias, [input; 2], [1, 1], 1))
     }
 
-    /// Residual blocks of `c` channels.
     pub(super) fn blocks(
         &self,
         name: &str,

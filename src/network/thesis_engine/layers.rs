@@ -34,7 +34,6 @@ impl ThesisLayers<'_> {
         Ok([weights, shift])
     }
 
-    /// What the batch norm of stage `name` does at inference: `x * scale + shift` for each channel.
     fn scale_and_shift(&self, name: &str, channels: usize) -> Result<[Vec<f32>; 2], WeightsError> {
         let tensor = |part: &str| self.file.tensor(&format!("{name}.norm.{part}"), &[channels]);
         let (gamma, beta, mean, variance) =

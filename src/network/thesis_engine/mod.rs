@@ -20,7 +20,6 @@ use layers::ThesisLayers;
 use pictures::{Bordered, Parted};
 use towers::CHANNELS;
 
-/// Names of the towers with the sizes of their kernels.
 const TOWERS: [(&str, usize); 2] = [("layer3x3", 3), ("layer5x5", 5)];
 
 /// The thesis' network, packed for [`super::kernels`].
@@ -45,7 +44,6 @@ pub struct Buffers {
 
 impl ThesisEngine {
     /// Packs the weights of `file`, ours or the author's `MultiFilter.state_dict()`, which must fit `config`.
-    ///
     /// # Errors
     /// [`WeightsError`] names the first tensor that is missing, unknown, of another shape or type, or not finite.
     pub fn new(file: &WeightFile, config: &ThesisConfig) -> Result<Self, WeightsError> {
@@ -67,7 +65,6 @@ impl ThesisEngine {
         Ok(engine)
     }
 
-    /// Whether a tensor of this name is part of the network.
     fn knows(&self, name: &str) -> bool {
         let levels = || 0..self.config.levels;
         let mut stages = levels().flat_map(|level| {
@@ -79,7 +76,6 @@ impl ThesisEngine {
 
     /// Estimates Lambda of one scene, `[rows, columns]` row-major, from `input` `[4, rows, columns]`. Both must be multiples of 2 to the power of
     /// the levels.
-    ///
     /// # Panics
     /// On an input of another shape.
     pub fn forward(&self, input: &[f32], [rows, columns]: [usize; 2], buffers: &mut Buffers) -> Vec<f32> {

@@ -13,7 +13,6 @@ pub const CHANNELS: usize = 4;
 /// Outputs that a max-pool takes the largest of: one of each part of a [`Parted`] picture.
 const POOLED: usize = 4;
 
-/// One level of a tower.
 #[derive(Debug)]
 pub(super) struct TowerLevel {
     kernel: Packed,
@@ -38,7 +37,6 @@ impl TowerLevel {
         (0..levels).map(stage).collect()
     }
 
-    /// Half of `from` in both directions, as the next stage reads it.
     pub(super) fn forward(&self, from: &Parted, to: &mut Parted) {
         to.reset(from.h / 2, from.w / 2, self.output);
         let simd = Simd::chosen();
@@ -50,7 +48,6 @@ impl TowerLevel {
         });
     }
 
-    /// The same as the channels of `to` from channel `first` on.
     pub(super) fn join(&self, from: &Parted, to: &mut Bordered, first: usize) {
         let (simd, channels) = (Simd::chosen(), to.c);
         to.fill(|y, line, buffer| {
@@ -61,7 +58,6 @@ impl TowerLevel {
         });
     }
 
-    /// Row `y` of the output, `[w / 2, kernel's outputs]`. `buffer` is where it lies.
     fn pooled<'a>(&self, simd: Simd, from: &Parted, y: usize, buffer: &'a mut Vec<f32>) -> &'a [f32] {
         let width = from.w / 2;
         let size = width * self.kernel.output();
@@ -76,7 +72,6 @@ impl TowerLevel {
     }
 }
 
-/// Puts into `first` the largest of itself, of what stands at the same place of each part of `others`, and of 0.
 struct Largest<'a> {
     first: &'a mut [f32],
     others: &'a [f32],

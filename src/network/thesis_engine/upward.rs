@@ -11,13 +11,11 @@ use crate::network::weights::WeightsError;
 use crate::signal::simd::Simd;
 use rayon::prelude::*;
 
-/// Rows and columns of the kernels.
 const SIZE: usize = 4;
 /// Rows of the kernel that meet the two rows of the input that an even row of the output sees, and an odd one.
 const ROWS: [[usize; 2]; 2] = [[3, 1], [2, 0]];
 const _: () = assert!(SIZE * SIZE == LANES, "the last kernel's products of a cell are one vector");
 
-/// One level: a 2x2 convolution for even and odd rows and, within those, columns.
 #[derive(Debug)]
 pub(super) struct UpwardLevel {
     parts: [[Packed; 2]; 2],
@@ -42,12 +40,10 @@ impl UpwardLevel {
         Ok(UpwardLevel { parts: ROWS.map(|rows| ROWS.map(|columns| part(rows, columns))) })
     }
 
-    /// Channels of an output cell.
     pub(super) fn output(&self) -> usize {
         self.parts[0][0].output()
     }
 
-    /// Twice `from` in both directions.
     pub(super) fn forward(&self, from: &Bordered, to: &mut Bordered) {
         to.reset(2 * from.h, 2 * from.w, self.output());
         let simd = Simd::chosen();
@@ -66,7 +62,6 @@ impl UpwardLevel {
     }
 }
 
-/// Puts everything through ReLU.
 struct Rectify<'a>(&'a mut [f32]);
 
 impl Loop for Rectify<'_> {
@@ -99,7 +94,6 @@ impl Last {
         Ok(Last { products, bias: bias.iter().sum() })
     }
 
-    /// The products of what `before` makes of `from`, or of `from` itself where there is no level before the last.
     pub(super) fn multiply(&self, before: Option<&UpwardLevel>, from: &Bordered, products: &mut Bordered) {
         let simd = Simd::chosen();
         let twice = if before.is_some() { 2 } else { 1 };
@@ -115,7 +109,6 @@ impl Last {
         });
     }
 
-    /// The map, twice as large as `products`, row-major.
     pub(super) fn add_up(&self, products: &Bordered) -> Vec<f32> {
         let mut map = vec![0.0; 4 * products.h * products.w];
         map.par_chunks_mut(2 * products.w).enumerate().for_each(|(y, line)| {

@@ -6,10 +6,8 @@ use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::Array2;
 
-/// Ranges and directions of the cells.
 pub(super) struct GridCells<'a> {
     radar: &'a Radar,
-    /// Whether each element of both ends heard something.
     hears: Vec<bool>,
     /// Range of each row, metres.
     pub range_metres: Vec<f64>,
@@ -17,7 +15,6 @@ pub(super) struct GridCells<'a> {
     pub directions: Vec<Direction>,
 }
 
-/// One cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct GridCell {
     /// Range bin.

@@ -54,7 +54,6 @@ const WRONGLY_ZERO: f64 = 1.1;
 /// Most reflectors that are drawn; the strongest of what the penalty left.
 const MOST_REFLECTORS_DRAWN: usize = 200;
 
-/// The problem in the coordinates that iterations need: Gram matrix and correlations.
 #[derive(Clone)]
 struct Problem {
     atoms: Vec<ArrayEcho>,
@@ -97,7 +96,6 @@ fn candidates(
     heard.into_iter().map(|(_, cell, _)| cell).collect()
 }
 
-/// What a gain costs.
 #[derive(Debug, Clone, Copy)]
 enum Penalty {
     /// This part of the one that would leave no reflector at all, and no less than `least`.
@@ -107,7 +105,6 @@ enum Penalty {
 }
 
 impl Problem {
-    /// Of the echoes of the cells `chosen`.
     fn new(
         cells: &GridCells<'_>,
         chosen: &[GridCell],
@@ -137,7 +134,6 @@ impl Problem {
         Ok(Problem { atoms, gram, heard, penalty })
     }
 
-    /// What `x` leaves of `ends`.
     fn left(&self, radar: &Radar, ends: &TwoEnds, x: &[Complex64]) -> TwoEnds {
         let mut left = ends.flat();
         for (atom, gain) in self.atoms.iter().zip(x).filter(|(_, gain)| gain.norm_sqr() > 0.0) {
@@ -148,13 +144,11 @@ impl Problem {
 
     fn gram_times(&self, x: &[Complex64]) -> Vec<Complex64> {
         let n = self.atoms.len();
-        // Most gains are zero: skip their columns.
         let support: Vec<(usize, Complex64)> =
             x.iter().copied().enumerate().filter(|(_, v)| v.norm_sqr() > 0.0).collect();
         self.gram.par_chunks(n.max(1)).map(|row| support.iter().map(|(j, v)| row[*j] * v).sum()).collect()
     }
 
-    /// The objective less the constant `1/2 ||y||^2`.
     fn objective(&self, x: &[Complex64], gram_x: &[Complex64]) -> f64 {
         x.iter()
             .zip(gram_x)
@@ -163,7 +157,6 @@ impl Problem {
             .sum()
     }
 
-    /// Largest eigenvalue of the Gram matrix, from above: power iteration with some room.
     fn lipschitz(&self) -> f64 {
         let mut v = self.heard.clone();
         let mut largest = 1.0;

@@ -22,7 +22,6 @@ const LAYOUT_ROWS_PER_BIN: usize = 8;
 /// `samples` is `[elements of layout, samples]`, in the layout's order. Back-projection, as in [`MatchedFilter`](crate::reconstruct::MatchedFilter), which is
 /// this for the two ends with whole-end beams. Random elements keep the main lobe of the whole aperture and pay with side lobes
 /// everywhere (thesis figures 1-2 and 1-3).
-///
 /// # Errors
 /// [`ReconstructError::Shape`] where `samples` don't fit, [`ReconstructError::Cancelled`].
 pub fn layout_matched_filter(

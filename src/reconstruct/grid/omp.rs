@@ -52,7 +52,6 @@ const ROUNDING_ENERGY: f64 = 1e-22;
 const LEAST_OF_ALL: f64 = 1e-10;
 
 impl Omp {
-    /// Picks atoms of `ends` until only noise is left, and fits their gains.
     fn pursue(
         &self,
         radar: &Radar,
@@ -130,7 +129,6 @@ impl Omp {
     }
 }
 
-/// Gains of the picked atoms by least squares.
 fn fit(picks: &[Pick], samples: &[Complex64]) -> Vec<Gained> {
     let gains = unit_gains(picks, samples);
     let gained = picks.iter().zip(gains);

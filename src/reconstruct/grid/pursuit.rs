@@ -40,13 +40,11 @@ const LEAST_NEW: f64 = 1e-7;
 /// Part of the residual's energy that a pick must at least explain.
 const LEAST_GAIN: f64 = 1e-3;
 
-/// A cell's echo, picked.
 pub(super) struct Pick {
     pub cell: GridCell,
     pub atom: ArrayEcho,
 }
 
-/// What has been picked, and what is left of the samples.
 pub(super) struct Pursuit<'a> {
     radar: &'a Radar,
     cells: GridCells<'a>,
@@ -191,7 +189,6 @@ fn climbed(cells: &GridCells<'_>, mut atom: ArrayEcho, samples: &[Complex64], st
     (heard, atom)
 }
 
-/// Gains of the picked atoms' unit samples.
 pub(super) fn unit_gains(picks: &[Pick], samples: &[Complex64]) -> Vec<Complex64> {
     if picks.is_empty() {
         return Vec::new();

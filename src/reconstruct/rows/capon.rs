@@ -38,7 +38,6 @@ pub const CAPON_PEAKS: RowMethod = RowMethod {
 /// Added to the covariance's diagonal beside the noise, as a part of its mean: what the elements' small departures from a plane wave need.
 const LOADING: f64 = 1e-6;
 
-/// Capon's power over angle for one row.
 fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {
     let n = subarray_len(row.own().len());
     let covariance = smoothed(&row.snapshots, n);

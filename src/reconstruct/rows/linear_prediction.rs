@@ -64,7 +64,6 @@ fn predictor(row: &RowSnapshot) -> Option<Vec<Complex64>> {
     Some(solution)
 }
 
-/// The linear-prediction spectrum for one row, as power.
 fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {
     let predictor = predictor(row)?;
     let error_filter = std::iter::once(Complex64::from(1.0)).chain(predictor.into_iter().map(|a| -a));

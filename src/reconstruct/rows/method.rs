@@ -27,7 +27,6 @@ const ACTIVE_ROW: f64 = 1e-12;
 pub(super) const ASSUMPTIONS: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
     It does not use the phase between the ends";
 
-/// What every row method whose peaks are rendered is told.
 pub(super) const TOLD_PEAKS: &str = "that what an end hears is plane waves, and that a scene is single reflectors; nothing else about the \
     scene or the floor, it measures the noise itself. Its peaks do not use the phase between the ends; their places and amplitudes \
     are then fitted to both ends together, as those of iaa and sbl are";
@@ -102,7 +101,6 @@ fn not_plane(radar: &Radar) -> f64 {
 }
 
 impl RowMethod {
-    /// Power over range and angle on the grid of the array's centre, in the scale of the whole array's map.
     fn power(
         &self,
         radar: &Radar,
@@ -142,7 +140,6 @@ impl RowMethod {
         found.flat_map(place).collect()
     }
 
-    /// Power over range and angle of one end on its own grid, in the scale of the whole array's map.
     fn end_power(
         &self,
         radar: &Radar,
@@ -152,7 +149,6 @@ impl RowMethod {
         request: &Request,
     ) -> Result<Array2<f64>, ReconstructError> {
         let signal = BeatSignal { samples: ends.end(end).clone() };
-        // One row a range bin, so that a snapshot is a slice.
         let snapshots = range_transform(radar, &signal).profiles.t().as_standard_layout().into_owned();
         let (bins, columns, elements) = (radar.samples, radar.elements, radar.end_elements);
         let values = snapshots.as_slice().unwrap_or_default();

@@ -31,7 +31,6 @@ pub const MUSIC_PEAKS: RowMethod = RowMethod {
     render: Render::Peaks,
 };
 
-/// MUSIC's pseudo-spectrum for one row, as power.
 fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {
     let covariance = smoothed(&row.snapshots, subarray_len(row.own().len()));
     let subspaces = subspaces(&covariance, row)?;

@@ -62,7 +62,6 @@ fn roots(coefficients: &[Complex64]) -> Option<Vec<Complex64>> {
     companion.eigenvalues().ok()
 }
 
-/// Power over angle of the whole array continued from one end's waves, in the order of the transform.
 fn continued(row: &RowSnapshot) -> Option<Vec<f64>> {
     row.continued(&directions(row)?)
 }

@@ -4,7 +4,6 @@ use super::super::face::Face;
 use super::*;
 use crate::scene::{Block, Point, Polygon, Post, Wall};
 
-/// A scene of every kind, rough and smooth, some hidden.
 fn all_kinds() -> Vec<Object> {
     vec![
         Object::Wall(Wall { roughness_millimetres: 0.5, ..Wall::new(-4.0, 18.0, 6.0, 20.0) }),

@@ -8,7 +8,6 @@ use super::*;
 use crate::radar::Radar;
 use crate::scene::{Object, Scene};
 
-/// Samples over the chirp at which echoes are compared.
 const SAMPLES: [usize; 5] = [0, 100, 255, 400, 511];
 
 /// Samples of echoes, with or without their tilt.
@@ -39,7 +38,6 @@ fn heard(radar: &Radar, objects: &[Object], antennas: &AntennaPlaces) -> Vec<Pat
     out
 }
 
-/// Largest step of a sample over its largest value, as something moves in steps of 0.1 mm.
 fn largest_step(of: impl Fn(f64) -> Vec<Complex64>, from: f64, steps: u32) -> f64 {
     let (mut worst, mut peak) = (0.0f64, 0.0f64);
     let mut before: Option<Vec<Complex64>> = None;

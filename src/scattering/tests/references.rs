@@ -62,7 +62,6 @@ fn object(of: &VectorObject) -> Object {
     }
 }
 
-/// Echoes of a scene at a pair that it hears.
 fn echoes(radar: &Radar, of: &VectorScene, antennas: &AntennaPlaces) -> Vec<PathEcho> {
     let mut out = Vec::new();
     if let [VectorObject { kind, corners, r, .. }] = of.objects.as_slice()

@@ -11,7 +11,6 @@ use serde::de::{DeserializeOwned, IgnoredAny};
 use std::path::Path;
 
 /// Reads a scene file and checks that it can be simulated.
-///
 /// # Errors
 /// [`SceneFileError`] names the file, the line or key, and what was expected.
 pub fn load(path: &Path) -> Result<SceneFile, SceneFileError> {
@@ -19,7 +18,6 @@ pub fn load(path: &Path) -> Result<SceneFile, SceneFileError> {
 }
 
 /// [`load`], and the table called `key` that [`save_beside`] wrote; `None` where there is none.
-///
 /// # Errors
 /// As [`load`].
 pub fn load_beside<T: DeserializeOwned>(path: &Path, key: &str) -> Result<(SceneFile, Option<T>), SceneFileError> {
@@ -44,7 +42,6 @@ fn read<T: DeserializeOwned>(path: &Path, beside: Option<&str>) -> Result<(Scene
 }
 
 /// Writes a scene file in one step. An `.npz` keeps the reflectors' positions only.
-///
 /// # Errors
 /// [`SceneFileError`] when the ending is neither `.toml` nor `.npz`, or the file can't be written.
 pub fn save(path: &Path, file: &SceneFile) -> Result<(), SceneFileError> {
@@ -58,7 +55,6 @@ pub fn save(path: &Path, file: &SceneFile) -> Result<(), SceneFileError> {
 }
 
 /// Writes a scene as TOML in one step, with a further table, called `key`, after it.
-///
 /// # Errors
 /// [`SceneFileError`] when the file can't be written.
 pub fn save_beside(path: &Path, file: &SceneFile, key: &str, value: &impl Serialize) -> Result<(), SceneFileError> {

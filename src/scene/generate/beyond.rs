@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-/// x and y in metres.
 type Place = [f64; 2];
 
 /// A kind of scene that nothing is trained on or chosen by.
@@ -76,7 +75,6 @@ const MAX_TURN_RADIANS: f64 = 1.2;
 /// Places that are tried for a wall or a cluster before one that leaves the field in part is taken.
 const TRIES: usize = 40;
 
-/// Where the radar's objects may stand.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BeyondField {
     pub max_range_metres: f64,
@@ -107,7 +105,6 @@ impl BeyondField {
         points.into_iter().map(Object::Point).collect()
     }
 
-    /// One to three groups of points that lie in the field.
     fn groups(&self, rng: &mut ChaCha8Rng, draw: fn(&Self, &mut ChaCha8Rng) -> Vec<Point>) -> Vec<Point> {
         let of_field = |rng: &mut ChaCha8Rng| {
             let mut points = Vec::new();
@@ -148,7 +145,6 @@ impl BeyondField {
         points
     }
 
-    /// Two rows of equal steps through one place.
     fn crossing(&self, rng: &mut ChaCha8Rng) -> Vec<Point> {
         let [x, y] = self.place(rng);
         let first = rng.random_range(0.0..PI);

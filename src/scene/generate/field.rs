@@ -7,16 +7,12 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-/// Nearest place of an ordinary object.
 const NEAREST_METRES: f64 = 2.0;
-/// Farthest place, as a part of the maximum range.
 const MAX_RANGE_PART: f64 = 0.95;
-/// Angle from the array's axis that places keep.
 const AXIS_MARGIN_DEGREES: f64 = 5.0;
 /// Points that two rows have at least.
 const LEAST_OF_FENCES: usize = 40;
 
-/// The radar's field, in which objects are placed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlacementField {
     pub max_range_metres: f64,
@@ -170,7 +166,6 @@ impl PlacementField {
         }
     }
 
-    /// Two lines from one place, at right angles.
     fn corner(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
         loop {
             let first = self.line(rng.random_range(0.0..360.0), self.spacing(rng, 2.0), 20..=80, rng);

@@ -9,14 +9,12 @@ use std::ops::Range;
 /// How far below the strongest point of a scene the weakest lies at most.
 pub(super) const MAX_DYNAMIC_DECIBELS: f64 = 60.0;
 
-/// (x, y) in metres.
 pub(super) type GroundPlace = [f64; 2];
 
 /// How strong the points of a group are beside each other.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Strengths {
     Equal,
-    /// Rayleigh amplitudes: each point is the sum of many echoes.
     Rayleigh,
     LogNormal {
         deviation_decibels: f64,
@@ -45,7 +43,6 @@ impl Strengths {
         }
     }
 
-    /// Decibels of echo power of one point.
     pub(super) fn decibels(self, rng: &mut ChaCha8Rng) -> f64 {
         let normal = |rng: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(rng) };
         match self {
@@ -62,11 +59,9 @@ impl Strengths {
     }
 }
 
-/// How the steps from one point of a curve to the next differ.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Steps {
     Equal,
-    /// Each is off by up to this part.
     Jittered(f64),
     /// Exponential: the points are a Poisson process.
     Poisson,
@@ -81,7 +76,6 @@ impl Steps {
         }
     }
 
-    /// One step, relative to the mean.
     pub(super) fn next(self, rng: &mut ChaCha8Rng) -> f64 {
         match self {
             Steps::Equal => 1.0,
@@ -132,7 +126,6 @@ impl Track {
     }
 }
 
-/// A number whose logarithm is uniform.
 pub(super) fn log_uniform(range: Range<f64>, rng: &mut ChaCha8Rng) -> f64 {
     range.start * (range.end / range.start).powf(rng.random())
 }

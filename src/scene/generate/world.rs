@@ -13,29 +13,21 @@ use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-/// Most points of a scene.
 const MAX_POINTS: usize = 600;
-/// Most points of a curve, a cloud or a scatter.
 const MAX_GROUP_POINTS: usize = 300;
-/// Most bodies of a scene, and most rough ones.
 const MAX_BODIES: usize = 8;
 const MAX_ROUGH_BODIES: usize = 2;
-/// Most groups of points or bodies of a scene.
 const MAX_GROUPS: usize = 8;
-/// Steps along a curve, in range bins and in metres.
 const STEP_BINS: Range<f64> = 0.2..4.0;
 const STEP_METRES: Range<f64> = 0.2..1.0;
-/// Nearest range of a place.
 const NEAREST_METRES: f64 = 0.3;
 /// How far points keep from the array.
 const CLEAR_METRES: f64 = 0.08;
 /// Farthest place, and farthest point of a curve or a cloud, as parts of the maximum range: what lies beyond wraps around.
 const FARTHEST_PLACE: f64 = 0.95;
 const FARTHEST_POINT: f64 = 1.25;
-/// Places that are tried for a curve, a cloud or a body.
 const TRIES: usize = 20;
 
-/// What a radar says of its scenes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct World {
     max_range_metres: f64,
@@ -52,7 +44,6 @@ impl World {
         }
     }
 
-    /// The objects of a scene, at least one.
     pub(super) fn objects(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
         loop {
             let (mut bodies, mut points) = (Vec::new(), Vec::new());
@@ -108,7 +99,6 @@ impl World {
         places
     }
 
-    /// Points along a way; one time in four half of them along another beside it.
     fn curve(&self, count: usize, rng: &mut ChaCha8Rng) -> Vec<GroundPlace> {
         let step = match rng.random::<bool>() {
             true => self.bin_metres * log_uniform(STEP_BINS, rng),
@@ -198,7 +188,6 @@ impl World {
         loop {
             let range = match law {
                 0 => log_uniform(NEAREST_METRES..far, rng),
-                // As many on each square metre.
                 1 => far * rng.random::<f64>().sqrt(),
                 _ => rng.random_range(NEAREST_METRES..far),
             };
@@ -216,7 +205,6 @@ impl World {
     }
 }
 
-/// A polygon of 3 to 8 corners around a place.
 fn star([x, y]: GroundPlace, radius_metres: f64, rng: &mut ChaCha8Rng) -> Object {
     let count = rng.random_range(3..=8);
     let corner = |i: usize| {

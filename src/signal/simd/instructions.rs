@@ -86,7 +86,6 @@ impl Simd {
     }
 
     /// The set that [`SIMD_VARIABLE`] names; `None` where it is not set or empty.
-    ///
     /// # Errors
     /// [`SimdError`] when it names no set, or one that this processor lacks.
     pub fn requested() -> Result<Option<Simd>, SimdError> {

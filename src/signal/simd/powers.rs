@@ -2,7 +2,6 @@
 
 use super::{Kernel, Simd};
 
-/// A function of one value, applied to every value of a slice.
 struct Each<'a, F>(&'a mut [f32], F);
 
 impl<F: Fn(f32) -> f32> Kernel for Each<'_, F> {

@@ -3,7 +3,6 @@
 use super::*;
 use crate::scene::{Block, Post, Wall};
 
-/// A car, a wall behind it, a post beside both and a point.
 fn street(x: f64) -> Scene {
     let objects = vec![
         Object::Box(Block::new([x, 0.8], [0.3, 0.15], 20.0)),

@@ -1,6 +1,5 @@
 //! Half-precision floats (IEEE 754 binary16) as bits.
 
-/// Largest finite half, 2^15 (2 - 2^-10).
 const MAX_HALF: f32 = 65504.0;
 
 /// The half nearest to `value`, ties to even; what is larger than any becomes the largest.

@@ -117,11 +117,9 @@ impl FromStr for ExamplePart {
     }
 }
 
-/// An array of a shard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ArrayKind {
     Ends,
-    /// Of so many elements.
     Layout(usize),
     Fine,
     Coarse,
@@ -129,11 +127,9 @@ enum ArrayKind {
     Scalars,
     Constants,
     Target(Target),
-    /// Decades by which everything of an example is scaled down.
     Gain,
 }
 
-/// The splits: a name, the streams of their scenes.
 const SPLITS: [(&str, Purpose); 3] =
     [("train", Purpose::Training), ("validation", Purpose::Validation), ("test", Purpose::Test)];
 
@@ -174,18 +170,14 @@ impl DatasetRequest {
 
 /// Why there is no dataset.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum DatasetError {
     /// What is asked for can't be.
     #[error("{0}")]
     Request(String),
     /// A file or folder can't be written.
     #[error("{path}: {source}")]
-    File {
-        /// Which.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    File { path: PathBuf, source: io::Error },
     /// A scene can't be made.
     #[error(transparent)]
     Example(#[from] ExampleError),
@@ -198,7 +190,6 @@ pub enum DatasetError {
 }
 
 /// Writes a dataset into `folder`, which is made where it is missing and must be empty, and last its manifest.
-///
 /// # Errors
 /// [`DatasetError`]; a folder without a manifest is no whole dataset.
 pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Manifest, DatasetError> {
@@ -256,7 +247,6 @@ pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Man
     Ok(manifest)
 }
 
-/// Examples of all splits.
 fn examples_of(request: &DatasetRequest) -> u64 {
     request.counts.iter().map(|count| u64::from(*count)).sum::<u64>() * request.kinds.len() as u64
 }
@@ -284,7 +274,6 @@ fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
     Ok(())
 }
 
-/// One maker of examples for each kind.
 fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, DatasetError> {
     let targets = request
         .parts
@@ -325,7 +314,6 @@ fn write_shard(
     };
     let written: Result<_, DatasetError> = arrays.par_iter().map(write).collect();
     if written.is_err() {
-        // The arrays of a shard are of use together only. Where one can't be removed, the error above says why.
         arrays.iter().for_each(|array| _ = fs::remove_file(folder.join(name_of(array))));
     }
     written

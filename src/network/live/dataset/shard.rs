@@ -79,7 +79,6 @@ impl ArrayKind {
     }
 }
 
-/// Samples relative to their mean power, as the network's input is.
 fn put_heard(bytes: &mut Vec<u8>, example: &Example) {
     let scale = 10f64.powf(-example.gain);
     let mut put = |sample: &Complex64| {
@@ -92,7 +91,6 @@ fn put_heard(bytes: &mut Vec<u8>, example: &Example) {
     }
 }
 
-/// One array of the live network's input.
 fn put_feature(bytes: &mut Vec<u8>, feature: ArrayKind, input: &LiveInput, precision: DatasetPrecision) {
     match feature {
         ArrayKind::Fine => put(bytes, &input.fine, precision),
@@ -111,7 +109,6 @@ fn put<'a>(bytes: &mut Vec<u8>, values: impl IntoIterator<Item = &'a f32>, preci
     }
 }
 
-/// Magic number, version and dictionary of a NumPy file, padded so that the numbers begin at a multiple of 64 bytes.
 fn header(dtype: &str, shape: &[usize]) -> Vec<u8> {
     let shape: String = shape.iter().map(|n| format!("{n}, ")).collect();
     let mut text = format!("{{'descr': '{dtype}', 'fortran_order': False, 'shape': ({}), }}", shape.trim_end());
