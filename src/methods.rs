@@ -70,12 +70,12 @@ fn shipped() -> Vec<Arc<dyn Reconstructor>> {
     methods
 }
 
-/// The method whose output is shown where nobody chose one.
+/// The method whose output is shown by default.
 pub fn preferred() -> Arc<dyn Reconstructor> {
     by_name("live").unwrap_or_else(|_| Arc::new(Baseline))
 }
 
-/// The method whose output is shown for samples of `radar` where nobody chose one: the networks know one radar only.
+/// The method whose output is shown for samples of `radar` by default: the networks know one radar only.
 pub fn preferred_for(radar: &Radar) -> Arc<dyn Reconstructor> {
     if radar.of_one_chirp() == Radar::default() {
         return preferred();

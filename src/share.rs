@@ -72,7 +72,7 @@ pub struct SharedView {
     pub lesson: Option<LessonPlace>,
 }
 
-/// VisiblePart of a map, as fractions of its width and height from the lower left.
+/// Part of a map, as fractions of its width and height from the lower left.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VisiblePart {

@@ -46,7 +46,7 @@ use std::sync::Arc;
 ///         `cfar_false_alarm` and `cfar`.
 ///     path: A CSV file in the program's format. Each row is appended as it is found, and the same call goes on where a stopped one ended. A file that
 ///         holds anything else is refused.
-///     overwrite: Whether `path` begins anew, whatever it holds.
+///     overwrite: Whether `path` begins anew, over any content.
 ///     only: The rows to find, as (set, number of the scene, method), in place of all rows of the run.
 ///
 /// Returns:

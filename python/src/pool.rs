@@ -7,7 +7,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::ptr;
 use std::sync::atomic::{AtomicPtr, AtomicU32, AtomicUsize, Ordering};
 
-/// Most threads that anybody may ask for.
+/// Most threads that a caller may ask for.
 const MOST_THREADS: usize = 1024;
 
 /// A pool and the process whose threads it has.
@@ -17,7 +17,7 @@ struct Pool {
     pool: ThreadPool,
 }
 
-/// The pool of the process that last worked. No lock: whoever forks may hold one.
+/// The pool of the process that last worked. No lock: a forking thread may hold one.
 static CURRENT: AtomicPtr<Pool> = AtomicPtr::new(ptr::null_mut());
 /// The process that loaded the module.
 static FIRST_PROCESS: AtomicU32 = AtomicU32::new(0);

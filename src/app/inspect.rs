@@ -64,7 +64,7 @@ impl App {
         self.jobs.autosave.as_ref().is_some_and(|autosave| autosave.holds(&self.state.editor))
     }
 
-    /// EngineReport of the last update, if there was one.
+    /// Report of the last update, if there was one.
     pub fn report(&self) -> Option<&EngineReport> {
         self.jobs.pipeline.result().map(|r| &r.frame.report)
     }

@@ -104,7 +104,7 @@ pub fn measure(
             let row = measured(radar, case, convention, repeats)?;
             on_row(&row);
             rows.push(row);
-            // Whatever else the machine does slows the transform as it slows the maps.
+            // Other load on the machine slows the transform as it slows the maps.
             bare.push(bare_ms(3));
         }
     }

@@ -47,7 +47,7 @@ fn median(mut work: impl FnMut(usize) -> Result<(), String>) -> Result<f64, Stri
     Ok(counted[REPEATS / 2])
 }
 
-/// Three maps of 10 and of 300 reflectors, from scratch and while one is dragged, and the live network, on whatever threads rayon has here.
+/// Three maps of 10 and of 300 reflectors, from scratch and while one is dragged, and the live network, on the threads that rayon has here.
 /// # Errors
 /// Why one of them can't be computed.
 pub fn measure() -> Result<Vec<Timed>, String> {

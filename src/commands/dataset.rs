@@ -49,7 +49,7 @@ pub struct Args {
     #[arg(long, value_name = "PART", conflicts_with = "floor", value_parser = real(0.0..=1.0))]
     thermal: Option<f64>,
 
-    /// DatasetPrecision of features and target: f16 or f32. Ends are always complex128
+    /// Precision of features and target: f16 or f32. Ends are always complex128
     #[arg(long, value_name = "f16|f32", default_value = "f16")]
     dtype: DatasetPrecision,
 

@@ -11,7 +11,7 @@ use crate::task::Task;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// WorseningSearch near a scene for one on which a method does worse, or for the smallest move after which it is right
+/// Search near a scene for one on which a method does worse, or for the smallest move after which it is right
 ///
 /// Objects move by at most --within, and bodies turn by up to 45 degrees. Their echoes change by up to 6 dB against each other, and new noise is drawn. The same seed gives the same
 /// scene if --tries ends the search, and not --minutes. With --repair only objects move. An output is right if it misses no object
@@ -30,7 +30,7 @@ pub struct Args {
     #[arg(long, value_name = "squared-error|missed|ghosts", default_value_t)]
     measure: WorseningMeasure,
 
-    /// WorseningSearch for the smallest move after which the method is right instead
+    /// Search for the smallest move after which the method is right instead
     #[arg(long)]
     repair: bool,
 

@@ -6,7 +6,7 @@ use crate::radar::End;
 use crate::signal::{Floor, TwoEnds};
 use std::sync::Arc;
 
-/// What somebody looks at. Whatever is not wanted is not computed.
+/// Which maps are looked at; no other is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapRequest {
     /// The floor beneath the reflectors.

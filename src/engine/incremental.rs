@@ -1,4 +1,4 @@
-//! The incremental engine, without threads: whoever owns it decides where it runs.
+//! The incremental engine, without threads: its owner decides on which thread it runs.
 //!
 //! The signal is a sum over objects. The engine keeps the range profiles of the objects at rest and, apart, of those being
 //! edited: dragging one of many objects evaluates that one alone. Taking an object out of the sum at rest leaves rounding behind;
@@ -140,7 +140,7 @@ impl Engine {
     }
 
     /// Computes what is wanted of `scene` as every command does, by [`crate::signal::simulate`] and the plain transforms in f64: the same
-    /// bits whatever the engine computed before. Several times slower than an update; for scenes at rest, and whenever figures are made.
+    /// bits after any earlier scene. Several times slower than an update; for scenes at rest, and whenever figures are made.
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn settle(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {

@@ -24,7 +24,7 @@ pub(super) struct ShownMaps {
     /// Which of `decades` show these objects.
     pub current: [bool; 3],
     pub maps: [Option<ReadyMap>; 3],
-    /// Buffers of earlier maps, reused once nobody else holds them.
+    /// Buffers of earlier maps, reused once no frame holds them.
     pub spare: Vec<Arc<RangeAngleMap>>,
 }
 
@@ -35,7 +35,7 @@ impl ShownMaps {
         if let Some(before) = before {
             (spare, decades) = (before.spare, before.decades);
             spare.extend(before.maps.into_iter().flatten().map(|m| m.lambda));
-            // Whoever looks at the previous frame holds three; three more are in the making.
+            // The previous frame holds three; three more are in the making.
             let excess = spare.len().saturating_sub(6);
             spare.drain(..excess);
         }

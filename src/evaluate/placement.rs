@@ -80,7 +80,7 @@ pub fn placement(
 
 /// Seed of a draw of noise. Another at every ratio, so that the errors at two ratios are independent.
 fn noise_seed(snr: Decibels, trial: u64) -> u64 {
-    // Thousandths of a decibel from below: no two ratios that anybody asks for meet.
+    // Thousandths of a decibel from below: no two ratios of a table meet.
     let step = (1e3 * (snr.0 + 1e6)).round() as u64;
     (step << 24).wrapping_add(trial)
 }

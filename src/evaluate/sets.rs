@@ -24,7 +24,7 @@ pub const NOISE_LEVEL: DecibelMilliwatts = DecibelMilliwatts(-20.0);
 pub enum SceneSet {
     /// Random scenes of one kind.
     Generated(Kind),
-    /// Somebody's own.
+    /// A folder of the user's.
     Folder(Folder),
     /// The same, given one by one.
     Listed(Listed),

@@ -94,7 +94,7 @@ pub enum ThresholdError {
 }
 
 impl ThresholdError {
-    /// Whether somebody asked it to stop.
+    /// Whether it was cancelled.
     pub fn is_cancelled(&self) -> bool {
         matches!(self, ThresholdError::Method { source: ReconstructError::Cancelled, .. })
     }

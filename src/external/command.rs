@@ -1,4 +1,4 @@
-//! A command as somebody writes it, split into words without a shell.
+//! A command as a shell's user writes it, split into words without a shell.
 
 use std::fmt;
 use std::str::FromStr;

@@ -144,7 +144,7 @@ impl ExternalMethod {
             state.process = Some(self.started(task)?);
         }
         let Some(process) = &mut state.process else { return Err(ProcessFailure::Broken("it isn't there".to_owned())) };
-        // Answers that nobody waited for come first.
+        // Answers to cancelled questions come first.
         while process.pending > 0 {
             process.wait(task, self.limit)?;
         }

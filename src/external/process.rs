@@ -1,4 +1,4 @@
-//! The process of a command: questions go in, answers come out, each on a thread of its own, so that a process that does neither holds nobody up.
+//! The process of a command: questions go in, answers come out, each on a thread of its own, so that a process that does neither holds up no caller.
 
 use super::command::CommandLine;
 use super::message::{ExternalAnswer, read_answer};
@@ -38,7 +38,7 @@ pub struct Process {
 /// Why there is no answer.
 #[derive(Debug)]
 pub enum ProcessFailure {
-    /// Somebody asked the work to stop; the process goes on.
+    /// The work was cancelled; the process goes on.
     Cancelled,
     /// The process is of no further use.
     Broken(String),
@@ -80,7 +80,7 @@ impl Process {
         };
         spawn("questions", move || {
             let Some(mut stdin) = stdin else { return };
-            // Whoever waits for the answer learns from the other end of the process that it reads no more.
+            // The waiting caller learns from the other end of the process that it reads no more.
             while let Ok(bytes) = asked.recv()
                 && stdin.write_all(&bytes).and_then(|()| stdin.flush()).is_ok()
             {}

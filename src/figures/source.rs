@@ -102,7 +102,7 @@ impl SceneSource {
         self.cells_panel(title, map.lambda.clone(), ColourMap::default(), Some(("Λ 0", "Λ 1")))
     }
 
-    /// SheetCells above a threshold, white on black.
+    /// Cells above a threshold, white on black.
     pub fn above_panel(&self, title: impl Into<String>, map: &RangeAngleMap, eta: f32) -> SheetPanel {
         self.cells_panel(title, map.lambda.mapv(|v| f32::from(v > eta)), ColourMap::Grey, None)
     }

@@ -11,7 +11,7 @@ use crate::platform::fs::{self, Draft, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes a file in one step: `write` fills a temporary file beside `path`, which then takes its place. Whoever looks sees the
+/// Writes a file in one step: `write` fills a temporary file beside `path`, which then takes its place. A reader sees the
 /// old file or the new one, never a part; on any error the old one stays as it was.
 /// # Errors
 /// What `write` returns, or what the system says: the folder is missing, `path` is a folder, a device or a pipe, the disk is full.

@@ -15,7 +15,7 @@ use zip::result::ZipError;
 /// Most bytes that one array of an archive may have, unless [`Npz::at_most`] says otherwise: 1 GiB, the samples of the largest radar.
 pub const MAX_ARRAY_BYTES: u64 = 1 << 30;
 
-/// Why an archive could not be read or written. Messages don't name the file: whoever opened it does.
+/// Why an archive could not be read or written. Messages don't name the file: its opener does.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum NpzError {

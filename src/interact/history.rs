@@ -47,7 +47,7 @@ impl History {
         }
     }
 
-    /// Ends the current step: the next edit starts a new one whatever its key.
+    /// Ends the current step: the next edit starts a new one with any key.
     pub fn seal(&mut self) {
         self.sealed = true;
     }

@@ -15,7 +15,7 @@ pub enum SelectionMode {
     Range,
 }
 
-/// Indices of selected objects. Two selections of the same objects are equal, whatever was picked last.
+/// Indices of selected objects. Two selections of the same objects are equal in any order of picking.
 #[derive(Debug, Clone, Default)]
 pub struct Selection {
     picked: BTreeSet<usize>,

@@ -17,7 +17,7 @@ pub enum Domain {
     Limits(RadarLimits),
 }
 
-/// RadarLimits of radars of one antenna an element, in both conventions and with all windows.
+/// Limits of radars of one antenna an element, in both conventions and with all windows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RadarLimits {

@@ -30,7 +30,7 @@ pub trait Student: Module + Clone {
     /// Random weights.
     fn fresh(config: &Self::Config, device: &Device) -> Self;
 
-    /// Whatever of the input depends on the radar alone.
+    /// The part of the input that depends on the radar alone.
     type Tables: Send + Sync;
 
     /// Makes the tables.

@@ -40,7 +40,7 @@ pub struct ThesisMethod {
 
 #[derive(Debug)]
 enum Network {
-    /// The engine without a framework, with buffers that nobody uses. They are taken out for a pass and not locked while it runs: another thread
+    /// The engine without a framework, with idle buffers. They are taken out for a pass and not locked while it runs: another thread
     /// makes its own.
     Engine { engine: Box<ThesisEngine>, idle: Mutex<Option<Buffers>> },
     /// burn, on a backend that was asked for.

@@ -27,7 +27,7 @@ const MAX_TENSORS: usize = 10_000;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Provenance {
     /// All entries, by name: `network`, `recipe`, `trainer`, `optimiser`, `seed`, `maps_seen`, `validation`, `eta`, ... Of a run in
-    /// several parts `parts` has each one's record (JSON), in which what nobody kept says "not recorded".
+    /// several parts `parts` has each one's record (JSON), in which a missing record says "not recorded".
     pub entries: BTreeMap<String, String>,
 }
 
@@ -221,7 +221,7 @@ impl<'a> WeightFile<'a> {
         write(&self.name, &tensors, &self.provenance, self.data)
     }
 
-    /// What the weights are known by, whatever else the file says about itself.
+    /// What the weights are known by, independent of the file's other metadata.
     pub fn weights(&self) -> Weights {
         let sha256 = sha256::of_pieces([self.data]);
         Weights { sha256: sha256::short(&sha256).to_owned(), optimiser: self.provenance.optimiser().to_owned() }

@@ -44,7 +44,7 @@ impl CellVerdict {
     }
 
     /// Its fill on a dark ground or on a light one. From nothing over misses and false alarms to hits each is at least twice as far from the
-    /// ground as the one before, in WCAG contrast, also for whoever sees two primary colours only.
+    /// ground as the one before, in WCAG contrast, also for dichromats.
     pub fn fill(self, dark: bool) -> Rgb {
         match (self, dark) {
             (CellVerdict::Nothing, true) => [18, 22, 30],
@@ -175,7 +175,7 @@ mod tests {
         ),
     ];
 
-    /// Relative luminance of a colour as somebody sees it, 0 to 1.
+    /// Relative luminance of a colour as it is perceived, 0 to 1.
     fn luminance(colour: Rgb, vision: &[[f64; 3]; 3]) -> f64 {
         let linear = colour.map(|c| match f64::from(c) / 255.0 {
             c if c <= 0.040_45 => c / 12.92,

@@ -71,7 +71,7 @@ impl From<Carrier> for Convention {
 }
 
 impl Radar {
-    /// The convention that its samples follow, whatever the spacing of its elements.
+    /// The convention that its samples follow, at any spacing of its elements.
     pub fn convention(&self) -> Convention {
         self.carrier.into()
     }

@@ -22,7 +22,7 @@ impl Radar {
         if self.chirps > 1 { all(self.chirps) } else { 0 }
     }
 
-    /// Upper bound on the bytes of memory that the signal and the maps of this radar ask for, whatever command or method makes them;
+    /// Upper bound on the bytes of memory that the signal and the maps of this radar ask for, by any command or method;
     /// networks refuse radars other than the one they were trained for, and come on top.
     ///
     /// `tests/library/memory.rs` holds every method to it.

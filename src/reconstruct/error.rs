@@ -6,7 +6,7 @@ use crate::task::Cancelled;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ReconstructError {
-    /// Somebody asked it to stop.
+    /// It was cancelled.
     #[error("cancelled")]
     Cancelled,
     /// The samples have another shape than the radar's ends.

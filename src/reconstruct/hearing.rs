@@ -18,7 +18,7 @@ pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, noise: NoisePri
 pub struct Hearing {
     /// Variance a sample that is believed where more than [`MARGIN`] times as much is heard.
     expected: f64,
-    /// Variance a sample, where somebody knows it.
+    /// Variance a sample, where it is known.
     known: Option<f64>,
 }
 

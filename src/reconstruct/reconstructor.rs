@@ -121,7 +121,7 @@ pub trait Reconstructor: Send + Sync {
             Arc::new(LayoutSamples { layout: heard.layout.clone(), samples: heard.samples.mapv(|v| v * gain) })
         });
         let request = &Request { noise: request.noise.scaled(gain), heard, ..request.clone() };
-        // From within, a parallel step is handed to whoever is idle; from without, its caller would sleep through each one.
+        // From within, a parallel step is handed to an idle thread; from without, its caller would sleep through each one.
         let found = rayon::scope(|_| self.estimate(radar, &ends, request))?;
         // What was cancelled while it was drawn is no answer.
         request.task.check()?;

@@ -156,7 +156,7 @@ pub fn heard_in_the_middle(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho
     all
 }
 
-/// What echoes, as whatever evaluates samples takes it.
+/// What echoes, as the algorithms for samples take it.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a> {
     /// Reflectors that nothing hides.

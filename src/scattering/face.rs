@@ -31,7 +31,7 @@ impl Face {
     /// The face from one end to the other, (x, y) in metres.
     pub fn new([from, to]: [[f64; 2]; 2], is_two_sided: bool, reflectivity: f64) -> Self {
         let (from, to) = (V::from(from), V::from(to));
-        // A face of no length has no echo, in whatever direction it leads.
+        // A face of no length has no echo, in any direction.
         let length_metres = (to - from).norm().max(1e-12);
         Face { from, along: (to - from) * length_metres.recip(), length_metres, is_two_sided, reflectivity }
     }

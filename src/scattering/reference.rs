@@ -86,8 +86,8 @@ fn bessel(x: f64, top: usize) -> (Vec<f64>, Vec<f64>) {
     (first, second)
 }
 
-/// The exact echo of a perfect cylinder at sample `n`, E along the post, from a line source that is also the observer, whatever of its
-/// phase is that of the way to the cylinder's nearest point included.
+/// The exact echo of a perfect cylinder at sample `n`, E along the post, from a line source that is also the observer, the
+/// phase of the way to the cylinder's nearest point included.
 pub fn post(radar: &Radar, centre: [f64; 2], radius: f64, antenna: [f64; 2], n: usize) -> Complex64 {
     let away = (antenna[0] - centre[0]).hypot(antenna[1] - centre[1]);
     let k = radians_per_metre(radar, n as f64) / 2.0;

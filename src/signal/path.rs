@@ -14,7 +14,7 @@ use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// PairBlocks of antennas, one a lane.
+/// Pairs of antennas, one a lane.
 #[derive(Debug, Clone, Copy)]
 pub struct PairBlocks<const W: usize> {
     transmitter_x_metres: Lanes<f64, W>,
@@ -227,14 +227,14 @@ pub enum By {
 /// How much an echo changes for each unit of what moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathChange {
-    /// PathChange of the range, metres.
+    /// Change of the range, metres.
     pub range_metres: f64,
     /// Relative change of the amplitude.
     pub amplitude: f64,
 }
 
 impl PathChange {
-    /// How the echo of a point at (`x_metres`, `y_metres`) changes, whatever its reflectivity.
+    /// How the echo of a point at (`x_metres`, `y_metres`) changes, for any reflectivity.
     pub fn of_point(pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
         let range_metres = x_metres.hypot(y_metres);
         let [there, back] = pair.places_metres().map(|[antenna, ahead]| {

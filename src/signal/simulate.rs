@@ -16,8 +16,8 @@ use crate::task::Task;
 ///
 /// The fastest algorithm whose error stays far beneath the floor is used; `floor::Floor::Thesis` is exact phase and the noise that
 /// rounding leaves in the thesis' evaluation. [`super::direct::beat_signal`] makes that evaluation itself, rounding and all,
-/// [`super::exact`] and [`super::beat_signal`] any other. The same arguments give the same bits on the same instructions, whatever was
-/// computed before and on however many threads.
+/// [`super::exact`] and [`super::beat_signal`] any other. The same arguments give the same bits on the same instructions,
+/// on any number of threads.
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {

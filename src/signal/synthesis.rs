@@ -1,6 +1,6 @@
 //! Runs a block algorithm over the whole array: elements in blocks of one vector, blocks in parallel.
 //!
-//! Every block is computed alone and in the same order whatever the number of threads, so results do not depend on it.
+//! Every block is computed alone and in the same order for any number of threads, so results do not depend on it.
 
 use super::algorithm::Algorithm;
 use super::closed_form::ClosedForm;

@@ -263,7 +263,7 @@ impl<Q, T> Drop for Worker<Q, T> {
             running.task.cancel();
         }
         drop(slot);
-        // Nobody waits for the thread: work that doesn't look at its task would keep the window from closing.
+        // The thread is not joined: work that doesn't look at its task would keep the window from closing.
         self.shared.ready.notify_all();
     }
 }

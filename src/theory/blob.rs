@@ -219,7 +219,7 @@ pub(super) mod tests {
         map
     }
 
-    /// ResponseRow and column of the simulated map through any place between its cells, that place first, [`FINE`] parts to a cell.
+    /// Row and column of the simulated map through any place between its cells, that place first, [`FINE`] parts to a cell.
     struct Cross {
         row: Vec<f64>,
         column: Vec<f64>,

@@ -1,6 +1,6 @@
 //! A chirp and its echoes as frequencies against time: what is sent, what returns, and the beat as their difference.
 //!
-//! The samples depend on the bandwidth and on the number of samples alone: the beat turns `2 R B / c` times in a chirp, whatever its duration
+//! The samples depend on the bandwidth and on the number of samples alone: the beat turns `2 R B / c` times in a chirp, for any duration
 //! (thesis section 2.1). The thesis' radar has no duration; [`Radar::chirp_seconds`] gives it one. The chirp here is the one that table 3.1
 //! names, which rises from the carrier. That of the thesis' formula falls from half of it ([`crate::radar::Convention`]); its beats are as high.
 

@@ -19,7 +19,7 @@ pub struct Consequences {
     /// Half-power beam width of one end.
     pub end_beam: BeamWidth,
     /// Columns from a blob to its first grating lobe: the angle transform repeats after one turn from element to element, which is the
-    /// width of the map whatever the spacing.
+    /// width of the map at any spacing.
     pub grating_columns: f64,
     /// The same in cos(theta): below 2 some directions have a grating lobe among the others (M. I. Skolnik, "Introduction to Radar
     /// Systems", on arrays).

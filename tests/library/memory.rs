@@ -1,4 +1,4 @@
-//! What a radar asks for stays below what `Radar::memory_bytes` counts, whoever makes its maps.
+//! What a radar asks for stays below what `Radar::memory_bytes` counts, by any method.
 //!
 //! Each measurement has a process of its own: this test program again, asked for the test called `child`.
 

@@ -216,7 +216,7 @@ fn captured(radar: &Radar, points: &[(f64, f64)], sigma: f64, rng: &mut ChaCha8R
     });
     let folder = tempfile::tempdir().unwrap();
     write_npz(&folder.path().join("c.npz"), |out| out.add("cube", &cube)).unwrap();
-    // Whoever wrote the file counted x from its own zero.
+    // The file counts x from its own zero.
     let from_zero = |places: &[f64]| format!("{:?}", places.iter().map(|x| x + 0.25).collect::<Vec<_>>());
     let text = format!(
         "format = 2\n[radar]\nconvention = \"physical\"\ncarrier_hz = {:?}\nbandwidth_hz = {:?}\nend_elements = {}\n\

@@ -47,7 +47,7 @@ fn edits_over_no_floor_end_within_their_tolerance() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// Whatever the points, every algorithm stays finite and keeps its promise.
+    /// On any points, every algorithm stays finite and keeps its promise.
     #[test]
     fn any_points_are_summed_as_promised(
         points in prop::collection::vec((-60.0..60.0f64, -60.0..60.0f64, -32.0..32.0f64, any::<bool>()), 0..7),

@@ -1,7 +1,7 @@
 //! The front of run time against error: how long three Lambda maps take, and how far they are from the truth, by algorithm,
 //! precision, tolerance and number of reflectors.
 //!
-//! [`measure`] does the work for `apertura bench` and for whoever wants to draw the front while it grows: it calls back with every row and
+//! [`measure`] does the work for `apertura bench` and for the window, which draws the front while it grows: it calls back with every row and
 //! stops when asked to. [`FrontRequest::short`] takes a second or two, [`FrontRequest::full`] about a minute.
 //!
 //! The floor's noise is made beforehand, for the plain algorithms as for the fast ones; it is scaled to the scene's level inside the time.
@@ -133,12 +133,12 @@ pub struct MapConvention {
 impl MapConvention {
     /// The thesis': its rounding floor, normalised from the smallest to the largest cell.
     pub const THESIS: MapConvention = MapConvention { floor: Floor::Thesis, normalisation: Normalisation::MinMax };
-    /// Stable whatever the precision: no floor, 100 dB below the peak.
+    /// Stable in any precision: no floor, 100 dB below the peak.
     pub const FIXED_RANGE: MapConvention = MapConvention {
         floor: Floor::Exact,
         normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)),
     };
-    /// No floor, normalised by the smallest cell: the picture's floor is the last bits of whatever computed it.
+    /// No floor, normalised by the smallest cell: the picture's floor is the last bits of the algorithm.
     pub const NO_FLOOR: MapConvention = MapConvention { floor: Floor::Exact, normalisation: Normalisation::MinMax };
     pub const BOTH: [MapConvention; 2] = [MapConvention::FIXED_RANGE, MapConvention::THESIS];
 

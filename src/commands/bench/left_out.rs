@@ -69,7 +69,7 @@ fn of_kind(live: &LiveMethod, kind: Kind, count: u32) -> Result<LeftOut, Command
             times[at].push(start.elapsed().as_secs_f64() * 1e3);
             decades.map_err(CommandError::failed)
         };
-        // By turns, as whichever comes second finds the samples at hand.
+        // By turns, as the second one finds the samples at hand.
         let (part, whole) = if number % 2 == 0 {
             (timed(0, false)?, timed(1, true)?)
         } else {

@@ -89,7 +89,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE.csv")]
     rows: Option<PathBuf>,
 
-    /// Replace the file of --rows, whatever it contains
+    /// Replace the file of --rows, with any content
     #[arg(long, requires = "rows")]
     overwrite: bool,
 

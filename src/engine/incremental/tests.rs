@@ -143,7 +143,7 @@ fn by_command(radar: &Radar, scene: &Scene, wanted: &MapRequest) -> (signal::Two
     (signal.two_ends(radar), maps)
 }
 
-/// Whatever came before, a scene at rest has the bits of the commands, and so have the samples of its ends at any time.
+/// After any scene, a scene at rest has the bits of the commands, and so have the samples of its ends at any time.
 #[test]
 fn a_scene_at_rest_does_not_depend_on_what_came_before() {
     let radar = small();
@@ -334,7 +334,7 @@ fn only_rows_that_changed_are_recomputed() {
     assert!(full_map_rows(&frame).contains("floor"), "{}", full_map_rows(&frame));
 }
 
-/// f32 with min-max and no floor would draw f32's rounding: nobody gets there, not even by force.
+/// f32 with min-max and no floor would draw f32's rounding: it is refused, even where it is forced.
 #[test]
 fn single_precision_is_refused_below_its_rounding() {
     let scene = Scene::of_points([(0.3, 1.0), (-0.2, 1.4)]);
@@ -380,7 +380,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Whatever the scene, cells are in [0, 1] and none is NaN.
+    /// Of any scene, cells are in [0, 1] and none is NaN.
     #[test]
     fn cells_are_always_in_range(
         points in prop::collection::vec((-50.0..50.0f64, -50.0..50.0f64, -30.0..30.0f64), 0..8),

@@ -39,7 +39,7 @@ pub enum CampaignError {
 }
 
 impl CampaignError {
-    /// Whether somebody asked it to stop.
+    /// Whether it was cancelled.
     pub fn is_cancelled(&self) -> bool {
         matches!(self, CampaignError::Method { source: ReconstructError::Cancelled, .. })
     }

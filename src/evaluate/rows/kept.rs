@@ -87,7 +87,7 @@ pub struct RowFile {
 }
 
 impl RowFile {
-    /// Opens the file, or begins it. Rows of the same run stay and half a last line goes; `overwrite` begins anew whatever is there.
+    /// Opens the file, or begins it. Rows of the same run stay and half a last line goes; `overwrite` begins anew over any content.
     /// # Errors
     /// [`KeptError`] for a file that holds anything else, and for one that another process writes.
     pub fn open(path: &Path, wanted: &RunRows, overwrite: bool) -> Result<RowFile, KeptError> {

@@ -39,7 +39,7 @@ impl fmt::Display for Lack {
     }
 }
 
-/// What lacks of the runs that `rows` are of, whichever run a row is of. Of rows that don't say what their whole run was, gaps are found
+/// What lacks of the runs that `rows` are of. Of rows that don't say what their whole run was, gaps are found
 /// between the scenes that are there.
 pub fn lacks(rows: &[Row]) -> Vec<Lack> {
     let mut present: BTreeMap<(&str, &str), BTreeSet<u32>> = BTreeMap::new();

@@ -174,7 +174,7 @@ impl Column {
 }
 
 impl Row {
-    /// Whether its set lies over a floor of its own, whatever floor the others of a run have: scenes of noise alone do.
+    /// Whether its set lies over a floor of its own, not the run's: scenes of noise alone do.
     pub fn has_own_floor(&self) -> bool {
         self.set == "noise"
     }

@@ -1,6 +1,6 @@
 //! The live network's forward pass without a framework: channels-last, buffers kept, the same weights as [`super::module`].
 //!
-//! [`super::module`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
+//! [`super::module`] is what trains and what this is tested against; this is what runs during a drag.
 
 use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, LiveConfig, WIDE};
 use super::constants::{SPACING_AT, window_of};

@@ -1,4 +1,4 @@
-//! Examples to train on: example `i` is a function of the request and `i` alone, whoever asks, in whatever order.
+//! Examples to train on: example `i` is a function of the request and `i` alone, in any order of asking.
 
 use super::arrays::Arrays;
 use super::constants::turn_rows;
@@ -91,7 +91,7 @@ pub enum EndSamples {
 /// What is learned from one scene.
 #[derive(Debug, Clone)]
 pub struct Example {
-    /// Kind of the scene; none where somebody else made it.
+    /// Kind of the scene; none where the caller made it.
     pub kind: Option<Kind>,
     /// Its floor.
     pub floor: Floor,
@@ -213,7 +213,7 @@ impl Examples {
         self.made(Some(kind), radar, scene, index, task)
     }
 
-    /// Example `index` of a scene that somebody else made. Its noise is picked by seed, purpose and `index`.
+    /// Example `index` of a scene that the caller made. Its noise is picked by seed, purpose and `index`.
     /// # Errors
     /// As [`Examples::example`].
     pub fn example_of(&self, scene: Scene, index: u32, task: &Task) -> Result<Example, ExampleError> {
@@ -221,7 +221,7 @@ impl Examples {
         self.made(None, self.radar(index), Scene { noise_seed, ..scene }, index, task)
     }
 
-    /// Seed of the noise of a scene that somebody else made.
+    /// Seed of the noise of a scene that the caller made.
     fn noise_seed(&self, index: u32) -> u64 {
         let mut key = [0u8; 32];
         key[..8].copy_from_slice(&self.request.seed.to_le_bytes());

@@ -6,7 +6,7 @@
 //! apart reflectors that the end's own beam cannot.
 //!
 //! In columns and range bins the beams of an end are the same for every radar; where the same reflector lies in the other end's picture is not, and
-//! follows from the radar's constants. All pictures are made under a window of Hann, whatever the radar's maps are made under.
+//! follows from the radar's constants. All pictures are made under a window of Hann, independent of the radar's own.
 //!
 //! Everything is measured relative to the mean power of the samples (the *gain*): a louder receiver gives the same tensors.
 

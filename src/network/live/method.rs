@@ -33,7 +33,7 @@ pub struct LiveMethod {
     name: &'static str,
     engine: LiveEngine,
     extractor: Mutex<Option<Arc<FeatureExtractor>>>,
-    /// Buffers that nobody uses. They are taken out for a pass and not locked while it runs: other threads, and the thread itself
+    /// Idle buffers. They are taken out for a pass and not locked while it runs: other threads, and the thread itself
     /// where rayon hands it another caller's work, take others.
     idle: Mutex<Vec<LiveScratch>>,
     eta: f32,

@@ -22,7 +22,7 @@ pub(super) struct UpwardLevel {
 }
 
 impl UpwardLevel {
-    /// UpwardLevel `level` with so many input and output channels.
+    /// Stage `level` with so many input and output channels.
     pub(super) fn new(
         layers: ThesisLayers<'_>,
         level: usize,
@@ -86,7 +86,7 @@ pub(super) struct Last {
 }
 
 impl Last {
-    /// UpwardLevel `level` with so many input channels.
+    /// Stage `level` with so many input channels.
     pub(super) fn new(layers: ThesisLayers<'_>, level: usize, input: usize) -> Result<Last, WeightsError> {
         let [weights, bias] = layers.transposed(&format!("up.upconv.{level}"), [input, 1, SIZE, SIZE])?;
         let taps: Vec<f32> = (0..LANES).flat_map(|tap| weights.iter().skip(tap).step_by(LANES)).copied().collect();

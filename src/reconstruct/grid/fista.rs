@@ -29,7 +29,7 @@ pub struct Fista {
     /// Penalty, as a part of the one that would leave no reflector at all, but no less than what keeps noise out. The default is by
     /// examples/choose_eta.rs.
     pub penalty: f64,
-    /// GridCells that are candidates; at most 4096 are taken, whose Gram matrix fills 268 MB.
+    /// Cells that are candidates; at most 4096 are taken, whose Gram matrix fills 268 MB.
     pub candidates: usize,
     /// Iterations.
     pub iterations: usize,

@@ -1,4 +1,4 @@
-//! What must hold of echoes whatever the scene: reciprocity, continuity, closed forms, energy.
+//! What must hold of echoes of any scene: reciprocity, continuity, closed forms, energy.
 
 use super::super::face::Face;
 use super::*;

@@ -1,6 +1,6 @@
 //! Scenes read from TOML, with errors that name the line.
 //!
-//! A text may begin with `format = 1`. It is not written: whatever needs more than that format has is written with a higher number, which
+//! A text may begin with `format = 1`. It is not written: a scene that needs more than that format has is written with a higher number, which
 //! older programs name in their message.
 
 use super::content::{SceneFile, SceneTextError, one_line};

@@ -27,8 +27,8 @@ pub struct House {
 impl House {
     /// Reads `src`.
     ///
-    /// Imports of tests count where `with_tests`. A file that passes on what its children define (`pub use`) doesn't import it: whoever
-    /// imports by that name imports the child.
+    /// Imports of tests count where `with_tests`. A file that passes on what its children define (`pub use`) doesn't import it:
+    /// its importers import the child.
     pub fn read(src: &Path, with_tests: bool) -> House {
         let mut files = BTreeMap::new();
         for path in rust_files(src) {
@@ -129,7 +129,7 @@ impl House {
             _ => {
                 at.push(first.clone());
                 if !self.modules.contains_key(&at) {
-                    // A name that was imported: whoever defines it.
+                    // A name that was imported: its definition.
                     let file = self.files.get(self.modules.get(module)?)?;
                     let import = file.source.uses.iter().find(|u| u.name == *first && u.path.len() > 1)?;
                     let imported = self.start(module, &import.path, depth + 1)?;

@@ -33,7 +33,7 @@ pub enum EditCommand {
     SelectNext,
     /// Select the one before it.
     SelectPrevious,
-    /// FieldChange a number of every selected object.
+    /// Change a number of every selected object.
     SetField(Field, FieldChange),
     /// Align the selected objects.
     Align(Alignment),

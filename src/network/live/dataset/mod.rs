@@ -34,7 +34,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// DatasetPrecision of features and target.
+/// Precision of features and target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DatasetPrecision {
     /// float16: 11 bits, half the space.
@@ -184,7 +184,7 @@ pub enum DatasetError {
     /// There are no examples of this kind or radar.
     #[error(transparent)]
     Examples(#[from] ExamplesError),
-    /// Somebody asked to stop.
+    /// Cancelled.
     #[error("cancelled")]
     Cancelled(#[from] Cancelled),
 }
