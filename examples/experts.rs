@@ -4,7 +4,7 @@
 //! On validation scenes its constants are chosen (`src/reconstruct/{judge,own_threshold}.rs`); on test scenes it reports.
 //! `cargo run --release --example experts -- --kinds 2,walls,beyond-ring --floors thesis,snr=20 --count 40 --test`
 
-use apertura::evaluate::trial::{Answer, Trial};
+use apertura::evaluate::trial::{TimedAnswer, Trial};
 use apertura::maps::Normalisation;
 use apertura::methods;
 use apertura::radar::{Decibels, Radar, Tolerances};
@@ -48,10 +48,10 @@ struct Arguments {
 }
 
 /// Bounds of the confidences that are counted together.
-const SAID: [f64; 6] = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0];
+const DOUBT_EDGES: [f64; 6] = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0];
 
 /// A listed reflector is there where a true one lies within so many range bins and columns.
-const NEAR: [f64; 2] = [1.0, 2.0];
+const NEAR_CELLS: [f64; 2] = [1.0, 2.0];
 
 /// The methods, in the order of the columns.
 const METHODS: [&str; 3] = ["live", "nomp", "hybrid"];
@@ -64,7 +64,7 @@ fn main() -> Outcome {
         println!(
             "{:24}{}",
             "said",
-            SAID.windows(2).map(|b| format!("{:>18}", format!("{}-{}", b[0], b[1]))).collect::<String>()
+            DOUBT_EDGES.windows(2).map(|b| format!("{:>18}", format!("{}-{}", b[0], b[1]))).collect::<String>()
         );
     } else {
         println!(
@@ -74,7 +74,7 @@ fn main() -> Outcome {
     }
     for &kind in &arguments.kinds {
         for &floor in &arguments.floors {
-            let answers: Vec<Vec<Answer>> = (arguments.first..arguments.first + arguments.count)
+            let answers: Vec<Vec<TimedAnswer>> = (arguments.first..arguments.first + arguments.count)
                 .map(|number| arguments.answers(kind, floor, number))
                 .collect::<Outcome<_>>()?;
             let name = format!("{kind}, {floor}");
@@ -89,8 +89,7 @@ fn main() -> Outcome {
 }
 
 impl Arguments {
-    /// What the methods make of a scene, against the map of the array as it should be.
-    fn answers(&self, kind: Kind, floor: Floor, number: u32) -> Outcome<Vec<Answer>> {
+    fn answers(&self, kind: Kind, floor: Floor, number: u32) -> Outcome<Vec<TimedAnswer>> {
         let radar = Radar::default();
         let scene = self.scene(kind, number);
         let mut trial = Trial::new(&radar, &scene, floor, self.normalisation)?;
@@ -103,14 +102,14 @@ impl Arguments {
     }
 
     /// Of the reflectors that are listed with about the same confidence: the mean of what is said, the part that is there, and the count.
-    fn print_confidence(&self, name: &str, kind: Kind, answers: &[Vec<Answer>]) {
-        let mut bins = [[0.0; 3]; SAID.len() - 1];
+    fn print_confidence(&self, name: &str, kind: Kind, answers: &[Vec<TimedAnswer>]) {
+        let mut bins = [[0.0; 3]; DOUBT_EDGES.len() - 1];
         for (number, answer) in (self.first..).zip(answers) {
             let scene = self.scene(kind, number);
             let truth = scene.reflectors();
             let found = &answer[1].found;
             for (said, reflector) in found.confidences.iter().zip(&found.reflectors) {
-                let bin = SAID[1..SAID.len() - 1].partition_point(|bound| said >= bound);
+                let bin = DOUBT_EDGES[1..DOUBT_EDGES.len() - 1].partition_point(|bound| said >= bound);
                 let there = truth.iter().any(|t| is_near(reflector, t));
                 bins[bin][0] += said;
                 bins[bin][1] += f64::from(u8::from(there));
@@ -142,7 +141,7 @@ fn is_near(listed: &Reflector, truth: &Reflector) -> bool {
     let [a, b] = [listed, truth].map(|r| radar.polar_of(r.x_metres, r.y_metres));
     let columns = radar.column_of_cos(a.cos_theta) - radar.column_of_cos(b.cos_theta);
     let bins = (a.range_metres - b.range_metres) / radar.range_resolution_metres();
-    bins.abs() <= NEAR[0] && columns.abs() <= NEAR[1]
+    bins.abs() <= NEAR_CELLS[0] && columns.abs() <= NEAR_CELLS[1]
 }
 
 fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
@@ -150,7 +149,7 @@ fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
 }
 
 /// Means of all scenes; the ratio is that of hybrid to the better of both experts, with the standard error of their paired difference.
-fn print_row(name: &str, answers: &[Vec<Answer>]) {
+fn print_row(name: &str, answers: &[Vec<TimedAnswer>]) {
     let error = |method: usize| answers.iter().map(move |a| a[method].metrics.squared_error);
     let [live, nomp, hybrid] = [0, 1, 2].map(|method| mean(error(method)));
     let better = usize::from(nomp < live);

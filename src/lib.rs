@@ -58,15 +58,18 @@
 
 #[cfg(feature = "app")]
 pub mod app;
+#[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod benchmark;
 pub mod bounds;
 #[cfg(feature = "command-line")]
+#[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod commands;
 pub mod engine;
 pub mod evaluate;
 #[cfg(feature = "external")]
 pub mod external;
 #[cfg(all(feature = "network", feature = "pictures"))]
+#[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod figures;
 pub mod files;
 pub mod interact;

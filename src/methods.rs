@@ -8,7 +8,6 @@ use crate::reconstruct::{
 };
 use std::sync::{Arc, PoisonError, RwLock};
 
-/// Methods that were added while the program runs.
 static ADDED: RwLock<Vec<Arc<dyn Reconstructor>>> = RwLock::new(Vec::new());
 
 /// Every method this build knows and every added one, in the order they are shown.
@@ -19,7 +18,6 @@ pub fn all() -> Vec<Arc<dyn Reconstructor>> {
 }
 
 /// Adds a method to [`all`], in place of one that was added under this name before.
-///
 /// # Errors
 /// [`NameTaken`] where a method of this build has the name.
 pub fn add(method: Arc<dyn Reconstructor>) -> Result<(), NameTaken> {
@@ -40,7 +38,6 @@ pub struct NameTaken {
     name: &'static str,
 }
 
-/// Every method of this build.
 fn shipped() -> Vec<Arc<dyn Reconstructor>> {
     #[cfg(feature = "live")]
     let networks = crate::network::shipped();
@@ -73,12 +70,12 @@ fn shipped() -> Vec<Arc<dyn Reconstructor>> {
     methods
 }
 
-/// The method whose output is shown where nobody chose one.
+/// The method whose output is shown by default.
 pub fn preferred() -> Arc<dyn Reconstructor> {
     by_name("live").unwrap_or_else(|_| Arc::new(Baseline))
 }
 
-/// The method whose output is shown for samples of `radar` where nobody chose one: the networks know one radar only.
+/// The method whose output is shown for samples of `radar` by default: the networks know one radar only.
 pub fn preferred_for(radar: &Radar) -> Arc<dyn Reconstructor> {
     if radar.of_one_chirp() == Radar::default() {
         return preferred();
@@ -95,7 +92,6 @@ pub struct UnknownMethod {
 }
 
 /// The method called `name`.
-///
 /// # Errors
 /// [`UnknownMethod`] lists the known names.
 pub fn by_name(name: &str) -> Result<Arc<dyn Reconstructor>, UnknownMethod> {

@@ -25,24 +25,22 @@ pub const VERSION: &str = "1";
 pub const MOST_BYTES: usize = 4 << 20;
 /// Most letters that are looked at: TOML that can't be packed at all.
 pub const MOST_LETTERS: usize = 6 << 20;
-/// Name of the table beside the scene.
 const KEY: &str = "shared";
-/// A map is never shown larger than this part of it fills a panel.
 const LEAST_PART: f32 = 0.005;
 
 /// A scene, its radar, and how they are looked at.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Shared {
+pub struct SharedScene {
     /// The scene and the radar.
     pub file: SceneFile,
     /// How they are looked at.
-    pub view: View,
+    pub view: SharedView,
 }
 
 /// How a scene is looked at.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct View {
+pub struct SharedView {
     /// What lies beneath the reflectors.
     pub floor: Floor,
     /// How maps are normalised.
@@ -52,9 +50,9 @@ pub struct View {
     /// Whether maps are drawn over x and y, not over cos(theta) and range.
     pub cartesian: bool,
     /// The visible part of range-angle maps; left is the first column.
-    pub range_angle_part: Part,
+    pub range_angle_part: VisiblePart,
     /// The visible part of Cartesian maps.
-    pub cartesian_part: Part,
+    pub cartesian_part: VisiblePart,
     /// eta', the threshold of the target.
     pub target_eta: f32,
     /// The detector in the place of the thresholds, if one is in use.
@@ -77,7 +75,7 @@ pub struct View {
 /// Part of a map, as fractions of its width and height from the lower left.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Part {
+pub struct VisiblePart {
     /// Left edge.
     pub left: f32,
     /// Lower edge.
@@ -88,10 +86,9 @@ pub struct Part {
     pub top: f32,
 }
 
-impl Default for Part {
-    /// All of it.
+impl Default for VisiblePart {
     fn default() -> Self {
-        Part { left: 0.0, bottom: 0.0, right: 1.0, top: 1.0 }
+        VisiblePart { left: 0.0, bottom: 0.0, right: 1.0, top: 1.0 }
     }
 }
 
@@ -107,6 +104,7 @@ pub struct LessonPlace {
 
 /// Why a text can't be opened, or something not be written as one.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum ShareError {
     /// It doesn't begin as such a text does.
     #[error("the text begins with \"{0}\"; expected \"{PREFIX}{VERSION}:\"")]
@@ -130,12 +128,7 @@ pub enum ShareError {
     Unusable(#[from] SceneError),
     /// Something it says of the view can't be.
     #[error("the text's {field} {problem}")]
-    View {
-        /// Which.
-        field: &'static str,
-        /// What is wrong with it, and what was expected.
-        problem: String,
-    },
+    View { field: &'static str, problem: String },
     /// A number of the scene can't be written.
     #[error("the scene can't be written as text: {0}")]
     Unwritable(String),
@@ -146,9 +139,8 @@ pub fn is_shared(text: &str) -> bool {
     text.trim_start().starts_with(PREFIX)
 }
 
-impl Shared {
+impl SharedScene {
     /// The text.
-    ///
     /// # Errors
     /// [`ShareError::Large`] and [`ShareError::Unwritable`] for a scene with more than fits, or a number that TOML can't hold.
     pub fn to_text(&self) -> Result<String, ShareError> {
@@ -164,10 +156,9 @@ impl Shared {
     }
 
     /// Reads a text, in bounded memory.
-    ///
     /// # Errors
     /// [`ShareError`] says what is wrong and what was expected.
-    pub fn from_text(text: &str) -> Result<Shared, ShareError> {
+    pub fn from_text(text: &str) -> Result<SharedScene, ShareError> {
         if text.len() > MOST_LETTERS {
             return Err(ShareError::Large);
         }
@@ -182,11 +173,11 @@ impl Shared {
         }
         let packed = URL_SAFE_NO_PAD.decode(packed).map_err(|e| ShareError::Damaged(e.to_string()))?;
         let toml = unpack(&packed)?;
-        let (file, view) = from_toml_beside::<View>(&toml, KEY)?;
+        let (file, view) = from_toml_beside::<SharedView>(&toml, KEY)?;
         let view = view.ok_or(ShareError::View { field: "table [shared]", problem: "is missing".to_owned() })?;
         file.scene.validate(&file.radar)?;
         view.check()?;
-        Ok(Shared { file, view })
+        Ok(SharedScene { file, view })
     }
 }
 
@@ -205,7 +196,7 @@ fn unpack(packed: &[u8]) -> Result<String, ShareError> {
     String::from_utf8(bytes).map_err(|e| ShareError::Damaged(e.to_string()))
 }
 
-impl View {
+impl SharedView {
     /// Holds what comes from outside to what the app can show.
     fn check(&self) -> Result<(), ShareError> {
         let wrong = |field, problem: String| Err(ShareError::View { field, problem });
@@ -222,7 +213,7 @@ impl View {
             }
         }
         for (field, part) in [("range_angle_part", self.range_angle_part), ("cartesian_part", self.cartesian_part)] {
-            let Part { left, bottom, right, top } = part;
+            let VisiblePart { left, bottom, right, top } = part;
             let inside = |low: f32, high: f32| low >= 0.0 && high <= 1.0 && high - low >= LEAST_PART;
             if !(inside(left, right) && inside(bottom, top)) {
                 return wrong(
@@ -242,14 +233,14 @@ mod tests {
     use crate::scene::{Object, Point, Scene, presets};
     use proptest::prelude::*;
 
-    fn view() -> View {
-        View {
+    fn view() -> SharedView {
+        SharedView {
             floor: Floor::Snr(Decibels(12.5)),
             normalisation: Normalisation::DynamicRange(Decibels(60.0)),
             colours: ColourMap::Viridis,
             cartesian: true,
-            range_angle_part: Part { left: 0.25, ..Part::default() },
-            cartesian_part: Part::default(),
+            range_angle_part: VisiblePart { left: 0.25, ..VisiblePart::default() },
+            cartesian_part: VisiblePart::default(),
             target_eta: 0.9,
             cfar: None,
             eta: Some(0.31),
@@ -260,9 +251,9 @@ mod tests {
         }
     }
 
-    fn shared() -> Shared {
+    fn shared() -> SharedScene {
         let scene = Scene { name: "Zwei Pfähle".to_owned(), ..Scene::of_points([(0.1 + 0.2, 20.0), (3.0, 4.0)]) };
-        Shared {
+        SharedScene {
             file: SceneFile { scene, radar: Radar { carrier: Carrier::TwoWay, ..Radar::default() } },
             view: view(),
         }
@@ -294,11 +285,11 @@ mod tests {
             let floor = if marks { level } else { Floor::Snr(Decibels(snr)) };
             let normalisation = Normalisation::DynamicRange(Decibels(range));
             let cfar = marks.then(|| Cfar { guard: [samples, 2], ..Cfar::default() });
-            let view = View { cfar, floor, normalisation, eta, target_eta, cartesian, theory, marks, lesson, ..view() };
-            let shared = Shared { file: SceneFile { scene, radar: Radar { samples, ..Radar::default() } }, view };
+            let view = SharedView { cfar, floor, normalisation, eta, target_eta, cartesian, theory, marks, lesson, ..view() };
+            let shared = SharedScene { file: SceneFile { scene, radar: Radar { samples, ..Radar::default() } }, view };
             let text = shared.to_text().unwrap();
             prop_assert!(is_shared(&text) && !text.contains(char::is_whitespace));
-            prop_assert_eq!(Shared::from_text(&text), Ok(shared));
+            prop_assert_eq!(SharedScene::from_text(&text), Ok(shared));
         }
 
         /// A changed, lost or doubled letter is reported. The compressed bytes begin with some bits that change nothing: a letter that differs in
@@ -308,10 +299,10 @@ mod tests {
             let text = shared().to_text().unwrap();
             let at = 11 + at % (text.len() - 11);
             let changed = format!("{}{letter}{}", &text[..at], &text[at + 1..]);
-            prop_assert!(Shared::from_text(&changed).is_ok_and(|read| read == shared()) || Shared::from_text(&changed).is_err());
+            prop_assert!(SharedScene::from_text(&changed).is_ok_and(|read| read == shared()) || SharedScene::from_text(&changed).is_err());
             let lost = [&text[..at], &text[at + 1..]].concat();
-            prop_assert!(Shared::from_text(&lost).is_err());
-            prop_assert!(Shared::from_text(&text[..at]).is_err());
+            prop_assert!(SharedScene::from_text(&lost).is_err());
+            prop_assert!(SharedScene::from_text(&text[..at]).is_err());
         }
     }
 
@@ -319,18 +310,18 @@ mod tests {
     fn line_breaks_of_a_mail_do_no_harm() {
         let text = shared().to_text().unwrap();
         let broken: Vec<&str> = text.as_bytes().chunks(60).map(|c| std::str::from_utf8(c).unwrap()).collect();
-        assert_eq!(Shared::from_text(&format!("  {}\r\n", broken.join("\r\n "))), Ok(shared()));
+        assert_eq!(SharedScene::from_text(&format!("  {}\r\n", broken.join("\r\n "))), Ok(shared()));
         for preset in presets::ALL {
-            let shared = Shared { file: preset.load().unwrap(), view: view() };
+            let shared = SharedScene { file: preset.load().unwrap(), view: view() };
             let text = shared.to_text().unwrap();
             assert!(text.len() < 4000, "{}: {} letters", preset.id, text.len());
-            assert_eq!(Shared::from_text(&text), Ok(shared));
+            assert_eq!(SharedScene::from_text(&text), Ok(shared));
         }
     }
 
     #[test]
     fn what_is_wrong_is_told() {
-        let told = |text: &str| Shared::from_text(text).unwrap_err().to_string();
+        let told = |text: &str| SharedScene::from_text(text).unwrap_err().to_string();
         assert!(told("hello").contains("expected \"apertura:1:\""));
         assert!(told("apertura:2:abc").contains("version \"2\""));
         assert!(told("apertura:1:ab%").contains("damaged"));
@@ -357,11 +348,11 @@ mod tests {
     fn a_small_text_that_unpacks_to_much_is_refused_early() {
         let bomb = pack(&vec![b'#'; 64 << 20]);
         assert!(bomb.len() < 200_000, "{} letters", bomb.len());
-        assert_eq!(Shared::from_text(&bomb), Err(ShareError::Large));
+        assert_eq!(SharedScene::from_text(&bomb), Err(ShareError::Large));
         let long = "a".repeat(MOST_LETTERS + 1);
-        assert_eq!(Shared::from_text(&long), Err(ShareError::Large));
+        assert_eq!(SharedScene::from_text(&long), Err(ShareError::Large));
         let many = Scene::of_points((0..200_000).map(|i| (f64::from(i) * 1e-4, 5.0)));
-        let shared = Shared { file: SceneFile { scene: many, ..SceneFile::default() }, view: view() };
+        let shared = SharedScene { file: SceneFile { scene: many, ..SceneFile::default() }, view: view() };
         assert_eq!(shared.to_text(), Err(ShareError::Large));
     }
 }

@@ -4,9 +4,9 @@
 #![cfg(feature = "network")]
 
 use apertura::network::backend::Backend;
-use apertura::network::losses::Loss;
-use apertura::network::recipe::{Decay, Network, Optimizer, Recipe, Share};
-use apertura::network::run::Run;
+use apertura::network::losses::TrainingLoss;
+use apertura::network::recipe::{Decay, KindShare, Network, Optimizer, Recipe};
+use apertura::network::run::TrainingRun;
 use apertura::network::thesis::{Thesis, ThesisConfig};
 use apertura::network::train::train;
 use apertura::network::weights::WeightFile;
@@ -15,8 +15,8 @@ use apertura::scene::generate::Kind;
 use std::path::Path;
 use std::time::Duration;
 
-fn run(folder: &Path, max_steps: u64) -> Run {
-    Run {
+fn run(folder: &Path, max_steps: u64) -> TrainingRun {
+    TrainingRun {
         folder: folder.to_owned(),
         device: Backend::Flex.device(),
         radar: Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() },
@@ -44,13 +44,13 @@ fn a_run_in_two_parts_ends_where_a_whole_one_does() {
         seed: 5,
         epochs: 2,
         batch: 2,
-        loss: Loss::MeanSquare,
+        loss: TrainingLoss::MeanSquare,
         validation_scenes: 1,
         network: Network::Thesis(config),
         optimizer: Optimizer::Sgd { learning_rate: 0.1, momentum: 0.9 },
         decay: Some(Decay { epochs: 1, factor: 0.5 }),
         thermal: None,
-        scenes: vec![Share { kind: Kind::Points(2), count: 6 }],
+        scenes: vec![KindShare { kind: Kind::Points(2), count: 6 }],
     };
     let (whole, parts) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let mut steps = 0;

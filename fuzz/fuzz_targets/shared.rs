@@ -1,7 +1,7 @@
 //! Pasteable strings: any text, and any text packed as one is; what is accepted can be shared again, and opened as the same.
 #![no_main]
 
-use apertura::share::Shared;
+use apertura::share::SharedScene;
 use base64::Engine;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use flate2::{Compression, write::ZlibEncoder};
@@ -16,10 +16,10 @@ fn packed(text: &str) -> String {
 
 fuzz_target!(|text: &str| {
     for text in [text.to_owned(), packed(text)] {
-        if let Ok(shared) = Shared::from_text(&text)
+        if let Ok(shared) = SharedScene::from_text(&text)
             && let Ok(again) = shared.to_text()
         {
-            assert_eq!(Shared::from_text(&again).as_ref(), Ok(&shared));
+            assert_eq!(SharedScene::from_text(&again).as_ref(), Ok(&shared));
         }
     }
 });

@@ -110,7 +110,7 @@ def check(path: Path, method: _apertura.Method, weights: str, scenes: int = SCEN
     Args:
         path: The entry.
         method: The method that it is of.
-        weights: Those of the method; "" where nobody knows.
+        weights: Those of the method; "" where unknown.
         scenes: Scenes of each suite, at least 3. A third draw of fewer than all gives no verdict.
         seed: Seed of the third draw; a random one where none is given.
 

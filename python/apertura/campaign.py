@@ -110,7 +110,7 @@ def rows_of(run: Run, keys: Sequence[Key]) -> list[dict[str, Any]]:
     try:
         run.evaluate(keys, keep)
     except ValueError:
-        # Somebody failed: the rest one by one, so that no failure hides another row.
+        # One failed: the rest one by one, so that no failure hides another row.
         for key in keys:
             if key not in found:
                 try:

@@ -150,7 +150,7 @@ def size_of(radar):
 
 
 class Live(nn.Module):
-    """The network for maps of `rows` range bins and `columns` columns. Inside, its pictures have 64, 256 and 1024 columns whatever the radar."""
+    """The network for maps of `rows` range bins and `columns` columns. Inside, its pictures have 64, 256 and 1024 columns for any radar."""
 
     def __init__(self, c=(16, 32, 64, 96), blocks=(1, 2, 2, 3), fine=16, rows=ROWS, columns=COLS):
         super().__init__()
@@ -222,7 +222,7 @@ class Live(nn.Module):
             return *self.sources(scalars, scalars_n, constants, x3.float(), y0.float(), f.float()), y0
 
     def sources(self, scalars, scalars_n, constants, x3, y0, f):
-        """What the features make of every cell, in f32 whatever the convolutions were in: sums over many decades follow."""
+        """What the features make of every cell, in f32 for convolutions in any precision: sums over many decades follow."""
         b = f.shape[0]
         pooled = torch.cat([x3.mean((2, 3)), x3.amax((2, 3))], 1)
         s = self.scalar2(F.relu(self.scalar1(torch.cat([pooled, scalars_n, constants], 1))))
@@ -397,7 +397,7 @@ class Estimator:
         else:
             decibels = float(request.normalisation.removeprefix("db="))
             found = 1 + 20 * (log - log.amax((1, 2), keepdim=True)) / decibels
-        # The network's columns rise with cos(theta), whatever the radar's do.
+        # The network's columns rise with cos(theta), for any radar.
         return found[0].clamp(0, 1).numpy()[:, radar.rising_columns], self.eta
 
 

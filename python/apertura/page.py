@@ -127,7 +127,7 @@ class _Files(SimpleHTTPRequestHandler):
         """A notebook is no log."""
 
     def do_POST(self) -> None:
-        """A page sends its scene. Nobody else knows the name of its cell."""
+        """A page sends its scene. No other page knows the name of its cell."""
         cell = self.path.removeprefix(_CELLS)
         length = self.headers.get("Content-Length", "")
         if not self.path.startswith(_CELLS) or cell not in _scenes:

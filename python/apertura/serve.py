@@ -23,8 +23,8 @@ VERSION = 1
 class Request:
     """What a method is told beside the samples and the radar.
 
-    `noise` is "thesis" (rounding), "exact" (none), "white" (of a level that nobody knows) or "white=SIGMA"; `normalisation` is "min-max" or
-    "db=RANGE"; `snapshot_range_metres` is where the echoes of a single sample come from, if anybody knows.
+    `noise` is "thesis" (rounding), "exact" (none), "white" (of a level that is unknown) or "white=SIGMA"; `normalisation` is "min-max" or
+    "db=RANGE"; `snapshot_range_metres` is where the echoes of a single sample come from, if it is known.
     """
 
     noise: str
@@ -89,7 +89,7 @@ def serve(
 
 
 def _pipes() -> tuple[BinaryIO, BinaryIO]:
-    """Standard input and output; whatever else writes on standard output writes on standard error from now on."""
+    """Standard input and output; other writers to standard output write on standard error from now on."""
     sys.stdout.flush()
     sink = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)

@@ -34,7 +34,7 @@ where
     Ok(view)
 }
 
-/// Whatever NumPy can make an array of, as a copy with elements of `T`; `what` and `shape` are for messages.
+/// Anything that NumPy can make an array of, as a copy with elements of `T`; `what` and `shape` are for messages.
 ///
 /// Kinds of numbers that `T` can't hold are refused: text, objects, and complex numbers where real ones are wanted.
 pub fn numbers<T, D>(from: &Bound<'_, PyAny>, what: &str, shape: &str) -> PyResult<Array<T, D>>

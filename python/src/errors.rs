@@ -60,18 +60,18 @@ pub fn argument(py: Python<'_>, message: String) -> PyErr {
 
 /// A whole number from 0 to the largest of `T`, as the argument of this name.
 pub fn whole<T: TryFrom<i128> + Bounded>(name: &str, number: i128) -> PyResult<T> {
-    T::try_from(number).map_err(|_| value(format!("{name} is {number}; expected a whole number from 0 to {}", T::MOST)))
+    T::try_from(number).map_err(|_| value(format!("{name} is {number}; expected a whole number from 0 to {}", T::MAX_COUNT)))
 }
 
 /// Unsigned numbers.
 pub trait Bounded {
-    const MOST: u64;
+    const MAX_COUNT: u64;
 }
 
 impl Bounded for u64 {
-    const MOST: u64 = u64::MAX;
+    const MAX_COUNT: u64 = u64::MAX;
 }
 
 impl Bounded for u32 {
-    const MOST: u64 = u32::MAX as u64;
+    const MAX_COUNT: u64 = u32::MAX as u64;
 }

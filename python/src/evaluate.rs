@@ -8,7 +8,7 @@ use crate::rows::{dict_of, list_of};
 use crate::scene::{Scene, purpose_of, reading_of, set_name};
 use crate::work::{self, Progress};
 use apertura::evaluate::campaign::{Campaign, CampaignError, Elements};
-use apertura::evaluate::rows::{KeptError, Row, RowFile, Wanted};
+use apertura::evaluate::rows::{KeptError, Row, RowFile, RunRows};
 use apertura::evaluate::sets::{Case, Listed, SceneSet};
 use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::Reconstructor;
@@ -46,7 +46,7 @@ use std::sync::Arc;
 ///         `cfar_false_alarm` and `cfar`.
 ///     path: A CSV file in the program's format. Each row is appended as it is found, and the same call goes on where a stopped one ended. A file that
 ///         holds anything else is refused.
-///     overwrite: Whether `path` begins anew, whatever it holds.
+///     overwrite: Whether `path` begins anew, over any content.
 ///     only: The rows to find, as (set, number of the scene, method), in place of all rows of the run.
 ///
 /// Returns:
@@ -168,7 +168,7 @@ impl Run {
     }
 
     fn open(&self, path: &Path, overwrite: bool) -> PyResult<RowFile> {
-        RowFile::open(path, &Wanted::new(&self.empty), overwrite).map_err(kept)
+        RowFile::open(path, &RunRows::new(&self.empty), overwrite).map_err(kept)
     }
 
     /// Finds the rows that `file` doesn't hold, and appends them to it.

@@ -11,8 +11,8 @@ use apertura::maps::network_input::mag_phase;
 use apertura::network::floors::Floors;
 use apertura::network::live::arrays::Arrays;
 use apertura::network::live::constants::turn_rows;
-use apertura::network::live::dataset::{self as files, DatasetError, DatasetRequest, Part};
-use apertura::network::live::examples::{self, Example, ExamplesRequest, Features, Heard};
+use apertura::network::live::dataset::{self as files, DatasetError, DatasetRequest, ExamplePart};
+use apertura::network::live::examples::{self, Example, ExamplesRequest, Features, EndSamples};
 use apertura::network::live::features::{FeatureExtractor, LiveInput};
 use apertura::network::live::grid::{COARSE, COARSE_CHANNELS, FINE, FINE_CHANNELS, ROW_CHANNELS};
 use apertura::network::live::radars::Radars;
@@ -65,7 +65,7 @@ static EXTRACTOR: OnceLock<FeatureExtractor> = OnceLock::new();
 const MOST_TOLERANCE: f64 = 360.0;
 
 /// Most examples that one call may ask for.
-const MOST: usize = 4096;
+const MAX_EXAMPLES: usize = 4096;
 
 #[pymethods]
 impl Examples {
@@ -161,8 +161,8 @@ impl Examples {
         mag_phase: bool,
         scenes: Option<Vec<PyRef<'py, Scene>>>,
     ) -> PyResult<Bound<'py, PyList>> {
-        if indices.len() > MOST {
-            return Err(value(format!("{} examples are asked for; at most {MOST} at once", indices.len())));
+        if indices.len() > MAX_EXAMPLES {
+            return Err(value(format!("{} examples are asked for; at most {MAX_EXAMPLES} at once", indices.len())));
         }
         let scenes: Option<Vec<_>> = scenes.map(|scenes| scenes.iter().map(|scene| scene.0.scene.clone()).collect());
         if let Some(scenes) = scenes.as_ref().filter(|scenes| scenes.len() != indices.len()) {
@@ -286,8 +286,8 @@ pub fn dataset(
         sets.iter().map(|set| Kind::for_training(&set_name(set)?).map_err(value)).collect();
     let kinds = kinds?;
     let radars = radars_of(radar)?;
-    let parts: Result<Vec<Part>, _> = match arrays {
-        None => Ok(Part::usual(&radars, layout.as_deref())),
+    let parts: Result<Vec<ExamplePart>, _> = match arrays {
+        None => Ok(ExamplePart::usual(&radars, layout.as_deref())),
         Some(names) => names.iter().map(|name| name.parse()).collect(),
     };
     let further = |name: &str, count: Option<i128>| count.map(|count| whole(name, count)).transpose();
@@ -327,8 +327,8 @@ fn dict_of(py: Python<'_>, made: (Example, Option<Array3<f32>>)) -> PyResult<Bou
     let single = |v: &Complex64| Complex32::new((v.re * scale) as f32, (v.im * scale) as f32);
     let dict = PyDict::new(py);
     match heard {
-        Heard::Ends(ends) => dict.set_item("ends", owned(py, both_ends(&ends).map(single)))?,
-        Heard::Elements(samples) => dict.set_item("heard", owned(py, samples.map(single)))?,
+        EndSamples::Ends(ends) => dict.set_item("ends", owned(py, both_ends(&ends).map(single)))?,
+        EndSamples::Elements(samples) => dict.set_item("heard", owned(py, samples.map(single)))?,
     }
     dict.set_item("gain", gain)?;
     match (mag_phase, input) {

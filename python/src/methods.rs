@@ -262,7 +262,7 @@ impl Method {
     ///     floor: What lies beneath them: "thesis", "exact", "thermal", "snr=DB", "dbm=LEVEL", "white" or "white=SIGMA". SIGMA is the root mean
     ///         square of the noise in a sample; the level of any other white noise the method measures.
     ///     normalisation: How the map is normalised: "min-max" or "db=RANGE".
-    ///     snapshot_range_metres: Where the echoes of a single sample come from, if anybody knows.
+    ///     snapshot_range_metres: Where the echoes of a single sample come from, if it is known.
     ///     progress: Called with the part that is done, 0 to 1.
     ///
     /// Raises:

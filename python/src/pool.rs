@@ -7,7 +7,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::ptr;
 use std::sync::atomic::{AtomicPtr, AtomicU32, AtomicUsize, Ordering};
 
-/// Most threads that anybody may ask for.
+/// Most threads that a caller may ask for.
 const MOST_THREADS: usize = 1024;
 
 /// A pool and the process whose threads it has.
@@ -17,12 +17,12 @@ struct Pool {
     pool: ThreadPool,
 }
 
-/// The pool of the process that last worked. No lock: whoever forks may hold one.
+/// The pool of the process that last worked. No lock: a forking thread may hold one.
 static CURRENT: AtomicPtr<Pool> = AtomicPtr::new(ptr::null_mut());
 /// The process that loaded the module.
 static FIRST_PROCESS: AtomicU32 = AtomicU32::new(0);
 /// Threads that `set_threads` asked for, 0 for none, and in which process.
-static ASKED: AtomicUsize = AtomicUsize::new(0);
+static ASKED_THREADS: AtomicUsize = AtomicUsize::new(0);
 static ASKED_IN: AtomicU32 = AtomicU32::new(0);
 
 /// Notes which process loaded the module: another one is a fork of it.
@@ -32,7 +32,7 @@ pub fn remember_process() {
 
 /// Threads for this process: those asked for, one in a fork, else as many as rayon takes.
 fn wanted(process: u32) -> usize {
-    match ASKED.load(Ordering::Relaxed) {
+    match ASKED_THREADS.load(Ordering::Relaxed) {
         asked if asked > 0 && ASKED_IN.load(Ordering::Relaxed) == process => asked,
         _ if FIRST_PROCESS.load(Ordering::Relaxed) != process => 1,
         _ => 0,
@@ -75,7 +75,7 @@ pub fn set_threads(count: usize) -> PyResult<()> {
     if !(1..=MOST_THREADS).contains(&count) {
         return Err(PyValueError::new_err(format!("count is {count}; expected 1 to {MOST_THREADS} threads")));
     }
-    ASKED.store(count, Ordering::Relaxed);
+    ASKED_THREADS.store(count, Ordering::Relaxed);
     ASKED_IN.store(std::process::id(), Ordering::Relaxed);
     Ok(())
 }

@@ -83,9 +83,9 @@ pub fn dict_of<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> 
 /// The columns of rows, in the file's order: name, type (str, int or float), and whether it says what made a row.
 pub fn row_columns(py: Python<'_>) -> Vec<(&'static str, Bound<'_, PyType>, bool)> {
     let python_type = |column: Column| match column.kind() {
-        rows::Kind::Text => py.get_type::<PyString>(),
-        rows::Kind::Whole => py.get_type::<PyInt>(),
-        rows::Kind::Real => py.get_type::<PyFloat>(),
+        rows::CellKind::Text => py.get_type::<PyString>(),
+        rows::CellKind::Whole => py.get_type::<PyInt>(),
+        rows::CellKind::Real => py.get_type::<PyFloat>(),
     };
     Column::all().map(|column| (column.name(), python_type(column), Column::ORIGIN.contains(&column))).collect()
 }

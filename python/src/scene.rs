@@ -13,7 +13,7 @@ use apertura::scene::file::{SceneFile, from_toml, load, save, to_toml};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::scene::presets::{ALL, Preset};
 use apertura::scene::{self, Disturbances};
-use apertura::share::{Part, Shared, View};
+use apertura::share::{VisiblePart, SharedScene, SharedView};
 use apertura::signal::{Floor, Unfinished, simulate_for};
 use numpy::PyArray2;
 use pyo3::exceptions::PyTypeError;
@@ -232,13 +232,13 @@ impl Scene {
     #[pyo3(signature = (*, floor="thesis", normalisation="min-max", method="live"))]
     fn to_text(&self, floor: &str, normalisation: &str, method: &str) -> PyResult<String> {
         apertura::methods::by_name(method).map_err(value)?;
-        let view = View {
+        let view = SharedView {
             floor: named(floor)?,
             normalisation: named(normalisation)?,
             colours: ColourMap::default(),
             cartesian: false,
-            range_angle_part: Part::default(),
-            cartesian_part: Part::default(),
+            range_angle_part: VisiblePart::default(),
+            cartesian_part: VisiblePart::default(),
             target_eta: TARGET_ETA,
             cfar: None,
             eta: None,
@@ -247,7 +247,7 @@ impl Scene {
             theory: false,
             lesson: None,
         };
-        Shared { file: self.0.clone(), view }.to_text().map_err(value)
+        SharedScene { file: self.0.clone(), view }.to_text().map_err(value)
     }
 
     /// The same scene with other fields, named as in the constructor.

@@ -1,4 +1,4 @@
-//! Long work: other Python threads go on meanwhile, Ctrl-C stops it, and somebody may be told how far it is.
+//! Long work: other Python threads go on meanwhile, Ctrl-C stops it, and progress is reported.
 
 use crate::errors::runtime;
 use crate::pool;
@@ -24,7 +24,6 @@ pub struct Finder<E, T>(Sender<Event<E, T>>);
 
 impl<E, T> Finder<E, T> {
     pub fn found(&self, event: E) {
-        // Nobody listens any more once the work is done, and then nothing is found.
         let _ = self.0.send(Event::Found(event));
     }
 }
@@ -35,7 +34,7 @@ pub fn run<T: Send>(py: Python<'_>, progress: Progress<'_, '_>, job: impl FnOnce
     run_watched(py, progress, |task, _: &Finder<(), T>| job(task), |()| Ok(()))
 }
 
-/// [`run`], with `on_found` called on this thread for whatever the job finds meanwhile.
+/// [`run`], with `on_found` called on this thread for all that the job finds meanwhile.
 pub fn run_watched<T: Send, E: Send>(
     py: Python<'_>,
     progress: Progress<'_, '_>,

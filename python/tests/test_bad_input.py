@@ -1,4 +1,4 @@
-"""Whatever is wrong with values is an exception with the library's words, never an abort or a hang."""
+"""Any wrong value is an exception with the library's words, never an abort or a hang."""
 
 import threading
 

@@ -4,7 +4,7 @@ use super::application::App;
 use super::apply;
 use super::state::{Arrangement, Command, MapKind, MapViews, MethodSlot, SceneView, Settings};
 use crate::bounds::PositionBound;
-use crate::engine::Report;
+use crate::engine::EngineReport;
 use crate::evaluate::Metrics;
 use crate::evaluate::failure::Failures;
 use crate::evaluate::rows::Row;
@@ -65,7 +65,7 @@ impl App {
     }
 
     /// Report of the last update, if there was one.
-    pub fn report(&self) -> Option<&Report> {
+    pub fn report(&self) -> Option<&EngineReport> {
         self.jobs.pipeline.result().map(|r| &r.frame.report)
     }
 

@@ -36,7 +36,6 @@ impl Default for BareTransform {
 }
 
 impl BareTransform {
-    /// Transforms once; says how long it took.
     pub fn run(&mut self) -> Duration {
         let start = Instant::now();
         self.over_rows.process_with_scratch(&mut self.data, &mut self.scratch);

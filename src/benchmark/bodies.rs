@@ -3,9 +3,9 @@
 //! The scenes are the preset "Street of things" and growing crowds of walls, boxes, posts and triangles. A dragged body moves by a centimetre
 //! before every update, as under the mouse, so that what it hides changes.
 
-use super::front::Convention;
+use super::front::MapConvention;
 use super::times::{bare_ms, quantile};
-use crate::engine::{Engine, Frame, Outcome, Stage, Wanted};
+use crate::engine::{Engine, EngineFrame, EngineStage, MapRequest, StageOutcome};
 use crate::platform::Instant;
 use crate::radar::Radar;
 use crate::scene::presets::Preset;
@@ -22,22 +22,20 @@ const STEP_METRES: f64 = 0.01;
 
 /// A scene to be measured; its first object is the one that is dragged.
 #[derive(Debug, Clone)]
-pub struct Case {
-    /// What it is called.
+pub struct BodyCase {
     pub name: String,
-    /// The scene.
     pub scene: Scene,
 }
 
-impl Case {
+impl BodyCase {
     /// The preset "Street of things": two cars, three walls and four posts. `None` if the program came without it.
-    pub fn street() -> Option<Case> {
+    pub fn street() -> Option<BodyCase> {
         let scene = Preset::by_id("street-of-things")?.load().ok()?.scene;
-        Some(Case { name: "street".to_owned(), scene })
+        Some(BodyCase { name: "street".to_owned(), scene })
     }
 
     /// `count` bodies of all kinds, at most 2013, a metre apart before the array, each half a metre wide.
-    pub fn crowd(count: usize) -> Case {
+    pub fn crowd(count: usize) -> BodyCase {
         let place = |i: usize| [(i * 37 % 61) as f64 - 30.0, (i * 53 % 33) as f64 + 2.4];
         let body = |i: usize| {
             let ([x, y], angle) = (place(i), (i * 29 % 180) as f64);
@@ -48,45 +46,40 @@ impl Case {
                 _ => Object::Polygon(Polygon::new(vec![[x, y], [x + 0.4, y + 0.1], [x + 0.1, y + 0.4]])),
             }
         };
-        Case { name: "crowd".to_owned(), scene: Scene { objects: (0..count).map(body).collect(), ..Scene::default() } }
+        BodyCase {
+            name: "crowd".to_owned(),
+            scene: Scene { objects: (0..count).map(body).collect(), ..Scene::default() },
+        }
     }
 
-    /// The same number of points at the same places as [`Case::crowd`], to hold bodies against.
-    pub fn points(count: usize) -> Case {
+    /// The same number of points at the same places as [`BodyCase::crowd`], to hold bodies against.
+    pub fn points(count: usize) -> BodyCase {
         let as_point = |object: Object| {
             let [x, y] = object.centre_metres();
             Object::Point(Point::new(x, y))
         };
-        let objects = Case::crowd(count).scene.objects.into_iter().map(as_point).collect();
-        Case { name: "points".to_owned(), scene: Scene { objects, ..Scene::default() } }
+        let objects = BodyCase::crowd(count).scene.objects.into_iter().map(as_point).collect();
+        BodyCase { name: "points".to_owned(), scene: Scene { objects, ..Scene::default() } }
     }
 }
 
-/// What was measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Times {
+pub struct BodyTimes {
     /// Median time of the bare transform on one thread over the whole run, milliseconds.
     pub bare_fft_ms: f64,
-    /// Threads that made the maps.
     pub threads: usize,
-    /// Their instructions.
     pub simd: Simd,
-    /// One a scene and convention.
-    pub rows: Vec<Row>,
+    pub rows: Vec<BodyRow>,
 }
 
-/// The times of one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
-    /// Name of the [`Case`].
+pub struct BodyRow {
     pub scene: String,
-    /// Its objects.
     pub objects: usize,
     /// Echoes that they give an element at most.
     pub echoes: usize,
-    /// Floor and normalisation; they say which precision the maps need.
     #[serde(flatten)]
-    pub convention: Convention,
+    pub convention: MapConvention,
     /// Median time of three maps when nothing of the scene is known, milliseconds.
     pub scratch_ms: f64,
     /// Median time of three maps after the first object moved by a centimetre, milliseconds.
@@ -96,36 +89,35 @@ pub struct Row {
 }
 
 /// Measures three maps of every case, each at most `repeats` times and over both conventions. `on_row` is called with each row.
-///
 /// # Errors
 /// [`SceneError`] when the radar can't see a scene.
 pub fn measure(
     radar: &Radar,
-    cases: &[Case],
+    cases: &[BodyCase],
     repeats: usize,
-    mut on_row: impl FnMut(&Row),
-) -> Result<Times, SceneError> {
+    mut on_row: impl FnMut(&BodyRow),
+) -> Result<BodyTimes, SceneError> {
     let repeats = repeats.max(1);
     let (mut bare, mut rows) = (vec![bare_ms(repeats.max(9))], Vec::new());
     for case in cases {
-        for convention in Convention::BOTH {
+        for convention in MapConvention::BOTH {
             let row = measured(radar, case, convention, repeats)?;
             on_row(&row);
             rows.push(row);
-            // Whatever else the machine does slows the transform as it slows the maps.
+            // Other load on the machine slows the transform as it slows the maps.
             bare.push(bare_ms(3));
         }
     }
     let (threads, simd) = (rayon::current_num_threads(), Simd::chosen());
-    Ok(Times { bare_fft_ms: quantile(&mut bare, 0.5), threads, simd, rows })
+    Ok(BodyTimes { bare_fft_ms: quantile(&mut bare, 0.5), threads, simd, rows })
 }
 
-fn measured(radar: &Radar, case: &Case, convention: Convention, repeats: usize) -> Result<Row, SceneError> {
-    let Convention { floor, normalisation } = convention;
-    let wanted = Wanted { floor, normalisation, ends: false, ..Wanted::default() };
+fn measured(radar: &Radar, case: &BodyCase, convention: MapConvention, repeats: usize) -> Result<BodyRow, SceneError> {
+    let MapConvention { floor, normalisation } = convention;
+    let wanted = MapRequest { floor, normalisation, ends: false, ..MapRequest::default() };
     let mut engine = Engine::new(radar.clone());
     let mut scene = case.scene.clone();
-    let timed = |engine: &mut Engine, scene: &Scene| -> Result<(f64, Frame), SceneError> {
+    let timed = |engine: &mut Engine, scene: &Scene| -> Result<(f64, EngineFrame), SceneError> {
         let start = Instant::now();
         let frame = engine.update(scene, &wanted)?;
         Ok((1e3 * start.elapsed().as_secs_f64(), frame))
@@ -150,7 +142,7 @@ fn measured(radar: &Radar, case: &Case, convention: Convention, repeats: usize) 
         step += 1;
         computed = said(&frame);
     }
-    Ok(Row {
+    Ok(BodyRow {
         scene: case.name.clone(),
         objects: case.scene.objects.len(),
         echoes: case.scene.echo_count(),
@@ -161,12 +153,11 @@ fn measured(radar: &Radar, case: &Case, convention: Convention, repeats: usize) 
     })
 }
 
-/// What the engine says of the signal of a frame.
-fn said(frame: &Frame) -> String {
-    let signal = frame.report.stages.iter().find(|stage| stage.stage == Stage::Signal);
+fn said(frame: &EngineFrame) -> String {
+    let signal = frame.report.stages.iter().find(|stage| stage.stage == EngineStage::Signal);
     match signal.map(|stage| &stage.outcome) {
-        Some(Outcome::Computed(what)) => what.clone(),
-        Some(Outcome::Skipped(why)) => (*why).to_owned(),
+        Some(StageOutcome::Computed(what)) => what.clone(),
+        Some(StageOutcome::Skipped(why)) => (*why).to_owned(),
         None => String::new(),
     }
 }
@@ -178,7 +169,7 @@ mod tests {
     #[test]
     fn every_scene_is_timed_over_both_conventions() {
         let radar = Radar { elements: 64, samples: 64, end_elements: 4, bandwidth_hz: 2.5e8, ..Radar::default() };
-        let cases = [Case::street().unwrap(), Case::crowd(8), Case::points(8)];
+        let cases = [BodyCase::street().unwrap(), BodyCase::crowd(8), BodyCase::points(8)];
         let mut seen = 0;
         let times = measure(&radar, &cases, 2, |_| seen += 1).unwrap();
         assert_eq!((times.rows.len(), seen), (6, 6));
@@ -196,7 +187,7 @@ mod tests {
     #[test]
     fn no_two_bodies_of_a_crowd_stand_at_one_place() {
         let radar = Radar::default();
-        let crowd = Case::crowd(1000);
+        let crowd = BodyCase::crowd(1000);
         crowd.scene.validate(&radar).unwrap();
         let mut places: Vec<_> =
             crowd.scene.objects.iter().map(|o| o.centre_metres().map(|v| (v * 10.0).round() as i64)).collect();

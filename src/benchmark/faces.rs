@@ -4,22 +4,20 @@
 use super::times::quantile;
 use crate::platform::Instant;
 use crate::radar::Radar;
-use crate::scattering::{Antennas, PathEcho, Scatterer, reference};
+use crate::scattering::{AntennaPlaces, PathEcho, Scatterer, reference};
 use crate::scene::{Object, Wall};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::fmt;
 
 /// Elements and samples that are compared are so many apart.
-const EVERY: usize = 16;
-/// Runs whose median counts.
+const JUDGED_STRIDE: usize = 16;
 const REPEATS: usize = 5;
 /// Phase over a panel of the quadrature that errors are told against, radians; the rule has 8 points a panel.
 const FINEST_RADIANS: f64 = 1.0;
 
-/// How the samples of a face are computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Way {
+pub enum FaceFormula {
     /// A glint and two ends, of constant amplitudes: what the program does.
     ClosedForm,
     /// The same with amplitudes that change over the sweep.
@@ -28,28 +26,30 @@ pub enum Way {
     Quadrature(f64),
 }
 
-impl Way {
-    /// All that are measured.
-    pub const ALL: [Way; 5] =
-        [Way::ClosedForm, Way::Tilted, Way::Quadrature(20.0), Way::Quadrature(16.0), Way::Quadrature(8.0)];
+impl FaceFormula {
+    pub const ALL: [FaceFormula; 5] = [
+        FaceFormula::ClosedForm,
+        FaceFormula::Tilted,
+        FaceFormula::Quadrature(20.0),
+        FaceFormula::Quadrature(16.0),
+        FaceFormula::Quadrature(8.0),
+    ];
 }
 
-impl fmt::Display for Way {
+impl fmt::Display for FaceFormula {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Way::ClosedForm => f.pad("three echoes"),
-            Way::Tilted => f.pad("echoes, tilted"),
-            Way::Quadrature(radians) => f.pad(&format!("quadrature, {radians} rad")),
+            FaceFormula::ClosedForm => f.pad("three echoes"),
+            FaceFormula::Tilted => f.pad("echoes, tilted"),
+            FaceFormula::Quadrature(radians) => f.pad(&format!("quadrature, {radians} rad")),
         }
     }
 }
 
-/// One way on one face.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FaceRow {
-    /// The face.
     pub face: &'static str,
-    /// [`Way`] as text.
+    /// [`FaceFormula`] as text.
     pub way: String,
     /// Largest error of a sample over the largest sample.
     pub error: f64,
@@ -66,18 +66,18 @@ const FACES: [(&str, [[f64; 2]; 2]); 5] = [
     ("10 m along the road, 4 m beside it", [[4.0, 6.0], [4.0, 16.0]]),
 ];
 
-/// Measures every way on every face, on the calling thread.
 pub fn measure(radar: &Radar) -> Vec<FaceRow> {
-    let samples: Vec<usize> = (0..radar.samples).step_by(EVERY).collect();
-    let elements: Vec<Antennas> = (0..radar.elements).step_by(EVERY * 4).map(|n| radar.pair(n).into()).collect();
+    let samples: Vec<usize> = (0..radar.samples).step_by(JUDGED_STRIDE).collect();
+    let elements: Vec<AntennaPlaces> =
+        (0..radar.elements).step_by(JUDGED_STRIDE * 4).map(|n| radar.pair(n).into()).collect();
     let mut rows = Vec::new();
     for (face, ends) in FACES {
-        let of = |way: Way| -> Vec<Complex64> {
+        let of = |way: FaceFormula| -> Vec<Complex64> {
             elements.iter().flat_map(|antennas| way.samples(radar, ends, antennas, &samples)).collect()
         };
-        let exact = of(Way::Quadrature(FINEST_RADIANS));
+        let exact = of(FaceFormula::Quadrature(FINEST_RADIANS));
         let peak = exact.iter().map(|v| v.norm()).fold(f64::MIN_POSITIVE, f64::max);
-        for way in Way::ALL {
+        for way in FaceFormula::ALL {
             let (mut times, mut found) = (Vec::new(), Vec::new());
             for _ in 0..REPEATS {
                 let start = Instant::now();
@@ -96,9 +96,15 @@ pub fn measure(radar: &Radar) -> Vec<FaceRow> {
     rows
 }
 
-impl Way {
-    fn samples(self, radar: &Radar, ends: [[f64; 2]; 2], antennas: &Antennas, samples: &[usize]) -> Vec<Complex64> {
-        if let Way::Quadrature(radians) = self {
+impl FaceFormula {
+    fn samples(
+        self,
+        radar: &Radar,
+        ends: [[f64; 2]; 2],
+        antennas: &AntennaPlaces,
+        samples: &[usize],
+    ) -> Vec<Complex64> {
+        if let FaceFormula::Quadrature(radians) = self {
             return reference::face(radar, ends, 1.0, antennas, samples, radians);
         }
         let [a, b] = ends;
@@ -109,7 +115,7 @@ impl Way {
         let middle = reference::radians_per_metre(radar, radar.middle_sample()).abs();
         let sample = |n: &usize| {
             let kappa = reference::radians_per_metre(radar, *n as f64);
-            let more = if self == Way::Tilted { kappa.abs() - middle } else { 0.0 };
+            let more = if self == FaceFormula::Tilted { kappa.abs() - middle } else { 0.0 };
             let add = |e: &PathEcho| (e.amplitude + e.tilt * more) * Complex64::cis(-kappa * e.range_metres);
             echoes.iter().map(add).sum()
         };
@@ -124,8 +130,8 @@ mod tests {
     #[test]
     fn more_terms_are_nearer_to_quadrature_on_every_face() {
         let rows = measure(&Radar { elements: 128, ..Radar::default() });
-        assert_eq!(rows.len(), FACES.len() * Way::ALL.len());
-        for row in rows.chunks(Way::ALL.len()) {
+        assert_eq!(rows.len(), FACES.len() * FaceFormula::ALL.len());
+        for row in rows.chunks(FaceFormula::ALL.len()) {
             let [plain, tilted, .., finest] = row else { panic!("one row a way") };
             assert!(plain.error < 0.03 && tilted.error < plain.error, "{plain:?} {tilted:?}");
             assert!(finest.error < 1e-6 && finest.microseconds > tilted.microseconds, "{finest:?}");

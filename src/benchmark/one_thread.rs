@@ -1,7 +1,7 @@
 //! Run times of what the window computes most, on one thread: the native program and the page run the same, and `scripts/measure-page`
 //! compares them.
 
-use crate::engine::{Engine, Wanted};
+use crate::engine::{Engine, MapRequest};
 use crate::methods;
 use crate::platform::Instant;
 use crate::radar::Radar;
@@ -10,13 +10,10 @@ use crate::scene::Scene;
 use crate::signal::{Floor, simulate};
 use std::f64::consts::TAU;
 
-/// Runs whose median counts.
 const REPEATS: usize = 7;
 
-/// Runs before them.
 const WARM_UP: usize = 2;
 
-/// Numbers of reflectors.
 const REFLECTORS: [usize; 2] = [10, 300];
 
 /// How far the first reflector is dragged and back, metres.
@@ -25,13 +22,10 @@ const DRAG_METRES: f64 = 0.01;
 /// A computation and its run time.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Timed {
-    /// What was computed.
     pub name: String,
-    /// Median of its run times.
     pub milliseconds: f64,
 }
 
-/// Reflectors spread over the field of view, the same ones everywhere.
 fn spread(count: usize) -> Scene {
     let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
     Scene::of_points((0..count).map(|i| {
@@ -41,7 +35,6 @@ fn spread(count: usize) -> Scene {
     }))
 }
 
-/// The median time of `work`, which is told the number of the run.
 fn median(mut work: impl FnMut(usize) -> Result<(), String>) -> Result<f64, String> {
     let mut times = Vec::new();
     for run in 0..WARM_UP + REPEATS {
@@ -54,8 +47,7 @@ fn median(mut work: impl FnMut(usize) -> Result<(), String>) -> Result<f64, Stri
     Ok(counted[REPEATS / 2])
 }
 
-/// Three maps of 10 and of 300 reflectors, from scratch and while one is dragged, and the live network, on whatever threads rayon has here.
-///
+/// Three maps of 10 and of 300 reflectors, from scratch and while one is dragged, and the live network, on the threads that rayon has here.
 /// # Errors
 /// Why one of them can't be computed.
 pub fn measure() -> Result<Vec<Timed>, String> {
@@ -68,7 +60,7 @@ pub fn measure() -> Result<Vec<Timed>, String> {
             object.translate(DRAG_METRES, 0.0);
         }
         let mut engine = Engine::new(radar.clone());
-        let wanted = Wanted { floor: Floor::Exact, ends: false, ..Wanted::default() };
+        let wanted = MapRequest { floor: Floor::Exact, ends: false, ..MapRequest::default() };
         let mut update = |scene: &Scene, afresh: bool| {
             if afresh {
                 engine.forget();

@@ -2,7 +2,6 @@
 
 use super::BareTransform;
 
-/// Median time of the bare transform, milliseconds.
 pub(super) fn bare_ms(repeats: usize) -> f64 {
     let mut transform = BareTransform::default();
     let mut times: Vec<f64> = (0..repeats + 2).map(|_| 1e3 * transform.run().as_secs_f64()).collect();

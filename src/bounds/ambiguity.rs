@@ -14,7 +14,7 @@ pub struct Ambiguity {
     /// cos(theta) of the columns.
     pub cos_theta: Vec<f64>,
     /// `|<echo there, echo of the reflector>|` of echoes scaled to norm 1, `[ranges, cosines]`: 1 where the layout can't tell the two
-    /// apart, whatever their gains.
+    /// apart, for any gains.
     pub likeness: Array2<f64>,
 }
 

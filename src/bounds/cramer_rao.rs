@@ -9,7 +9,7 @@
 
 use crate::radar::{Decibels, Layout, Pair, Radar};
 use crate::scene::Reflector;
-use crate::signal::path::{By, Change};
+use crate::signal::path::{By, PathChange};
 use crate::signal::phase::{Echo, EchoModel};
 use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::{Mat, Side};
@@ -58,17 +58,13 @@ impl PositionBound {
 
 /// Why there is no bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum BoundsError {
     /// The samples don't determine every reflector's range, cos(theta) and gain.
     #[error(
         "the samples of {elements} elements don't determine {reflectors} reflectors: some coincide, have no echo, or there are too few elements"
     )]
-    NotIdentifiable {
-        /// Elements of the layout.
-        elements: usize,
-        /// Reflectors asked for.
-        reflectors: usize,
-    },
+    NotIdentifiable { elements: usize, reflectors: usize },
     /// The noise variance is not a positive number.
     #[error("the noise variance must be finite and above 0")]
     Noise,
@@ -87,7 +83,6 @@ pub fn noise_variance(radar: &Radar, layout: &Layout, reflector: &Reflector, snr
 ///
 /// The gain takes in the phase of the reflection, so that the absolute carrier phase tells nothing about the range; it is one
 /// for the whole layout: both ends of a sparse array receive the same reflector coherently. [`cramer_rao_of`] bounds it where they don't.
-///
 /// # Errors
 /// [`BoundsError`] when the parameters can't be distinguished, or the noise is not a positive number.
 pub fn cramer_rao(
@@ -100,7 +95,6 @@ pub fn cramer_rao(
 }
 
 /// [`cramer_rao`] with one or several unknown gains a reflector.
-///
 /// # Errors
 /// [`BoundsError`] when the parameters can't be distinguished, or the noise is not a positive number.
 pub fn cramer_rao_of(
@@ -153,11 +147,9 @@ const RANGE: usize = 0;
 const COS: usize = 1;
 const GAIN: usize = 2;
 
-/// One reflector's echo at one element, and how it changes with the reflector's place.
 struct PlacedEcho {
     echo: Echo,
-    /// Change with range and with cos(theta).
-    by: [Change; 2],
+    by: [PathChange; 2],
     carrier_turns_per_metre: f64,
     beat_turns_per_metre: f64,
 }
@@ -168,7 +160,7 @@ impl PlacedEcho {
             echo: model.echo(pair, r),
             by: [By::Range, By::CosTheta].map(|by| {
                 let place = [r.x_metres, r.y_metres];
-                Change::of_point(pair, place, by).through(radar.pattern(), pair, place, by)
+                PathChange::of_point(pair, place, by).through(radar.pattern(), pair, place, by)
             }),
             carrier_turns_per_metre: radar.carrier_turns_per_metre(),
             beat_turns_per_metre: radar.beat_turns_per_metre(1.0),
@@ -219,7 +211,6 @@ impl Model {
         Model { echoes, group, groups, own }
     }
 
-    /// Unknowns of one reflector.
     fn parameters(&self) -> usize {
         GAIN + 2 * self.groups
     }

@@ -58,7 +58,6 @@ fn degrees(text: &str) -> Result<f64, String> {
     number(text, |a| (-90.0..=90.0).contains(&a), "expected degrees off broadside, -90 to 90")
 }
 
-/// One object.
 #[derive(Debug, Serialize)]
 struct Row {
     name: String,
@@ -100,7 +99,6 @@ impl Row {
         }
     }
 
-    /// An object of a scene; `None` for a body, and for one that reflects nothing.
     fn of(radar: &Radar, (index, object): (usize, &Object)) -> Option<Row> {
         if object.body().is_some() || object.reflectivity() == 0.0 {
             return None;
@@ -113,7 +111,6 @@ impl Row {
 }
 
 impl Args {
-    /// Computes and prints.
     pub fn run(self) -> Result<(), CommandError> {
         let file = match &self.scene {
             Some(path) => load(path).map_err(CommandError::failed)?,

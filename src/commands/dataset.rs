@@ -5,7 +5,7 @@ use super::radar_arg::RadarArg;
 use super::{CommandError, print};
 use crate::network::floors::Floors;
 use crate::network::live::arrays::Arrays;
-use crate::network::live::dataset::{DatasetError, DatasetRequest, Part, Precision, write};
+use crate::network::live::dataset::{DatasetError, DatasetPrecision, DatasetRequest, ExamplePart, write};
 use crate::network::live::radars::Radars;
 use crate::radar::{Bytes, Decibels};
 use crate::scene::generate::Kind;
@@ -51,13 +51,13 @@ pub struct Args {
 
     /// Precision of features and target: f16 or f32. Ends are always complex128
     #[arg(long, value_name = "f16|f32", default_value = "f16")]
-    dtype: Precision,
+    dtype: DatasetPrecision,
 
     /// What to write: ends, features (the live network's input), target_ideal (the map of the array as it should be, without noise), target_measured
     /// (what the whole array heard), target_calibrated (what it would have heard without errors of its elements) [default: ends, features where the
     /// radar has the live network's shape, target_ideal, target_measured]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
-    arrays: Vec<Part>,
+    arrays: Vec<ExamplePart>,
 
     #[command(flatten)]
     radar: RadarArg,
@@ -78,7 +78,6 @@ const THERMAL: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 const TICK: Duration = Duration::from_millis(100);
 
 impl Args {
-    /// Writes the dataset.
     pub fn run(self) -> Result<(), CommandError> {
         let [from, to] = THERMAL;
         let radars = Radars::Fixed(Box::new(self.radar.load()?.0));
@@ -88,7 +87,7 @@ impl Args {
             seed: self.seed,
             floors: self.thermal.map_or(Floors::Fixed(self.floor), |share| Floors::Thermal { share, from, to }),
             precision: self.dtype,
-            parts: if self.arrays.is_empty() { Part::usual(&radars, None) } else { self.arrays },
+            parts: if self.arrays.is_empty() { ExamplePart::usual(&radars, None) } else { self.arrays },
             arrays: Arrays::IDEAL,
             radars,
             layout: None,

@@ -6,15 +6,10 @@ use std::path::{Path, PathBuf};
 /// Why a command failed. Every message names the file or argument, what is wrong with it and what was expected.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // The messages name every field.
 pub enum CommandError {
-    /// A file could not be read or written.
     #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
+    File { path: PathBuf, source: std::io::Error },
     /// The arguments make no sense together.
     #[error("{0}")]
     Usage(String),
@@ -23,12 +18,7 @@ pub enum CommandError {
     Failed(Box<dyn Error + Send + Sync>),
     /// The same, about a file.
     #[error("{}: {source}", path.display())]
-    FailedOn {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: Box<dyn Error + Send + Sync>,
-    },
+    FailedOn { path: PathBuf, source: Box<dyn Error + Send + Sync> },
 }
 
 impl CommandError {

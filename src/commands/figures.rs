@@ -2,7 +2,7 @@
 
 use super::arguments::whole;
 use super::{CommandError, print};
-use crate::figures::{ALL, Figure, Source, by_number, draw, pages};
+use crate::figures::{ALL, Figure, SceneSource, by_number, draw, pages};
 use crate::files::write_bytes;
 use crate::methods;
 use crate::reconstruct::Reconstructor;
@@ -30,12 +30,11 @@ pub struct Args {
 }
 
 impl Args {
-    /// Draws the figures.
     pub fn run(self) -> Result<(), CommandError> {
         let chosen = self.chosen()?;
         let folder = self.output.join("figures");
         std::fs::create_dir_all(&folder).map_err(|source| CommandError::File { path: folder.clone(), source })?;
-        let source = Source::new();
+        let source = SceneSource::new();
         for figure in &chosen {
             let failed = |e: &dyn std::fmt::Display| CommandError::Usage(format!("figure {}: {e}", figure.number));
             let sheet = (figure.sheet)(&source).map_err(|e| failed(&e))?;

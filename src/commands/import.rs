@@ -41,10 +41,9 @@ pub struct Args {
 }
 
 /// Layouts that are listed.
-const LISTED: usize = 4;
+const MAX_LISTED_LAYOUTS: usize = 4;
 
 impl Args {
-    /// Finds the layout, tells it, and writes the TOML.
     pub fn run(self) -> Result<(), CommandError> {
         let board = self.board.as_deref().map(board).transpose()?;
         let imported = raw::import(&self.file, self.config.as_deref(), board).map_err(CommandError::failed)?;
@@ -102,7 +101,7 @@ fn described(imported: &Imported, doubts: &[String]) -> Value {
         Certainty::Likely => "likely",
         Certainty::Open => "open",
     };
-    let layouts: Vec<Value> = found.candidates.iter().take(LISTED).map(layout).collect();
+    let layouts: Vec<Value> = found.candidates.iter().take(MAX_LISTED_LAYOUTS).map(layout).collect();
     json!({
         "data": data.display().to_string(),
         "config": config.as_ref().map(|c| c.display().to_string()),

@@ -3,34 +3,34 @@
 use super::CommandError;
 use crate::recording::{self, Recording};
 use crate::scene::file::{self, SceneFile};
-use crate::share::{Shared, is_shared};
+use crate::share::{SharedScene, is_shared};
 use std::path::{Path, PathBuf};
 
 /// A scene or a recording, as the file says.
 #[derive(Debug, Clone)]
-pub enum Input {
+pub enum InputArgs {
     /// A scene and the radar that looks at it.
     Scene(Box<SceneFile>),
     /// Samples and the radar that measured them.
     Recording(Box<Recording>),
 }
 
-impl Input {
+impl InputArgs {
     /// Reads what another copy of the program shared as text, a `.toml` with a table `[recording]` or a raw capture as a recording, anything
     /// else as a scene.
-    pub fn load(path: &Path) -> Result<Input, CommandError> {
-        Input::load_with(path, None)
+    pub fn load(path: &Path) -> Result<InputArgs, CommandError> {
+        InputArgs::load_with(path, None)
     }
 
     /// The same; `config` is the `.cfg` of a raw capture.
-    pub fn load_with(path: &Path, config: Option<&Path>) -> Result<Input, CommandError> {
+    pub fn load_with(path: &Path, config: Option<&Path>) -> Result<InputArgs, CommandError> {
         if let Some(text) = shared_text(path) {
-            return Ok(Input::Scene(Box::new(Shared::from_text(text).map_err(CommandError::failed)?.file)));
+            return Ok(InputArgs::Scene(Box::new(SharedScene::from_text(text).map_err(CommandError::failed)?.file)));
         }
         if recording::file::is_recording_at(path) {
-            return Ok(Input::Recording(Box::new(load_recording(path, config)?)));
+            return Ok(InputArgs::Recording(Box::new(load_recording(path, config)?)));
         }
-        Ok(Input::Scene(Box::new(file::load(path).map_err(CommandError::failed)?)))
+        Ok(InputArgs::Scene(Box::new(file::load(path).map_err(CommandError::failed)?)))
     }
 }
 

@@ -1,7 +1,7 @@
 //! `apertura layouts`: the two ends compared with as many elements at random places, and with other layouts.
 
 use super::arguments::whole;
-use super::figure::{Drawn, Figure, save};
+use super::figure::{Drawing, DrawingResult, save};
 use super::{CommandError, print};
 use crate::bounds::{Lobes, cut, lobes};
 use crate::evaluate::{Estimate, Roc, squared_error};
@@ -59,16 +59,13 @@ struct Row {
     layout: String,
     elements: usize,
     lobes: Option<Lobes>,
-    /// By set.
     squared_error: Vec<Estimate>,
-    /// P_D by set.
     detection: Vec<Option<f64>>,
     #[serde(skip)]
     cut: (Vec<f64>, Vec<f64>),
 }
 
 impl Args {
-    /// Measures, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
         let radar = Radar::default();
         let layouts: Vec<Layout> = self
@@ -170,12 +167,12 @@ struct CutFigure<'a> {
     rows: &'a [Row],
 }
 
-impl Figure for CutFigure<'_> {
+impl Drawing for CutFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 40 + 200 * self.rows.len().max(1) as u32)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
         let area =
             area.margin(8, 0, 0, 0).titled("Which directions sound like a reflector 20 m ahead", ("sans-serif", 22))?;
         for (panel, row) in area.split_evenly((self.rows.len(), 1)).into_iter().zip(self.rows) {

@@ -23,7 +23,6 @@ pub struct Args {
 }
 
 impl Args {
-    /// Opens the lesson.
     pub fn run(self) -> Result<(), CommandError> {
         let (lesson, options) = self.load()?;
         let about = format!("{}: {}. {}", lesson.title, counted(lesson.steps.len(), "step", "steps"), lesson.about);
@@ -36,7 +35,6 @@ impl Args {
         }
     }
 
-    /// The lesson, and what opens it.
     fn load(&self) -> Result<(Lesson, app::Options), CommandError> {
         let usual = app::Options::default();
         match self.lesson.to_str().filter(|name| !name.contains(['.', '/', '\\']) && !self.lesson.exists()) {

@@ -1,14 +1,14 @@
 //! `apertura maps`: the maps of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs};
-use super::input::{ConfigArg, Input};
+use super::input::{ConfigArg, InputArgs};
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::maps::archive::{write_maps, write_recorded_maps};
 use crate::maps::{LogMap, Normalisation, RangeAngleMap};
 use crate::methods;
-use crate::picture::{ColourMap, Format, Style, compose, compose_recording, maps_of};
+use crate::picture::{ColourMap, PictureFormat, Style, compose, compose_recording, maps_of};
 use crate::radar::{Carrier, Radar};
 use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
@@ -81,18 +81,17 @@ pub struct Args {
 }
 
 impl Args {
-    /// Simulates the scene, or reads the recording, and writes its maps.
     pub fn run(self) -> Result<(), CommandError> {
         let output = Output::of_path(&self.output)?;
         self.own.start()?;
-        match Input::load_with(&self.input, self.capture.config.as_deref())? {
-            Input::Scene(_) if self.explain.is_some() => {
+        match InputArgs::load_with(&self.input, self.capture.config.as_deref())? {
+            InputArgs::Scene(_) if self.explain.is_some() => {
                 return Err(CommandError::Usage(
                     "--explain takes reflectors off a recording; expected one as input".into(),
                 ));
             }
-            Input::Scene(file) => self.of_scene(*file, output)?,
-            Input::Recording(recording) => self.of_recording(*recording, output)?,
+            InputArgs::Scene(file) => self.of_scene(*file, output)?,
+            InputArgs::Recording(recording) => self.of_recording(*recording, output)?,
         }
         print(&format!("wrote {}", self.output.display()))
     }
@@ -151,7 +150,6 @@ impl Args {
         }
     }
 
-    /// The output of the method asked for; `None` if none was asked for.
     fn estimate(
         &self,
         radar: &Radar,
@@ -168,7 +166,6 @@ impl Args {
         self.method.as_deref().map_or_else(|| Ok(usual()), |name| methods::by_name(name).map_err(CommandError::failed))
     }
 
-    /// How a recording is drawn; a scene's floor is its own.
     fn style(&self) -> Style {
         Style { floor: Floor::default(), normalisation: self.normalisation, colours: self.colours, eta: None }
     }
@@ -189,7 +186,7 @@ fn span(full: &LogMap) -> String {
 
 enum Output {
     Archive,
-    Picture(Format),
+    Picture(PictureFormat),
 }
 
 impl Output {
@@ -197,7 +194,7 @@ impl Output {
         if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz")) {
             return Ok(Output::Archive);
         }
-        Format::of_path(path).map(Output::Picture).ok_or_else(|| {
+        PictureFormat::of_path(path).map(Output::Picture).ok_or_else(|| {
             CommandError::Usage(format!(
                 "{}: can't tell what to write from this name; expected one ending in .npz, .png or .svg",
                 path.display()

@@ -1,6 +1,6 @@
 //! `apertura methods`: every reconstruction method, and which take the samples of a radar.
 
-use super::input::Input;
+use super::input::InputArgs;
 use super::{CommandError, print};
 use crate::methods::all;
 use crate::reconstruct::{Family, ReconstructError, Reconstructor};
@@ -19,9 +19,8 @@ pub struct Args {
 const WIDTH: usize = 27;
 
 impl Args {
-    /// Prints the list.
     pub fn run(self) -> Result<(), CommandError> {
-        let input = self.input.as_deref().map(Input::load).transpose()?;
+        let input = self.input.as_deref().map(InputArgs::load).transpose()?;
         let methods = all();
         let mut families = Vec::new();
         for family in Family::ALL {
@@ -35,7 +34,7 @@ impl Args {
     }
 }
 
-fn line(method: &dyn Reconstructor, input: Option<&Input>) -> String {
+fn line(method: &dyn Reconstructor, input: Option<&InputArgs>) -> String {
     let told = match input.map(|input| takes(method, input)) {
         None => method.description().to_owned(),
         Some(Ok(())) => "yes".to_owned(),
@@ -46,10 +45,10 @@ fn line(method: &dyn Reconstructor, input: Option<&Input>) -> String {
 }
 
 /// Whether `method` takes samples of this radar, and of a recording, its samples.
-fn takes(method: &dyn Reconstructor, input: &Input) -> Result<(), ReconstructError> {
+fn takes(method: &dyn Reconstructor, input: &InputArgs) -> Result<(), ReconstructError> {
     match input {
-        Input::Scene(file) => method.check_array(&file.radar),
-        Input::Recording(recording) => {
+        InputArgs::Scene(file) => method.check_array(&file.radar),
+        InputArgs::Recording(recording) => {
             method.check_array(&recording.radar)?;
             method.check_hearing(&recording.two_ends())
         }

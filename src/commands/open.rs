@@ -1,11 +1,11 @@
 //! No subcommand: the app, or a picture where there is no display.
 
-use super::input::Input;
+use super::input::InputArgs;
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::methods;
-use crate::picture::{Format, Style, compose, compose_recording, is_our_png};
+use crate::picture::{PictureFormat, Style, compose, compose_recording, is_our_png};
 use crate::platform::console;
 use crate::reconstruct::Reconstructor;
 use crate::scene::file::SceneFile;
@@ -43,8 +43,8 @@ impl Args {
         let own = self.own.start()?;
         self.method = self.method.or_else(|| own.first().map(|name| (*name).to_owned()));
         let input = match &self.scene {
-            Some(path) => Input::load(path)?,
-            None => Input::Scene(Box::new(presets::default_scene())),
+            Some(path) => InputArgs::load(path)?,
+            None => InputArgs::Scene(Box::new(presets::default_scene())),
         };
         let method = self.method.as_deref().map(methods::by_name).transpose().map_err(CommandError::failed)?;
         let reason = match self.open_window(started) {
@@ -58,7 +58,6 @@ impl Args {
         draw_instead(&input, method)
     }
 
-    /// Opens the app and returns when it is closed.
     #[cfg(feature = "app")]
     fn open_window(self, started: Instant) -> Result<(), WindowError> {
         use crate::app::{self, AppError};
@@ -100,25 +99,23 @@ fn shortened(message: &str) -> String {
 
 /// Why the app did not open.
 enum WindowError {
-    /// There is no window to be had here.
     NoWindow(String),
-    /// There is, but the app could not start.
     #[cfg(feature = "app")]
     Failed(crate::app::AppError),
 }
 
-fn draw_instead(input: &Input, method: Option<Arc<dyn Reconstructor>>) -> Result<(), CommandError> {
+fn draw_instead(input: &InputArgs, method: Option<Arc<dyn Reconstructor>>) -> Result<(), CommandError> {
     let style = Style::default();
     let bytes = match input {
-        Input::Scene(file) => {
+        InputArgs::Scene(file) => {
             let SceneFile { scene, radar } = &**file;
             let signal = signal::simulate(radar, scene, style.floor, scene.noise_seed).map_err(CommandError::failed)?;
             let method = method.unwrap_or_else(methods::preferred);
-            compose(radar, scene, &signal, method.as_ref(), &style, Format::Png)
+            compose(radar, scene, &signal, method.as_ref(), &style, PictureFormat::Png)
         }
-        Input::Recording(recording) => {
+        InputArgs::Recording(recording) => {
             let method = method.unwrap_or_else(|| methods::preferred_for(&recording.radar));
-            compose_recording(recording, method.as_ref(), &style, Format::Png)
+            compose_recording(recording, method.as_ref(), &style, PictureFormat::Png)
         }
     }
     .map_err(CommandError::failed)?;

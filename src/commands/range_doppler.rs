@@ -1,12 +1,12 @@
 //! `apertura range-doppler`: range against radial velocity of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs, real, whole};
-use super::input::{ConfigArg, Input};
+use super::input::{ConfigArg, InputArgs};
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::maps::doppler::{RangeDopplerMap, range_doppler, write_range_doppler};
-use crate::picture::{ColourMap, Format, compose_range_doppler};
+use crate::picture::{ColourMap, PictureFormat, compose_range_doppler};
 use crate::radar::{Decibels, MAX_CHIRPS, Radar};
 use crate::recording::file::{is_recording_at, load_loops};
 use crate::scene::Scene;
@@ -76,7 +76,7 @@ impl Args {
     /// Simulates the chirps and writes their map.
     pub fn run(self) -> Result<(), CommandError> {
         let is_archive = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz"));
-        let format = Format::of_path(&self.output);
+        let format = PictureFormat::of_path(&self.output);
         if format.is_none() && !is_archive {
             let name = self.output.display();
             return Err(CommandError::Usage(format!(
@@ -86,7 +86,7 @@ impl Args {
         if is_recording_at(&self.input) {
             return self.of_recording(format);
         }
-        let Input::Scene(file) = Input::load(&self.input)? else {
+        let InputArgs::Scene(file) = InputArgs::load(&self.input)? else {
             return Err(CommandError::Usage(format!("{}: expected a scene or a raw capture", self.input.display())));
         };
         let SceneFile { scene, mut radar } = *file;
@@ -104,8 +104,7 @@ impl Args {
         self.write(&radar, &scene, &map, format)
     }
 
-    /// The map of the loops of a recording's frame.
-    fn of_recording(&self, format: Option<Format>) -> Result<(), CommandError> {
+    fn of_recording(&self, format: Option<PictureFormat>) -> Result<(), CommandError> {
         let told = [
             ("--chirps", self.chirps.is_some()),
             ("--interval", self.interval.is_some()),
@@ -137,7 +136,7 @@ impl Args {
         radar: &Radar,
         scene: &Scene,
         map: &RangeDopplerMap,
-        format: Option<Format>,
+        format: Option<PictureFormat>,
     ) -> Result<(), CommandError> {
         match format {
             None => write_range_doppler(&self.output, radar, scene, map).map_err(CommandError::on(&self.output))?,

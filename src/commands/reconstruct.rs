@@ -129,7 +129,6 @@ impl Args {
         Ok(Input { radar, range_metres, noise: self.floor.floor.into(), samples })
     }
 
-    /// The error of an input that is no archive: what it is, where that is recognised.
     fn not_samples(&self, error: NpzError) -> CommandError {
         if shared_text(&self.input).is_some() || file::load(&self.input).is_ok() {
             return self.is_scene();
@@ -231,7 +230,6 @@ const DOUBTFUL: f64 = 0.5;
 /// What is read.
 struct Input {
     radar: Radar,
-    /// Of a snapshot, if it is known.
     range_metres: Option<f64>,
     noise: NoisePrior,
     samples: Samples,
@@ -239,7 +237,6 @@ struct Input {
 
 enum Samples {
     Ends(TwoEnds),
-    /// The thesis networks' own input, ready-made.
     MagPhase(Array3<f64>),
 }
 

@@ -1,7 +1,7 @@
 //! `apertura robustness`: each method's error over the size of the elements' errors.
 
 use super::arguments::{FloorArgs, real, seed, whole};
-use super::figure::{Drawn, Figure, save, save_numbers, tick};
+use super::figure::{Drawing, DrawingResult, save, save_numbers, tick};
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::evaluate::{Estimate, Robustness, RobustnessRow};
@@ -36,19 +36,19 @@ pub struct Args {
     own: OwnMethodArgs,
 
     /// Standard deviation of the elements' gain at scale 1, decibels
-    #[arg(long, value_name = "DB", default_value_t = 0.5, value_parser = real(0.0..=MOST))]
+    #[arg(long, value_name = "DB", default_value_t = 0.5, value_parser = real(0.0..=MAX_TOLERANCE))]
     gain_db: f64,
 
     /// Standard deviation of the elements' phase at scale 1, degrees
-    #[arg(long, value_name = "DEGREES", default_value_t = 10.0, value_parser = real(0.0..=MOST))]
+    #[arg(long, value_name = "DEGREES", default_value_t = 10.0, value_parser = real(0.0..=MAX_TOLERANCE))]
     phase_degrees: f64,
 
     /// Standard deviation of the elements' places at scale 1, millimetres
-    #[arg(long, value_name = "MM", default_value_t = 0.0, value_parser = real(0.0..=MOST))]
+    #[arg(long, value_name = "MM", default_value_t = 0.0, value_parser = real(0.0..=MAX_TOLERANCE))]
     position_millimetres: f64,
 
     /// Factors on all three
-    #[arg(long, value_name = "FACTOR,..", value_delimiter = ',', default_value = "0,0.5,1,2,4", value_parser = real(0.0..=MOST))]
+    #[arg(long, value_name = "FACTOR,..", value_delimiter = ',', default_value = "0,0.5,1,2,4", value_parser = real(0.0..=MAX_TOLERANCE))]
     scale: Vec<f64>,
 
     /// Calibrate each array on its scene's strongest reflector first
@@ -80,7 +80,7 @@ pub struct Args {
 }
 
 /// Largest tolerance or scale that is taken.
-const MOST: f64 = 180.0;
+const MAX_TOLERANCE: f64 = 180.0;
 
 impl Args {
     /// Measures, prints and draws.
@@ -149,7 +149,6 @@ fn csv(rows: &[RobustnessRow]) -> String {
             .to_owned();
     for r in rows {
         let errors = (r.squared_error.mean, r.squared_error.standard_error);
-        // Writing to a string can't fail.
         let _ = writeln!(
             out,
             "{},{},{},{},{},{:.2},{:.2},{:.4},{:.5}",
@@ -168,12 +167,12 @@ fn csv(rows: &[RobustnessRow]) -> String {
 }
 
 /// Least squared error that is drawn.
-const LEAST: f64 = 1.0;
+const MIN_DRAWN_ERROR: f64 = 1.0;
 
-/// Mean less and plus its standard error, with the mean between them; never below [`LEAST`].
+/// Mean less and plus its standard error, with the mean between them; never below [`MIN_DRAWN_ERROR`].
 fn bar_of(row: &RobustnessRow) -> [f64; 3] {
     let Estimate { mean, standard_error, .. } = row.squared_error;
-    [mean - standard_error, mean, mean + standard_error].map(|v| v.max(LEAST))
+    [mean - standard_error, mean, mean + standard_error].map(|v| v.max(MIN_DRAWN_ERROR))
 }
 
 /// Squared error over the scale of the elements' errors, a line a method.
@@ -198,18 +197,18 @@ impl RobustnessFigure<'_> {
     }
 }
 
-impl Figure for RobustnessFigure<'_> {
+impl Drawing for RobustnessFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (900, 540)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
         let ends = self.rows.iter().flat_map(|r| {
             let [low, mean, high] = bar_of(r);
             // A bar of one that is not sure at all would make the axis as long as it.
             [low.max(mean / 3.0), high]
         });
-        let (low, high) = ends.fold((f64::INFINITY, LEAST), |(a, b), v| (a.min(v), b.max(v)));
+        let (low, high) = ends.fold((f64::INFINITY, MIN_DRAWN_ERROR), |(a, b), v| (a.min(v), b.max(v)));
         let bottom = low / 1.3;
         let furthest = self.rows.iter().map(|r| r.scale).fold(0.0, f64::max).max(1e-3);
         let mut chart = ChartBuilder::on(area)
@@ -237,7 +236,6 @@ impl Figure for RobustnessFigure<'_> {
                 let own = self.rows.iter().filter(|r| r.method == method.name());
                 own.map(|r| (r.scale + aside, bar_of(r).map(|v| v.max(bottom))))
             };
-            // A bar from end to end, with a cap across either.
             let lines = bars().flat_map(|(x, [low, _, high])| {
                 let cap = move |y| vec![(x - step, y), (x + step, y)];
                 [vec![(x, low), (x, high)], cap(low), cap(high)]

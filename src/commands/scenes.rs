@@ -55,7 +55,7 @@ impl Args {
         let reading = if self.thesis_text { Reading::Text } else { Reading::Program };
         let generator = Generator::new(&radar, reading, Purpose::Test, self.seed);
         if let Some(index) = self.index {
-            file::Format::of_path(&self.output).map_err(CommandError::failed)?;
+            file::SceneFormat::of_path(&self.output).map_err(CommandError::failed)?;
             let scene = generator.scene(self.set, index);
             let seed = scene.noise_seed;
             if let Some(folder) = self.output.parent().filter(|folder| !folder.as_os_str().is_empty()) {

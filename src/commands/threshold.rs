@@ -3,7 +3,7 @@
 use super::arguments::{FloorArgs, real, seed, whole};
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
-use crate::evaluate::threshold::{KeptThreshold, ThresholdSearch, Tried};
+use crate::evaluate::threshold::{KeptThreshold, ThresholdMeans, ThresholdSearch};
 use crate::methods;
 use crate::radar::counted;
 use crate::scene::generate::Kind;
@@ -85,8 +85,8 @@ struct Rates {
     detection: f64,
 }
 
-impl From<Tried> for Rates {
-    fn from(Tried { scenes, false_alarm, detection }: Tried) -> Rates {
+impl From<ThresholdMeans> for Rates {
+    fn from(ThresholdMeans { scenes, false_alarm, detection }: ThresholdMeans) -> Rates {
         Rates { scenes, false_alarm, detection }
     }
 }

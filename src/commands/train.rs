@@ -5,9 +5,9 @@ use super::{CommandError, print};
 use crate::files::sha256;
 use crate::network::backend::Backend;
 use crate::network::checkpoint;
-use crate::network::live::Live;
+use crate::network::live::LiveNetwork;
 use crate::network::recipe::{Network, Recipe, SHIPPED};
-use crate::network::run::{Origin, Progress, Run};
+use crate::network::run::{Origin, RunProgress, TrainingRun};
 use crate::network::students::Student;
 use crate::network::thesis::Thesis;
 use crate::network::train::train;
@@ -71,7 +71,7 @@ impl Args {
         let recipe = self.recipe()?;
         let resume = self.resume.is_some();
         let folder = self.resume.or(self.output).unwrap_or_else(|| PathBuf::from("runs").join(&recipe.name));
-        let run = Run {
+        let run = TrainingRun {
             folder,
             device: self.backend.device(),
             radar: Radar::default(),
@@ -84,11 +84,10 @@ impl Args {
         match &recipe.network {
             Network::Thesis(config) => go::<Thesis>(&recipe, config, &run, resume),
             Network::Unet(config) => go::<Unet>(&recipe, config, &run, resume),
-            Network::Live(config) => go::<Live>(&recipe, config, &run, resume),
+            Network::Live(config) => go::<LiveNetwork>(&recipe, config, &run, resume),
         }
     }
 
-    /// The recipe that is named; where none is, that of the run to go on with.
     fn recipe(&self) -> Result<Recipe, CommandError> {
         if let (None, Some(folder)) = (&self.recipe, &self.resume) {
             return checkpoint::recipe(&folder.join(CHECKPOINT)).map_err(CommandError::failed);
@@ -116,12 +115,12 @@ fn list() -> Result<(), CommandError> {
     Ok(())
 }
 
-fn go<S: Student>(recipe: &Recipe, config: &S::Config, run: &Run, resume: bool) -> Result<(), CommandError> {
+fn go<S: Student>(recipe: &Recipe, config: &S::Config, run: &TrainingRun, resume: bool) -> Result<(), CommandError> {
     let all = recipe.training_scenes().len() / recipe.batch * recipe.epochs as usize;
     let bar = ProgressBar::new(run.max_steps.map_or(all as u64, |most| most.min(all as u64)));
     let style = ProgressStyle::with_template("{bar:30} step {pos}/{len}, {eta} left, {msg}");
     bar.set_style(style.map_err(CommandError::failed)?);
-    let watch = |p: &Progress| {
+    let watch = |p: &RunProgress| {
         bar.set_position(p.step);
         bar.set_message(format!("epoch {}, loss {:.5}", p.epoch, p.loss));
     };

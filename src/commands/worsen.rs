@@ -3,7 +3,7 @@
 use super::arguments::{FloorArgs, chosen, real, seed, whole};
 use super::network_args::NetworkArgs;
 use super::{CommandError, print};
-use crate::evaluate::worsen::{Aim, Finding, Measure, Outcome, Search, summary};
+use crate::evaluate::worsen::{Aim, Finding, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
 use crate::radar::counted;
 use crate::scene::Scene;
 use crate::scene::file::{self, SceneFile};
@@ -28,14 +28,14 @@ pub struct Args {
 
     /// The figure that should get worse
     #[arg(long, value_name = "squared-error|missed|ghosts", default_value_t)]
-    measure: Measure,
+    measure: WorseningMeasure,
 
     /// Search for the smallest move after which the method is right instead
     #[arg(long)]
     repair: bool,
 
     /// How far objects may move, metres
-    #[arg(long, value_name = "METRES", default_value_t = Search::default().within_metres,
+    #[arg(long, value_name = "METRES", default_value_t = WorseningSearch::default().within_metres,
           value_parser = real(LEAST_REACH..=1000.0))]
     within: f64,
 
@@ -71,13 +71,13 @@ const MOST_MINUTES: f64 = 525_600.0;
 impl Args {
     /// Searches, prints, and writes what was found.
     pub fn run(self) -> Result<(), CommandError> {
-        file::Format::of_path(&self.output).map_err(CommandError::failed)?;
+        file::SceneFormat::of_path(&self.output).map_err(CommandError::failed)?;
         let time = Duration::from_secs_f64(60.0 * self.minutes.unwrap_or(10.0));
         let SceneFile { scene, radar } = file::load(&self.scene).map_err(CommandError::failed)?;
         let own = self.network.start_own()?;
         let methods = self.network.methods(&chosen(self.method.as_slice(), &own, ""))?;
         let [method] = methods.as_slice() else { return Err(CommandError::Usage("--method takes one name".into())) };
-        let search = Search {
+        let search = WorseningSearch {
             radar: radar.clone(),
             floor: self.floor.floor,
             aim: if self.repair { Aim::Repair } else { Aim::Worsen },
@@ -85,7 +85,7 @@ impl Args {
             within_metres: self.within,
             tries: self.most_tries(),
             seed: self.seed,
-            ..Search::default()
+            ..WorseningSearch::default()
         };
         let begin = Instant::now();
         let by_clock = self.most_tries() == u32::MAX;
@@ -112,7 +112,7 @@ impl Args {
 
     /// Where only the time is said, it alone ends the search.
     fn most_tries(&self) -> u32 {
-        let otherwise = if self.minutes.is_some() { u32::MAX } else { Search::default().tries };
+        let otherwise = if self.minutes.is_some() { u32::MAX } else { WorseningSearch::default().tries };
         self.tries.unwrap_or(otherwise)
     }
 
@@ -120,14 +120,14 @@ impl Args {
         let m = &finding.metrics;
         let detection = m.detection.map_or("-".to_owned(), |d| format!("{:.2} %", 100.0 * d));
         let mut text = format!("SE {:.1}, P_D {detection}, P_FA {:.2} %", m.squared_error, 100.0 * m.false_alarm);
-        if self.measure != Measure::SquaredError {
+        if self.measure != WorseningMeasure::SquaredError {
             text += &format!("; {}", summary(&finding.failures));
         }
         text
     }
 
-    fn print_end(&self, outcome: &Outcome, end: &Finding) -> Result<(), CommandError> {
-        let Outcome { tries, .. } = outcome;
+    fn print_end(&self, outcome: &WorseningOutcome, end: &Finding) -> Result<(), CommandError> {
+        let WorseningOutcome { tries, .. } = outcome;
         print(&format!("try {} of {tries} with seed {}", end.tries, self.seed))?;
         if *tries < self.most_tries() {
             return print(&format!("ended by the clock; --tries {tries} repeats this search"));
@@ -135,7 +135,7 @@ impl Args {
         Ok(())
     }
 
-    fn nothing(&self, outcome: &Outcome) -> Result<(), CommandError> {
+    fn nothing(&self, outcome: &WorseningOutcome) -> Result<(), CommandError> {
         if self.repair && outcome.tries == 0 {
             return print("nothing to repair");
         }

@@ -1,19 +1,18 @@
 //! How large the echoes of each object of the last scene can be: those of an object that is as it was are not looked at again.
 
 use crate::radar::Radar;
-use crate::scattering::Seen;
+use crate::scattering::SeenObject;
 use crate::signal::plan;
 
-/// The objects of one scene, each with the bound of its amplitudes.
 #[derive(Debug, Default)]
 pub(super) struct Amplitudes {
-    known: Vec<(Seen, f64)>,
+    known: Vec<(SeenObject, f64)>,
 }
 
 impl Amplitudes {
     /// Sum of the largest amplitudes of all echoes of these objects, as [`plan::amplitude_bound_of`] has it, and remembers them.
-    pub fn bound(&mut self, radar: &Radar, seen: &[Seen]) -> f64 {
-        let is_known = |at: usize, one: &Seen| self.known.get(at).is_some_and(|(known, _)| known == one);
+    pub fn bound(&mut self, radar: &Radar, seen: &[SeenObject]) -> f64 {
+        let is_known = |at: usize, one: &SeenObject| self.known.get(at).is_some_and(|(known, _)| known == one);
         let missing: Vec<usize> =
             seen.iter().enumerate().filter(|(at, one)| !is_known(*at, one)).map(|(at, _)| at).collect();
         let bounds = plan::amplitude_bounds(radar, missing.iter().filter_map(|at| seen.get(*at)));
@@ -52,7 +51,7 @@ mod tests {
         };
         let mut known = Amplitudes::default();
         let mut check = |scene: &Scene| {
-            let seen = Seen::all(&radar, scene);
+            let seen = SeenObject::all(&radar, scene);
             assert_eq!(known.bound(&radar, &seen), plan::amplitude_bound_of(&radar, &seen));
             plan::amplitude_bounds(&radar, seen.iter())
         };

@@ -1,12 +1,12 @@
 //! The sums the engine keeps, in one precision: range profiles of the objects at rest and of those being edited.
 
-use super::change::Change;
-use super::frame::Wanted;
-use super::report::{Report, Stage};
-use crate::maps::fast::{FastLogMap, MapMaker, Noise, Sources, silence_decades};
+use super::change::SceneChange;
+use super::frame::MapRequest;
+use super::report::{EngineReport, EngineStage};
+use crate::maps::fast::{FastLogMap, MapMaker, MapNoise, MapSources, silence_decades};
 use crate::platform::Instant;
 use crate::radar::{Radar, counted};
-use crate::scattering::{Echoing, Seen};
+use crate::scattering::{Echoing, SeenObject};
 use crate::scene::Scene;
 use crate::signal::plan;
 use crate::signal::simd::{Lanes, Real, Simd};
@@ -15,21 +15,20 @@ use crate::signal::{Algorithm, Floor, Plan, Rows, floor};
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 
-/// One update, as the caches see it.
-pub(super) struct Job<'a> {
+pub(super) struct BankUpdate<'a> {
     pub task: &'a Task,
     pub radar: &'a Radar,
     pub scene: &'a Scene,
     /// Its objects, with what hides them.
-    pub seen: &'a [Seen],
-    pub wanted: &'a Wanted,
+    pub seen: &'a [SeenObject],
+    pub wanted: &'a MapRequest,
     pub plan: Plan,
     pub forced: Option<Algorithm>,
     pub amplitude: f64,
     pub missing: [bool; 3],
 }
 
-impl Job<'_> {
+impl BankUpdate<'_> {
     /// So many of what the scene echoes with.
     fn counted(&self, count: usize) -> String {
         match self.scene.has_bodies() {
@@ -50,10 +49,10 @@ impl Job<'_> {
         if half.is_finite() { half } else { 0.0 }
     }
 
-    /// Bound of the amplitudes of these objects, and the same with every echo counted as three quarters of [`Job::quiet`] at least. A weak echo
+    /// Bound of the amplitudes of these objects, and the same with every echo counted as three quarters of [`BankUpdate::quiet`] at least. A weak echo
     /// has one error from when it was added, a quarter of the tolerance times twice that amplitude. It has another from when it is taken away, a
     /// quarter of the tolerance times that amplitude.
-    fn leaving(&self, objects: &[Seen]) -> [f64; 2] {
+    fn leaving(&self, objects: &[SeenObject]) -> [f64; 2] {
         let bounds = plan::amplitude_bounds(self.radar, objects.iter());
         let counted = objects.iter().zip(&bounds).map(|(one, bound)| {
             let (count, least) = (one.echo_count() as f64, 0.75 * self.quiet());
@@ -63,7 +62,6 @@ impl Job<'_> {
         [bounds.iter().sum(), counted.sum()]
     }
 
-    /// What is said of maps of which these rows were made.
     fn made(&self, rows: &Rows, over_noise: bool) -> String {
         let all = self.radar.samples;
         match rows.count() {
@@ -79,20 +77,18 @@ impl Job<'_> {
     }
 }
 
-/// A map's decades as they were last computed.
-pub(super) struct Kept {
+pub(super) struct KeptDecades {
     pub decades: FastLogMap,
     /// Rows that no longer show what the sums hold.
     pub stale: Rows,
-    /// Whether noise lies beneath it.
     over_noise: bool,
     /// Decades of its silent cells.
     silence: f32,
 }
 
-impl Kept {
+impl KeptDecades {
     fn silence(radar: &Radar) -> Self {
-        Kept {
+        KeptDecades {
             decades: FastLogMap::silence(radar),
             stale: Rows::all(radar.samples),
             over_noise: false,
@@ -101,13 +97,11 @@ impl Kept {
     }
 }
 
-/// Profiles of some objects, with the variance of their part of the thesis' floor.
 pub(super) struct Group<T, const W: usize> {
-    objects: Vec<Seen>,
+    objects: Vec<SeenObject>,
     pub(super) profiles: BlockProfiles<T, W>,
-    /// Largest [`Job::quiet`] that any of them was summed with, where quiet echoes have few rows.
+    /// Largest [`BankUpdate::quiet`] that any of them was summed with, where quiet echoes have few rows.
     quiet: f64,
-    /// `None` until somebody asks.
     variance: Option<Vec<f64>>,
 }
 
@@ -116,7 +110,7 @@ impl<T: Real, const W: usize> Group<T, W> {
         Group { objects: Vec::new(), profiles: BlockProfiles::silence(radar), quiet: 0.0, variance: None }
     }
 
-    fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[Seen], job: &Job<'_>) {
+    fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[SeenObject], job: &BankUpdate<'_>) {
         let echoing = Echoing::seen(job.radar, objects);
         synthesis.range_profiles_beside(&echoing, job.quiet(), &mut self.profiles, job.task);
         // The other algorithms take quiet echoes as they take all.
@@ -126,13 +120,11 @@ impl<T: Real, const W: usize> Group<T, W> {
         self.objects = objects.to_vec();
     }
 
-    /// Variance of the thesis' floor beneath these objects, at every element.
     fn variance(&mut self, radar: &Radar) -> &[f64] {
         let objects = &self.objects;
         self.variance.get_or_insert_with(|| floor::thesis_noise_variance(radar, &Echoing::seen(radar, objects)))
     }
 
-    /// Holds nothing any more.
     fn clear(&mut self) {
         self.objects.clear();
         self.profiles.clear();
@@ -140,7 +132,6 @@ impl<T: Real, const W: usize> Group<T, W> {
         self.variance = None;
     }
 
-    /// Adds (`sign` = 1) or takes away (-1) what another group holds, but for the list of objects.
     fn add(&mut self, other: &Self, sign: f64) {
         self.profiles.add(&other.profiles, sign);
         self.quiet = self.quiet.max(other.quiet);
@@ -151,21 +142,16 @@ impl<T: Real, const W: usize> Group<T, W> {
     }
 }
 
-/// Caches in one precision.
 pub(super) struct Bank<T: Real, const W: usize> {
     maker: MapMaker<T, W>,
     syntheses: Vec<Synthesis<T, W>>,
-    /// Objects at rest.
     pub(super) rest: Group<T, W>,
-    /// Objects being edited.
     pub(super) active: Group<T, W>,
-    /// Where objects that leave the sum at rest are evaluated.
     leaving: Group<T, W>,
     built: Option<Built>,
     noise: Option<(u64, BlockProfiles<T, W>)>,
 }
 
-/// How the sum at rest was made.
 struct Built {
     tolerance: f64,
     forced: Option<Algorithm>,
@@ -200,7 +186,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
         one * (3 + usize::from(self.noise.is_some()))
     }
 
-    fn synthesis(&mut self, job: &Job<'_>, count: usize) -> usize {
+    fn synthesis(&mut self, job: &BankUpdate<'_>, count: usize) -> usize {
         let mut plan = Plan::cheapest(count, job.amplitude, job.plan.tolerance);
         if job.wanted.floor == Floor::Exact {
             plan = plan.on_few_rows(job.radar, count);
@@ -220,25 +206,29 @@ impl<T: Real, const W: usize> Bank<T, W> {
     }
 
     /// Brings those of `maps` that the job misses up to the job's scene, row by row where only few changed.
-    ///
     /// # Errors
     /// [`Cancelled`]: nothing is held any more, and `maps` are of no use.
-    pub fn run(&mut self, job: &Job<'_>, maps: &mut [Option<Kept>; 3], report: &mut Report) -> Result<(), Cancelled> {
+    pub fn run(
+        &mut self,
+        job: &BankUpdate<'_>,
+        maps: &mut [Option<KeptDecades>; 3],
+        report: &mut EngineReport,
+    ) -> Result<(), Cancelled> {
         let start = Instant::now();
         let (what, changed) = self.follow(job);
         job.task.check().inspect_err(|_| self.forget())?;
-        report.computed(Stage::Signal, start.elapsed(), what);
+        report.computed(EngineStage::Signal, start.elapsed(), what);
 
         let start = Instant::now();
         let deviation = self.deviation(job);
         match &deviation {
-            Some(_) => report.computed(Stage::Noise, start.elapsed(), format!("{} floor", job.wanted.floor)),
-            None => report.skipped(Stage::Noise, "there is no floor"),
+            Some(_) => report.computed(EngineStage::Noise, start.elapsed(), format!("{} floor", job.wanted.floor)),
+            None => report.skipped(EngineStage::Noise, "there is no floor"),
         }
 
         let start = Instant::now();
         let noise = match (&self.noise, &deviation) {
-            (Some((_, unit)), Some(deviation)) => Some(Noise { unit, deviation }),
+            (Some((_, unit)), Some(deviation)) => Some(MapNoise { unit, deviation }),
             _ => None,
         };
         let gain = (job.radar.samples as f64 * job.radar.elements as f64).sqrt();
@@ -247,7 +237,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
         let mut rows = Rows::none(job.radar.samples);
         for (kept, missing) in maps.iter_mut().zip(job.missing) {
             if missing {
-                kept.get_or_insert_with(|| Kept::silence(job.radar));
+                kept.get_or_insert_with(|| KeptDecades::silence(job.radar));
             }
             let Some(kept) = kept else { continue };
             kept.stale.extend(&changed);
@@ -265,19 +255,19 @@ impl<T: Real, const W: usize> Bank<T, W> {
         for (made, missing) in made.iter_mut().zip(job.missing) {
             *made = made.take().filter(|_| missing);
         }
-        self.maker.fill(Sources { profiles: &profiles, noise, bound }, made, &rows);
+        self.maker.fill(MapSources { profiles: &profiles, noise, bound }, made, &rows);
 
         let took = start.elapsed();
         let count = job.missing.iter().filter(|m| **m).count() as u32;
         let what = job.made(&rows, noise.is_some());
-        for (stage, _) in Stage::MAPS.into_iter().zip(job.missing).filter(|(_, missing)| *missing) {
+        for (stage, _) in EngineStage::MAPS.into_iter().zip(job.missing).filter(|(_, missing)| *missing) {
             report.computed(stage, took / count, what.as_str());
         }
         Ok(())
     }
 
     /// Makes the two groups hold the scene; says how, and which rows may have changed.
-    fn follow(&mut self, job: &Job<'_>) -> (String, Rows) {
+    fn follow(&mut self, job: &BankUpdate<'_>) -> (String, Rows) {
         let scene = job.seen;
         let total = job.scene.echo_count();
         let limit = job.amplitude * (job.plan.tolerance / 2.0).max(4.0 * T::EPSILON);
@@ -285,7 +275,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
         // Where a strong object is gone, the others were summed with too large an error.
         let usable = usable.filter(|_| self.rest.quiet <= 2.0 * job.quiet());
         let change = usable.map(|built| {
-            let change = Change::between(&self.rest.objects, &self.active.objects, scene);
+            let change = SceneChange::between(&self.rest.objects, &self.active.objects, scene);
             let more = if !change.settles {
                 0.0
             } else {
@@ -307,13 +297,13 @@ impl<T: Real, const W: usize> Bank<T, W> {
                     self.rest.add(&self.active, 1.0);
                 }
                 if !change.leaving.is_empty() {
-                    let count = change.leaving.iter().map(Seen::echo_count).sum();
+                    let count = change.leaving.iter().map(SeenObject::echo_count).sum();
                     let synthesis = self.synthesis(job, count);
                     self.leaving.fill(&self.syntheses[synthesis], &change.leaving, job);
                     self.rest.add(&self.leaving, -1.0);
                     changed.extend(&self.leaving.profiles.touched);
                 }
-                let count = change.arriving.iter().map(Seen::echo_count).sum();
+                let count = change.arriving.iter().map(SeenObject::echo_count).sum();
                 let synthesis = self.synthesis(job, count);
                 self.active.fill(&self.syntheses[synthesis], &change.arriving, job);
                 if let Some(built) = &mut self.built {
@@ -332,7 +322,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
     }
 
     /// Makes the sum at rest hold `staying`, and the other `moving`: together the whole scene.
-    fn build_anew(&mut self, job: &Job<'_>, staying: &[Seen], moving: &[Seen]) -> (String, Rows) {
+    fn build_anew(&mut self, job: &BankUpdate<'_>, staying: &[SeenObject], moving: &[SeenObject]) -> (String, Rows) {
         let total = job.scene.echo_count();
         let synthesis = self.synthesis(job, total);
         let mut changed = self.rest.profiles.touched.clone();
@@ -351,7 +341,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
     }
 
     /// Standard deviation of the floor's noise at every element, in blocks; the unit noise is made ready too.
-    fn deviation(&mut self, job: &Job<'_>) -> Option<Vec<Lanes<T, W>>> {
+    fn deviation(&mut self, job: &BankUpdate<'_>) -> Option<Vec<Lanes<T, W>>> {
         let variance: Vec<f64> = match job.wanted.floor {
             Floor::Exact => return None,
             Floor::Thesis => {

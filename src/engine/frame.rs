@@ -1,14 +1,14 @@
 //! What is asked of the engine, and what it answers with.
 
-use super::report::Report;
+use super::report::EngineReport;
 use crate::maps::{Aperture, LambdaScale, Normalisation, RangeAngleMap};
 use crate::radar::End;
 use crate::signal::{Floor, TwoEnds};
 use std::sync::Arc;
 
-/// What somebody looks at. Whatever is not wanted is not computed.
+/// Which maps are looked at; no other is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wanted {
+pub struct MapRequest {
     /// The floor beneath the reflectors.
     pub floor: Floor,
     /// Picks the noise of the floor.
@@ -25,17 +25,15 @@ pub struct Wanted {
     pub ends: bool,
 }
 
-impl Wanted {
-    /// Which maps are looked at: first end, last end, whole array.
+impl MapRequest {
     pub(super) fn visible(&self) -> [bool; 3] {
         [self.first, self.last, self.full]
     }
 }
 
-impl Default for Wanted {
-    /// All three maps and the samples of the ends, in the thesis' conventions.
+impl Default for MapRequest {
     fn default() -> Self {
-        Wanted {
+        MapRequest {
             floor: Floor::Thesis,
             seed: 0,
             normalisation: Normalisation::MinMax,
@@ -68,7 +66,7 @@ impl ReadyMap {
 
 /// Everything that was wanted of one scene.
 #[derive(Debug, Clone)]
-pub struct Frame {
+pub struct EngineFrame {
     /// Map of the first end, if wanted.
     pub first: Option<ReadyMap>,
     /// Map of the last end, if wanted.
@@ -80,10 +78,10 @@ pub struct Frame {
     /// Whether it was computed as every command computes it ([`super::Engine::settle`]): figures may be made of it.
     pub settled: bool,
     /// What each stage cost, and what was skipped and why.
-    pub report: Report,
+    pub report: EngineReport,
 }
 
-impl Frame {
+impl EngineFrame {
     /// The map of one aperture, if it was wanted.
     pub fn map(&self, aperture: Aperture) -> Option<&ReadyMap> {
         match aperture {

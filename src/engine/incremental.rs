@@ -1,19 +1,19 @@
-//! The incremental engine, without threads: whoever owns it decides where it runs.
+//! The incremental engine, without threads: its owner decides on which thread it runs.
 //!
 //! The signal is a sum over objects. The engine keeps the range profiles of the objects at rest and, apart, of those being
 //! edited: dragging one of many objects evaluates that one alone. Taking an object out of the sum at rest leaves rounding behind;
 //! how much is bounded as it goes, and the sum is made afresh before it could show.
 
 use super::amplitudes::Amplitudes;
-use super::bank::{Bank, Job};
-use super::frame::{Frame, Wanted};
-use super::report::{Report, Stage};
-use super::settled::Settled;
-use super::shown::Shown;
+use super::bank::{Bank, BankUpdate};
+use super::frame::{EngineFrame, MapRequest};
+use super::report::{EngineReport, EngineStage};
+use super::settled::SettledMaps;
+use super::shown::ShownMaps;
 use crate::maps::tolerance;
 use crate::platform::Instant;
 use crate::radar::Radar;
-use crate::scattering::Seen;
+use crate::scattering::SeenObject;
 use crate::scene::{Scene, SceneError};
 use crate::signal::plan::Sum;
 use crate::signal::simd::{LANES_F32, LANES_F64};
@@ -28,10 +28,9 @@ pub struct Engine {
     forced: Forced,
     single: Option<Bank<f32, LANES_F32>>,
     double: Option<Bank<f64, LANES_F64>>,
-    /// The precision of the last maps.
     last: Option<Precision>,
-    shown: Option<Shown>,
-    settled: Option<Settled>,
+    shown: Option<ShownMaps>,
+    settled: Option<SettledMaps>,
     amplitudes: Amplitudes,
 }
 
@@ -109,24 +108,22 @@ impl Engine {
             .as_ref()
             .map_or(0, |s| s.decades.iter().flatten().count() + s.maps.iter().flatten().count() + s.spare.len());
         // Decades in f64 and Lambda in f32.
-        let settled = self.settled.as_ref().map_or(0, Settled::maps) * 3;
+        let settled = self.settled.as_ref().map_or(0, SettledMaps::maps) * 3;
         banks + (shown + settled) * cells
     }
 
     /// Computes what is wanted of `scene`; what did not change since the last call is the same `Arc` as then. A scene that was settled
     /// stays so. A disturbed one is settled at once: what it is made of isn't the sum of its objects. So is one whose maps are focused.
-    ///
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
-    pub fn update(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
+    pub fn update(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
         self.update_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
     }
 
     /// [`Engine::update`], unless `task` is cancelled before it is done: then the next update starts from scratch.
-    ///
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
-    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
+    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
         let begin = Instant::now();
         let is_focused = self.radar.focus_off_line && !self.radar.is_on_line();
         if is_focused || !scene.disturbances.is_none_to(&self.radar) {
@@ -135,7 +132,7 @@ impl Engine {
         scene.validate(&self.radar)?;
         self.settled = self.settled.take().filter(|settled| settled.has(scene, wanted));
         let mut frame = match &mut self.settled {
-            Some(settled) => settled.frame(wanted, Report::default()),
+            Some(settled) => settled.frame(wanted, EngineReport::default()),
             None => self.follow(task, scene, wanted)?,
         };
         frame.report.total = begin.elapsed();
@@ -143,51 +140,48 @@ impl Engine {
     }
 
     /// Computes what is wanted of `scene` as every command does, by [`crate::signal::simulate`] and the plain transforms in f64: the same
-    /// bits whatever the engine computed before. Several times slower than an update; for scenes at rest, and whenever figures are made.
-    ///
+    /// bits after any earlier scene. Several times slower than an update; for scenes at rest, and whenever figures are made.
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
-    pub fn settle(&mut self, scene: &Scene, wanted: &Wanted) -> Result<Frame, SceneError> {
+    pub fn settle(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
         self.settle_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
     }
 
     /// [`Engine::settle`], unless `task` is cancelled before it is done; updates go on from where they were.
-    ///
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
-    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
+    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
         let begin = Instant::now();
-        let mut report = Report::default();
+        let mut report = EngineReport::default();
         let settled = match self.settled.take().filter(|settled| settled.has(scene, wanted)) {
             Some(settled) => settled,
-            None => Settled::of(task, &self.radar, scene, wanted, &mut report)?,
+            None => SettledMaps::of(task, &self.radar, scene, wanted, &mut report)?,
         };
         let mut frame = self.settled.insert(settled).frame(wanted, report);
         frame.report.total = begin.elapsed();
         Ok(frame)
     }
 
-    /// Brings what was shown last up to `scene`.
-    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &Wanted) -> Result<Frame, Unfinished> {
-        let mut report = Report::default();
+    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
+        let mut report = EngineReport::default();
         let visible = wanted.visible();
         let mut shown = self.recall(scene, wanted);
         if wanted.ends && shown.ends.is_none() {
             let start = Instant::now();
             shown.ends = Some(Arc::new(simulate_ends_for(task, &self.radar, scene, wanted.floor, wanted.seed)?));
-            report.computed(Stage::Ends, start.elapsed(), "summed at the two ends");
+            report.computed(EngineStage::Ends, start.elapsed(), "summed at the two ends");
         } else {
-            report.skipped(Stage::Ends, if wanted.ends { "the scene did not change" } else { "not looked at" });
+            report.skipped(EngineStage::Ends, if wanted.ends { "the scene did not change" } else { "not looked at" });
         }
         let missing = [0, 1, 2].map(|i| visible[i] && !shown.current[i]);
         if missing.contains(&true) {
             self.compute(task, scene, wanted, missing, &mut shown, &mut report)?;
         } else {
-            report.skipped(Stage::Signal, "the scene did not change");
-            report.skipped(Stage::Noise, "the scene did not change");
+            report.skipped(EngineStage::Signal, "the scene did not change");
+            report.skipped(EngineStage::Noise, "the scene did not change");
         }
         for i in (0..3).filter(|i| !missing[*i]) {
-            report.skipped(Stage::MAPS[i], if visible[i] { "the scene did not change" } else { "not looked at" });
+            report.skipped(EngineStage::MAPS[i], if visible[i] { "the scene did not change" } else { "not looked at" });
         }
         shown.normalise(visible, missing, wanted.normalisation, &mut report);
 
@@ -195,22 +189,22 @@ impl Engine {
         let (first, last, full) = (map(0), map(1), map(2));
         let ends = shown.ends.clone().filter(|_| wanted.ends);
         self.shown = Some(shown);
-        Ok(Frame { first, last, full, ends, settled: false, report })
+        Ok(EngineFrame { first, last, full, ends, settled: false, report })
     }
 
     /// Error of a sample that the maps may have.
-    fn tolerance(&self, wanted: &Wanted) -> f64 {
+    fn tolerance(&self, wanted: &MapRequest) -> f64 {
         self.forced.tolerance.unwrap_or_else(|| tolerance::tolerance_for(wanted.floor, wanted.normalisation))
     }
 
     /// What was shown last, if it is good enough for what is wanted; else its memory alone.
-    fn recall(&mut self, scene: &Scene, wanted: &Wanted) -> Shown {
+    fn recall(&mut self, scene: &Scene, wanted: &MapRequest) -> ShownMaps {
         let tolerance = self.tolerance(wanted);
         // Maps that are fine at a fixed range may be a trap when normalised by their minimum.
         let nothing = Sum { algorithm: Algorithm::Split, reflectors: 0, amplitude: 0.0 };
         let trap = self.last == Some(Precision::F32)
             && tolerance::refusal(Precision::F32, &nothing, wanted.floor, wanted.normalisation).is_some();
-        let same = |s: &Shown| {
+        let same = |s: &ShownMaps| {
             s.objects == scene.objects
                 && s.shadows == scene.shadows
                 && s.floor == wanted.floor
@@ -220,21 +214,20 @@ impl Engine {
         };
         match self.shown.take() {
             Some(shown) if same(&shown) => shown,
-            other => Shown::of(scene, wanted, tolerance, other),
+            other => ShownMaps::of(scene, wanted, tolerance, other),
         }
     }
 
-    /// Computes those decades of `shown` that are `missing`, in the precision that the planner or somebody else chose.
     fn compute(
         &mut self,
         task: &Task,
         scene: &Scene,
-        wanted: &Wanted,
+        wanted: &MapRequest,
         missing: [bool; 3],
-        shown: &mut Shown,
-        report: &mut Report,
+        shown: &mut ShownMaps,
+        report: &mut EngineReport,
     ) -> Result<(), Cancelled> {
-        let seen = Seen::all(&self.radar, scene);
+        let seen = SeenObject::all(&self.radar, scene);
         let amplitude = self.amplitudes.bound(&self.radar, &seen);
         let mut chosen = Plan::cheapest(scene.echo_count(), amplitude, self.tolerance(wanted));
         let refusal = self.forced.precision.and_then(|forced| {
@@ -245,7 +238,7 @@ impl Engine {
             refusal
         });
         let (radar, forced) = (&self.radar, self.forced.algorithm);
-        let job = Job { task, radar, scene, seen: &seen, wanted, plan: chosen, forced, amplitude, missing };
+        let job = BankUpdate { task, radar, scene, seen: &seen, wanted, plan: chosen, forced, amplitude, missing };
         if self.last.replace(chosen.precision) != Some(chosen.precision) {
             // What the maps show was summed by the other bank.
             shown.decades.iter_mut().flatten().for_each(|kept| kept.stale = Rows::all(radar.samples));
@@ -256,7 +249,7 @@ impl Engine {
             Precision::F64 => self.double.get_or_insert_with(|| Bank::new(radar)).run(&job, maps, report)?,
         }
         if let Some(why) = refusal {
-            report.remark(Stage::Signal, why);
+            report.remark(EngineStage::Signal, why);
         }
         shown.current = [0, 1, 2].map(|i| shown.current[i] || missing[i]);
         Ok(())

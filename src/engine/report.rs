@@ -5,7 +5,7 @@ use std::time::Duration;
 
 /// A stage of an update, in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Stage {
+pub enum EngineStage {
     /// Reflectors to range profiles.
     Signal,
     /// The floor beneath them.
@@ -22,28 +22,28 @@ pub enum Stage {
     Normalise,
 }
 
-impl Stage {
+impl EngineStage {
     /// The stages of the three maps, in the order of every triple of maps.
-    pub const MAPS: [Stage; 3] = [Stage::FirstMap, Stage::LastMap, Stage::FullMap];
+    pub const MAPS: [EngineStage; 3] = [EngineStage::FirstMap, EngineStage::LastMap, EngineStage::FullMap];
 }
 
-impl fmt::Display for Stage {
+impl fmt::Display for EngineStage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Stage::Signal => "signal",
-            Stage::Noise => "floor",
-            Stage::Ends => "samples of the ends",
-            Stage::FirstMap => "map of input 0",
-            Stage::LastMap => "map of input 1",
-            Stage::FullMap => "map of the target",
-            Stage::Normalise => "normalise",
+            EngineStage::Signal => "signal",
+            EngineStage::Noise => "floor",
+            EngineStage::Ends => "samples of the ends",
+            EngineStage::FirstMap => "map of input 0",
+            EngineStage::LastMap => "map of input 1",
+            EngineStage::FullMap => "map of the target",
+            EngineStage::Normalise => "normalise",
         })
     }
 }
 
 /// What became of a stage.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Outcome {
+pub enum StageOutcome {
     /// It ran; the text says what it did.
     Computed(String),
     /// It did not run; the text says why.
@@ -54,35 +54,34 @@ pub enum Outcome {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StageReport {
     /// Which.
-    pub stage: Stage,
+    pub stage: EngineStage,
     /// How long it took; zero when skipped.
     pub took: Duration,
     /// What it did or why it was skipped.
-    pub outcome: Outcome,
+    pub outcome: StageOutcome,
 }
 
 /// All stages of an update.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Report {
+pub struct EngineReport {
     /// The stages, in order.
     pub stages: Vec<StageReport>,
     /// From the call to the finished frame.
     pub total: Duration,
 }
 
-impl Report {
-    pub(super) fn computed(&mut self, stage: Stage, took: Duration, what: impl Into<String>) {
-        self.stages.push(StageReport { stage, took, outcome: Outcome::Computed(what.into()) });
+impl EngineReport {
+    pub(super) fn computed(&mut self, stage: EngineStage, took: Duration, what: impl Into<String>) {
+        self.stages.push(StageReport { stage, took, outcome: StageOutcome::Computed(what.into()) });
     }
 
-    pub(super) fn skipped(&mut self, stage: Stage, why: &'static str) {
-        self.stages.push(StageReport { stage, took: Duration::ZERO, outcome: Outcome::Skipped(why) });
+    pub(super) fn skipped(&mut self, stage: EngineStage, why: &'static str) {
+        self.stages.push(StageReport { stage, took: Duration::ZERO, outcome: StageOutcome::Skipped(why) });
     }
 
-    /// Adds to what is said of a stage that ran.
-    pub(super) fn remark(&mut self, stage: Stage, remark: &str) {
+    pub(super) fn remark(&mut self, stage: EngineStage, remark: &str) {
         for s in self.stages.iter_mut().filter(|s| s.stage == stage) {
-            if let Outcome::Computed(what) = &mut s.outcome {
+            if let StageOutcome::Computed(what) = &mut s.outcome {
                 what.push_str("; ");
                 what.push_str(remark);
             }
@@ -90,7 +89,7 @@ impl Report {
     }
 
     /// Whether a stage ran.
-    pub fn ran(&self, stage: Stage) -> bool {
-        self.stages.iter().any(|s| s.stage == stage && matches!(s.outcome, Outcome::Computed(_)))
+    pub fn ran(&self, stage: EngineStage) -> bool {
+        self.stages.iter().any(|s| s.stage == stage && matches!(s.outcome, StageOutcome::Computed(_)))
     }
 }

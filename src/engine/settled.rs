@@ -1,7 +1,7 @@
 //! A scene at rest, computed as every command computes it.
 
-use super::frame::{Frame, ReadyMap, Wanted};
-use super::report::{Report, Stage};
+use super::frame::{EngineFrame, MapRequest, ReadyMap};
+use super::report::{EngineReport, EngineStage};
 use crate::maps::focus::map_of;
 use crate::maps::{Aperture, LogMap, Normalisation, angle_transform, range_transform};
 use crate::platform::Instant;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
 
 /// The maps of one scene by [`signal::simulate`] and the plain transforms in f64; nothing of any other scene is in them.
-pub(super) struct Settled {
+pub(super) struct SettledMaps {
     objects: Vec<Object>,
     shadows: bool,
     disturbances: Disturbances,
@@ -26,24 +26,23 @@ pub(super) struct Settled {
     maps: [Option<ReadyMap>; 3],
 }
 
-impl Settled {
+impl SettledMaps {
     /// Computes what is wanted of `scene`, and adds to `report` what it cost.
-    ///
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, or `task` was cancelled.
     pub fn of(
         task: &Task,
         radar: &Radar,
         scene: &Scene,
-        wanted: &Wanted,
-        report: &mut Report,
-    ) -> Result<Settled, Unfinished> {
+        wanted: &MapRequest,
+        report: &mut EngineReport,
+    ) -> Result<SettledMaps, Unfinished> {
         let start = Instant::now();
         let signal = signal::simulate_for(task, radar, scene, wanted.floor, wanted.seed)?;
         let ends = Arc::new(signal.two_ends(radar));
         // Plain maps share their range profiles; focused ones have none in common.
         let profiles = (!radar.focus_off_line).then(|| range_transform(radar, &signal));
-        report.computed(Stage::Signal, start.elapsed(), "from scratch in f64, as every command does");
+        report.computed(EngineStage::Signal, start.elapsed(), "from scratch in f64, as every command does");
         let mut logs = [None, None, None];
         for (i, log) in logs.iter_mut().enumerate().filter(|(i, _)| wanted.visible()[*i]) {
             task.check()?;
@@ -53,16 +52,16 @@ impl Settled {
                 None => map_of(radar, &scene.disturbances.elements, &signal, APERTURES[i]),
             };
             *log = Some(map.log_magnitude());
-            report.computed(Stage::MAPS[i], start.elapsed(), "all rows in f64");
+            report.computed(EngineStage::MAPS[i], start.elapsed(), "all rows in f64");
         }
         let (objects, shadows, disturbances) = (scene.objects.clone(), scene.shadows, scene.disturbances.clone());
         let normalisation = wanted.normalisation;
         let (floor, seed, maps) = (wanted.floor, wanted.seed, [None, None, None]);
-        Ok(Settled { objects, shadows, disturbances, floor, seed, ends, logs, normalisation, maps })
+        Ok(SettledMaps { objects, shadows, disturbances, floor, seed, ends, logs, normalisation, maps })
     }
 
     /// Whether it has all that is wanted of `scene`.
-    pub fn has(&self, scene: &Scene, wanted: &Wanted) -> bool {
+    pub fn has(&self, scene: &Scene, wanted: &MapRequest) -> bool {
         let visible = wanted.visible();
         self.objects == scene.objects
             && self.shadows == scene.shadows
@@ -77,7 +76,7 @@ impl Settled {
     }
 
     /// What is wanted; maps that were given before are the same `Arc` as then.
-    pub fn frame(&mut self, wanted: &Wanted, mut report: Report) -> Frame {
+    pub fn frame(&mut self, wanted: &MapRequest, mut report: EngineReport) -> EngineFrame {
         let start = Instant::now();
         if self.normalisation != wanted.normalisation {
             self.normalisation = wanted.normalisation;
@@ -92,17 +91,17 @@ impl Settled {
                 made += 1;
             }
         }
-        for stage in [Stage::Signal, Stage::Noise, Stage::Ends].into_iter().chain(Stage::MAPS) {
+        for stage in [EngineStage::Signal, EngineStage::Noise, EngineStage::Ends].into_iter().chain(EngineStage::MAPS) {
             if !report.ran(stage) {
                 report.skipped(stage, "the scene rests");
             }
         }
         match made {
-            0 => report.skipped(Stage::Normalise, "unchanged"),
-            _ => report.computed(Stage::Normalise, start.elapsed(), counted(made, "map", "maps")),
+            0 => report.skipped(EngineStage::Normalise, "unchanged"),
+            _ => report.computed(EngineStage::Normalise, start.elapsed(), counted(made, "map", "maps")),
         }
         let map = |i: usize| self.maps[i].clone().filter(|_| visible[i]);
         let ends = Some(self.ends.clone()).filter(|_| wanted.ends);
-        Frame { first: map(0), last: map(1), full: map(2), ends, settled: true, report }
+        EngineFrame { first: map(0), last: map(1), full: map(2), ends, settled: true, report }
     }
 }

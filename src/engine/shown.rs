@@ -1,8 +1,8 @@
 //! What the last frame showed.
 
-use super::bank::Kept;
-use super::frame::{ReadyMap, Wanted};
-use super::report::{Report, Stage};
+use super::bank::KeptDecades;
+use super::frame::{MapRequest, ReadyMap};
+use super::report::{EngineReport, EngineStage};
 use crate::maps::fast::{FastLogMap, normalise_into};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::platform::Instant;
@@ -12,8 +12,7 @@ use crate::signal::{Floor, Rows, TwoEnds};
 use ndarray::Array2;
 use std::sync::Arc;
 
-/// What the last frame showed, and for which scene.
-pub(super) struct Shown {
+pub(super) struct ShownMaps {
     pub objects: Vec<Object>,
     pub shadows: bool,
     pub floor: Floor,
@@ -21,26 +20,26 @@ pub(super) struct Shown {
     pub tolerance: f64,
     pub normalisation: Normalisation,
     pub ends: Option<Arc<TwoEnds>>,
-    pub decades: [Option<Kept>; 3],
+    pub decades: [Option<KeptDecades>; 3],
     /// Which of `decades` show these objects.
     pub current: [bool; 3],
     pub maps: [Option<ReadyMap>; 3],
-    /// Buffers of earlier maps, reused once nobody else holds them.
+    /// Buffers of earlier maps, reused once no frame holds them.
     pub spare: Vec<Arc<RangeAngleMap>>,
 }
 
-impl Shown {
+impl ShownMaps {
     /// Nothing yet of a new scene; buffers come from what was shown before.
-    pub fn of(scene: &Scene, wanted: &Wanted, tolerance: f64, before: Option<Shown>) -> Self {
+    pub fn of(scene: &Scene, wanted: &MapRequest, tolerance: f64, before: Option<ShownMaps>) -> Self {
         let (mut spare, mut decades) = (Vec::new(), [None, None, None]);
         if let Some(before) = before {
             (spare, decades) = (before.spare, before.decades);
             spare.extend(before.maps.into_iter().flatten().map(|m| m.lambda));
-            // Whoever looks at the previous frame holds three; three more are in the making.
+            // The previous frame holds three; three more are in the making.
             let excess = spare.len().saturating_sub(6);
             spare.drain(..excess);
         }
-        Shown {
+        ShownMaps {
             objects: scene.objects.clone(),
             shadows: scene.shadows,
             floor: wanted.floor,
@@ -67,7 +66,7 @@ impl Shown {
         visible: [bool; 3],
         missing: [bool; 3],
         normalisation: Normalisation,
-        report: &mut Report,
+        report: &mut EngineReport,
     ) {
         let start = Instant::now();
         if self.normalisation != normalisation {
@@ -76,7 +75,7 @@ impl Shown {
         }
         let mut made: Vec<(usize, &FastLogMap, Arc<RangeAngleMap>)> = Vec::new();
         for i in 0..3 {
-            let Some(Kept { decades, .. }) = self.decades[i].as_ref().filter(|_| visible[i]) else { continue };
+            let Some(KeptDecades { decades, .. }) = self.decades[i].as_ref().filter(|_| visible[i]) else { continue };
             if self.maps[i].is_some() && !missing[i] {
                 continue;
             }
@@ -94,8 +93,8 @@ impl Shown {
             self.maps[i] = Some(ReadyMap { lambda, scale: decades.scale(normalisation) });
         }
         match count {
-            0 => report.skipped(Stage::Normalise, "unchanged"),
-            _ => report.computed(Stage::Normalise, start.elapsed(), counted(count, "map", "maps")),
+            0 => report.skipped(EngineStage::Normalise, "unchanged"),
+            _ => report.computed(EngineStage::Normalise, start.elapsed(), counted(count, "map", "maps")),
         }
     }
 }

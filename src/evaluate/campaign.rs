@@ -12,7 +12,7 @@ pub use error::{CampaignError, Unfit};
 use super::Target;
 use super::rows::{FORMAT, Row, Text, Whole};
 use super::sets::{Case, SceneSet};
-use super::trial::{Answer, Trial};
+use super::trial::{TimedAnswer, Trial};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
 use crate::radar::{Radar, check_layout};
@@ -22,7 +22,7 @@ use crate::scene::generate::{Generator, Purpose, Reading};
 use crate::signal::Floor;
 use crate::task::Task;
 use error::set_name;
-use job::Job;
+use job::SceneJob;
 use rayon::prelude::*;
 
 /// Which scenes methods are tried on.
@@ -55,7 +55,6 @@ pub struct Campaign {
 }
 
 impl Default for Campaign {
-    /// The tables' conventions: 100 test scenes over the thesis floor.
     fn default() -> Self {
         Campaign {
             radar: Radar::default(),
@@ -91,7 +90,6 @@ impl Campaign {
     /// Scenes are simulated in parallel, reconstructions run one after another, so that their times are those of a map alone on
     /// the machine: in an order that is drawn anew for every scene, after each has made one map that is not timed. The figures, times apart,
     /// don't depend on the order nor on the number of threads.
-    ///
     /// # Errors
     /// [`CampaignError`] names the scene, and the method that failed or was cancelled through `task`.
     pub fn run(
@@ -105,7 +103,6 @@ impl Campaign {
     }
 
     /// [`Campaign::run`], with what each row was made of.
-    ///
     /// # Errors
     /// As [`Campaign::run`].
     pub fn run_watched(
@@ -113,14 +110,13 @@ impl Campaign {
         sets: &[SceneSet],
         methods: &[&dyn Reconstructor],
         task: &Task,
-        on_row: impl FnMut(&Row, &Trial, &Answer),
+        on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
     ) -> Result<Vec<Row>, CampaignError> {
         let empty = self.empty_rows(sets, methods)?;
         self.run_rest(sets, methods, &empty, &|_, _, _| false, task, on_row)
     }
 
     /// [`Campaign::run_watched`] that goes on without a method where it fails on a scene; the rows that there are, and what failed.
-    ///
     /// # Errors
     /// As [`Campaign::run`], but for methods that fail.
     pub fn run_fit(
@@ -128,7 +124,7 @@ impl Campaign {
         sets: &[SceneSet],
         methods: &[&dyn Reconstructor],
         task: &Task,
-        on_row: impl FnMut(&Row, &Trial, &Answer),
+        on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
     ) -> Result<(Vec<Row>, Vec<Unfit>), CampaignError> {
         let empty = self.empty_rows(sets, methods)?;
         let mut unfit: Vec<Unfit> = Vec::new();
@@ -139,7 +135,6 @@ impl Campaign {
     }
 
     /// For each set, one row a method that says what makes the rows of this campaign and has no figures yet.
-    ///
     /// # Errors
     /// [`CampaignError`] for a folder whose scenes can't be read, for a kind that finds no room before the radar, and for a set or method that is
     /// there twice.
@@ -195,7 +190,6 @@ impl Campaign {
 
     /// [`Campaign::run_watched`] without the rows that are there already: `is_done` says of a set, a scene and a method whether one is.
     /// `empty` are [`Campaign::empty_rows`].
-    ///
     /// # Errors
     /// As [`Campaign::run`].
     pub fn run_rest(
@@ -205,7 +199,7 @@ impl Campaign {
         empty: &[Vec<Row>],
         is_done: &dyn Fn(&str, u32, &str) -> bool,
         task: &Task,
-        on_row: impl FnMut(&Row, &Trial, &Answer),
+        on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
     ) -> Result<Vec<Row>, CampaignError> {
         self.run_through(sets, methods, empty, is_done, task, on_row, Err)
     }
@@ -219,7 +213,7 @@ impl Campaign {
         empty: &[Vec<Row>],
         is_done: &dyn Fn(&str, u32, &str) -> bool,
         task: &Task,
-        mut on_row: impl FnMut(&Row, &Trial, &Answer),
+        mut on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
         mut on_failure: impl FnMut(CampaignError) -> Result<(), CampaignError>,
     ) -> Result<Vec<Row>, CampaignError> {
         let generator = self.generator();
@@ -240,7 +234,7 @@ impl Campaign {
                 let trials: Result<Vec<Trial>, _> =
                     batch.par_iter().map(|&index| self.trial(set, &generator, index)).collect();
                 for (trial, &index) in trials?.iter().zip(batch) {
-                    let job = Job { cfar: self.cfar, set, index, trial, request: &request, empty };
+                    let job = SceneJob { cfar: self.cfar, set, index, trial, request: &request, empty };
                     if !std::mem::replace(&mut warm, true) {
                         // A method that fails here fails again where its row is asked for, if that is one of the rows.
                         methods.iter().for_each(|&method| drop(job.answer(method)));
@@ -253,7 +247,6 @@ impl Campaign {
     }
 
     /// For each set and method, on how many of the scenes the method was trained on other noise, in words; nothing where on none.
-    ///
     /// # Errors
     /// [`CampaignError`] names a scene that can't be read.
     pub fn untrained(&self, sets: &[SceneSet], methods: &[&dyn Reconstructor]) -> Result<Vec<String>, CampaignError> {
@@ -289,7 +282,6 @@ impl Campaign {
     }
 
     /// Reads or makes a scene, simulates it, and finds where its objects show.
-    ///
     /// # Errors
     /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {

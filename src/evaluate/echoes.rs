@@ -25,7 +25,7 @@ const HALF_BINS: f64 = 1.0;
 /// The same in columns, for an echo that no near field smears.
 const HALF_COLUMNS: f64 = 1.5;
 /// How far beyond the cell its surroundings reach, in rows and columns.
-const AROUND: usize = 5;
+const SURROUNDING_CELLS: usize = 5;
 
 /// Echoes by their strength, one number a class; tables of rows have spaces between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -73,14 +73,11 @@ impl EchoTally {
     }
 }
 
-/// An echo as the middle of the array hears it, where the map shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Shown {
     bin: f64,
     column: f64,
-    /// Half of its width, columns.
     half_columns: f64,
-    /// dB below the strongest.
     below_db: f64,
 }
 
@@ -187,8 +184,8 @@ fn stands_out(map: &RangeAngleMap, echo: &Shown, decibels_of_lambda: f64) -> Opt
     if near.flat_map(|r| (column - 1..=column + 1).map(move |c| (r, c))).any(|(r, c)| value(r, c) > peak) {
         return None;
     }
-    let reach = AROUND as i64;
-    let around = within.start().saturating_sub(AROUND)..=(within.end() + AROUND).min(rows - 1);
+    let reach = SURROUNDING_CELLS as i64;
+    let around = within.start().saturating_sub(SURROUNDING_CELLS)..=(within.end() + SURROUNDING_CELLS).min(rows - 1);
     let mut surroundings: Vec<f32> = around
         .flat_map(|r| (left - reach..=right + reach).map(move |c| (r, c)))
         .filter(|(r, c)| !within.contains(r) || !(left..=right).contains(c))
@@ -239,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_method_that_finds_glints_alone_scores_below_one_that_finds_their_walls_ends() {
+    fn glints_alone_score_below_glints_and_walls_ends() {
         let radar = Radar::default();
         let objects = vec![Object::Wall(Wall::new(0.0, 10.0, 5.0, 0.0))];
         let scene = Scene { objects, ..Scene::default() };

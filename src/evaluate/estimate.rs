@@ -29,7 +29,6 @@ impl Estimate {
     }
 }
 
-/// The value in the middle, or the mean of the two that are; NaN for none.
 fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -12,14 +12,14 @@ use super::echoes::of_bodies;
 use crate::maps::focus::map_of;
 use crate::maps::{Aperture, LambdaScale, Mask, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
 use crate::radar::{BuiltArray, Radar};
-use crate::scattering::{Echoing, Seen};
+use crate::scattering::{Echoing, SeenObject};
 use crate::scene::Scene;
 use crate::signal::plan::amplitude_bound;
 use crate::signal::{Plan, beat_signal};
 use ndarray::Axis;
 
 /// Part of a footprint that must be detected for the object to count as found.
-const FOUND: f64 = 0.5;
+const MIN_FOUND_PART: f64 = 0.5;
 /// Error of a footprint's simulation, relative to the object's amplitudes.
 const TOLERANCE: f64 = 1e-6;
 /// Columns that a wrong tooth is looked for to either side. The two ends' ambiguity has a peak about every column.
@@ -32,7 +32,7 @@ const GHOST_MARGIN: usize = 3;
 const GHOST_CELLS: usize = 8;
 
 /// A cell of a map: range bin and column.
-pub type Cell = [usize; 2];
+pub type CellIndex = [usize; 2];
 
 /// What became of an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -77,7 +77,7 @@ impl Fate {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ghost {
     /// Its cells.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<CellIndex>,
 }
 
 /// What became of every object, and what isn't there.
@@ -118,9 +118,9 @@ impl Failures {
 /// Where each object of a scene shows in its target.
 #[derive(Debug, Clone)]
 pub struct Footprints {
-    objects: Vec<Vec<Cell>>,
+    objects: Vec<Vec<CellIndex>>,
     /// For each body, the cells of each of its echoes that stands out, the strongest first.
-    echoes: Vec<Vec<Vec<Cell>>>,
+    echoes: Vec<Vec<Vec<CellIndex>>>,
     target: Blobs,
 }
 
@@ -131,20 +131,19 @@ impl Footprints {
     pub fn new(radar: &Radar, scene: &Scene, target: &RangeAngleMap, scale: LambdaScale) -> Footprints {
         let level = 10f64.powf(scale.floor + f64::from(TARGET_ETA) * (scale.peak - scale.floor));
         let echoes = of_bodies(radar, scene, target, &scale);
-        let mut objects: Vec<Vec<Cell>> =
-            Seen::all(radar, scene).iter().map(|seen| footprint(radar, seen, level)).collect();
+        let mut objects: Vec<Vec<CellIndex>> =
+            SeenObject::all(radar, scene).iter().map(|seen| footprint(radar, seen, level)).collect();
         for (cells, echoes) in objects.iter_mut().zip(&echoes).filter(|(_, echoes)| !echoes.is_empty()) {
             cells.extend(echoes.iter().flatten());
             cells.sort_unstable();
             cells.dedup();
         }
-        // Where nothing reflects, whatever the target shows is noise, and a blob of the output at its place is a ghost all the same.
         let shown = target.above(if scene.is_silent() { 1.0 } else { TARGET_ETA });
         Footprints { objects, echoes, target: Blobs::of(&shown) }
     }
 
     /// The cells of every object, in the scene's order; empty for one that the target doesn't show.
-    pub fn cells(&self) -> &[Vec<Cell>] {
+    pub fn cells(&self) -> &[Vec<CellIndex>] {
         &self.objects
     }
 
@@ -176,7 +175,6 @@ impl Footprints {
         Failures { objects, covered, ghosts }
     }
 
-    /// The first object that shares a blob of the output with object `i`, but not one of the target.
     fn merged(&self, i: usize, fates: &[Fate], found: &Blobs) -> Option<usize> {
         let blob = |blobs: &Blobs, of: usize| blobs.most_of(&self.objects[of]);
         let (shown, seen) = (blob(&self.target, i)?, blob(found, i)?);
@@ -188,7 +186,7 @@ impl Footprints {
     fn ghosts(&self, found: &Blobs, fates: &[Fate]) -> Vec<Ghost> {
         let (rows, columns) = found.labels.dim();
         let mut taken = vec![false; found.cells.len() + 1];
-        let mut take = |[row, column]: Cell, shift: i32| {
+        let mut take = |[row, column]: CellIndex, shift: i32| {
             let near = GHOST_MARGIN as i32;
             for r in row.saturating_sub(GHOST_MARGIN)..(row + GHOST_MARGIN + 1).min(rows) {
                 for c in -near..=near {
@@ -210,18 +208,16 @@ impl Footprints {
     }
 }
 
-/// The fate of one object, whatever its neighbours', and the part of its footprint that is detected.
-fn alone(cells: &[Cell], target: &RangeAngleMap, output: &RangeAngleMap, found: &Blobs) -> (Fate, f64) {
+fn alone(cells: &[CellIndex], target: &RangeAngleMap, output: &RangeAngleMap, found: &Blobs) -> (Fate, f64) {
     if cells.is_empty() {
         return (Fate::Hidden, 0.0);
     }
     let columns = target.lambda.ncols();
-    let at = |[row, column]: Cell, shift: i32| [row, moved(column, shift, columns)];
+    let at = |[row, column]: CellIndex, shift: i32| [row, moved(column, shift, columns)];
     let covered = |shift: i32| {
         let hits = cells.iter().filter(|&&cell| found.labels[at(cell, shift)] != 0).count();
         hits as f64 / cells.len() as f64
     };
-    // With its edges: inside, a target above its threshold is nearly flat.
     let error = |shift: i32| -> f64 {
         let edges = cells.iter().flat_map(|&cell| [-MOST_TEETH, 0, MOST_TEETH].map(|edge| at(cell, edge)));
         edges.map(|cell| f64::from(output.lambda[at(cell, shift)] - target.lambda[cell]).powi(2)).sum()
@@ -230,20 +226,19 @@ fn alone(cells: &[Cell], target: &RangeAngleMap, output: &RangeAngleMap, found: 
     let best = (-MOST_TEETH..=MOST_TEETH)
         .map(|shift| (shift, error(shift)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
-        .filter(|(shift, error)| *shift != 0 && *error <= LEFT_BY_TOOTH * here && covered(*shift) >= FOUND);
+        .filter(|(shift, error)| *shift != 0 && *error <= LEFT_BY_TOOTH * here && covered(*shift) >= MIN_FOUND_PART);
     let fate = match best {
         Some((columns, _)) => Fate::WrongTooth { columns },
-        None if part >= FOUND => Fate::Found,
+        None if part >= MIN_FOUND_PART => Fate::Found,
         None => Fate::Missed,
     };
     (fate, part)
 }
 
-/// The fate of a body by its echoes that stand out, the strongest first, and the part of them that is detected.
-fn body(echoes: &[Vec<Cell>], found: &Blobs) -> (Fate, f64) {
-    let is_seen = |cells: &Vec<Cell>| cells.iter().any(|cell| found.labels[*cell] != 0);
+fn body(echoes: &[Vec<CellIndex>], found: &Blobs) -> (Fate, f64) {
+    let is_seen = |cells: &Vec<CellIndex>| cells.iter().any(|cell| found.labels[*cell] != 0);
     let part = echoes.iter().filter(|cells| is_seen(cells)).count() as f64 / echoes.len() as f64;
-    (if part >= FOUND || is_seen(&echoes[0]) { Fate::Found } else { Fate::Missed }, part)
+    (if part >= MIN_FOUND_PART || is_seen(&echoes[0]) { Fate::Found } else { Fate::Missed }, part)
 }
 
 fn moved(column: usize, by: i32, columns: usize) -> usize {
@@ -251,7 +246,7 @@ fn moved(column: usize, by: i32, columns: usize) -> usize {
 }
 
 /// The cells that an object alone, hidden as it is, without noise, lifts above `level` (a magnitude).
-fn footprint(radar: &Radar, seen: &Seen, level: f64) -> Vec<Cell> {
+fn footprint(radar: &Radar, seen: &SeenObject, level: f64) -> Vec<CellIndex> {
     let echoing = Echoing::seen(radar, std::slice::from_ref(seen));
     let amplitude = amplitude_bound(radar, &echoing);
     let plan = Plan::cheapest(echoing.len(), amplitude, TOLERANCE);
@@ -298,7 +293,7 @@ mod tests {
     }
 
     /// Silences the cells of one object, with their surroundings.
-    fn without(map: &RangeAngleMap, cells: &[Cell]) -> RangeAngleMap {
+    fn without(map: &RangeAngleMap, cells: &[CellIndex]) -> RangeAngleMap {
         let mut map = map.clone();
         for &[r, c] in cells {
             for c in c.saturating_sub(60)..(c + 60).min(1024) {
@@ -370,10 +365,10 @@ mod tests {
         let footprints = Footprints::new(&radar, &scene, &target, scale);
         assert_eq!(footprints.echoes.iter().map(Vec::len).collect::<Vec<_>>(), [3, 0], "a glint and two ends");
         let mut output = RangeAngleMap { lambda: Array2::zeros(target.lambda.raw_dim()) };
-        let draw = |output: &mut RangeAngleMap, [row, column]: Cell| {
+        let draw = |output: &mut RangeAngleMap, [row, column]: CellIndex| {
             output.lambda.slice_mut(ndarray::s![row - 1..row + 2, column - 2..column + 3]).fill(1.0);
         };
-        let middle = |cells: &[Cell]| cells[cells.len() / 2];
+        let middle = |cells: &[CellIndex]| cells[cells.len() / 2];
         for end in &footprints.echoes[0][1..] {
             draw(&mut output, middle(end));
         }

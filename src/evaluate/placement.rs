@@ -36,7 +36,6 @@ impl Placement {
 }
 
 /// Places `reflector` from the two ends in `trials` draws of thermal noise of `snr`.
-///
 /// # Errors
 /// [`ReconstructError::Unusable`] where the reflector has no bound (it lies on the array's axis, or has no echo);
 /// [`ReconstructError::Cancelled`] through `task`.
@@ -81,7 +80,7 @@ pub fn placement(
 
 /// Seed of a draw of noise. Another at every ratio, so that the errors at two ratios are independent.
 fn noise_seed(snr: Decibels, trial: u64) -> u64 {
-    // Thousandths of a decibel from below: no two ratios that anybody asks for meet.
+    // Thousandths of a decibel from below: no two ratios of a table meet.
     let step = (1e3 * (snr.0 + 1e6)).round() as u64;
     (step << 24).wrapping_add(trial)
 }
@@ -117,7 +116,7 @@ mod tests {
 
     #[test]
     #[ignore = "minutes; prints the ratio at every signal-to-noise ratio"]
-    fn one_reflector_is_placed_as_well_as_the_bound_allows_at_every_snr() {
+    fn one_reflectors_place_reaches_the_bound_at_every_snr() {
         for snr in [0.0, 10.0, 20.0, 30.0, 40.0] {
             let p = placed(snr, 200);
             println!(

@@ -57,7 +57,6 @@ pub struct RobustnessRow {
 
 impl Robustness {
     /// Tries every method at every scale: the same scenes, the same errors but for the scale. `on_map` is called after every map.
-    ///
     /// # Errors
     /// [`CampaignError`] names the scene, and the method that failed or was cancelled through `task`.
     pub fn run(
@@ -109,7 +108,6 @@ impl Robustness {
         }
     }
 
-    /// The scene over the array as it should be, and the ends at every scale of errors.
     fn trial(&self, number: u32) -> Result<(Trial, Vec<TwoEnds>), SceneError> {
         let radar = &self.radar;
         let scene = Generator::new(radar, Reading::Program, Purpose::Test, self.seed).scene(self.kind, number);

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_threshold_keeps_the_false_alarms_of_further_scenes_on_average() {
+    fn a_threshold_keeps_the_mean_false_alarms_of_other_scenes() {
         let rng = &mut rand_chacha::ChaCha8Rng::seed_from_u64(7);
         const WANTED: f64 = 0.1;
         const DRAWS: usize = 400;

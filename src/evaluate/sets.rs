@@ -24,7 +24,7 @@ pub const NOISE_LEVEL: DecibelMilliwatts = DecibelMilliwatts(-20.0);
 pub enum SceneSet {
     /// Random scenes of one kind.
     Generated(Kind),
-    /// Somebody's own.
+    /// A folder of the user's.
     Folder(Folder),
     /// The same, given one by one.
     Listed(Listed),
@@ -40,7 +40,6 @@ pub struct Listed {
 
 impl Listed {
     /// Scenes that rows call `name`.
-    ///
     /// # Errors
     /// [`toml::ser::Error`] for a scene that no file can hold.
     pub fn new(name: String, cases: Vec<Case>) -> Result<Listed, toml::ser::Error> {
@@ -66,26 +65,18 @@ pub struct Folder {
 
 /// A folder without a scene, or one that can't be read.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum FolderError {
     /// What the system says.
     #[error("{}: {source}", path.display())]
-    Io {
-        /// The folder.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
+    Io { path: PathBuf, source: io::Error },
     /// There is none.
     #[error("{}: there is no scene in this folder; expected files ending in .toml or .npz", path.display())]
-    Empty {
-        /// The folder.
-        path: PathBuf,
-    },
+    Empty { path: PathBuf },
 }
 
 impl Folder {
     /// Looks which scene files there are; they are read when their turn comes. Files whose names begin with a dot are left alone.
-    ///
     /// # Errors
     /// [`FolderError`] when there is none.
     pub fn open(path: &Path) -> Result<Folder, FolderError> {
@@ -94,7 +85,7 @@ impl Folder {
         for entry in fs::read_dir(path).map_err(failed)? {
             let file = entry.map_err(failed)?.path();
             let hidden = file.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
-            if !hidden && file.is_file() && file::Format::of_path(&file).is_ok() {
+            if !hidden && file.is_file() && file::SceneFormat::of_path(&file).is_ok() {
                 files.push(file);
             }
         }
@@ -107,7 +98,6 @@ impl Folder {
     }
 
     /// What the names and contents of the files are known by: the same only where every scene is.
-    ///
     /// # Errors
     /// [`FolderError::Io`] names the file that can't be read.
     pub fn fingerprint(&self) -> Result<String, FolderError> {
@@ -139,7 +129,6 @@ pub struct Case {
 
 impl SceneSet {
     /// The set that rows call `name`: a kind of scenes, or else a folder.
-    ///
     /// # Errors
     /// [`FolderError`] for a folder that has no scene any more.
     pub fn by_name(name: &str) -> Result<SceneSet, FolderError> {
@@ -164,7 +153,6 @@ impl SceneSet {
     }
 
     /// Scene `index`. `radar` and `generator` are those of generated scenes; a file says itself which radar it is for.
-    ///
     /// # Errors
     /// [`SceneFileError`] when a file is no scene any more.
     pub fn case(&self, radar: &Radar, generator: &Generator, index: u32) -> Result<Case, SceneFileError> {

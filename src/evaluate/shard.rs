@@ -11,7 +11,6 @@ pub struct Shard {
 }
 
 impl Default for Shard {
-    /// All scenes.
     fn default() -> Self {
         Shard { part: 0, of: 1 }
     }

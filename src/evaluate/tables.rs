@@ -174,7 +174,7 @@ mod tests {
     use crate::evaluate::rows::tests::row;
 
     #[test]
-    fn near_the_best_is_held_against_the_other_methods_scene_by_scene() {
+    fn near_the_best_is_judged_scene_by_scene() {
         let row = |index, method: &str, squared_error| Row { squared_error, ..row("1", index, method) };
         let rows = [
             row(0, "a", 119.0),

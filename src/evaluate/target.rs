@@ -31,7 +31,6 @@ impl Target {
     }
 }
 
-/// The name behind "target_".
 impl fmt::Display for Target {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.array().trim_start_matches("target_"))
@@ -41,7 +40,6 @@ impl fmt::Display for Target {
 impl FromStr for Target {
     type Err = String;
 
-    /// Reads the name of the array, or the part behind "target_".
     fn from_str(name: &str) -> Result<Self, String> {
         let is_called = |target: &Target| target.array() == name || target.to_string() == name;
         Target::ALL.into_iter().find(is_called).ok_or_else(|| match name {

@@ -30,7 +30,6 @@ pub struct ThresholdSearch {
 }
 
 impl Default for ThresholdSearch {
-    /// 1 % on a hundred scenes of each of the thesis' sets, with the thesis' conventions.
     fn default() -> Self {
         ThresholdSearch {
             radar: Radar::default(),
@@ -50,12 +49,12 @@ pub struct KeptThreshold {
     /// The threshold of Lambda.
     pub eta: f32,
     /// P_FA and P_D there.
-    pub tried: Tried,
+    pub tried: ThresholdMeans,
 }
 
 /// Means over scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tried {
+pub struct ThresholdMeans {
     /// Scenes with target cells.
     pub scenes: usize,
     /// P_FA, 0 to 1.
@@ -66,6 +65,7 @@ pub struct Tried {
 
 /// Why there is no threshold.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum ThresholdError {
     /// The rate is no rate.
     #[error("a rate of {0} % of false alarms can't be kept; expected more than 0 and less than 100")]
@@ -78,14 +78,7 @@ pub enum ThresholdError {
     GivenTwice(Kind),
     /// So few scenes keep no such rate.
     #[error("{} can't keep a rate of {percent} %; take {fewest} scenes or more", counted(*scenes, "scene", "scenes"))]
-    TooFew {
-        /// All scenes.
-        scenes: usize,
-        /// The rate, percent.
-        percent: f64,
-        /// With so many scenes it can.
-        fewest: f64,
-    },
+    TooFew { scenes: usize, percent: f64, fewest: f64 },
     /// No threshold of Lambda keeps the rate.
     #[error("no threshold keeps {0} % on these scenes")]
     Unreached(f64),
@@ -94,30 +87,14 @@ pub enum ThresholdError {
     NoRoom(#[from] NoRoom),
     /// A scene can't be simulated.
     #[error("scene {index} of {kind}: {source}")]
-    Scene {
-        /// Its kind.
-        kind: Kind,
-        /// Its number.
-        index: u32,
-        /// Why.
-        source: SceneError,
-    },
+    Scene { kind: Kind, index: u32, source: SceneError },
     /// The method failed.
     #[error("{method} on scene {index} of {kind}: {source}")]
-    Method {
-        /// Name of the method.
-        method: &'static str,
-        /// Kind of the scene.
-        kind: Kind,
-        /// Number of the scene.
-        index: u32,
-        /// Why.
-        source: ReconstructError,
-    },
+    Method { method: &'static str, kind: Kind, index: u32, source: ReconstructError },
 }
 
 impl ThresholdError {
-    /// Whether somebody asked it to stop.
+    /// Whether it was cancelled.
     pub fn is_cancelled(&self) -> bool {
         matches!(self, ThresholdError::Method { source: ReconstructError::Cancelled, .. })
     }
@@ -126,7 +103,6 @@ impl ThresholdError {
 impl ThresholdSearch {
     /// Tries `method` on every scene, and gives the lowest threshold that keeps the rate ([`Roc::keeping_false_alarm`]): the mean of P_FA over
     /// further scenes that are exchangeable with these is at most the rate. `on_part` is told the part that is done, 0 to 1.
-    ///
     /// # Errors
     /// [`ThresholdError`]; it names the scene that failed, and [`ThresholdError::is_cancelled`] after `task` was cancelled.
     pub fn run(
@@ -141,11 +117,10 @@ impl ThresholdSearch {
         let found = roc.keeping_false_alarm(self.rate());
         let RocPoint { eta, detection, false_alarm } =
             found.ok_or(ThresholdError::Unreached(self.false_alarm_percent))?;
-        Ok(KeptThreshold { eta, tried: Tried { scenes: roc.scenes(), false_alarm, detection } })
+        Ok(KeptThreshold { eta, tried: ThresholdMeans { scenes: roc.scenes(), false_alarm, detection } })
     }
 
     /// The rates at `eta` on `count` further scenes of each kind, which did not choose it.
-    ///
     /// # Errors
     /// As [`ThresholdSearch::run`].
     pub fn try_further(
@@ -155,8 +130,8 @@ impl ThresholdSearch {
         count: u32,
         task: &Task,
         on_part: impl FnMut(f32),
-    ) -> Result<Tried, ThresholdError> {
-        let mut sums = Tried { scenes: 0, false_alarm: 0.0, detection: 0.0 };
+    ) -> Result<ThresholdMeans, ThresholdError> {
+        let mut sums = ThresholdMeans { scenes: 0, false_alarm: 0.0, detection: 0.0 };
         self.each(method, [self.count, count], task, on_part, |target, output| {
             let (detection, false_alarm) = detection_rates(target, output, eta);
             if let Some(detection) = detection {
@@ -166,7 +141,7 @@ impl ThresholdSearch {
             }
         })?;
         let scenes = sums.scenes.max(1) as f64;
-        Ok(Tried { detection: sums.detection / scenes, false_alarm: sums.false_alarm / scenes, ..sums })
+        Ok(ThresholdMeans { detection: sums.detection / scenes, false_alarm: sums.false_alarm / scenes, ..sums })
     }
 
     /// How much of the rate is left to P_FA on `scenes` scenes, and to how many nine tenths of it would be, in words.
@@ -190,13 +165,11 @@ impl ThresholdSearch {
         Roc::scenes_within_a_tenth(self.rate())
     }
 
-    /// The rate as a fraction.
     fn rate(&self) -> f64 {
         self.false_alarm_percent / 100.0
     }
 
     /// What can be said before anything is tried.
-    ///
     /// # Errors
     /// [`ThresholdError`] says what can't be.
     pub fn check(&self) -> Result<(), ThresholdError> {
@@ -219,7 +192,6 @@ impl ThresholdSearch {
         Ok(())
     }
 
-    /// Tries `method` on `count` scenes of every kind from number `first` on, and hands target and output over.
     fn each(
         &self,
         method: &dyn Reconstructor,

@@ -30,7 +30,6 @@ pub struct Trial {
     footprints: OnceLock<Footprints>,
 }
 
-/// What can be said of a scene without simulating it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Facts {
     objects: usize,
@@ -43,7 +42,7 @@ struct Facts {
 
 /// What a method made of a [`Trial`].
 #[derive(Debug, Clone)]
-pub struct Answer {
+pub struct TimedAnswer {
     /// What it found.
     pub found: Reconstruction,
     /// How long it took.
@@ -56,7 +55,6 @@ pub struct Answer {
 
 impl Trial {
     /// Simulates `scene` over `floor`, the noise picked by the scene's seed.
-    ///
     /// # Errors
     /// [`SceneError`] when the radar can't see the scene.
     pub fn new(radar: &Radar, scene: &Scene, floor: Floor, normalisation: Normalisation) -> Result<Trial, SceneError> {
@@ -64,7 +62,6 @@ impl Trial {
     }
 
     /// [`Trial::new`] with another map that answers are held against, and with the samples of the elements of `layout` beside those of the ends.
-    ///
     /// # Errors
     /// As [`Trial::new`].
     pub fn against(
@@ -95,10 +92,9 @@ impl Trial {
     }
 
     /// Lets `method` try, and judges what it makes.
-    ///
     /// # Errors
     /// [`ReconstructError`] of the method.
-    pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<Answer, ReconstructError> {
+    pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<TimedAnswer, ReconstructError> {
         request.task.check()?;
         let start = Instant::now();
         let found = match &self.heard {
@@ -109,7 +105,7 @@ impl Trial {
         };
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         let eta = method.eta_of(&found);
-        Ok(Answer {
+        Ok(TimedAnswer {
             metrics: Metrics::of_echoes(!self.scene.is_silent(), &self.target, &found.lambda, eta),
             found,
             milliseconds,
@@ -123,21 +119,20 @@ impl Trial {
     }
 
     /// What kind of failure an answer is, if any.
-    pub fn failures(&self, answer: &Answer) -> Failures {
+    pub fn failures(&self, answer: &TimedAnswer) -> Failures {
         self.footprints().judge(&self.target, &answer.found.lambda, answer.eta)
     }
 
     /// Which echoes stand out in the target, and which of them an answer shows.
-    pub fn echoes(&self, answer: &Answer) -> EchoTally {
+    pub fn echoes(&self, answer: &TimedAnswer) -> EchoTally {
         echoes::tally(&self.radar, &self.scene, &self.target, &answer.found.lambda, &self.scale)
     }
 
     /// SE, P_D and P_FA of what `cfar` detects in an answer, against what it detects in the target, in the place of both thresholds. Lambda is
     /// brought to power on the target's scale.
-    ///
     /// # Errors
     /// [`CfarError`] where the detector can't work on the radar's maps.
-    pub fn cfar_metrics(&self, answer: &Answer, cfar: &Cfar) -> Result<Metrics, CfarError> {
+    pub fn cfar_metrics(&self, answer: &TimedAnswer, cfar: &Cfar) -> Result<Metrics, CfarError> {
         let detected = |map: &RangeAngleMap| Ok(cfar.detect_lambda(map, self.scale)?.as_map());
         let (target, output) = (detected(&self.target)?, detected(&answer.found.lambda)?);
         let by_cfar = Metrics::of_echoes(!self.scene.is_silent(), &target, &output, 0.5);
@@ -146,7 +141,7 @@ impl Trial {
 
     /// The row of an answer: `row`, which says what makes it, with all figures but those of a detector of constant false-alarm rate.
     /// `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
-    pub fn filled(&self, row: Row, answer: &Answer, false_alarm: f64) -> Row {
+    pub fn filled(&self, row: Row, answer: &TimedAnswer, false_alarm: f64) -> Row {
         let roc = Roc::of_echoes(!self.scene.is_silent(), &self.target, &answer.found.lambda);
         let facts = Facts::of(&self.radar, &self.scene);
         let failures = self.failures(answer);

@@ -1,4 +1,4 @@
-//! A command as somebody writes it, split into words without a shell.
+//! A command as a shell's user writes it, split into words without a shell.
 
 use std::fmt;
 use std::str::FromStr;
@@ -8,30 +8,24 @@ use std::str::FromStr;
 pub struct CommandLine {
     /// As it was written.
     text: String,
-    /// Program and arguments; never empty.
     pub(super) words: Vec<String>,
 }
 
 /// Why a text is no command.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum CommandLineError {
     /// There is no word in it.
     #[error("the command is empty; expected a program with its arguments, such as \"python my_network.py\"")]
     Empty,
     /// A quotation mark has no partner.
     #[error("the command {text} has a {quote} without a second one")]
-    Quote {
-        /// The command.
-        text: String,
-        /// The quotation mark.
-        quote: char,
-    },
+    Quote { text: String, quote: char },
 }
 
 impl FromStr for CommandLine {
     type Err = CommandLineError;
 
-    /// Words stand between spaces; a part between two `"` or two `'` keeps its spaces. No other character means anything.
     fn from_str(text: &str) -> Result<Self, CommandLineError> {
         let mut words: Vec<String> = Vec::new();
         let (mut word, mut quote) = (None::<String>, None::<char>);

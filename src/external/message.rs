@@ -12,13 +12,10 @@ use std::io::{self, BufRead, Read};
 /// Version of questions and answers.
 pub const VERSION: u32 = 1;
 
-/// Longest line of JSON, bytes.
 const MOST_LINE_BYTES: u64 = 64 * 1024;
 
-/// Longest header of an array, bytes.
 const HEADER_BYTES: u64 = 4096 + 16;
 
-/// Arrays of one answer at most.
 const MOST_ARRAYS: usize = 4;
 
 #[derive(Debug, Serialize)]
@@ -46,7 +43,7 @@ struct Sent {
 /// What the line of an answer may say; what it says beside is for later versions.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default)]
-pub struct Line {
+pub struct AnswerHeader {
     apertura: Option<u32>,
     pub id: u64,
     pub name: String,
@@ -66,8 +63,8 @@ struct Received {
 
 /// An answer: its line, and the files of its arrays by name.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Answer {
-    pub line: Line,
+pub struct ExternalAnswer {
+    pub line: AnswerHeader,
     arrays: Vec<(String, Vec<u8>)>,
 }
 
@@ -125,16 +122,15 @@ pub fn most_array_bytes(radar: &Radar) -> u64 {
 }
 
 /// Reads one answer; its arrays have at most `most_bytes` each. `None` where the process closed its standard output between answers.
-///
 /// # Errors
 /// [`io::ErrorKind::InvalidData`] says what it wrote instead; others are the pipe's.
-pub fn read_answer(from: &mut impl BufRead, most_bytes: &dyn Fn() -> u64) -> io::Result<Option<Answer>> {
+pub fn read_answer(from: &mut impl BufRead, most_bytes: &dyn Fn() -> u64) -> io::Result<Option<ExternalAnswer>> {
     let mut bytes = Vec::new();
     (&mut *from).take(MOST_LINE_BYTES).read_until(b'\n', &mut bytes)?;
     if bytes.is_empty() {
         return Ok(None);
     }
-    let line: Line = serde_json::from_slice(&bytes).map_err(|error| rubbish(&bytes, &error.to_string()))?;
+    let line: AnswerHeader = serde_json::from_slice(&bytes).map_err(|error| rubbish(&bytes, &error.to_string()))?;
     match line.apertura {
         Some(VERSION) => {}
         Some(other) => {
@@ -159,7 +155,7 @@ pub fn read_answer(from: &mut impl BufRead, most_bytes: &dyn Fn() -> u64) -> io:
         }
         arrays.push((name.clone(), array));
     }
-    Ok(Some(Answer { line, arrays }))
+    Ok(Some(ExternalAnswer { line, arrays }))
 }
 
 fn invalid(message: String) -> io::Error {
@@ -172,9 +168,8 @@ fn rubbish(bytes: &[u8], why: &str) -> io::Error {
     invalid(format!("it wrote \"{start}\" on its standard output ({why}); {expected}"))
 }
 
-impl Answer {
+impl ExternalAnswer {
     /// Its map of `[samples, elements]` finite cells.
-    ///
     /// # Errors
     /// What is wrong with it.
     pub fn map(&self, radar: &Radar) -> Result<Map, String> {
@@ -208,7 +203,6 @@ impl Answer {
     }
 }
 
-/// Real numbers `[range bins, columns]`.
 fn numbers(name: &str, bytes: &[u8]) -> Result<Array2<f64>, String> {
     let damaged = |why: String| format!("its array \"{name}\" can't be read: {why}");
     npy::check(bytes).map_err(damaged)?;
@@ -251,7 +245,7 @@ pub(super) mod tests {
         bytes
     }
 
-    fn read(bytes: &[u8]) -> io::Result<Option<Answer>> {
+    fn read(bytes: &[u8]) -> io::Result<Option<ExternalAnswer>> {
         read_answer(&mut io::BufReader::new(bytes), &|| most_array_bytes(&small()))
     }
 
@@ -319,7 +313,7 @@ pub(super) mod tests {
             let told = map_of(array, &bytes).unwrap_err();
             assert!(told.contains(part), "{told}");
         }
-        let told = Answer::default().map(&small()).unwrap_err();
+        let told = ExternalAnswer::default().map(&small()).unwrap_err();
         assert!(told.contains("has no array"), "{told}");
     }
 

@@ -1,8 +1,8 @@
 //! A command as a reconstruction method.
 
 use super::command::CommandLine;
-use super::message::{self, Answer, Line, Map};
-use super::process::{Failure, Process};
+use super::message::{self, AnswerHeader, ExternalAnswer, Map};
+use super::process::{Process, ProcessFailure};
 use crate::maps::{LogMap, RangeAngleMap};
 use crate::radar::Radar;
 use crate::reconstruct::{About, Family, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
@@ -12,37 +12,24 @@ use std::io;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::Duration;
 
-/// Threshold where neither the process nor its answers have one: the thesis'.
 const USUAL_ETA: f32 = 0.9;
 
-/// Longest name, characters.
 const LONGEST_NAME: usize = 40;
 
-/// Longest of the other texts, characters.
 const LONGEST_TEXT: usize = 400;
 
-/// How often somebody looks whether the process is free.
-const LOOK: Duration = Duration::from_millis(5);
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 /// Why a command is no method.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum StartError {
     /// The system can't start it.
     #[error("{command}: it can't be started: {source}")]
-    System {
-        /// The command.
-        command: String,
-        /// What the system says.
-        source: io::Error,
-    },
+    System { command: String, source: io::Error },
     /// It is no method: it hangs, it ended, it answers something else.
     #[error("{command}: {reason}")]
-    NoMethod {
-        /// The command.
-        command: String,
-        /// Why.
-        reason: String,
-    },
+    NoMethod { command: String, reason: String },
 }
 
 /// A method that a process of its own computes, one request at a time.
@@ -50,19 +37,16 @@ pub struct ExternalMethod {
     command: CommandLine,
     about: About,
     weights: Option<Weights>,
-    /// For each answer, and for the start.
     limit: Duration,
     process: Mutex<State>,
 }
 
-/// The process, and the number of the last question.
 struct State {
     process: Option<Process>,
     asked: u64,
 }
 
 /// Starts a command and asks it who it is. Starting and each answer may take `limit`. `task` stops the start.
-///
 /// # Errors
 /// [`StartError`] with the end of the process' standard error.
 pub fn start(command: CommandLine, limit: Duration, task: &Task) -> Result<ExternalMethod, StartError> {
@@ -70,27 +54,27 @@ pub fn start(command: CommandLine, limit: Duration, task: &Task) -> Result<Exter
     let mut process =
         Process::start(&command).map_err(|source| StartError::System { command: command.to_string(), source })?;
     let line = greeted(&mut process, task, limit).map_err(|failure| match failure {
-        Failure::Cancelled => fails("cancelled".to_owned()),
-        Failure::Broken(reason) => fails(reason),
+        ProcessFailure::Cancelled => fails("cancelled".to_owned()),
+        ProcessFailure::Broken(reason) => fails(reason),
     })?;
     let (about, weights) = who(line).map_err(|why| fails(process.with_last_words(why, Duration::ZERO)))?;
     let state = State { process: Some(process), asked: 0 };
     Ok(ExternalMethod { command, about, weights, limit, process: Mutex::new(state) })
 }
 
-/// What a process that was just started says of itself.
-fn greeted(process: &mut Process, task: &Task, limit: Duration) -> Result<Line, Failure> {
+fn greeted(process: &mut Process, task: &Task, limit: Duration) -> Result<AnswerHeader, ProcessFailure> {
     process.ask(message::hello(), 0);
-    let Answer { line, .. } = process.wait(task, limit)?;
+    let ExternalAnswer { line, .. } = process.wait(task, limit)?;
     match line.error {
-        Some(error) => Err(Failure::Broken(process.with_last_words(format!("it answers: {error}"), Duration::ZERO))),
+        Some(error) => {
+            Err(ProcessFailure::Broken(process.with_last_words(format!("it answers: {error}"), Duration::ZERO)))
+        }
         None => Ok(line),
     }
 }
 
-/// Who the process is, with texts that live as long as the program.
-fn who(line: Line) -> Result<(About, Option<Weights>), String> {
-    let Line { name, description, told, weights, eta, .. } = line;
+fn who(line: AnswerHeader) -> Result<(About, Option<Weights>), String> {
+    let AnswerHeader { name, description, told, weights, eta, .. } = line;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(is_plain) {
         let shown = name.escape_debug();
@@ -125,37 +109,42 @@ fn check_eta(eta: f32) -> Result<(), String> {
 }
 
 impl ExternalMethod {
-    /// The process, once nobody else asks it.
-    fn state(&self, task: &Task) -> Result<MutexGuard<'_, State>, Failure> {
+    fn state(&self, task: &Task) -> Result<MutexGuard<'_, State>, ProcessFailure> {
         loop {
             task.check()?;
             match self.process.try_lock() {
                 Ok(state) => return Ok(state),
                 Err(TryLockError::Poisoned(state)) => return Ok(state.into_inner()),
-                Err(TryLockError::WouldBlock) => std::thread::sleep(LOOK),
+                Err(TryLockError::WouldBlock) => std::thread::sleep(POLL_INTERVAL),
             }
         }
     }
 
     /// Starts the process anew; it must be the same method.
-    fn started(&self, task: &Task) -> Result<Process, Failure> {
+    fn started(&self, task: &Task) -> Result<Process, ProcessFailure> {
         let mut process = Process::start(&self.command)
-            .map_err(|error| Failure::Broken(format!("{} can't be started: {error}", self.command)))?;
+            .map_err(|error| ProcessFailure::Broken(format!("{} can't be started: {error}", self.command)))?;
         let line = greeted(&mut process, task, self.limit)?;
         if line.name != self.about.name {
             let was = self.about.name;
-            return Err(Failure::Broken(format!("its name is \"{}\" now; it was \"{was}\" before", line.name)));
+            return Err(ProcessFailure::Broken(format!("its name is \"{}\" now; it was \"{was}\" before", line.name)));
         }
         Ok(process)
     }
 
-    fn asked(&self, state: &mut State, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Answer, Failure> {
+    fn asked(
+        &self,
+        state: &mut State,
+        radar: &Radar,
+        ends: &TwoEnds,
+        request: &Request,
+    ) -> Result<ExternalAnswer, ProcessFailure> {
         let task = &request.task;
         if state.process.as_ref().is_none_or(|process| !process.is_ours()) {
             state.process = Some(self.started(task)?);
         }
-        let Some(process) = &mut state.process else { return Err(Failure::Broken("it isn't there".to_owned())) };
-        // Answers that nobody waited for come first.
+        let Some(process) = &mut state.process else { return Err(ProcessFailure::Broken("it isn't there".to_owned())) };
+        // Answers to cancelled questions come first.
         while process.pending > 0 {
             process.wait(task, self.limit)?;
         }
@@ -166,13 +155,12 @@ impl ExternalMethod {
         if answer.line.id != state.asked {
             let (found, id) = (answer.line.id, state.asked);
             let why = format!("it answers question {found}; expected an answer to question {id}");
-            return Err(Failure::Broken(process.with_last_words(why, Duration::ZERO)));
+            return Err(ProcessFailure::Broken(process.with_last_words(why, Duration::ZERO)));
         }
         Ok(answer)
     }
 
-    /// What the answer says; the process answered wrongly where this fails.
-    fn read(&self, answer: &Answer, radar: &Radar, request: &Request) -> Result<Reconstruction, String> {
+    fn read(&self, answer: &ExternalAnswer, radar: &Radar, request: &Request) -> Result<Reconstruction, String> {
         let lambda = match answer.map(radar)? {
             Map::Lambda(lambda) => RangeAngleMap { lambda },
             Map::Decades(decades) => LogMap::new(decades).normalise(request.normalisation),
@@ -208,13 +196,13 @@ impl Reconstructor for ExternalMethod {
         let broken = |reason: String| self.unusable(format!("{reason}\n(the next request starts it anew)"));
         let mut state = match self.state(&request.task) {
             Ok(state) => state,
-            Err(Failure::Cancelled) => return Err(ReconstructError::Cancelled),
-            Err(Failure::Broken(reason)) => return Err(broken(reason)),
+            Err(ProcessFailure::Cancelled) => return Err(ReconstructError::Cancelled),
+            Err(ProcessFailure::Broken(reason)) => return Err(broken(reason)),
         };
         let answer = match self.asked(&mut state, radar, ends, request) {
             Ok(answer) => answer,
-            Err(Failure::Cancelled) => return Err(ReconstructError::Cancelled),
-            Err(Failure::Broken(reason)) => {
+            Err(ProcessFailure::Cancelled) => return Err(ReconstructError::Cancelled),
+            Err(ProcessFailure::Broken(reason)) => {
                 state.process = None;
                 return Err(broken(reason));
             }

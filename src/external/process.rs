@@ -1,7 +1,7 @@
-//! The process of a command: questions go in, answers come out, each on a thread of its own, so that a process that does neither holds nobody up.
+//! The process of a command: questions go in, answers come out, each on a thread of its own, so that a process that does neither holds up no caller.
 
 use super::command::CommandLine;
-use super::message::{Answer, read_answer};
+use super::message::{ExternalAnswer, read_answer};
 use super::tail::Tail;
 use crate::platform::{Instant, spawn};
 use crate::task::{Cancelled, Task};
@@ -12,13 +12,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-/// How often somebody who waits looks whether the work was cancelled.
-const LOOK: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 
-/// How long an ended process' last words are waited for.
 const LAST_WORDS: Duration = Duration::from_millis(500);
 
-/// How long a process that was told to end may take.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// Longest array of an answer that comes before a question says how long it may be, bytes.
@@ -28,13 +25,11 @@ const MOST_UNASKED: u64 = 1 << 20;
 pub struct Process {
     child: Child,
     questions: Option<Sender<Vec<u8>>>,
-    answers: Receiver<io::Result<Option<Answer>>>,
+    answers: Receiver<io::Result<Option<ExternalAnswer>>>,
     stderr: Tail,
-    /// Longest array that an answer may have.
     most_bytes: Arc<AtomicU64>,
     /// Questions without an answer yet.
     pub pending: u32,
-    /// Who started it: it is nothing to a fork of this program.
     owner: u32,
     /// When it was last asked with nothing pending, or last answered.
     since: Instant,
@@ -42,22 +37,21 @@ pub struct Process {
 
 /// Why there is no answer.
 #[derive(Debug)]
-pub enum Failure {
-    /// Somebody asked the work to stop; the process goes on.
+pub enum ProcessFailure {
+    /// The work was cancelled; the process goes on.
     Cancelled,
     /// The process is of no further use.
     Broken(String),
 }
 
-impl From<Cancelled> for Failure {
+impl From<Cancelled> for ProcessFailure {
     fn from(_: Cancelled) -> Self {
-        Failure::Cancelled
+        ProcessFailure::Cancelled
     }
 }
 
 impl Process {
     /// Starts the command.
-    ///
     /// # Errors
     /// Where the system can't start it.
     pub fn start(command: &CommandLine) -> io::Result<Process> {
@@ -86,7 +80,7 @@ impl Process {
         };
         spawn("questions", move || {
             let Some(mut stdin) = stdin else { return };
-            // Whoever waits for the answer learns from the other end of the process that it reads no more.
+            // The waiting caller learns from the other end of the process that it reads no more.
             while let Ok(bytes) = asked.recv()
                 && stdin.write_all(&bytes).and_then(|()| stdin.flush()).is_ok()
             {}
@@ -128,13 +122,12 @@ impl Process {
     }
 
     /// The next answer, for which the process may take `limit`.
-    ///
     /// # Errors
-    /// [`Failure`], also where the process hangs, ended or wrote something else.
-    pub fn wait(&mut self, task: &Task, limit: Duration) -> Result<Answer, Failure> {
+    /// [`ProcessFailure`], also where the process hangs, ended or wrote something else.
+    pub fn wait(&mut self, task: &Task, limit: Duration) -> Result<ExternalAnswer, ProcessFailure> {
         loop {
             task.check()?;
-            match self.answers.recv_timeout(LOOK) {
+            match self.answers.recv_timeout(POLL_INTERVAL) {
                 Ok(Ok(Some(answer))) => {
                     self.pending = self.pending.saturating_sub(1);
                     self.since = Instant::now();
@@ -142,25 +135,26 @@ impl Process {
                 }
                 Ok(Ok(None)) | Err(RecvTimeoutError::Disconnected) => {
                     let status = self.ended();
-                    return Err(Failure::Broken(self.with_last_words(status, LAST_WORDS)));
+                    return Err(ProcessFailure::Broken(self.with_last_words(status, LAST_WORDS)));
                 }
-                Ok(Err(error)) => return Err(Failure::Broken(self.with_last_words(error.to_string(), LAST_WORDS / 5))),
+                Ok(Err(error)) => {
+                    return Err(ProcessFailure::Broken(self.with_last_words(error.to_string(), LAST_WORDS / 5)));
+                }
                 Err(RecvTimeoutError::Timeout) if self.since.elapsed() > limit => {
                     let hangs = format!("it gave no answer within {} s", limit.as_secs_f64());
-                    return Err(Failure::Broken(self.with_last_words(hangs, Duration::ZERO)));
+                    return Err(ProcessFailure::Broken(self.with_last_words(hangs, Duration::ZERO)));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
             }
         }
     }
 
-    /// How the process ended.
     fn ended(&mut self) -> String {
         let began = Instant::now();
         while began.elapsed() < LAST_WORDS {
             match self.child.try_wait() {
                 Ok(Some(status)) => return format!("it ended ({status}) before it answered"),
-                Ok(None) => std::thread::sleep(LOOK / 4),
+                Ok(None) => std::thread::sleep(POLL_INTERVAL / 4),
                 Err(_) => break,
             }
         }
@@ -186,7 +180,7 @@ impl Drop for Process {
         let began = Instant::now();
         while self.pending == 0 && began.elapsed() < FAREWELL {
             match self.child.try_wait() {
-                Ok(None) => std::thread::sleep(LOOK / 4),
+                Ok(None) => std::thread::sleep(POLL_INTERVAL / 4),
                 _ => break,
             }
         }

@@ -5,7 +5,6 @@ use std::io::Read;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Bytes that are kept: the last lines of a traceback.
 const KEPT_BYTES: usize = 2000;
 
 /// The last bytes that were read, shared by who reads and who asks.
@@ -21,7 +20,6 @@ struct Shared {
 #[derive(Debug, Default)]
 struct Kept {
     bytes: VecDeque<u8>,
-    /// Whether nothing more can come.
     is_whole: bool,
 }
 

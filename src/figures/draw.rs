@@ -1,7 +1,7 @@
 //! Sheets as PNG and SVG.
 
-use super::canvas::{Area, Drawn, words};
-use super::sheet::{Axis, Cells, Chart, Content, Panel, Series, Sheet, Stroke};
+use super::canvas::{SheetArea, SheetDrawn, words};
+use super::sheet::{PanelContent, Series, Sheet, SheetAxis, SheetCells, SheetChart, SheetPanel, Stroke};
 use super::sketch;
 use crate::picture::{ColourMap, PictureError, encode_png, register_fonts};
 use image::RgbImage;
@@ -18,7 +18,6 @@ const TITLE_PIXELS: i32 = 34;
 const BAR_PIXELS: i32 = 58;
 
 /// The sheet as a PNG file's bytes.
-///
 /// # Errors
 /// [`PictureError`] when it can't be drawn or encoded.
 pub fn png(sheet: &Sheet) -> Result<Vec<u8>, PictureError> {
@@ -32,7 +31,6 @@ pub fn png(sheet: &Sheet) -> Result<Vec<u8>, PictureError> {
 }
 
 /// The sheet as SVG text: lines and words stay sharp, cells are bitmaps in it.
-///
 /// # Errors
 /// [`PictureError`] when it can't be drawn.
 pub fn svg(sheet: &Sheet) -> Result<String, PictureError> {
@@ -42,7 +40,7 @@ pub fn svg(sheet: &Sheet) -> Result<String, PictureError> {
     Ok(text)
 }
 
-fn on_paper<B: DrawingBackend>(sheet: &Sheet, backend: B) -> Drawn<B> {
+fn on_paper<B: DrawingBackend>(sheet: &Sheet, backend: B) -> SheetDrawn<B> {
     let area = backend.into_drawing_area();
     area.fill(&PAPER)?;
     let (width, height) = sheet.panel_pixels;
@@ -54,21 +52,21 @@ fn on_paper<B: DrawingBackend>(sheet: &Sheet, backend: B) -> Drawn<B> {
     area.present()
 }
 
-fn draw_panel<B: DrawingBackend>(panel: &Panel, area: &Area<B>) -> Drawn<B> {
+fn draw_panel<B: DrawingBackend>(panel: &SheetPanel, area: &SheetArea<B>) -> SheetDrawn<B> {
     let (width, height) = area.dim_in_pixel();
     area.draw(&Text::new(panel.title.clone(), (14, 10), words(19.0, &HUES[2])))?;
     let below = area.clone().shrink((0, TITLE_PIXELS), (width as i32, height as i32 - TITLE_PIXELS));
     match &panel.content {
-        Content::Chart(chart) => draw_chart(chart, &below),
-        Content::Cells(cells) => draw_cells(cells, &below),
-        Content::Sketch(plane) => sketch::draw(plane, &below),
+        PanelContent::Chart(chart) => draw_chart(chart, &below),
+        PanelContent::Cells(cells) => draw_cells(cells, &below),
+        PanelContent::Sketch(plane) => sketch::draw(plane, &below),
     }
 }
 
 fn axes<'a, B: DrawingBackend>(
-    area: &'a Area<B>,
-    x: &Axis,
-    y: &Axis,
+    area: &'a SheetArea<B>,
+    x: &SheetAxis,
+    y: &SheetAxis,
     right: i32,
 ) -> Result<Axes<'a, B>, DrawingAreaErrorKind<B::ErrorType>> {
     ChartBuilder::on(area)
@@ -79,7 +77,7 @@ fn axes<'a, B: DrawingBackend>(
         .build_cartesian_2d(x.span.clone(), y.span.clone())
 }
 
-fn label_axes<B: DrawingBackend>(chart: &mut Axes<'_, B>, x: &Axis, y: &Axis, mesh: bool) -> Drawn<B> {
+fn label_axes<B: DrawingBackend>(chart: &mut Axes<'_, B>, x: &SheetAxis, y: &SheetAxis, mesh: bool) -> SheetDrawn<B> {
     let (small, large) = (words(14.0, &RGBColor(84, 90, 98)), words(15.0, &HUES[2]));
     let format = |v: &f64| {
         let v = if v.abs() < 1e-9 { 0.0 } else { *v };
@@ -103,7 +101,7 @@ fn label_axes<B: DrawingBackend>(chart: &mut Axes<'_, B>, x: &Axis, y: &Axis, me
         .draw()
 }
 
-fn draw_chart<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn<B> {
+fn draw_chart<B: DrawingBackend>(chart: &SheetChart, area: &SheetArea<B>) -> SheetDrawn<B> {
     let mut on = axes(area, &chart.x, &chart.y, 18)?;
     label_axes(&mut on, &chart.x, &chart.y, true)?;
     for (series, hue) in chart.series.iter().zip(HUES.iter().cycle()) {
@@ -119,7 +117,7 @@ fn draw_chart<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn<B> {
     Ok(())
 }
 
-fn draw_series<B: DrawingBackend>(on: &mut Axes<'_, B>, series: &Series, hue: RGBColor) -> Drawn<B> {
+fn draw_series<B: DrawingBackend>(on: &mut Axes<'_, B>, series: &Series, hue: RGBColor) -> SheetDrawn<B> {
     let style = hue.stroke_width(2);
     let points = series.points.iter().copied();
     let drawn = match series.stroke {
@@ -137,7 +135,7 @@ fn draw_series<B: DrawingBackend>(on: &mut Axes<'_, B>, series: &Series, hue: RG
     Ok(())
 }
 
-fn draw_cells<B: DrawingBackend>(cells: &Cells, area: &Area<B>) -> Drawn<B> {
+fn draw_cells<B: DrawingBackend>(cells: &SheetCells, area: &SheetArea<B>) -> SheetDrawn<B> {
     let bar = if cells.ends_of_bar.is_some() { BAR_PIXELS } else { 14 };
     let mut on = axes(area, &cells.x, &cells.y, bar)?;
     let (across, up) = on.plotting_area().get_pixel_range();
@@ -163,8 +161,7 @@ fn draw_cells<B: DrawingBackend>(cells: &Cells, area: &Area<B>) -> Drawn<B> {
     Ok(())
 }
 
-/// RGB pixels, top row first; of several cells under one pixel the brightest shows (of a diverging map, the one furthest from the middle).
-fn paint(cells: &Cells, width: usize, height: usize) -> Vec<u8> {
+fn paint(cells: &SheetCells, width: usize, height: usize) -> Vec<u8> {
     let (rows, columns) = cells.values.dim();
     let under = |i: usize, n: usize, all: usize| {
         let start = i * all / n.max(1);
@@ -195,8 +192,8 @@ mod tests {
     use ndarray::array;
 
     fn sheet() -> Sheet {
-        let axis = || Axis::new("bins", 0.0, 2.0);
-        let cells = Cells {
+        let axis = || SheetAxis::new("bins", 0.0, 2.0);
+        let cells = SheetCells {
             x: axis(),
             y: axis(),
             values: array![[0.0, 1.0], [f32::NAN, 0.5]],
@@ -205,7 +202,7 @@ mod tests {
             rings: vec![(1.0, 1.0)],
         };
         let curve = Series::line("a", [(0.0, 0.0), (2.0, 1.0)]);
-        let panels = vec![Panel::chart("Chart", axis(), axis(), vec![curve]), Panel::cells("Cells", cells)];
+        let panels = vec![SheetPanel::chart("Chart", axis(), axis(), vec![curve]), SheetPanel::cells("Cells", cells)];
         Sheet::of(2, (300, 240), panels)
     }
 
@@ -220,7 +217,7 @@ mod tests {
 
     #[test]
     fn the_brightest_cell_under_a_pixel_shows() {
-        let Content::Cells(mut cells) = sheet().panels[1].content.clone() else { panic!("cells") };
+        let PanelContent::Cells(mut cells) = sheet().panels[1].content.clone() else { panic!("cells") };
         cells.values = array![[0.0, 1.0], [0.2, 0.4]];
         assert_eq!(paint(&cells, 1, 2), [102, 102, 102, 255, 255, 255]);
     }

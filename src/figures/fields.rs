@@ -1,13 +1,12 @@
 //! Figure 5-6: the fields of view of both ends, and their overlap.
 
-use super::sheet::{Ink, Panel, Shape, Sheet};
-use super::source::{FigureError, Source};
+use super::sheet::{Ink, Sheet, SheetPanel, SketchShape};
+use super::source::{FigureError, SceneSource};
 
-/// Half the angle of the drawn fields of view, degrees from broadside.
 const HALF_ANGLE_DEGREES: f64 = 50.0;
 
 /// Fields of view of both ends, the distance between them drawn forty times too large.
-pub fn fields_of_view(_: &Source) -> Result<Sheet, FigureError> {
+pub fn fields_of_view(_: &SceneSource) -> Result<Sheet, FigureError> {
     let (half_base, reach) = (10.0, 38.0);
     let sector = |x: f64| {
         let arc = (0..=40).map(move |i| (f64::from(i) / 20.0 - 1.0) * HALF_ANGLE_DEGREES.to_radians());
@@ -17,14 +16,14 @@ pub fn fields_of_view(_: &Source) -> Result<Sheet, FigureError> {
     };
     let mut shapes = Vec::new();
     for (x, ink, name) in [(-half_base, Ink::Accent, "first end"), (half_base, Ink::Second, "last end")] {
-        shapes.push(Shape::Area { corners: sector(x), ink });
-        shapes.push(Shape::dot((x, 0.0), 7, ink));
-        shapes.push(Shape::words((x, -2.6), name, ink));
+        shapes.push(SketchShape::Area { corners: sector(x), ink });
+        shapes.push(SketchShape::dot((x, 0.0), 7, ink));
+        shapes.push(SketchShape::words((x, -2.6), name, ink));
     }
-    shapes.push(Shape::words((0.0, 24.0), "seen by both", Ink::Dark));
-    shapes.push(Shape::words((-26.0, 21.0), "first end alone", Ink::Dark));
-    shapes.push(Shape::words((26.0, 21.0), "last end alone", Ink::Dark));
-    shapes.push(Shape::words((0.0, 4.0), "neither", Ink::Dark));
-    let panel = Panel::sketch("Fields of view of the two ends", -46.0..46.0, -4.5..40.0, shapes);
+    shapes.push(SketchShape::words((0.0, 24.0), "seen by both", Ink::Dark));
+    shapes.push(SketchShape::words((-26.0, 21.0), "first end alone", Ink::Dark));
+    shapes.push(SketchShape::words((26.0, 21.0), "last end alone", Ink::Dark));
+    shapes.push(SketchShape::words((0.0, 4.0), "neither", Ink::Dark));
+    let panel = SheetPanel::sketch("Fields of view of the two ends", -46.0..46.0, -4.5..40.0, shapes);
     Ok(Sheet::of(1, (820, 440), vec![panel]))
 }

@@ -1,7 +1,7 @@
 //! Figures 1-2 to 1-4: sparse bands, random elements, virtual elements.
 
-use super::sheet::{Axis, Ink, Panel, Series, Shape, Sheet, Stroke};
-use super::source::{FigureError, Source};
+use super::sheet::{Ink, Series, Sheet, SheetAxis, SheetPanel, SketchShape, Stroke};
+use super::source::{FigureError, SceneSource};
 use crate::maps::range_transform;
 use crate::radar::{Layout, Mimo};
 use crate::scene::{Object, Point, Scene};
@@ -11,7 +11,7 @@ use crate::signal::Floor;
 const RANDOM: (usize, u64) = (24, 1);
 
 /// A signal that is non-zero in a few bands: one element's beat signal of three groups of points.
-pub fn band_sparsity(source: &Source) -> Result<Sheet, FigureError> {
+pub fn band_sparsity(source: &SceneSource) -> Result<Sheet, FigureError> {
     let groups = [(7.0, 3), (18.0, 6), (31.0, 4)];
     let points = groups.iter().flat_map(|(start, count)| (0..*count).map(move |i| start + 0.4 * f64::from(i)));
     // Reflectivities undo the fall of 1/R^2, so that all bands are equally high.
@@ -24,14 +24,14 @@ pub fn band_sparsity(source: &Source) -> Result<Sheet, FigureError> {
     let samples = source.radar.samples as f64;
     let spectrum =
         profiles.row(middle).iter().enumerate().map(|(k, v)| (k as f64 / samples, v.norm() / peak)).collect::<Vec<_>>();
-    let x = Axis::new("frequency, in parts of the sampling rate", 0.0, 1.0);
-    let y = Axis::new("magnitude", 0.0, 1.1);
+    let x = SheetAxis::new("frequency, in parts of the sampling rate", 0.0, 1.0);
+    let y = SheetAxis::new("magnitude", 0.0, 1.1);
     let title = "Beat signal of three groups of points: three bands";
-    Ok(Sheet::of(1, (760, 380), vec![Panel::chart(title, x, y, vec![Series::line("", spectrum)])]))
+    Ok(Sheet::of(1, (760, 380), vec![SheetPanel::chart(title, x, y, vec![Series::line("", spectrum)])]))
 }
 
 /// Nearly random element placement on the aperture, above it the two ends of as many elements.
-pub fn random_elements(source: &Source) -> Result<Sheet, FigureError> {
+pub fn random_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
     let random = Layout::random(&source.radar, RANDOM.0, RANDOM.1).map_err(|e| FigureError::Missing(e.to_string()))?;
     let row = |name, layout: Layout, height: f64| {
         Series::line(name, layout.x_metres.into_iter().map(|x| (x, height))).with(Stroke::Dots)
@@ -42,30 +42,30 @@ pub fn random_elements(source: &Source) -> Result<Sheet, FigureError> {
         row("all 1024 elements", Layout::uniform(&source.radar), 3.0),
     ];
     let half = 0.55 * source.radar.aperture_metres();
-    let (x, y) = (Axis::new("x (m)", -half, half), Axis::new("", 0.0, 5.5));
-    Ok(Sheet::of(1, (760, 340), vec![Panel::chart("Elements on the aperture", x, y, series)]))
+    let (x, y) = (SheetAxis::new("x (m)", -half, half), SheetAxis::new("", 0.0, 5.5));
+    Ok(Sheet::of(1, (760, 340), vec![SheetPanel::chart("Elements on the aperture", x, y, series)]))
 }
 
 /// Three transmitters and four receivers, and their twelve virtual elements.
-pub fn virtual_elements(source: &Source) -> Result<Sheet, FigureError> {
+pub fn virtual_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
     let mimo = Mimo::filled(&source.radar, 3, 4);
     let unit = source.radar.element_spacing_metres;
     let mut shapes = Vec::new();
     let names = [("transmitters", 3.0), ("receivers", 2.0), ("virtual elements", 0.6)];
-    shapes.extend(names.map(|(name, y)| Shape::words((-8.6, y), name, Ink::Dark)));
+    shapes.extend(names.map(|(name, y)| SketchShape::words((-8.6, y), name, Ink::Dark)));
     for x in &mimo.transmitter_x_metres {
-        shapes.push(Shape::dot((x / unit, 3.0), 9, Ink::Accent));
+        shapes.push(SketchShape::dot((x / unit, 3.0), 9, Ink::Accent));
     }
     for x in &mimo.receiver_x_metres {
-        shapes.push(Shape::dot((x / unit, 2.0), 9, Ink::Second));
+        shapes.push(SketchShape::dot((x / unit, 2.0), 9, Ink::Second));
     }
     for v in mimo.virtual_elements() {
         let at = (v.x_metres / unit, 0.6);
-        shapes.push(Shape::line([(mimo.transmitter_x_metres[v.transmitter] / unit, 3.0), at], Ink::Pale));
-        shapes.push(Shape::dot(at, 8, Ink::Dark));
-        shapes.push(Shape::words((at.0, 0.2), format!("{}+{}", v.transmitter + 1, v.receiver + 1), Ink::Dark));
+        shapes.push(SketchShape::line([(mimo.transmitter_x_metres[v.transmitter] / unit, 3.0), at], Ink::Pale));
+        shapes.push(SketchShape::dot(at, 8, Ink::Dark));
+        shapes.push(SketchShape::words((at.0, 0.2), format!("{}+{}", v.transmitter + 1, v.receiver + 1), Ink::Dark));
     }
-    let panel = Panel::sketch(
+    let panel = SheetPanel::sketch(
         "3 transmitters × 4 receivers = 12 virtual elements, half a wavelength apart",
         -10.5..7.0,
         0.0..3.5,

@@ -1,9 +1,8 @@
 //! Figures 5-1 and 5-2: differences that the squared error does not show.
 
-use super::sheet::{Axis, Panel, Series, Sheet, Stroke};
-use super::source::{FigureError, Source};
+use super::sheet::{Series, Sheet, SheetAxis, SheetPanel, Stroke};
+use super::source::{FigureError, SceneSource};
 
-/// Points of the signals.
 const LENGTH: usize = 512;
 
 fn deltas(places: &[usize], height: f64) -> Vec<f64> {
@@ -20,7 +19,7 @@ fn stems(name: &'static str, values: &[f64], from: usize, to: usize) -> Series {
 }
 
 /// Two deltas, an estimate shifted by one sample and a flat one: equal squared errors.
-pub fn equal_errors(_: &Source) -> Result<Sheet, FigureError> {
+pub fn equal_errors(_: &SceneSource) -> Result<Sheet, FigureError> {
     let truth = deltas(&[200, 250], 1.0);
     let shifted = deltas(&[201, 251], 1.0);
     // N c^2 - 4 c + 2 = 4: the flat estimate whose squared error is 4 too.
@@ -28,7 +27,7 @@ pub fn equal_errors(_: &Source) -> Result<Sheet, FigureError> {
     let level = (4.0 + (16.0 + 8.0 * n).sqrt()) / (2.0 * n);
     let flat = vec![level; LENGTH];
     let panel = |title: String, series| {
-        Panel::chart(title, Axis::new("n", 180.0, 270.0), Axis::new("y", -0.1, 1.3), vec![series])
+        SheetPanel::chart(title, SheetAxis::new("n", 180.0, 270.0), SheetAxis::new("y", -0.1, 1.3), vec![series])
     };
     let line =
         Series::line("", flat.iter().enumerate().map(|(n, v)| (n as f64, *v)).skip(180).take(91).collect::<Vec<_>>());
@@ -42,14 +41,14 @@ pub fn equal_errors(_: &Source) -> Result<Sheet, FigureError> {
 }
 
 /// A sparse and a denser signal, each estimated 1.2 times too large.
-pub fn denser_costs_more(_: &Source) -> Result<Sheet, FigureError> {
+pub fn denser_costs_more(_: &SceneSource) -> Result<Sheet, FigureError> {
     let sparse: Vec<usize> = vec![205, 240];
     let dense: Vec<usize> = (0..10).map(|i| 194 + 7 * i).collect();
     let panel = |name: &str, places: &[usize]| {
         let (truth, estimate) = (deltas(places, 1.0), deltas(places, 1.2));
         let title = format!("{name}: squared error {:.2}", squared_error(&truth, &estimate));
         let series = vec![stems("estimate", &estimate, 180, 271), stems("truth", &truth, 180, 271)];
-        Panel::chart(title, Axis::new("n", 180.0, 270.0), Axis::new("y", -0.1, 1.7), series)
+        SheetPanel::chart(title, SheetAxis::new("n", 180.0, 270.0), SheetAxis::new("y", -0.1, 1.7), series)
     };
     Ok(Sheet::of(2, (520, 360), vec![panel("Two points", &sparse), panel("Ten points", &dense)]))
 }

@@ -1,6 +1,6 @@
 //! Every figure of the thesis, drawn from this program's data.
 //!
-//! A figure is a function from a [`Source`] of simulated data to a [`Sheet`](sheet::Sheet) of panels; [`draw`] makes files of sheets,
+//! A figure is a function from a [`SceneSource`] of simulated data to a [`Sheet`](sheet::Sheet) of panels; [`draw`] makes files of sheets,
 //! [`pages`] the page that shows them beside one another. [`ALL`] lists them with what each shows and what differs from the printed one.
 
 mod canvas;
@@ -18,7 +18,7 @@ mod source;
 mod things;
 mod waves;
 
-pub use source::{FigureError, Source};
+pub use source::{FigureError, SceneSource};
 
 use sheet::Sheet;
 
@@ -33,13 +33,13 @@ pub struct Figure {
     /// Whether it takes less than a second.
     pub cheap: bool,
     /// Its panels, from this program's data.
-    pub sheet: fn(&Source) -> Result<Sheet, FigureError>,
+    pub sheet: fn(&SceneSource) -> Result<Sheet, FigureError>,
 }
 
 const fn figure(
     number: &'static str,
     cheap: bool,
-    sheet: fn(&Source) -> Result<Sheet, FigureError>,
+    sheet: fn(&SceneSource) -> Result<Sheet, FigureError>,
     shows: &'static str,
     differs: &'static str,
 ) -> Figure {
@@ -309,7 +309,7 @@ mod tests {
 
     #[test]
     fn cheap_figures_are_drawn() {
-        let source = Source::new();
+        let source = SceneSource::new();
         for figure in ALL.iter().filter(|f| f.cheap) {
             let sheet = (figure.sheet)(&source).unwrap_or_else(|e| panic!("figure {}: {e}", figure.number));
             assert!(!sheet.panels.is_empty());

@@ -1,7 +1,7 @@
 //! Figures 3-2, 4-1 to 4-8, 5-3 to 5-5 and 5-7: outputs of methods.
 
-use super::sheet::{Panel, Sheet};
-use super::source::{FigureError, Seen, Source};
+use super::sheet::{Sheet, SheetPanel};
+use super::source::{FigureError, ScenePictures, SceneSource};
 use crate::evaluate::{Metrics, TARGET_ETA};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
@@ -12,13 +12,13 @@ const PANEL: (u32, u32) = (460, 380);
 const EXPERIMENT_1: &str = "thesis-1";
 const EXPERIMENT_2: &str = "thesis";
 
-fn title(method: &str, seen: &Seen, output: &RangeAngleMap) -> String {
+fn title(method: &str, seen: &ScenePictures, output: &RangeAngleMap) -> String {
     let metrics = Metrics::of(&seen.lambda[2], output, TARGET_ETA);
     format!("{method}: SE {:.0}", metrics.squared_error)
 }
 
 /// Inputs and target, then the thesis' network, `live` and `hybrid` on the same scene.
-fn beside(source: &Source, seen: &Seen, network: &str) -> Result<Sheet, FigureError> {
+fn beside(source: &SceneSource, seen: &ScenePictures, network: &str) -> Result<Sheet, FigureError> {
     let [first, last, full] = &seen.lambda;
     let mut panels = vec![
         source.lambda_panel("Input 0", first),
@@ -33,7 +33,7 @@ fn beside(source: &Source, seen: &Seen, network: &str) -> Result<Sheet, FigureEr
 }
 
 /// The U-Net on a training sample: its output is near zero.
-pub fn unet_on_training(source: &Source) -> Result<Sheet, FigureError> {
+pub fn unet_on_training(source: &SceneSource) -> Result<Sheet, FigureError> {
     let generator = Generator::new(&source.radar, Reading::Program, Purpose::Training, 0);
     let seen = source.see(generator.scene(Kind::Points(3), 0))?;
     let [first, last, full] = &seen.lambda;
@@ -51,17 +51,17 @@ pub fn unet_on_training(source: &Source) -> Result<Sheet, FigureError> {
 }
 
 /// Experiment 1's network on set 2.
-pub fn experiment_1_points(source: &Source) -> Result<Sheet, FigureError> {
+pub fn experiment_1_points(source: &SceneSource) -> Result<Sheet, FigureError> {
     beside(source, &source.test_scene(Kind::Set2, 0)?, EXPERIMENT_1)
 }
 
 /// Experiment 1's network on set 3.
-pub fn experiment_1_lines(source: &Source) -> Result<Sheet, FigureError> {
+pub fn experiment_1_lines(source: &SceneSource) -> Result<Sheet, FigureError> {
     beside(source, &source.test_scene(Kind::Set3, 0)?, EXPERIMENT_1)
 }
 
 /// Experiments 1 and 2 on two points at one range of 31 m.
-pub fn merged_and_apart(source: &Source) -> Result<Sheet, FigureError> {
+pub fn merged_and_apart(source: &SceneSource) -> Result<Sheet, FigureError> {
     let place = |cos: f64| (31.0 * cos, 31.0 * (1.0 - cos * cos).sqrt());
     let seen = source.see(Scene::of_points([place(0.30), place(0.40)]))?;
     let mut panels = vec![source.lambda_panel("Target", &seen.lambda[2])];
@@ -73,24 +73,24 @@ pub fn merged_and_apart(source: &Source) -> Result<Sheet, FigureError> {
 }
 
 /// Experiment 2's network on set 2.
-pub fn experiment_2_points(source: &Source) -> Result<Sheet, FigureError> {
+pub fn experiment_2_points(source: &SceneSource) -> Result<Sheet, FigureError> {
     beside(source, &source.test_scene(Kind::Set2, 0)?, EXPERIMENT_2)
 }
 
 /// Experiment 2's network on set 1.
-pub fn experiment_2_point(source: &Source) -> Result<Sheet, FigureError> {
+pub fn experiment_2_point(source: &SceneSource) -> Result<Sheet, FigureError> {
     beside(source, &source.test_scene(Kind::Set1, 0)?, EXPERIMENT_2)
 }
 
 /// Experiment 2's network on set 3.
-pub fn experiment_2_lines(source: &Source) -> Result<Sheet, FigureError> {
+pub fn experiment_2_lines(source: &SceneSource) -> Result<Sheet, FigureError> {
     beside(source, &source.test_scene(Kind::Set3, 0)?, EXPERIMENT_2)
 }
 
 /// Outputs on set 3 before and after thresholds of 0.7 and 0.9.
-pub fn thresholds(source: &Source) -> Result<Sheet, FigureError> {
+pub fn thresholds(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.test_scene(Kind::Set3, 0)?;
-    let row = |name: &str, map: &RangeAngleMap| -> Vec<Panel> {
+    let row = |name: &str, map: &RangeAngleMap| -> Vec<SheetPanel> {
         let above = |eta: f32| source.above_panel(format!("{name} > {eta}"), map, eta);
         vec![source.lambda_panel(name, map), above(0.7), above(TARGET_ETA)]
     };
@@ -102,7 +102,7 @@ pub fn thresholds(source: &Source) -> Result<Sheet, FigureError> {
 }
 
 /// The baseline: the first end above 0.9 beside the target above 0.9.
-pub fn baseline(source: &Source) -> Result<Sheet, FigureError> {
+pub fn baseline(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.test_scene(Kind::Set3, 0)?;
     let panels = vec![
         source.above_panel("Baseline: Λ0 > 0.9", &seen.lambda[0], TARGET_ETA),
@@ -112,12 +112,12 @@ pub fn baseline(source: &Source) -> Result<Sheet, FigureError> {
 }
 
 /// Points beside a line.
-pub fn taken_for_a_line(source: &Source) -> Result<Sheet, FigureError> {
+pub fn taken_for_a_line(source: &SceneSource) -> Result<Sheet, FigureError> {
     beside(source, &source.preset("points-by-a-line")?, EXPERIMENT_2)
 }
 
 /// Inputs of two points a tenth of a radian apart: alike in the middle, different at the edges.
-pub fn a_tenth_of_a_radian(source: &Source) -> Result<Sheet, FigureError> {
+pub fn a_tenth_of_a_radian(source: &SceneSource) -> Result<Sheet, FigureError> {
     let ahead = source.preset("one-at-20-m")?;
     let off = source.preset("one-at-20-m-a-tenth-of-a-radian-off")?;
     let (a, b) = (&ahead.lambda[0], &off.lambda[0]);
@@ -131,12 +131,12 @@ pub fn a_tenth_of_a_radian(source: &Source) -> Result<Sheet, FigureError> {
 }
 
 /// Gaussian clusters, which no training scene of the thesis holds.
-pub fn clusters(source: &Source) -> Result<Sheet, FigureError> {
+pub fn clusters(source: &SceneSource) -> Result<Sheet, FigureError> {
     beside(source, &source.preset("gaussian-clusters")?, EXPERIMENT_2)
 }
 
 /// A point hidden behind a line for one end; below, behind a wall that casts a shadow.
-pub fn hidden(source: &Source) -> Result<Sheet, FigureError> {
+pub fn hidden(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.preset("point-behind-a-line")?;
     let [first, last, full] = &seen.lambda;
     let mut panels = vec![

@@ -27,7 +27,6 @@ pub fn entry(figure: &Figure, folder: &str) -> String {
 }
 
 /// Tables 4.1 to 4.3 as Markdown: `methods` over `scenes` test scenes a set, seed 0, beside the printed values.
-///
 /// # Errors
 /// [`CampaignError`] when a method fails.
 pub fn tables(methods: &[&dyn Reconstructor], scenes: u32) -> Result<String, CampaignError> {
@@ -54,7 +53,6 @@ pub fn tables(methods: &[&dyn Reconstructor], scenes: u32) -> Result<String, Cam
     Ok(text)
 }
 
-/// The weights of the methods that have learned any, as rows name them.
 fn weights(methods: &[&dyn Reconstructor]) -> String {
     let named = methods.iter().filter_map(|m| Some(format!("`{}` {}", m.name(), m.weights()?.sha256)));
     let named: Vec<String> = named.collect();

@@ -1,7 +1,7 @@
 //! Figures 2-4, 2-5, 2-8, 2-9, 2-11, 2-12 (four points) and 3-4 to 3-7 (the maps of one scene).
 
-use super::sheet::{Axis, Cells, Content, Panel, Sheet};
-use super::source::{FigureError, Source};
+use super::sheet::{PanelContent, Sheet, SheetAxis, SheetCells, SheetPanel};
+use super::source::{FigureError, SceneSource};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::{ComplexMap, Normalisation, RangeAngleMap, channels_map};
 use crate::picture::ColourMap;
@@ -10,23 +10,23 @@ use crate::scene::generate::Kind;
 use ndarray::{Array2, s};
 use std::f64::consts::{PI, TAU};
 
-const FOUR: &str = "four-reflectors";
-const LARGE: (u32, u32) = (700, 520);
+const FOUR_REFLECTORS: &str = "four-reflectors";
+const LARGE_PANEL_PIXELS: (u32, u32) = (700, 520);
 
 /// The four points in Cartesian coordinates.
-pub fn four_points(source: &Source) -> Result<Sheet, FigureError> {
-    let scene = super::source::preset(FOUR)?;
+pub fn four_points(source: &SceneSource) -> Result<Sheet, FigureError> {
+    let scene = super::source::preset(FOUR_REFLECTORS)?;
     Ok(Sheet::of(1, (800, 440), vec![source.scene_panel("Four equal points", &scene)]))
 }
 
 /// The radar matrix, and the delta peaks that infinite observation would give.
-pub fn radar_matrix(source: &Source) -> Result<Sheet, FigureError> {
-    let seen = source.preset(FOUR)?;
+pub fn radar_matrix(source: &SceneSource) -> Result<Sheet, FigureError> {
+    let seen = source.preset(FOUR_REFLECTORS)?;
     let real: Array2<f64> = seen.signal.samples.slice(s![..;4, ..;2]).mapv(|v| v.re);
     let peak = real.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
-    let matrix = Cells {
-        x: Axis::new("sample", 0.0, source.radar.samples as f64),
-        y: Axis::new("element", 0.0, source.radar.elements as f64),
+    let matrix = SheetCells {
+        x: SheetAxis::new("sample", 0.0, source.radar.samples as f64),
+        y: SheetAxis::new("element", 0.0, source.radar.elements as f64),
         values: real.mapv(|v| (0.5 + 0.5 * v / peak) as f32),
         colours: ColourMap::Diverging,
         ends_of_bar: Some(("-1", "+1")),
@@ -36,40 +36,40 @@ pub fn radar_matrix(source: &Source) -> Result<Sheet, FigureError> {
     let rings = polar.map(|p| (p.cos_theta, p.range_metres)).collect();
     let empty = Array2::zeros((2, 2));
     let mut ideal = source.cells_panel("Ideal range-angle plot: four deltas (ringed)", empty, ColourMap::Grey, None);
-    if let Content::Cells(cells) = &mut ideal.content {
+    if let PanelContent::Cells(cells) = &mut ideal.content {
         cells.rings = rings;
     }
-    Ok(Sheet::of(2, (620, 460), vec![Panel::cells("Real part of the samples", matrix), ideal]))
+    Ok(Sheet::of(2, (620, 460), vec![SheetPanel::cells("Real part of the samples", matrix), ideal]))
 }
 
 /// Range-angle plot of the four points with every element.
-pub fn all_elements(source: &Source) -> Result<Sheet, FigureError> {
-    let seen = source.preset(FOUR)?;
-    Ok(Sheet::of(1, LARGE, vec![source.lambda_panel("512 samples × 1024 elements", &seen.lambda[2])]))
+pub fn all_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
+    let seen = source.preset(FOUR_REFLECTORS)?;
+    Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel("512 samples × 1024 elements", &seen.lambda[2])]))
 }
 
 /// The same with twelve elements.
-pub fn twelve_elements(source: &Source) -> Result<Sheet, FigureError> {
-    let seen = source.preset(FOUR)?;
-    Ok(Sheet::of(1, LARGE, vec![source.lambda_panel("512 samples × 12 elements", &seen.lambda[0])]))
+pub fn twelve_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
+    let seen = source.preset(FOUR_REFLECTORS)?;
+    Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel("512 samples × 12 elements", &seen.lambda[0])]))
 }
 
 /// The range-angle plot above a threshold.
-pub fn thresholded(source: &Source) -> Result<Sheet, FigureError> {
-    let seen = source.preset(FOUR)?;
-    Ok(Sheet::of(1, LARGE, vec![source.above_panel("Λ > 0.9", &seen.lambda[2], TARGET_ETA)]))
+pub fn thresholded(source: &SceneSource) -> Result<Sheet, FigureError> {
+    let seen = source.preset(FOUR_REFLECTORS)?;
+    Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.above_panel("Λ > 0.9", &seen.lambda[2], TARGET_ETA)]))
 }
 
 /// The range-angle plot projected into Cartesian coordinates.
-pub fn cartesian(source: &Source) -> Result<Sheet, FigureError> {
-    let seen = source.preset(FOUR)?;
+pub fn cartesian(source: &SceneSource) -> Result<Sheet, FigureError> {
+    let seen = source.preset(FOUR_REFLECTORS)?;
     let panel =
         source.cartesian_panel("512 samples × 1024 elements, from above", &seen.lambda[2], ColourMap::default());
     Ok(Sheet::of(1, (800, 460), vec![panel]))
 }
 
 /// Ground truth, whole array and both ends of one scene.
-pub fn truth_and_maps(source: &Source) -> Result<Sheet, FigureError> {
+pub fn truth_and_maps(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.test_scene(Kind::Set3, 1)?;
     let [first, last, full] = &seen.lambda;
     let panels = vec![
@@ -82,18 +82,18 @@ pub fn truth_and_maps(source: &Source) -> Result<Sheet, FigureError> {
 }
 
 /// Lambda of the whole array of that scene.
-pub fn lambda_full(source: &Source) -> Result<Sheet, FigureError> {
+pub fn lambda_full(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.test_scene(Kind::Set3, 1)?;
-    Ok(Sheet::of(1, LARGE, vec![source.lambda_panel("Λ of all 1024 elements", &seen.lambda[2])]))
+    Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel("Λ of all 1024 elements", &seen.lambda[2])]))
 }
 
-fn first_end(source: &Source) -> Result<ComplexMap, FigureError> {
+fn first_end(source: &SceneSource) -> Result<ComplexMap, FigureError> {
     let seen = source.test_scene(Kind::Set3, 1)?;
     Ok(channels_map(&source.radar, seen.signal.end(&source.radar, End::First)))
 }
 
 /// Magnitude and phase of the first end's map.
-pub fn magnitude_and_phase(source: &Source) -> Result<Sheet, FigureError> {
+pub fn magnitude_and_phase(source: &SceneSource) -> Result<Sheet, FigureError> {
     let map = first_end(source)?;
     let magnitude = map.log_magnitude().normalise(Normalisation::MinMax);
     let phase = map.cells.mapv(|v| ((v.arg() + PI) / TAU) as f32);
@@ -105,7 +105,7 @@ pub fn magnitude_and_phase(source: &Source) -> Result<Sheet, FigureError> {
 }
 
 /// Cosine and sine of the first end's phase, and its Lambda.
-pub fn cosine_sine_lambda(source: &Source) -> Result<Sheet, FigureError> {
+pub fn cosine_sine_lambda(source: &SceneSource) -> Result<Sheet, FigureError> {
     let map = first_end(source)?;
     let part = |f: fn(f64) -> f64| map.cells.mapv(|v| (0.5 + 0.5 * f(v.arg())) as f32);
     let lambda: RangeAngleMap = map.log_magnitude().normalise(Normalisation::MinMax);

@@ -8,7 +8,7 @@ use std::ops::Range;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
     /// Panels, in reading order.
-    pub panels: Vec<Panel>,
+    pub panels: Vec<SheetPanel>,
     /// Panels beside one another; the rest follow below.
     pub columns: usize,
     /// Width and height of one panel in pixels.
@@ -17,27 +17,27 @@ pub struct Sheet {
 
 /// One panel with its title.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Panel {
+pub struct SheetPanel {
     /// Title above the panel.
     pub title: String,
     /// What it shows.
-    pub content: Content,
+    pub content: PanelContent,
 }
 
 /// What a panel shows.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Content {
+pub enum PanelContent {
     /// Curves over two axes.
-    Chart(Chart),
+    Chart(SheetChart),
     /// Coloured cells over two axes.
-    Cells(Cells),
+    Cells(SheetCells),
     /// Lines, circles and words in a plane without axes.
     Sketch(Sketch),
 }
 
 /// An axis: what stands beside it and what it spans.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct SheetAxis {
     /// Quantity and unit.
     pub label: &'static str,
     /// From and to, in that unit; from may be the larger.
@@ -46,11 +46,11 @@ pub struct Axis {
 
 /// Curves over two axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chart {
+pub struct SheetChart {
     /// Across.
-    pub x: Axis,
+    pub x: SheetAxis,
     /// Up.
-    pub y: Axis,
+    pub y: SheetAxis,
     /// Curves, in the order of the legend.
     pub series: Vec<Series>,
 }
@@ -81,11 +81,11 @@ pub struct Series {
 
 /// Coloured cells over two axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cells {
+pub struct SheetCells {
     /// Across.
-    pub x: Axis,
+    pub x: SheetAxis,
     /// Up.
-    pub y: Axis,
+    pub y: SheetAxis,
     /// Values in [0, 1], `[rows from below, columns]`; NaN stays paper.
     pub values: Array2<f32>,
     /// How values become colours.
@@ -104,7 +104,7 @@ pub struct Sketch {
     /// What the plane spans upwards.
     pub y: Range<f64>,
     /// Shapes, the last on top.
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<SketchShape>,
 }
 
 /// Ink of a shape.
@@ -122,7 +122,7 @@ pub enum Ink {
 
 /// A shape of a sketch.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
+pub enum SketchShape {
     /// A line through places; an arrow head at its end if `arrow`.
     Line {
         /// Places.
@@ -168,10 +168,10 @@ pub enum Shape {
     },
 }
 
-impl Axis {
+impl SheetAxis {
     /// An axis from `from` to `to`.
     pub fn new(label: &'static str, from: f64, to: f64) -> Self {
-        Axis { label, span: from..to }
+        SheetAxis { label, span: from..to }
     }
 }
 
@@ -187,53 +187,53 @@ impl Series {
     }
 }
 
-impl Panel {
+impl SheetPanel {
     /// A panel of curves.
-    pub fn chart(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
-        Panel { title: title.into(), content: Content::Chart(Chart { x, y, series }) }
+    pub fn chart(title: impl Into<String>, x: SheetAxis, y: SheetAxis, series: Vec<Series>) -> Self {
+        SheetPanel { title: title.into(), content: PanelContent::Chart(SheetChart { x, y, series }) }
     }
 
     /// A panel of shapes.
-    pub fn sketch(title: impl Into<String>, x: Range<f64>, y: Range<f64>, shapes: Vec<Shape>) -> Self {
-        Panel { title: title.into(), content: Content::Sketch(Sketch { x, y, shapes }) }
+    pub fn sketch(title: impl Into<String>, x: Range<f64>, y: Range<f64>, shapes: Vec<SketchShape>) -> Self {
+        SheetPanel { title: title.into(), content: PanelContent::Sketch(Sketch { x, y, shapes }) }
     }
 
     /// A panel of cells.
-    pub fn cells(title: impl Into<String>, cells: Cells) -> Self {
-        Panel { title: title.into(), content: Content::Cells(cells) }
+    pub fn cells(title: impl Into<String>, cells: SheetCells) -> Self {
+        SheetPanel { title: title.into(), content: PanelContent::Cells(cells) }
     }
 }
 
-impl Shape {
+impl SketchShape {
     /// A line without an arrow head.
     pub fn line(places: impl IntoIterator<Item = (f64, f64)>, ink: Ink) -> Self {
-        Shape::Line { places: places.into_iter().collect(), arrow: false, ink }
+        SketchShape::Line { places: places.into_iter().collect(), arrow: false, ink }
     }
 
     /// A line with an arrow head.
     pub fn arrow(from: (f64, f64), to: (f64, f64), ink: Ink) -> Self {
-        Shape::Line { places: vec![from, to], arrow: true, ink }
+        SketchShape::Line { places: vec![from, to], arrow: true, ink }
     }
 
     /// A dot.
     pub fn dot(at: (f64, f64), pixels: i32, ink: Ink) -> Self {
-        Shape::Dot { at, pixels, ink }
+        SketchShape::Dot { at, pixels, ink }
     }
 
     /// A box with text.
     pub fn block(low: (f64, f64), high: (f64, f64), text: impl Into<String>) -> Self {
-        Shape::Block { low, high, text: text.into() }
+        SketchShape::Block { low, high, text: text.into() }
     }
 
     /// Words.
     pub fn words(at: (f64, f64), text: impl Into<String>, ink: Ink) -> Self {
-        Shape::Words { at, text: text.into(), ink }
+        SketchShape::Words { at, text: text.into(), ink }
     }
 }
 
 impl Sheet {
     /// Panels beside one another, `columns` in a row.
-    pub fn of(columns: usize, panel_pixels: (u32, u32), panels: Vec<Panel>) -> Self {
+    pub fn of(columns: usize, panel_pixels: (u32, u32), panels: Vec<SheetPanel>) -> Self {
         Sheet { panels, columns: columns.max(1), panel_pixels }
     }
 

@@ -1,7 +1,7 @@
 //! Sketches: lines, dots, boxes and words in a plane without axes.
 
-use super::canvas::{Area, Drawn, words};
-use super::sheet::{Ink, Shape, Sketch};
+use super::canvas::{SheetArea, SheetDrawn, words};
+use super::sheet::{Ink, Sketch, SketchShape};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -14,7 +14,6 @@ fn colour(ink: Ink) -> RGBColor {
     }
 }
 
-/// Places of the plane in pixels of the area, with a margin.
 struct Scale {
     left: f64,
     bottom: f64,
@@ -42,28 +41,29 @@ impl Scale {
     }
 }
 
-/// Draws the shapes, the last on top.
-pub(super) fn draw<B: DrawingBackend>(sketch: &Sketch, area: &Area<B>) -> Drawn<B> {
+pub(super) fn draw<B: DrawingBackend>(sketch: &Sketch, area: &SheetArea<B>) -> SheetDrawn<B> {
     let scale = Scale::new(sketch, area.dim_in_pixel());
     sketch.shapes.iter().try_for_each(|shape| draw_shape(shape, &scale, area))
 }
 
-fn draw_shape<B: DrawingBackend>(shape: &Shape, scale: &Scale, area: &Area<B>) -> Drawn<B> {
+fn draw_shape<B: DrawingBackend>(shape: &SketchShape, scale: &Scale, area: &SheetArea<B>) -> SheetDrawn<B> {
     let centred = |size, ink| words(size, &colour(ink)).pos(Pos::new(HPos::Center, VPos::Center));
     match shape {
-        Shape::Line { places, arrow, ink } => {
+        SketchShape::Line { places, arrow, ink } => {
             let pixels: Vec<_> = places.iter().map(|p| scale.pixel(*p)).collect();
             if let ([.., before, end], true) = (pixels.as_slice(), *arrow) {
                 area.draw(&Polygon::new(arrow_head(*before, *end), colour(*ink).filled()))?;
             }
             area.draw(&PathElement::new(pixels, colour(*ink).stroke_width(2)))
         }
-        Shape::Dot { at, pixels, ink } => area.draw(&Circle::new(scale.pixel(*at), *pixels, colour(*ink).filled())),
-        Shape::Area { corners, ink } => {
+        SketchShape::Dot { at, pixels, ink } => {
+            area.draw(&Circle::new(scale.pixel(*at), *pixels, colour(*ink).filled()))
+        }
+        SketchShape::Area { corners, ink } => {
             let corners: Vec<_> = corners.iter().map(|p| scale.pixel(*p)).collect();
             area.draw(&Polygon::new(corners, colour(*ink).mix(0.22).filled()))
         }
-        Shape::Block { low, high, text } => {
+        SketchShape::Block { low, high, text } => {
             let corners = [scale.pixel(*low), scale.pixel(*high)];
             area.draw(&Rectangle::new(corners, RGBColor(238, 241, 244).filled()))?;
             area.draw(&Rectangle::new(corners, colour(Ink::Pale)))?;
@@ -75,7 +75,9 @@ fn draw_shape<B: DrawingBackend>(shape: &Shape, scale: &Scale, area: &Area<B>) -
             }
             Ok(())
         }
-        Shape::Words { at, text, ink } => area.draw(&Text::new(text.clone(), scale.pixel(*at), centred(15.0, *ink))),
+        SketchShape::Words { at, text, ink } => {
+            area.draw(&Text::new(text.clone(), scale.pixel(*at), centred(15.0, *ink)))
+        }
     }
 }
 

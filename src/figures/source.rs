@@ -1,6 +1,6 @@
 //! The data of figures: the thesis' radar, this program's simulation, maps and methods.
 
-use super::sheet::{Axis, Cells, Panel, Series, Stroke};
+use super::sheet::{Series, SheetAxis, SheetCells, SheetPanel, Stroke};
 use crate::maps::cartesian::project;
 use crate::maps::{LogMaps, Normalisation, RangeAngleMap};
 use crate::methods;
@@ -31,13 +31,13 @@ pub enum FigureError {
 }
 
 /// The thesis' radar and conventions: table 3.1, its floor, min-max.
-pub struct Source {
+pub struct SceneSource {
     /// Table 3.1.
     pub radar: Radar,
 }
 
 /// A scene simulated and transformed.
-pub struct Seen {
+pub struct ScenePictures {
     /// The scene.
     pub scene: Scene,
     /// Its samples.
@@ -46,69 +46,64 @@ pub struct Seen {
     pub lambda: [RangeAngleMap; 3],
 }
 
-impl Source {
+impl SceneSource {
     /// Table 3.1.
     pub fn new() -> Self {
-        Source { radar: Radar::default() }
+        SceneSource { radar: Radar::default() }
     }
 
     /// The scene over `floor`, seed 0.
-    ///
     /// # Errors
     /// [`FigureError::Scene`].
-    pub fn see_over(&self, scene: Scene, floor: Floor) -> Result<Seen, FigureError> {
+    pub fn see_over(&self, scene: Scene, floor: Floor) -> Result<ScenePictures, FigureError> {
         let signal = signal::simulate(&self.radar, &scene, floor, 0)?;
         let maps = LogMaps::of_signal(&self.radar, &signal);
         let lambda = [maps.first, maps.last, maps.full].map(|m| m.normalise(Normalisation::MinMax));
-        Ok(Seen { scene, signal, lambda })
+        Ok(ScenePictures { scene, signal, lambda })
     }
 
     /// The scene over the thesis' floor.
-    ///
     /// # Errors
     /// [`FigureError::Scene`].
-    pub fn see(&self, scene: Scene) -> Result<Seen, FigureError> {
+    pub fn see(&self, scene: Scene) -> Result<ScenePictures, FigureError> {
         self.see_over(scene, Floor::Thesis)
     }
 
     /// A preset over the thesis' floor.
-    ///
     /// # Errors
     /// [`FigureError`] when there is no such preset or it can't be simulated.
-    pub fn preset(&self, id: &str) -> Result<Seen, FigureError> {
+    pub fn preset(&self, id: &str) -> Result<ScenePictures, FigureError> {
         self.see(preset(id)?)
     }
 
     /// Test scene `number` of a set (seed 0) over the thesis' floor.
-    ///
     /// # Errors
     /// [`FigureError::Scene`].
-    pub fn test_scene(&self, kind: Kind, number: u32) -> Result<Seen, FigureError> {
+    pub fn test_scene(&self, kind: Kind, number: u32) -> Result<ScenePictures, FigureError> {
         self.see(Generator::new(&self.radar, Reading::Program, Purpose::Test, 0).scene(kind, number))
     }
 
     /// What a method makes of the two ends.
-    ///
     /// # Errors
     /// [`FigureError`] when there is no such method or it fails.
-    pub fn output(&self, method: &str, seen: &Seen) -> Result<RangeAngleMap, FigureError> {
+    pub fn output(&self, method: &str, seen: &ScenePictures) -> Result<RangeAngleMap, FigureError> {
         let method = methods::by_name(method).map_err(|e| FigureError::Missing(e.to_string()))?;
         let ends = seen.signal.two_ends(&self.radar);
         Ok(method.reconstruct(&self.radar, &ends, &Request::default())?.lambda)
     }
 
     /// Range, from 0 to the maximum.
-    pub fn range_axis(&self) -> Axis {
-        Axis::new("range (m)", 0.0, self.radar.max_range_metres())
+    pub fn range_axis(&self) -> SheetAxis {
+        SheetAxis::new("range (m)", 0.0, self.radar.max_range_metres())
     }
 
     /// Lambda over cos(theta) and range.
-    pub fn lambda_panel(&self, title: impl Into<String>, map: &RangeAngleMap) -> Panel {
+    pub fn lambda_panel(&self, title: impl Into<String>, map: &RangeAngleMap) -> SheetPanel {
         self.cells_panel(title, map.lambda.clone(), ColourMap::default(), Some(("Λ 0", "Λ 1")))
     }
 
     /// Cells above a threshold, white on black.
-    pub fn above_panel(&self, title: impl Into<String>, map: &RangeAngleMap, eta: f32) -> Panel {
+    pub fn above_panel(&self, title: impl Into<String>, map: &RangeAngleMap, eta: f32) -> SheetPanel {
         self.cells_panel(title, map.lambda.mapv(|v| f32::from(v > eta)), ColourMap::Grey, None)
     }
 
@@ -119,37 +114,44 @@ impl Source {
         values: Array2<f32>,
         colours: ColourMap,
         ends_of_bar: Option<(&'static str, &'static str)>,
-    ) -> Panel {
-        let x = Axis::new("cos θ", -1.0, 1.0);
+    ) -> SheetPanel {
+        let x = SheetAxis::new("cos θ", -1.0, 1.0);
         let values = self.radar.left_to_right(&values).to_owned();
-        Panel::cells(title, Cells { x, y: self.range_axis(), values, colours, ends_of_bar, rings: Vec::new() })
+        SheetPanel::cells(
+            title,
+            SheetCells { x, y: self.range_axis(), values, colours, ends_of_bar, rings: Vec::new() },
+        )
     }
 
     /// A map over x and y.
-    pub fn cartesian_panel(&self, title: impl Into<String>, map: &RangeAngleMap, colours: ColourMap) -> Panel {
+    pub fn cartesian_panel(&self, title: impl Into<String>, map: &RangeAngleMap, colours: ColourMap) -> SheetPanel {
         let extent = self.radar.max_range_metres();
         let values = project(&self.radar, map, 300).lambda;
-        let (x, y) = (Axis::new("x (m)", -extent, extent), Axis::new("y (m)", 0.0, extent));
-        Panel::cells(title, Cells { x, y, values, colours, ends_of_bar: None, rings: Vec::new() })
+        let (x, y) = (SheetAxis::new("x (m)", -extent, extent), SheetAxis::new("y (m)", 0.0, extent));
+        SheetPanel::cells(title, SheetCells { x, y, values, colours, ends_of_bar: None, rings: Vec::new() })
     }
 
     /// The scene's reflectors over x and y.
-    pub fn scene_panel(&self, title: impl Into<String>, scene: &Scene) -> Panel {
+    pub fn scene_panel(&self, title: impl Into<String>, scene: &Scene) -> SheetPanel {
         let extent = self.radar.max_range_metres();
         let places = scene.objects.iter().flat_map(Object::marks).map(|r| (r.x_metres, r.y_metres.abs()));
         let dots = Series::line("", places).with(Stroke::Dots);
-        Panel::chart(title, Axis::new("x (m)", -extent, extent), Axis::new("y (m)", 0.0, extent), vec![dots])
+        SheetPanel::chart(
+            title,
+            SheetAxis::new("x (m)", -extent, extent),
+            SheetAxis::new("y (m)", 0.0, extent),
+            vec![dots],
+        )
     }
 }
 
-impl Default for Source {
+impl Default for SceneSource {
     fn default() -> Self {
-        Source::new()
+        SceneSource::new()
     }
 }
 
 /// The scene of a preset.
-///
 /// # Errors
 /// [`FigureError::Missing`] when there is none of that name.
 pub fn preset(id: &str) -> Result<Scene, FigureError> {
@@ -160,18 +162,18 @@ pub fn preset(id: &str) -> Result<Scene, FigureError> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sheet::Content;
+    use super::super::sheet::PanelContent;
     use super::*;
     use crate::radar::Convention;
 
     #[test]
     fn left_is_left_in_a_figure_of_either_convention() {
         for convention in Convention::ALL {
-            let source = Source { radar: Radar::default().in_convention(convention) };
+            let source = SceneSource { radar: Radar::default().in_convention(convention) };
             let mut lambda = Array2::zeros((512, 1024));
             lambda[[200, source.radar.column_of_cos(-0.5) as usize]] = 1.0;
             let panel = source.lambda_panel("", &RangeAngleMap { lambda });
-            let Content::Cells(cells) = panel.content else { panic!("cells") };
+            let PanelContent::Cells(cells) = panel.content else { panic!("cells") };
             let ((_, column), _) = cells.values.indexed_iter().find(|(_, v)| **v == 1.0).unwrap();
             // The columns of the physical convention are those of the carrier, 1.3 % below the middle of the chirp.
             assert!((255..261).contains(&column), "{convention:?}: column {column}");

@@ -1,7 +1,7 @@
 //! Figures 2-1 to 2-3, 2-6, 2-7 and 2-10: chirps, windows, plane waves and the angle spectrum.
 
-use super::sheet::{Axis, Ink, Panel, Series, Shape, Sheet, Stroke};
-use super::source::{FigureError, Source};
+use super::sheet::{Ink, Series, Sheet, SheetAxis, SheetPanel, SketchShape, Stroke};
+use super::source::{FigureError, SceneSource};
 use crate::maps::{Aperture, Spectrum, angle_transform, range_transform};
 use crate::radar::{End, SPEED_OF_LIGHT, WindowFunction};
 use crate::scene::Scene;
@@ -16,62 +16,67 @@ fn decibels(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
 }
 
 /// Transmitted and received chirp, and the difference frequency the mixer gives.
-pub fn chirps(source: &Source) -> Result<Sheet, FigureError> {
+pub fn chirps(source: &SceneSource) -> Result<Sheet, FigureError> {
     let (range, bandwidth, carrier) = (21.0, source.radar.bandwidth_hz / 1e9, source.radar.carrier_hz / 1e9);
     // A chirp of 1 microsecond in place of some tens: else the delay would be thinner than the line.
     let (chirp, delay) = (1.0, 2.0 * range / SPEED_OF_LIGHT * 1e6);
     let ramp = |start: f64| [(start, carrier), (start + chirp, carrier + bandwidth)];
     let sent = Series::line("transmitted", ramp(0.0));
     let received = Series::line("received", ramp(delay)).with(Stroke::Dashed);
-    let time = || Axis::new("time (µs)", 0.0, chirp + delay);
-    let top = Panel::chart(
+    let time = || SheetAxis::new("time (µs)", 0.0, chirp + delay);
+    let top = SheetPanel::chart(
         "Chirp and its echo from 21 m",
         time(),
-        Axis::new("frequency (GHz)", carrier - 0.1, carrier + bandwidth + 0.4),
+        SheetAxis::new("frequency (GHz)", carrier - 0.1, carrier + bandwidth + 0.4),
         vec![sent, received],
     );
     let beat = bandwidth * 1e3 * delay / chirp;
     let mixer = Series::line("", [(delay, beat), (chirp, beat)]);
-    let bottom = Panel::chart("Mixer output", time(), Axis::new("frequency (MHz)", 0.0, 1.5 * beat), vec![mixer]);
+    let bottom =
+        SheetPanel::chart("Mixer output", time(), SheetAxis::new("frequency (MHz)", 0.0, 1.5 * beat), vec![mixer]);
     Ok(Sheet::of(1, (760, 300), vec![top, bottom]))
 }
 
 /// Range profile of a point at 21 m.
-pub fn range_profile(source: &Source) -> Result<Sheet, FigureError> {
+pub fn range_profile(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.see_over(Scene::of_points([(0.0, 21.0)]), Floor::Exact)?;
     let profiles = range_transform(&source.radar, &seen.signal).profiles;
     let profile = decibels(profiles.row(source.radar.elements / 2).iter().map(|v| v.norm()));
     let points = profile.into_iter().enumerate().map(|(k, db)| (source.radar.range_of_bin_metres(k as f64), db));
-    let y = Axis::new("magnitude (dB)", -120.0, 5.0);
-    let panel =
-        Panel::chart("One element, Hann window, 512 samples", source.range_axis(), y, vec![Series::line("", points)]);
+    let y = SheetAxis::new("magnitude (dB)", -120.0, 5.0);
+    let panel = SheetPanel::chart(
+        "One element, Hann window, 512 samples",
+        source.range_axis(),
+        y,
+        vec![Series::line("", points)],
+    );
     Ok(Sheet::of(1, (760, 380), vec![panel]))
 }
 
 /// A plane wave on a uniform line array and its path difference.
-pub fn plane_wave(_: &Source) -> Result<Sheet, FigureError> {
+pub fn plane_wave(_: &SceneSource) -> Result<Sheet, FigureError> {
     let angle = 60f64.to_radians();
     let (ux, uy) = (angle.cos(), angle.sin());
-    let mut shapes = vec![Shape::line([(-0.6, 0.0), (5.6, 0.0)], Ink::Pale)];
+    let mut shapes = vec![SketchShape::line([(-0.6, 0.0), (5.6, 0.0)], Ink::Pale)];
     for n in 0..6 {
         let x = f64::from(n);
-        shapes.push(Shape::arrow((x + 3.0 * ux, 3.0 * uy), (x + 0.06 * ux, 0.06 * uy), Ink::Second));
-        shapes.push(Shape::dot((x, 0.0), 7, Ink::Dark));
+        shapes.push(SketchShape::arrow((x + 3.0 * ux, 3.0 * uy), (x + 0.06 * ux, 0.06 * uy), Ink::Second));
+        shapes.push(SketchShape::dot((x, 0.0), 7, Ink::Dark));
     }
     // The wavefront through element 1 meets element 0's ray d cos(theta) before that element.
-    shapes.push(Shape::line([(0.0, 0.0), (ux * ux, ux * uy)], Ink::Accent));
-    shapes.push(Shape::line([(1.0, 0.0), (ux * ux, ux * uy)], Ink::Pale));
-    shapes.push(Shape::words((-0.35, 0.42), "d cos θ", Ink::Accent));
-    shapes.push(Shape::words((0.5, -0.22), "d", Ink::Dark));
+    shapes.push(SketchShape::line([(0.0, 0.0), (ux * ux, ux * uy)], Ink::Accent));
+    shapes.push(SketchShape::line([(1.0, 0.0), (ux * ux, ux * uy)], Ink::Pale));
+    shapes.push(SketchShape::words((-0.35, 0.42), "d cos θ", Ink::Accent));
+    shapes.push(SketchShape::words((0.5, -0.22), "d", Ink::Dark));
     let arc = (0..=20).map(|i| f64::from(i) / 20.0 * angle).map(|a| (5.0 + 0.6 * a.cos(), 0.6 * a.sin()));
-    shapes.push(Shape::line(arc, Ink::Dark));
-    shapes.push(Shape::words((5.75, 0.45), "θ", Ink::Dark));
-    let panel = Panel::sketch("A plane wave reaches one element after the other", -1.0..7.2, -0.5..3.0, shapes);
+    shapes.push(SketchShape::line(arc, Ink::Dark));
+    shapes.push(SketchShape::words((5.75, 0.45), "θ", Ink::Dark));
+    let panel = SheetPanel::sketch("A plane wave reaches one element after the other", -1.0..7.2, -0.5..3.0, shapes);
     Ok(Sheet::of(1, (760, 360), vec![panel]))
 }
 
 /// Windows of 64 points and their transforms.
-pub fn windows(_: &Source) -> Result<Sheet, FigureError> {
+pub fn windows(_: &SceneSource) -> Result<Sheet, FigureError> {
     const POINTS: usize = 64;
     const PADDED: usize = 4096;
     let strokes = [Stroke::Solid, Stroke::Dashed, Stroke::Solid, Stroke::Dashed];
@@ -86,13 +91,18 @@ pub fn windows(_: &Source) -> Result<Sheet, FigureError> {
             .push(Series::line(window.name(), values.into_iter().enumerate().map(|(n, w)| (n as f64, w))).with(stroke));
         transforms.push(Series::line(window.name(), shown).with(stroke));
     }
-    let left = Panel::chart("Windows of 64 points", Axis::new("n", 0.0, 63.0), Axis::new("weight", 0.0, 1.4), weights);
-    let (x, y) = (Axis::new("frequency, in bins", 0.0, 16.0), Axis::new("magnitude (dB)", -120.0, 5.0));
-    Ok(Sheet::of(2, (560, 380), vec![left, Panel::chart("Their transforms", x, y, transforms)]))
+    let left = SheetPanel::chart(
+        "Windows of 64 points",
+        SheetAxis::new("n", 0.0, 63.0),
+        SheetAxis::new("weight", 0.0, 1.4),
+        weights,
+    );
+    let (x, y) = (SheetAxis::new("frequency, in bins", 0.0, 16.0), SheetAxis::new("magnitude (dB)", -120.0, 5.0));
+    Ok(Sheet::of(2, (560, 380), vec![left, SheetPanel::chart("Their transforms", x, y, transforms)]))
 }
 
 /// Angle spectrum at one range with 12 and with 1024 elements: two points at cos(theta) 0.35 and 0.5.
-pub fn angle_spectra(source: &Source) -> Result<Sheet, FigureError> {
+pub fn angle_spectra(source: &SceneSource) -> Result<Sheet, FigureError> {
     let range = 20.0;
     let place = |cos: f64| (range * cos, range * (1.0 - cos * cos).sqrt());
     let seen = source.see_over(Scene::of_points([place(0.35), place(0.5)]), Floor::Exact)?;
@@ -102,28 +112,29 @@ pub fn angle_spectra(source: &Source) -> Result<Sheet, FigureError> {
         let map = angle_transform(&source.radar, &profiles, aperture).cells;
         let spectrum = decibels(map.row(row).iter().map(|v| v.norm()));
         let points = spectrum.into_iter().enumerate().map(|(k, db)| (source.radar.cos_of_column(k as f64), db));
-        let y = Axis::new("magnitude (dB)", -80.0, 5.0);
-        Panel::chart(title, Axis::new("cos θ", -1.0, 1.0), y, vec![Series::line("", points)])
+        let y = SheetAxis::new("magnitude (dB)", -80.0, 5.0);
+        SheetPanel::chart(title, SheetAxis::new("cos θ", -1.0, 1.0), y, vec![Series::line("", points)])
     };
     let panels = vec![panel("12 elements", Aperture::End(End::First)), panel("1024 elements", Aperture::Full)];
     Ok(Sheet::of(2, (560, 360), panels))
 }
 
 /// Assumed parallel paths beside the true ones for a near reflector.
-pub fn near_paths(source: &Source) -> Result<Sheet, FigureError> {
+pub fn near_paths(source: &SceneSource) -> Result<Sheet, FigureError> {
     let half = source.radar.aperture_metres() / 2.0;
     let at = (0.9, 2.2);
     let elements: Vec<f64> = (0..9).map(|i| half * (f64::from(i) / 4.0 - 1.0)).collect();
-    let array = || elements.iter().map(|x| Shape::dot((*x, 0.0), 6, Ink::Dark));
-    let mut assumed: Vec<Shape> =
-        elements.iter().map(|x| Shape::line([(*x, 0.0), (x + at.0, at.1)], Ink::Second)).collect();
+    let array = || elements.iter().map(|x| SketchShape::dot((*x, 0.0), 6, Ink::Dark));
+    let mut assumed: Vec<SketchShape> =
+        elements.iter().map(|x| SketchShape::line([(*x, 0.0), (x + at.0, at.1)], Ink::Second)).collect();
     assumed.extend(array());
-    let mut true_paths: Vec<Shape> = elements.iter().map(|x| Shape::line([(*x, 0.0), at], Ink::Accent)).collect();
+    let mut true_paths: Vec<SketchShape> =
+        elements.iter().map(|x| SketchShape::line([(*x, 0.0), at], Ink::Accent)).collect();
     true_paths.extend(array());
-    true_paths.push(Shape::dot(at, 8, Ink::Accent));
+    true_paths.push(SketchShape::dot(at, 8, Ink::Accent));
     let panels = vec![
-        Panel::sketch("Assumed: one direction for all elements", -1.3..2.1, -0.2..2.5, assumed),
-        Panel::sketch("True: a reflector at (0.9, 2.2) m before a 2 m array", -1.3..2.1, -0.2..2.5, true_paths),
+        SheetPanel::sketch("Assumed: one direction for all elements", -1.3..2.1, -0.2..2.5, assumed),
+        SheetPanel::sketch("True: a reflector at (0.9, 2.2) m before a 2 m array", -1.3..2.1, -0.2..2.5, true_paths),
     ];
     Ok(Sheet::of(2, (560, 400), panels))
 }

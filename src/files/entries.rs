@@ -5,11 +5,9 @@ use std::io::{self, Read, Seek, SeekFrom};
 /// Bytes from the end within which an archive's last record begins: it is 22 long and may have a comment of 65 535.
 const TAIL_BYTES: u64 = 65_535 + 22 + 76;
 
-/// Least bytes of one entry in an archive's list.
 const ENTRY_BYTES: u64 = 46;
 
 /// Checks that the list at the end of an archive can hold as many entries as it claims; leaves `file` at its beginning.
-///
 /// # Errors
 /// [`io::ErrorKind::InvalidData`] where it can't, and what the system says.
 pub fn check_entries(file: &mut (impl Read + Seek)) -> io::Result<()> {

@@ -11,9 +11,8 @@ use crate::platform::fs::{self, Draft, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes a file in one step: `write` fills a temporary file beside `path`, which then takes its place. Whoever looks sees the
+/// Writes a file in one step: `write` fills a temporary file beside `path`, which then takes its place. A reader sees the
 /// old file or the new one, never a part; on any error the old one stays as it was.
-///
 /// # Errors
 /// What `write` returns, or what the system says: the folder is missing, `path` is a folder, a device or a pipe, the disk is full.
 pub fn write_atomically<E: From<io::Error>>(
@@ -34,7 +33,6 @@ pub fn write_atomically<E: From<io::Error>>(
 }
 
 /// [`write_atomically`] for text or bytes that are ready.
-///
 /// # Errors
 /// As [`write_atomically`].
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -50,7 +48,6 @@ fn unwritable(folder: &Path, error: &io::Error) -> io::Error {
 }
 
 /// Reads a file of at most `most` bytes.
-///
 /// # Errors
 /// What the system says; [`io::ErrorKind::FileTooLarge`] for a longer file, [`io::ErrorKind::InvalidInput`] for a folder, a device or a pipe,
 /// which may never end.
@@ -74,7 +71,6 @@ pub fn read_bounded(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 }
 
 /// The first `most` bytes of a file, or all that it has.
-///
 /// # Errors
 /// As [`read_bounded`], but for the length.
 pub fn read_start(path: &Path, most: u64) -> io::Result<Vec<u8>> {
@@ -86,7 +82,6 @@ pub fn read_start(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Follows a link, so that it stays a link, and refuses what replacing would destroy.
 fn destination(path: &Path) -> io::Result<PathBuf> {
     match fs::metadata(path) {
         Ok(found) if found.is_file() => fs::canonicalize(path),

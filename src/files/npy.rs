@@ -5,7 +5,6 @@
 use ndarray_npy::npy::header::Header;
 use std::io::{self, Read};
 
-/// Longest header that is read, bytes; NumPy's own have some 120.
 const MAX_HEADER_BYTES: usize = 4096;
 
 /// Most brackets in a header.
@@ -15,7 +14,6 @@ const MAX_BRACKETS: usize = 16;
 const MAX_DEPTH: usize = 4;
 
 /// Magic number, version and dictionary, so long and so nested as NumPy would write them.
-///
 /// # Errors
 /// [`io::ErrorKind::InvalidData`] for anything else, [`io::ErrorKind::UnexpectedEof`] where the file ends before.
 pub fn header_bytes(file: &mut impl Read) -> io::Result<Vec<u8>> {
@@ -51,7 +49,6 @@ pub fn header_bytes(file: &mut impl Read) -> io::Result<Vec<u8>> {
 }
 
 /// Checks that an array's file (`.npy`: header, numbers) is as long as its header says, so that reading it allocates no more.
-///
 /// # Errors
 /// What is wrong with it.
 pub fn check(file: &[u8]) -> Result<(), String> {

@@ -15,8 +15,9 @@ use zip::result::ZipError;
 /// Most bytes that one array of an archive may have, unless [`Npz::at_most`] says otherwise: 1 GiB, the samples of the largest radar.
 pub const MAX_ARRAY_BYTES: u64 = 1 << 30;
 
-/// Why an archive could not be read or written. Messages don't name the file: whoever opened it does.
+/// Why an archive could not be read or written. Messages don't name the file: its opener does.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum NpzError {
     /// The system could not read or write.
     #[error("{0}")]
@@ -26,58 +27,22 @@ pub enum NpzError {
     Archive(String),
     /// The archive lacks a key.
     #[error("has no array \"{key}\"; expected it beside what is there: {found}")]
-    Missing {
-        /// The key asked for.
-        key: String,
-        /// The keys the archive has.
-        found: String,
-    },
+    Missing { key: String, found: String },
     /// An array has other numbers in it than expected.
     #[error("array \"{key}\" holds {found}; expected {expected}")]
-    Type {
-        /// The key.
-        key: String,
-        /// NumPy's name of the type found.
-        found: String,
-        /// What would do.
-        expected: &'static str,
-    },
+    Type { key: String, found: String, expected: &'static str },
     /// An array has another shape than expected.
     #[error("array \"{key}\" has shape {found}; expected {expected}")]
-    Shape {
-        /// The key.
-        key: String,
-        /// The shape found.
-        found: String,
-        /// The shape expected.
-        expected: String,
-    },
+    Shape { key: String, found: String, expected: String },
     /// A number is NaN or infinite.
     #[error("array \"{key}\" holds {value} at index {index:?}; expected finite numbers only")]
-    NotFinite {
-        /// The key.
-        key: String,
-        /// Where.
-        index: Vec<usize>,
-        /// The value.
-        value: String,
-    },
+    NotFinite { key: String, index: Vec<usize>, value: String },
     /// An array is larger than anything that is read from it.
     #[error("array \"{key}\" is too large; at most {most} bytes are read")]
-    TooLarge {
-        /// The key.
-        key: String,
-        /// Most bytes that are read.
-        most: u64,
-    },
+    TooLarge { key: String, most: u64 },
     /// An array is damaged.
     #[error("array \"{key}\" can't be read: {reason}")]
-    Damaged {
-        /// The key.
-        key: String,
-        /// What is wrong.
-        reason: String,
-    },
+    Damaged { key: String, reason: String },
 }
 
 /// An open archive.
@@ -87,7 +52,6 @@ pub struct Npz {
     most_bytes: u64,
 }
 
-/// A number that is either finite or not.
 trait Finite: Copy + std::fmt::Display {
     fn is_finite(self) -> bool;
 }
@@ -106,7 +70,6 @@ impl Finite for Complex64 {
 
 impl Npz {
     /// Opens an archive and reads its list of keys.
-    ///
     /// # Errors
     /// [`NpzError::Io`] or [`NpzError::Archive`].
     pub fn open(path: &Path) -> Result<Npz, NpzError> {
@@ -139,7 +102,6 @@ impl Npz {
     }
 
     /// Real numbers under `key`, from f64, f32, i64 or i32 arrays; all finite.
-    ///
     /// # Errors
     /// [`NpzError`] names the key and what was expected of it.
     pub fn reals<D: Dimension>(&mut self, key: &str) -> Result<Array<f64, D>, NpzError> {
@@ -160,7 +122,6 @@ impl Npz {
     }
 
     /// Complex numbers under `key`, from complex128 or complex64 arrays; all finite.
-    ///
     /// # Errors
     /// [`NpzError`] names the key and what was expected of it.
     pub fn complexes<D: Dimension>(&mut self, key: &str) -> Result<Array<Complex64, D>, NpzError> {
@@ -174,7 +135,6 @@ impl Npz {
         all_finite(key, values)
     }
 
-    /// Reads an array of exactly this type; the inner error is the name of another type that was found.
     fn read<T: ReadableElement, D: Dimension>(&mut self, key: &str) -> Result<Result<Array<T, D>, String>, NpzError> {
         if !self.has(key) {
             let found = if self.keys.is_empty() { "nothing".to_owned() } else { self.keys.join(", ") };
@@ -195,7 +155,6 @@ impl Npz {
         }
     }
 
-    /// The array's file, whole, if it isn't too large.
     fn bytes(&mut self, key: &str) -> Result<Vec<u8>, NpzError> {
         let damaged = |reason: String| NpzError::Damaged { key: key.to_owned(), reason };
         let name = format!("{key}.npy");
@@ -234,7 +193,6 @@ pub struct NpzOutput<'a> {
 
 impl NpzOutput<'_> {
     /// Adds an array under `key`.
-    ///
     /// # Errors
     /// [`NpzError::Io`] when the disk is full.
     pub fn add<T: WritableElement, D: Dimension>(&mut self, key: &str, array: &ArrayRef<T, D>) -> Result<(), NpzError> {
@@ -247,7 +205,6 @@ fn write_error(error: WriteNpzError) -> NpzError {
 }
 
 /// Writes an archive in one step, uncompressed as `numpy.savez` does: `fill` adds the arrays.
-///
 /// # Errors
 /// What `fill` returns, or [`NpzError::Io`].
 pub fn write_npz(path: &Path, fill: impl FnOnce(&mut NpzOutput) -> Result<(), NpzError>) -> Result<(), NpzError> {

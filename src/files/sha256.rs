@@ -6,9 +6,8 @@ use std::io;
 use std::path::Path;
 
 /// SHA-256 of the file at `path`, hexadecimal.
-///
 /// # Errors
-/// Whatever the system says when the file can't be read.
+/// The system's error where the file can't be read.
 pub fn of_file(path: &Path) -> io::Result<String> {
     let mut digest = Sha256::new();
     io::copy(&mut File::open(path)?, &mut digest)?;
@@ -30,7 +29,7 @@ pub fn of_pieces<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> String {
     hexadecimal(digest)
 }
 
-/// The first 12 digits: enough to tell files apart that nobody forged.
+/// The first 12 digits: enough to tell files apart that were not forged.
 pub fn short(digest: &str) -> &str {
     digest.get(..12).unwrap_or(digest)
 }

@@ -42,7 +42,6 @@ impl Alignment {
         }
     }
 
-    /// The place that is aligned, between the low and the high end of something.
     fn of(self, low: f64, high: f64) -> f64 {
         match self {
             Alignment::Left | Alignment::Near => low,
@@ -70,7 +69,6 @@ impl Along {
         }
     }
 
-    /// Low and high end of an object.
     fn ends(self, object: &Object) -> [f64; 2] {
         let (low, high) = extent(object);
         [self.of(low), self.of(high)]

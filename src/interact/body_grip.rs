@@ -30,7 +30,6 @@ pub(super) fn grips(object: &Object, beyond_metres: f64) -> Vec<GripPlace> {
     all
 }
 
-/// Moves a grip of a body to a place; nothing where the object has no such grip.
 pub(super) fn move_grip(object: &mut Object, grip: Grip, to: Place) {
     match (object, grip) {
         (Object::Wall(w), Grip::Corner(end)) => move_end(w, end, to),
@@ -61,7 +60,6 @@ fn angle_to(from: [f64; 2], to: Place) -> Option<f64> {
     (dx != 0.0 || dy != 0.0).then(|| dy.atan2(dx).to_degrees())
 }
 
-/// The other end stays.
 fn move_end(wall: &mut Wall, end: usize, to: Place) {
     let ends = wall.ends_metres();
     let Some(stays) = ends.get(1 - end.min(1)) else { return };
@@ -73,7 +71,6 @@ fn move_end(wall: &mut Wall, end: usize, to: Place) {
     (wall.x_metres, wall.y_metres) = (stays[0] + dx * length / 2.0, stays[1] + dy * length / 2.0);
 }
 
-/// The opposite corner and the direction stay.
 fn move_corner(block: &mut Block, corner: usize, to: Place) {
     let corners = block.corners_metres();
     let Some(stays) = corners.get((corner + 2) % 4) else { return };

@@ -25,7 +25,6 @@ pub fn to_text(objects: Vec<Object>) -> String {
 }
 
 /// The objects in `text`.
-///
 /// # Errors
 /// [`PasteError`] says what is wrong with the text.
 pub fn from_text(text: &str, radar: &Radar) -> Result<Vec<Object>, PasteError> {

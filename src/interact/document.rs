@@ -6,13 +6,12 @@ use crate::platform::fs;
 use crate::radar::Radar;
 use crate::recording::{self, Recording, RecordingError, presets};
 use crate::scene::Scene;
-use crate::scene::file::{self, Format, Loss, SceneFile, SceneFileError};
+use crate::scene::file::{self, FileLoss, SceneFile, SceneFileError, SceneFormat};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What a scene file holds, shared.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct Content {
     scene: Arc<Scene>,
@@ -24,7 +23,6 @@ impl Content {
         Content { scene: Arc::new(file.scene), radar: Arc::new(file.radar) }
     }
 
-    /// Equality that looks at the objects only where it must.
     fn same(&self, other: &Content) -> bool {
         (Arc::ptr_eq(&self.scene, &other.scene) || self.scene == other.scene) && self.radar == other.radar
     }
@@ -44,17 +42,14 @@ pub struct Document {
 }
 
 /// Name of the table of a scene file that says what the scene is laid over.
-const OVER: &str = "over";
+const BACKGROUND_TABLE: &str = "over";
 
-/// What a scene is laid over.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Over {
-    /// A recording's TOML, beside the scene's file or by its whole path; or the name of a preset.
     recording: String,
 }
 
-/// Where the recording is that the scene file `path` names.
 fn recording_source(path: &Path, name: &str) -> String {
     let is_shipped = presets::Preset::by_id(name).is_some();
     let beside = || path.parent().map(|folder| folder.join(name).to_string_lossy().into_owned());
@@ -70,7 +65,6 @@ struct Measured {
 }
 
 impl Measured {
-    /// Reads it again from where it came from.
     fn again(source: &str) -> Result<Self, RecordingError> {
         let recording = match presets::Preset::by_id(source) {
             Some(preset) => preset.load()?,
@@ -81,7 +75,6 @@ impl Measured {
 }
 
 impl Default for Document {
-    /// An empty scene before the radar of table 3.1.
     fn default() -> Self {
         Document::shipped(SceneFile::default())
     }
@@ -105,11 +98,10 @@ impl Document {
     }
 
     /// Reads the document at `path`.
-    ///
     /// # Errors
     /// [`SceneFileError`] names the file, the line or key, and what was expected.
     pub fn read(path: &Path) -> Result<Self, SceneFileError> {
-        let (file, over) = file::load_beside::<Over>(path, OVER)?;
+        let (file, over) = file::load_beside::<Over>(path, BACKGROUND_TABLE)?;
         let path = whole_path(path);
         let mut document = Document::opened(&path, file);
         if let Some(Over { recording }) = over {
@@ -123,7 +115,6 @@ impl Document {
     }
 
     /// Writes it to `path`, a whole path, as a scene; the name of the recording it is laid over with it, where the format has room.
-    ///
     /// # Errors
     /// [`SceneFileError`]; the file is then as it was. A recording is never replaced.
     pub(super) fn write(&self, path: &Path) -> Result<(), SceneFileError> {
@@ -132,20 +123,19 @@ impl Document {
         if is_data || recording::file::is_recording_at(path) {
             return Err(SceneFileError::Recording { path: path.to_owned() });
         }
-        match own.filter(|_| Format::of_path(path).is_ok_and(|f| f == Format::Toml)) {
+        match own.filter(|_| SceneFormat::of_path(path).is_ok_and(|f| f == SceneFormat::Toml)) {
             None => file::save(path, &self.to_file()),
             Some(own) => {
                 let name = own.file_name().filter(|_| own.parent() == path.parent()).map_or(own, Path::new);
                 let over = Over { recording: name.to_string_lossy().into_owned() };
-                file::save_beside(path, &self.to_file(), OVER, &over)
+                file::save_beside(path, &self.to_file(), BACKGROUND_TABLE, &over)
             }
         }
     }
 
-    /// What a file of `format` would not give back of it.
-    pub(super) fn losses(&self, format: Format) -> Vec<Loss> {
+    pub(super) fn losses(&self, format: SceneFormat) -> Vec<FileLoss> {
         let mut losses = format.losses(&self.to_file());
-        losses.extend((format == Format::Npz && self.measured.is_some()).then_some(Loss::Recording));
+        losses.extend((format == SceneFormat::Npz && self.measured.is_some()).then_some(FileLoss::Recording));
         losses
     }
 
@@ -171,7 +161,6 @@ impl Document {
     }
 
     /// An empty scene over the recording whose TOML is `path`.
-    ///
     /// # Errors
     /// [`RecordingError`] names the file, the key or the array, and what was expected of it.
     pub fn read_recording(path: &Path) -> Result<Self, RecordingError> {
@@ -179,7 +168,6 @@ impl Document {
     }
 
     /// An empty scene over a recording that comes with the program.
-    ///
     /// # Errors
     /// None for the presets there are.
     pub fn shipped_recording(preset: &presets::Preset) -> Result<Self, RecordingError> {
@@ -193,10 +181,6 @@ impl Document {
         Document { measured: Some(measured), ..document }
     }
 
-    /// Lays the document over the recording from `source` again, as [`Document::recording_source`] told it.
-    ///
-    /// # Errors
-    /// [`RecordingError`] where it isn't there any more, or is another.
     pub(super) fn lay_over(&mut self, source: &str) -> Result<(), RecordingError> {
         self.measured = Some(Measured::again(source)?);
         Ok(())
@@ -207,7 +191,6 @@ impl Document {
         self.measured.as_ref().map(|m| &m.recording)
     }
 
-    /// Where the recording comes from.
     pub(super) fn recording_source(&self) -> Option<&str> {
         self.measured.as_ref().map(|m| &*m.source)
     }
@@ -263,7 +246,6 @@ impl Document {
         SceneFile { scene: Scene::clone(self.scene()), radar: Radar::clone(self.radar()) }
     }
 
-    /// Whether it would be the same file as `other`.
     pub(super) fn same_as(&self, other: &Document) -> bool {
         self.path == other.path
             && self.recording_source() == other.recording_source()
@@ -314,7 +296,6 @@ pub struct Restored {
     pub problems: Vec<String>,
 }
 
-/// `path` from the root, without links, so that one file has one path.
 pub(super) fn whole_path(path: &Path) -> PathBuf {
     fs::canonicalize(path).or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
 }

@@ -66,26 +66,26 @@ const LEAST_DBSM: f64 = -300.0;
 
 /// What happens to a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Change {
+pub enum FieldChange {
     /// It becomes this.
     To(f64),
     /// It grows by this.
     By(f64),
 }
 
-impl Change {
+impl FieldChange {
     /// What becomes of `value`.
     pub fn of(self, value: f64) -> f64 {
         match self {
-            Change::To(new) => new,
-            Change::By(step) => value + step,
+            FieldChange::To(new) => new,
+            FieldChange::By(step) => value + step,
         }
     }
 }
 
 /// A field that several objects have, and its value in them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shared {
+pub struct SharedField {
     /// Which.
     pub field: Field,
     /// Its value in the first of the objects.
@@ -94,7 +94,6 @@ pub struct Shared {
     pub is_same: bool,
 }
 
-/// What every object has after all else.
 const MOTION: &[Field] = &[Field::VelocityX, Field::VelocityY];
 
 impl Field {
@@ -220,18 +219,16 @@ impl Field {
     }
 }
 
-/// The nearest speed that an object can have, metres a second.
 fn speed(value: f64) -> f64 {
     value.clamp(-MAX_SPEED_METRES_PER_SECOND, MAX_SPEED_METRES_PER_SECOND)
 }
 
-/// The nearest size that a body can have, metres.
 fn size(metres: f64) -> f64 {
     metres.clamp(MIN_SIZE_METRES, MAX_SIZE_METRES)
 }
 
 /// The fields that all `objects` have, in the order of a form.
-pub fn shared<'a>(objects: impl Iterator<Item = &'a Object> + Clone, coordinates: Coordinates) -> Vec<Shared> {
+pub fn shared<'a>(objects: impl Iterator<Item = &'a Object> + Clone, coordinates: Coordinates) -> Vec<SharedField> {
     let Some(first) = objects.clone().next() else { return Vec::new() };
     let fields = Field::of_place(coordinates).iter().chain(Field::of_kind(first)).chain(MOTION);
     let shared = |field: &Field| {
@@ -240,7 +237,7 @@ pub fn shared<'a>(objects: impl Iterator<Item = &'a Object> + Clone, coordinates
         for object in objects.clone() {
             is_same &= field.get(object)? == value;
         }
-        Some(Shared { field: *field, first: value, is_same })
+        Some(SharedField { field: *field, first: value, is_same })
     };
     fields.filter_map(shared).collect()
 }
@@ -268,7 +265,7 @@ mod tests {
             for coordinates in [Coordinates::Cartesian, Coordinates::Polar] {
                 let fields = shared([&object].into_iter(), coordinates);
                 assert!(fields.len() >= 3 && fields.iter().all(|f| f.is_same), "{fields:?}");
-                for Shared { field, first, .. } in fields {
+                for SharedField { field, first, .. } in fields {
                     let mut changed = object.clone();
                     let wanted = if field == Field::CosTheta { -0.25 } else { first + 2.0 };
                     field.set(&mut changed, wanted);
@@ -326,7 +323,7 @@ mod tests {
         ];
         assert_eq!(named, expected.map(|field| (field, true)));
         let fields = of(&[&point, &line]);
-        assert_eq!(fields[1], Shared { field: Field::Y, first: 1.0, is_same: false });
+        assert_eq!(fields[1], SharedField { field: Field::Y, first: 1.0, is_same: false });
         assert!(of(&[]).is_empty());
     }
 }

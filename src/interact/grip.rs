@@ -18,7 +18,6 @@ use crate::scene::{Line, Object, Scene};
 /// Most reflectors a line can be stretched to by hand.
 pub const MAX_LINE_COUNT: usize = 2000;
 
-/// How far beside its line the spacing's grip lies, in points of the view.
 const SPACING_GRIP_OFFSET_POINTS: f64 = 16.0;
 
 /// How far beyond the far end the grip lies that turns a line, in points of the view.
@@ -103,7 +102,6 @@ fn length_along(line: &Line, from: Place, to: Place) -> f64 {
     (to.x_metres - from.x_metres) * x + (to.y_metres - from.y_metres) * y
 }
 
-/// Gives `line` as many reflectors as fit a length; one where that is negative. Its start, direction and spacing stay.
 fn stretch(line: &mut Line, length_metres: f64) {
     if let Some(count) = count_over(length_metres, line.spacing_metres.abs()) {
         line.count = count;
@@ -118,20 +116,17 @@ fn turn(line: &mut Line, to: Place) {
     if dx == 0.0 && dy == 0.0 {
         return;
     }
-    // Counted from straight ahead, so that a vertical line can be had exactly.
     let leads = 90.0 + (-dx).atan2(dy).to_degrees();
     line.direction_degrees = if line.spacing_metres < 0.0 { leads - 180.0 } else { leads };
     let [step_x, step_y] = line.step_metres();
     (line.x_metres, line.y_start_metres) = (x - half_steps * step_x, y - half_steps * step_y);
 }
 
-/// How many reflectors fit a length; `None` where the spacing says nothing.
 fn count_over(length: f64, spacing: f64) -> Option<usize> {
     let steps = (length / spacing).round();
     (spacing.abs() > 0.0 && steps.is_finite()).then(|| (steps.max(0.0) as usize + 1).min(MAX_LINE_COUNT))
 }
 
-/// Smallest rectangle around an object, (low corner, high corner): a line's ends, one standard deviation around a cluster's centre.
 pub(super) fn extent(object: &Object) -> (Place, Place) {
     match object {
         Object::Point(p) => (Place::new(p.x_metres, p.y_metres), Place::new(p.x_metres, p.y_metres)),
@@ -148,7 +143,6 @@ pub(super) fn extent(object: &Object) -> (Place, Place) {
     }
 }
 
-/// Smallest rectangle around two places.
 fn around(a: Place, b: Place) -> (Place, Place) {
     (
         Place::new(a.x_metres.min(b.x_metres), a.y_metres.min(b.y_metres)),
@@ -156,7 +150,6 @@ fn around(a: Place, b: Place) -> (Place, Place) {
     )
 }
 
-/// Smallest rectangle around all objects: (low corner, high corner), or `None` for an empty scene.
 pub(super) fn bounds(scene: &Scene) -> Option<(Place, Place)> {
     let finite = |p: &Place| p.x_metres.is_finite() && p.y_metres.is_finite();
     let corners = scene.objects.iter().flat_map(|o| {

@@ -5,13 +5,11 @@ use super::selection::Selection;
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// Steps that are kept.
-const LIMIT: usize = 500;
+const MAX_STEPS: usize = 500;
 
 /// Objects that are kept in all steps together, each scene counted once: some 300 MB.
 const OBJECT_LIMIT: usize = 4_000_000;
 
-/// A document as it was.
 #[derive(Debug, Clone)]
 pub(super) struct Snapshot {
     pub document: Document,
@@ -44,12 +42,12 @@ impl History {
         self.sealed = false;
         if !merges {
             self.done.push(Step { label: label.to_owned(), merge_key: merge_key.map(str::to_owned), before });
-            let kept = newest(&self.done, LIMIT, OBJECT_LIMIT);
+            let kept = newest(&self.done, MAX_STEPS, OBJECT_LIMIT);
             self.done.drain(..self.done.len() - kept);
         }
     }
 
-    /// Ends the current step: the next edit starts a new one whatever its key.
+    /// Ends the current step: the next edit starts a new one with any key.
     pub fn seal(&mut self) {
         self.sealed = true;
     }
@@ -69,7 +67,6 @@ impl History {
         self.done.len()
     }
 
-    /// Every document that undo and redo may bring back.
     pub(super) fn documents_mut(&mut self) -> impl Iterator<Item = &mut Document> {
         self.done.iter_mut().chain(&mut self.undone).map(|s| &mut s.before.document)
     }
@@ -129,7 +126,7 @@ mod tests {
         assert_eq!(newest(&different, 500, 5), 1, "the last step always stays");
         assert_eq!(newest(&[], 500, 5), 0);
         let mut history = History::default();
-        (0..LIMIT + 50).for_each(|_| history.push("edit", None, one.before.clone()));
-        assert_eq!(history.depth(), LIMIT);
+        (0..MAX_STEPS + 50).for_each(|_| history.push("edit", None, one.before.clone()));
+        assert_eq!(history.depth(), MAX_STEPS);
     }
 }

@@ -42,7 +42,6 @@ pub fn test(scene: &Scene, selection: &Selection, at: Place, metres_per_point: f
     best.map(|(_, hit)| hit)
 }
 
-/// Distance from `at` to the nearest part of the object, metres.
 fn body_distance(object: &Object, at: Place) -> f64 {
     let centre = Place::from(object.centre_metres());
     match object {

@@ -28,7 +28,7 @@ pub use arrange::{Alignment, Along};
 pub use autosave::Autosave;
 pub use document::{Document, Restored};
 pub use editor::{Editor, Saved};
-pub use field::{Change, Coordinates, Field, Shared, shared};
+pub use field::{Coordinates, Field, FieldChange, SharedField, shared};
 pub use grip::{MAX_LINE_COUNT, grips, move_grip};
 pub use grip_kind::{Grip, GripPlace};
 pub use history::History;

@@ -15,13 +15,11 @@ pub enum SelectionMode {
     Range,
 }
 
-/// Indices of selected objects. Two selections of the same objects are equal, whatever was picked last.
+/// Indices of selected objects. Two selections of the same objects are equal in any order of picking.
 #[derive(Debug, Clone, Default)]
 pub struct Selection {
     picked: BTreeSet<usize>,
-    /// Where a range begins.
     anchor: Option<usize>,
-    /// What was picked last.
     latest: Option<usize>,
 }
 

@@ -22,14 +22,12 @@ const OFF_LINE_KEYS: [&str; 2] = ["transmitter_y_metres", "receiver_y_metres"];
 /// Key of whether `polar_full` is focused: 1, or not there.
 const FOCUS_KEY: &str = "focus_off_line";
 
-/// Keys of a link budget, and that of its elements' pattern.
 const BUDGET_KEYS: [&str; 3] = ["transmit_power_dbm", "antenna_gain_dbi", "noise_figure_db"];
 const WIDTH_KEY: &str = "half_power_width_degrees";
 
 /// Key of whether columns run from left to right; older archives lack it.
 const COLUMNS_KEY: &str = "columns_left_to_right";
 
-/// Key of [`FORMAT_VERSION`].
 const VERSION_KEY: &str = "format_version";
 
 /// Writes the author's keys: `all_point_x`, `all_point_y` (f64 `[L]`, metres), `sub0`, `sub1` (complex128 `[samples, end elements]`, the
@@ -50,7 +48,6 @@ const VERSION_KEY: &str = "format_version";
 /// [`FORMAT_VERSION`], or 2 without such antennas.
 ///
 /// Returns `polar_full`.
-///
 /// # Errors
 /// [`NpzError`] where the file can't be written; nothing is left half-written.
 pub fn write_maps(
@@ -71,7 +68,6 @@ pub fn write_maps(
 }
 
 /// The same of a recording: nothing is known of its reflectors, and `polar_full` is there where all its elements were recorded.
-///
 /// # Errors
 /// As [`write_maps`].
 pub fn write_recorded_maps(
@@ -89,7 +85,6 @@ pub fn write_recorded_maps(
 }
 
 /// The radar of an archive that [`write_maps`] wrote; `None` for one without the radar's constants: version 1, or the author's own.
-///
 /// # Errors
 /// [`NpzError`] names a constant that is missing, damaged or of another type, or what of the radar makes no sense.
 pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
@@ -144,7 +139,6 @@ fn check_columns(archive: &mut Npz, radar: &Radar) -> Result<(), NpzError> {
     }
 }
 
-/// The link budget, where the radar has one.
 fn read_budget(archive: &mut Npz) -> Result<Option<LinkBudget>, NpzError> {
     if !archive.has(BUDGET_KEYS[0]) {
         return Ok(None);
@@ -159,7 +153,6 @@ fn read_budget(archive: &mut Npz) -> Result<Option<LinkBudget>, NpzError> {
     }))
 }
 
-/// The antennas of a version that knows them.
 fn read_antennas(archive: &mut Npz) -> Result<Option<Antennas>, NpzError> {
     if !archive.has(ANTENNA_KEYS[0]) {
         return Ok(None);
@@ -186,7 +179,6 @@ fn expected(key: &str, found: f64, expected: String) -> NpzError {
 }
 
 /// Which directions the columns of a map stand for (`cos_theta`), and how they run (`columns_left_to_right`).
-///
 /// # Errors
 /// As [`NpzOutput::add`].
 pub fn add_columns(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
@@ -195,7 +187,6 @@ pub fn add_columns(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
     out.add(COLUMNS_KEY, &arr0(i64::from(!radar.columns_fall())))
 }
 
-/// Axes and constants, one array each.
 fn add_axes(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
     let axis = |count: usize, at: &dyn Fn(usize) -> f64| (0..count).map(at).collect::<Array1<f64>>();
     let version = if radar.is_monostatic() { MONOSTATIC_VERSION } else { FORMAT_VERSION };

@@ -20,7 +20,6 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Range bins that are transformed side by side: they lie in one line of the processor's cache.
 const BLOCK: usize = 8;
 
 /// Power over range and radial velocity.
@@ -31,7 +30,6 @@ pub struct RangeDopplerMap {
 }
 
 /// The range-Doppler map of a scene over the named floor; `seed` picks its noise.
-///
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn range_doppler(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<RangeDopplerMap, SceneError> {
@@ -39,7 +37,6 @@ pub fn range_doppler(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> R
 }
 
 /// [`range_doppler`], unless `task` is cancelled before it is done.
-///
 /// # Errors
 /// [`Unfinished`] when the scene can't be simulated, and soon after `task` was cancelled.
 pub fn range_doppler_for(
@@ -92,7 +89,6 @@ impl RangeDopplerMap {
     }
 }
 
-/// The transform over chirps.
 struct ChirpTransform {
     fft: std::sync::Arc<dyn rustfft::Fft<f64>>,
     window: Vec<f64>,
@@ -130,7 +126,6 @@ impl ChirpTransform {
 /// Writes the map with its axes: `power` (f64 `[range bins, velocities]`, mean over the elements), `range_metres`,
 /// `velocity_metres_per_second` (away from the radar is positive), `unambiguous_velocity_metres_per_second`, `chirps`,
 /// `chirp_interval_seconds`, and the places of the scene's points as [`npz::X_KEY`] and [`npz::Y_KEY`].
-///
 /// # Errors
 /// [`NpzError`] where the file can't be written; nothing is left half-written.
 pub fn write_range_doppler(path: &Path, radar: &Radar, scene: &Scene, map: &RangeDopplerMap) -> Result<(), NpzError> {

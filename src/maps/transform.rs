@@ -19,7 +19,6 @@ pub enum Aperture {
 }
 
 impl Aperture {
-    /// The elements of `radar` that it is.
     pub(super) fn channels(self, radar: &Radar) -> Range<usize> {
         match self {
             Aperture::Full => 0..radar.elements,

@@ -1,7 +1,7 @@
 //! Checkpoints: a run goes on from one as if it had never stopped.
 
 use super::recipe::Recipe;
-use super::run::{Progress, TrainError, file};
+use super::run::{RunProgress, TrainError, file};
 use super::students::Student;
 use crate::files::sha256;
 use burn::optim::ModuleOptimizer;
@@ -9,14 +9,12 @@ use burn::store::{BurnpackStore, ModuleSnapshot};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Names inside a checkpoint.
 pub(super) const MODEL: &str = "model.bpk";
 const OPTIMIZER: &str = "optimizer.bpk";
 const PROGRESS: &str = "progress.toml";
 const RECIPE: &str = "recipe.toml";
 
 /// Replaces the checkpoint at `folder` in one step.
-///
 /// # Errors
 /// [`TrainError`] when it can't be written; the older one is still there then.
 pub fn save<S: Student>(
@@ -24,7 +22,7 @@ pub fn save<S: Student>(
     recipe: &Recipe,
     network: &S,
     optimizer: &ModuleOptimizer,
-    progress: &Progress,
+    progress: &RunProgress,
 ) -> Result<(), TrainError> {
     let next = folder.with_extension("next");
     if next.exists() {
@@ -59,13 +57,12 @@ pub fn save<S: Student>(
 #[derive(Debug)]
 pub struct Checkpoint {
     /// Where the run stands.
-    pub progress: Progress,
+    pub progress: RunProgress,
     /// SHA-256 of the file of weights.
     pub weights_sha256: String,
 }
 
 /// The recipe of the run whose checkpoint is at `folder`.
-///
 /// # Errors
 /// [`TrainError`] when there is no checkpoint or its recipe can't be read.
 pub fn recipe(folder: &Path) -> Result<Recipe, TrainError> {
@@ -86,7 +83,6 @@ fn there(folder: &Path) -> PathBuf {
 }
 
 /// Loads the checkpoint at `folder` into network and optimizer and says where the run stands.
-///
 /// # Errors
 /// [`TrainError`] when it is missing, damaged, or of another recipe.
 pub fn load<S: Student>(

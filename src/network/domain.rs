@@ -14,13 +14,13 @@ pub enum Domain {
     /// One radar, and all whose samples are as its.
     Radar(Box<Radar>),
     /// All radars within limits.
-    Limits(Limits),
+    Limits(RadarLimits),
 }
 
 /// Limits of radars of one antenna an element, in both conventions and with all windows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Limits {
+pub struct RadarLimits {
     /// Elements of the whole array.
     pub elements: usize,
     /// Elements of an end.
@@ -41,12 +41,10 @@ pub struct Limits {
     pub half_power_width_degrees: [f64; 2],
 }
 
-/// Of one quantity, what a network was trained for and what a radar has.
 type Difference = [String; 2];
 
 impl Domain {
     /// As a weight file's entry.
-    ///
     /// # Errors
     /// [`serde_json::Error`] for numbers that JSON doesn't have.
     pub fn json(&self) -> Result<String, serde_json::Error> {
@@ -60,7 +58,6 @@ impl Domain {
 
     /// Refuses every radar whose samples are others than those that `method` was trained with: its weights know no other, and what they would
     /// draw means nothing.
-    ///
     /// # Errors
     /// [`ReconstructError::Unusable`] names what differs.
     pub fn check(&self, method: &'static str, radar: &Radar) -> Result<(), ReconstructError> {
@@ -84,7 +81,6 @@ fn refused(method: &'static str, differences: &[Difference]) -> Result<(), Recon
     Err(ReconstructError::Unusable { method, reason })
 }
 
-/// Whether the samples of both radars are alike.
 pub(super) fn is_alike(trained: &Radar, radar: &Radar) -> bool {
     differences(trained, radar).is_empty()
 }
@@ -163,8 +159,7 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<Difference> {
     .collect()
 }
 
-impl Limits {
-    /// Whether `radar` has these counts, and one antenna an element.
+impl RadarLimits {
     pub(super) fn has_shape(&self, radar: &Radar) -> bool {
         self.shape(radar).next().is_none()
     }

@@ -1,19 +1,18 @@
 //! A training example: input and target of one scene.
 
-use super::run::{Run, TrainError};
+use super::run::{TrainError, TrainingRun};
 use super::students::Student;
 use crate::maps::RangeAngleMap;
 use crate::scene::generate::{Generator, Kind};
 use crate::signal::{Floor, simulate};
 
 /// Input and target of scene `number` of a kind over the floor that `floor` chooses by the seed of the scene's own noise.
-///
 /// # Errors
 /// [`TrainError`] when the scene can't be simulated or the network can't use its samples.
 pub(super) fn lesson<S: Student>(
     tables: &S::Tables,
     config: &S::Config,
-    run: &Run,
+    run: &TrainingRun,
     generator: &Generator,
     (kind, number): (Kind, u32),
     floor: impl Fn(u64) -> Floor,
@@ -35,7 +34,7 @@ mod tests {
     #[test]
     fn a_lesson_lies_over_noise_of_its_own() {
         let radar = Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() };
-        let run = Run {
+        let run = TrainingRun {
             folder: "none".into(),
             device: burn::tensor::Device::flex(),
             radar: radar.clone(),

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// A training loss.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Loss {
+pub enum TrainingLoss {
     /// Mean square (the thesis' experiment 1).
     MeanSquare,
     /// Sum of squares over the sum of the target's magnitude: sparse targets weigh as much as full ones (experiment 2).
@@ -32,34 +32,36 @@ pub enum Loss {
 /// Keeps logarithms and quotients finite.
 const EPSILON: f32 = 1e-6;
 
-impl Loss {
+impl TrainingLoss {
     /// The loss of a batch.
     pub fn of(self, output: Tensor<3>, target: Tensor<3>) -> Tensor<1> {
         let square = |a: Tensor<3>, b: Tensor<3>| (a - b).square();
         match self {
-            Loss::MeanSquare => square(output, target).mean(),
-            Loss::NormalisedSquare => square(output, target.clone()).sum() / (target.abs().sum() + EPSILON),
-            Loss::CrossEntropy => cross_entropy(output, target).mean(),
-            Loss::PeakSignalToNoise => (square(output, target).mean() + 1e-12).log() * (10.0 / std::f32::consts::LN_10),
-            Loss::Dice => {
+            TrainingLoss::MeanSquare => square(output, target).mean(),
+            TrainingLoss::NormalisedSquare => square(output, target.clone()).sum() / (target.abs().sum() + EPSILON),
+            TrainingLoss::CrossEntropy => cross_entropy(output, target).mean(),
+            TrainingLoss::PeakSignalToNoise => {
+                (square(output, target).mean() + 1e-12).log() * (10.0 / std::f32::consts::LN_10)
+            }
+            TrainingLoss::Dice => {
                 let mask = target.greater_elem(TARGET_ETA).float();
                 let overlap = (output.clone() * mask.clone()).sum();
                 -(overlap * 2.0 + EPSILON) / (output.sum() + mask.sum() + EPSILON) + 1.0
             }
-            Loss::Focal => {
+            TrainingLoss::Focal => {
                 let mask = target.greater_elem(TARGET_ETA).float();
                 let p = output.clamp(EPSILON, 1.0 - EPSILON);
                 let right = p.clone() * mask.clone() + (-p.clone() + 1.0) * (-mask.clone() + 1.0);
                 ((-right + 1.0).square() * cross_entropy(p, mask)).mean()
             }
-            Loss::EarthMover => {
+            TrainingLoss::EarthMover => {
                 let scaled = |x: Tensor<3>| {
                     let x = x.clamp_min(0.0) + EPSILON;
                     x.clone() / x.sum_dim(2)
                 };
                 (scaled(output) - scaled(target)).cumsum(2).abs().mean()
             }
-            Loss::Edge => {
+            TrainingLoss::Edge => {
                 let weight = sigmoid((target.clone() - 0.85) / 0.03) * 6.0 + 1.0;
                 (weight * square(output, target)).mean() * 225.0
             }
@@ -77,7 +79,7 @@ mod tests {
     use super::*;
     use burn::tensor::Device;
 
-    fn value(loss: Loss, output: [[[f32; 2]; 2]; 1], target: [[[f32; 2]; 2]; 1]) -> f32 {
+    fn value(loss: TrainingLoss, output: [[[f32; 2]; 2]; 1], target: [[[f32; 2]; 2]; 1]) -> f32 {
         let device = Device::flex();
         loss.of(Tensor::from_floats(output, &device), Tensor::from_floats(target, &device)).into_scalar::<f32>()
     }
@@ -86,35 +88,37 @@ mod tests {
     fn hand_values() {
         let output = [[[0.5, 0.0], [1.0, 0.25]]];
         let target = [[[1.0, 0.0], [0.5, 0.25]]];
-        let close = |loss: Loss, expected: f64| {
+        let close = |loss: TrainingLoss, expected: f64| {
             let found = f64::from(value(loss, output, target));
             // Where a certain cell is certainly wrong, the loss is the log of 1e-6 as f32 has it beside 1.
             assert!((found - expected).abs() < 2e-3 * expected.abs().max(0.1), "{loss:?}: {found} for {expected}");
         };
-        close(Loss::MeanSquare, 0.5 / 4.0);
-        close(Loss::NormalisedSquare, 0.5 / 1.75);
-        close(Loss::PeakSignalToNoise, 10.0 * 0.125f64.log10());
+        close(TrainingLoss::MeanSquare, 0.5 / 4.0);
+        close(TrainingLoss::NormalisedSquare, 0.5 / 1.75);
+        close(TrainingLoss::PeakSignalToNoise, 10.0 * 0.125f64.log10());
         // The mask is the first cell alone.
-        close(Loss::Dice, 1.0 - 2.0 * 0.5 / (1.75 + 1.0));
+        close(TrainingLoss::Dice, 1.0 - 2.0 * 0.5 / (1.75 + 1.0));
         let ln = |v: f64| -v.ln();
         let entropy = ln(0.5) + 0.0 + 0.5 * (ln(1.0) + ln(1e-6)) + 0.25 * ln(0.25) + 0.75 * ln(0.75);
-        close(Loss::CrossEntropy, entropy / 4.0);
+        close(TrainingLoss::CrossEntropy, entropy / 4.0);
         let focal = 0.25 * ln(0.5) + 0.0 + ln(1e-6) + 0.0625 * ln(0.75);
-        close(Loss::Focal, focal / 4.0);
+        close(TrainingLoss::Focal, focal / 4.0);
         // Rows: (1, 0) against (1, 0); (0.8, 0.2) against (2/3, 1/3).
-        close(Loss::EarthMover, (0.8 - 2.0 / 3.0) / 4.0);
+        close(TrainingLoss::EarthMover, (0.8 - 2.0 / 3.0) / 4.0);
         let weight = |t: f64| 1.0 + 6.0 / (1.0 + (-(t - 0.85) / 0.03).exp());
-        close(Loss::Edge, 225.0 * 0.25 * (weight(1.0) + weight(0.5)) / 4.0);
+        close(TrainingLoss::Edge, 225.0 * 0.25 * (weight(1.0) + weight(0.5)) / 4.0);
     }
 
     #[test]
     fn a_perfect_output_is_best() {
         let target = [[[1.0, 0.0], [0.5, 0.25]]];
-        for loss in [Loss::MeanSquare, Loss::NormalisedSquare, Loss::EarthMover, Loss::Edge] {
+        for loss in
+            [TrainingLoss::MeanSquare, TrainingLoss::NormalisedSquare, TrainingLoss::EarthMover, TrainingLoss::Edge]
+        {
             assert!(value(loss, target, target).abs() < 1e-5, "{loss:?}");
         }
         let worse = [[[0.7, 0.3], [0.1, 0.9]]];
-        for loss in [Loss::CrossEntropy, Loss::PeakSignalToNoise] {
+        for loss in [TrainingLoss::CrossEntropy, TrainingLoss::PeakSignalToNoise] {
             assert!(value(loss, target, target) < value(loss, worse, target), "{loss:?}");
         }
     }

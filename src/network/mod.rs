@@ -65,7 +65,6 @@ use std::path::Path;
 use std::sync::{Arc, LazyLock};
 use weights::{WeightFile, WeightsError};
 
-/// Weights of the live network.
 const LIVE_FILE: &str = "assets/weights/live.safetensors";
 
 /// The live network whose weights are part of the program, by itself; `None`, with a warning in the log, where they can't be used.
@@ -73,11 +72,9 @@ pub fn live() -> Option<LiveMethod> {
     usable(WeightFile::parse(LIVE_FILE, &platform::live_weights()).and_then(LiveMethod::new))
 }
 
-/// Most bytes of a file with weights of the live network; the shipped one has 2 MB.
 const MAX_LIVE_BYTES: u64 = 256 << 20;
 
 /// The live network with the weights that the safetensors file at `path` holds, as a method called `name`.
-///
 /// # Errors
 /// [`WeightsError`] when the file can't be read, is damaged, or belongs to another network.
 pub fn live_from_file(path: &Path, name: &str) -> Result<LiveMethod, WeightsError> {

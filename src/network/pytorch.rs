@@ -21,7 +21,6 @@ const PARALLEL: &str = "module.";
 /// The bytes of the weight file at `path` as safetensors: those of a safetensors file as they are; those of a PyTorch checkpoint,
 /// which holds a `state_dict` by itself or under one of [`STATES`], translated. Names, shapes and types stay PyTorch's; what stands beside
 /// the state, such as an optimizer's tensors, is not read.
-///
 /// # Errors
 /// [`WeightsError::File`] when it can't be read, [`WeightsError::NotPytorch`] when it is neither.
 pub fn read_weights(path: &Path) -> Result<Vec<u8>, WeightsError> {
@@ -167,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_checkpoint_of_the_training_programs_gives_the_averaged_weights() {
+    fn a_pytorch_checkpoint_gives_the_averaged_weights() {
         let shipped = include_bytes!("../../assets/weights/thesis-1.safetensors");
         let found = read_weights(Path::new("training/checkpoints/thesis-1.pt")).unwrap();
         let (found, shipped) = (WeightFile::parse("x", &found).unwrap(), WeightFile::parse("y", shipped).unwrap());

@@ -2,7 +2,7 @@
 
 use super::floors::Floors;
 use super::live::LiveConfig;
-use super::losses::Loss;
+use super::losses::TrainingLoss;
 use super::thesis::ThesisConfig;
 use super::unet::UnetConfig;
 use crate::radar::Decibels;
@@ -53,7 +53,6 @@ pub enum Optimizer {
 }
 
 impl Optimizer {
-    /// A fresh optimizer of burn's.
     pub(super) fn fresh(&self) -> ModuleOptimizer {
         match self {
             Optimizer::Sgd { momentum, .. } => {
@@ -92,7 +91,7 @@ pub struct Decay {
 /// So many training scenes of a kind.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Share {
+pub struct KindShare {
     /// The kind.
     pub kind: Kind,
     /// How many.
@@ -131,7 +130,7 @@ pub struct Recipe {
     /// Scenes a step.
     pub batch: usize,
     /// What is minimised.
-    pub loss: Loss,
+    pub loss: TrainingLoss,
     /// Validation scenes of each of the three sets.
     pub validation_scenes: u32,
     /// The network.
@@ -144,37 +143,23 @@ pub struct Recipe {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
     /// The training scenes. They, the validation and the test scenes come from disjoint random streams.
-    pub scenes: Vec<Share>,
+    pub scenes: Vec<KindShare>,
 }
 
 /// What is wrong with a recipe.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum RecipeError {
     /// It is not TOML, or misses or misspells something.
     #[error("recipe {name}: {reason}")]
-    Syntax {
-        /// Name of the recipe or file.
-        name: String,
-        /// What the parser says, with line and column.
-        reason: String,
-    },
+    Syntax { name: String, reason: String },
     /// A value makes no sense.
     #[error("recipe {name}: {field} is {value}; expected {expected}")]
-    Value {
-        /// Name of the recipe or file.
-        name: String,
-        /// The field.
-        field: &'static str,
-        /// Its value.
-        value: String,
-        /// What it must be.
-        expected: &'static str,
-    },
+    Value { name: String, field: &'static str, value: String, expected: &'static str },
 }
 
 impl Recipe {
     /// Reads and checks a recipe; `name` is for messages.
-    ///
     /// # Errors
     /// [`RecipeError`] says what is wrong and where.
     pub fn parse(name: &str, text: &str) -> Result<Recipe, RecipeError> {
@@ -237,7 +222,6 @@ impl Recipe {
         self.check_network(name)
     }
 
-    /// As `check`, of the network's size.
     fn check_network(&self, name: &str) -> Result<(), RecipeError> {
         let fail = |field, value: &dyn std::fmt::Display, expected| {
             Err(RecipeError::Value { name: name.to_owned(), field, value: value.to_string(), expected })
@@ -301,7 +285,7 @@ mod tests {
             assert_eq!(toml::from_str::<Recipe>(&toml::to_string(&recipe).unwrap()).unwrap(), recipe);
         }
         let two = Recipe::shipped("experiment-2").unwrap().unwrap();
-        assert_eq!((two.batch, two.epochs, two.loss), (32, 100, Loss::NormalisedSquare));
+        assert_eq!((two.batch, two.epochs, two.loss), (32, 100, TrainingLoss::NormalisedSquare));
         assert_eq!(two.training_scenes().len(), 8000);
         assert!((two.learning_rate(25) - 0.1 * 0.64).abs() < 1e-12);
         assert!(Recipe::shipped("nonsense").is_none());

@@ -11,7 +11,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// What a run needs beside its recipe.
 #[derive(Debug, Clone)]
-pub struct Run {
+pub struct TrainingRun {
     /// Folder of checkpoints, log and weights.
     pub folder: PathBuf,
     /// Where tensors live.
@@ -43,7 +43,7 @@ pub struct Origin {
 
 /// One start of a run, until it stopped.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Part {
+pub struct RunPart {
     /// When it started, in seconds since 1970.
     pub started_unix_seconds: u64,
     /// What trained.
@@ -58,18 +58,18 @@ pub struct Part {
     pub minutes: f64,
 }
 
-impl Part {
+impl RunPart {
     /// A part that starts now, after `maps_before` maps of the run.
-    pub fn starting(run: &Run, initial_weights_sha256: Option<String>, maps_before: u64) -> Part {
+    pub fn starting(run: &TrainingRun, initial_weights_sha256: Option<String>, maps_before: u64) -> RunPart {
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let (started_unix_seconds, origin) = (since.as_secs(), run.origin.clone());
-        Part { started_unix_seconds, origin, initial_weights_sha256, maps_before, maps_seen: 0, minutes: 0.0 }
+        RunPart { started_unix_seconds, origin, initial_weights_sha256, maps_before, maps_seen: 0, minutes: 0.0 }
     }
 }
 
 /// Where a run stands.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Progress {
+pub struct RunProgress {
     /// Whole epochs done.
     pub epoch: u32,
     /// Steps done in the epoch that is under way.
@@ -84,10 +84,10 @@ pub struct Progress {
     pub loss: f64,
     /// Every part of the run, the one under way last.
     #[serde(default)]
-    pub parts: Vec<Part>,
+    pub parts: Vec<RunPart>,
 }
 
-impl Progress {
+impl RunProgress {
     /// Counts one step over `maps` maps; `seconds` is the training time so far, of all parts and of this one.
     pub(super) fn step(&mut self, maps: u64, loss: f64, [seconds, of_part]: [f64; 2]) {
         self.step += 1;
@@ -104,33 +104,17 @@ impl Progress {
 
 /// Why training stopped early or could not start.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum TrainError {
     /// The loss is NaN or infinite.
     #[error("the loss is {loss} at step {step}; the last good checkpoint is kept in {}", folder.display())]
-    NotFinite {
-        /// The step.
-        step: u64,
-        /// The loss.
-        loss: f32,
-        /// The run's folder.
-        folder: PathBuf,
-    },
+    NotFinite { step: u64, loss: f32, folder: PathBuf },
     /// A file could not be read or written.
     #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
+    File { path: PathBuf, source: std::io::Error },
     /// A checkpoint can't be used.
     #[error("checkpoint {}: {reason}", path.display())]
-    Checkpoint {
-        /// The checkpoint.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
+    Checkpoint { path: PathBuf, reason: String },
     /// No step was taken.
     #[error(
         "no step was taken, so the weights would be random; give the run steps and minutes, or write them all the same with --untrained"
@@ -138,10 +122,7 @@ pub enum TrainError {
     Untrained,
     /// The folder already holds another run.
     #[error("{} already holds a run; go on with it with --resume, or choose another folder", folder.display())]
-    Occupied {
-        /// The folder.
-        folder: PathBuf,
-    },
+    Occupied { folder: PathBuf },
     /// The recipe is unsound.
     #[error(transparent)]
     Recipe(#[from] RecipeError),
@@ -153,7 +134,6 @@ pub enum TrainError {
     Input(#[from] ReconstructError),
 }
 
-/// For `map_err`: an error about the file `path`.
 pub(super) fn file(path: &Path) -> impl FnOnce(std::io::Error) -> TrainError {
     let path = path.to_owned();
     move |source| TrainError::File { path, source }

@@ -1,7 +1,7 @@
 //! The networks that come with the program, and those of files.
 
 use super::backend::Backend;
-use super::live::{Live, LiveMethod};
+use super::live::{LiveMethod, LiveNetwork};
 use super::pytorch::read_weights;
 use super::students::Student;
 use super::thesis::Thesis;
@@ -43,7 +43,6 @@ fn load_shipped(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
 }
 
 /// The network whose weights the file at `path` holds: safetensors, or a PyTorch checkpoint of the thesis' or the live network.
-///
 /// # Errors
 /// [`WeightsError`] when the file can't be read, is damaged, or belongs to no network of ours.
 pub fn from_file(path: &Path, backend: Backend) -> Result<Arc<dyn Reconstructor>, WeightsError> {
@@ -55,11 +54,11 @@ fn method_of(file: WeightFile, backend: Backend) -> Result<Arc<dyn Reconstructor
     // PyTorch's own files name no network; their tensors do.
     let network = match file.network() {
         "" if Thesis::config_of(&file).is_ok() => Thesis::NAME,
-        "" if Live::is_in(&file) => Live::NAME,
+        "" if LiveNetwork::is_in(&file) => LiveNetwork::NAME,
         named => named,
     };
     Ok(match network {
-        Live::NAME => Arc::new(LiveMethod::new(file)?),
+        LiveNetwork::NAME => Arc::new(LiveMethod::new(file)?),
         Unet::NAME => Arc::new(UnetMethod::new(file, backend)?),
         Thesis::NAME => {
             let (name, description) = match file.provenance.get("recipe") {

@@ -3,7 +3,7 @@
 use super::live::constants::turn_columns;
 use super::live::features::{FeatureExtractor, LiveInput};
 use super::live::grid::{COLUMNS, ROWS};
-use super::live::{Live, LiveBatch, LiveConfig};
+use super::live::{LiveBatch, LiveConfig, LiveNetwork};
 use super::thesis::{Thesis, ThesisConfig};
 use super::unet::{Unet, UnetConfig};
 use crate::evaluate::TARGET_ETA;
@@ -30,17 +30,15 @@ pub trait Student: Module + Clone {
     /// Random weights.
     fn fresh(config: &Self::Config, device: &Device) -> Self;
 
-    /// Whatever of the input depends on the radar alone.
+    /// The part of the input that depends on the radar alone.
     type Tables: Send + Sync;
 
     /// Makes the tables.
-    ///
     /// # Errors
     /// [`ReconstructError`] for a radar that the network can't serve.
     fn tables(config: &Self::Config, radar: &Radar) -> Result<Self::Tables, ReconstructError>;
 
     /// The input made of the two ends' samples.
-    ///
     /// # Errors
     /// [`ReconstructError`] on samples it can't use.
     fn input(tables: &Self::Tables, ends: &TwoEnds) -> Result<Self::Input, ReconstructError>;
@@ -169,14 +167,14 @@ impl Student for Unet {
     }
 }
 
-impl Student for Live {
+impl Student for LiveNetwork {
     type Config = LiveConfig;
     type Input = LiveInput;
     type Tables = FeatureExtractor;
     const NAME: &'static str = "live";
 
     fn fresh(config: &LiveConfig, device: &Device) -> Self {
-        Live::new(config, device)
+        LiveNetwork::new(config, device)
     }
 
     fn tables(_: &LiveConfig, radar: &Radar) -> Result<FeatureExtractor, ReconstructError> {

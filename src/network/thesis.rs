@@ -44,34 +44,29 @@ impl ThesisConfig {
 const ALIVE: [f64; 2] = [0.45, 0.15];
 
 impl Default for ThesisConfig {
-    /// The thesis' width and depth.
     fn default() -> Self {
         ThesisConfig { filters: 64, levels: 5, alive_output: false }
     }
 }
 
-/// Convolution, batch norm, ReLU and max-pool.
 #[derive(Module, Debug)]
 struct DownStage {
     conv: Conv2d,
     norm: Option<BatchNorm>,
 }
 
-/// Transposed convolution, batch norm and ReLU.
 #[derive(Module, Debug)]
 struct UpStage {
     conv: ConvTranspose2d,
     norm: Option<BatchNorm>,
 }
 
-/// The two towers.
 #[derive(Module, Debug)]
 struct Down {
     layer3x3: Vec<DownStage>,
     layer5x5: Vec<DownStage>,
 }
 
-/// The way back to full size.
 #[derive(Module, Debug)]
 struct Up {
     upconv: Vec<UpStage>,
@@ -123,7 +118,6 @@ impl Thesis {
     }
 
     /// Width and depth of the network that `file` holds weights of.
-    ///
     /// # Errors
     /// [`WeightsError::Tensor`] when it lacks the first convolution.
     pub fn config_of(file: &WeightFile) -> Result<ThesisConfig, WeightsError> {
@@ -150,7 +144,6 @@ impl Thesis {
     }
 
     /// A network with the weights of `file`: ours, or the author's `MultiFilter.state_dict()`.
-    ///
     /// # Errors
     /// [`WeightsError`] when they don't fit.
     pub fn load(file: &WeightFile, config: &ThesisConfig, device: &Device) -> Result<Self, WeightsError> {
@@ -161,14 +154,12 @@ impl Thesis {
     }
 
     /// The bytes of `file` with our tensor names in place of the author's, if it has those.
-    ///
     /// # Errors
     /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub(super) fn in_our_names(file: &WeightFile) -> Result<Vec<u8>, WeightsError> {
         file.renamed(from_pytorch)
     }
 
-    /// Whether a tensor of this name may lie in a weight file unused: PyTorch's batch norms count what they saw.
     pub(super) fn ignores(name: &str) -> bool {
         name.ends_with("num_batches_tracked")
     }

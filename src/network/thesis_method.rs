@@ -18,11 +18,9 @@ use burn::tensor::Device;
 use ndarray::{Array2, Array3};
 use std::sync::{Mutex, PoisonError};
 
-/// The thesis' own threshold, for weights that name none.
 const THESIS_ETA: f32 = 0.7;
 
-/// What the thesis' networks learned beside the samples.
-const TOLD: &str =
+const TRAINED_ON: &str =
     "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor and never over thermal noise";
 
 /// The thesis' encoder-decoder with weights. Its output is Lambda as it stands: what it learned to answer, and what the thesis takes the
@@ -40,10 +38,9 @@ pub struct ThesisMethod {
     pub provenance: Provenance,
 }
 
-/// Who computes the network.
 #[derive(Debug)]
 enum Network {
-    /// The engine without a framework, with buffers that nobody uses. They are taken out for a pass and not locked while it runs: another thread
+    /// The engine without a framework, with idle buffers. They are taken out for a pass and not locked while it runs: another thread
     /// makes its own.
     Engine { engine: Box<ThesisEngine>, idle: Mutex<Option<Buffers>> },
     /// burn, on a backend that was asked for.
@@ -62,7 +59,6 @@ impl Network {
         Ok(Network::Burn { network: Box::new(Thesis::load(file, config, &device)?.folded()), device })
     }
 
-    /// The answer to one scene.
     fn estimate(&self, method: &'static str, input: ThesisInput) -> Result<Array2<f32>, ReconstructError> {
         let size = input.size;
         match self {
@@ -83,7 +79,6 @@ impl Network {
 impl ThesisMethod {
     /// The network with the weights of `file`, whose tensors decide its width and depth: computed by an engine of its own, or by burn where
     /// `backend` is not the default one.
-    ///
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
     pub fn new(
@@ -127,7 +122,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn about(&self) -> About {
-        About { name: self.name, description: self.description, told: TOLD, eta: self.eta }
+        About { name: self.name, description: self.description, told: TRAINED_ON, eta: self.eta }
     }
 
     fn finds_reflectors(&self) -> bool {
@@ -184,7 +179,6 @@ pub struct UnetMethod {
 
 impl UnetMethod {
     /// The shipped architecture with the weights of `file`, computed by `backend`.
-    ///
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile, backend: Backend) -> Result<Self, WeightsError> {
@@ -206,7 +200,7 @@ impl Reconstructor for UnetMethod {
         About {
             name: Unet::NAME,
             description: "the thesis' U-Net on thresholded Cartesian maps; bright cells are so rare that it learned to answer nothing",
-            told: TOLD,
+            told: TRAINED_ON,
             eta: 0.5,
         }
     }
@@ -245,7 +239,6 @@ impl Reconstructor for UnetMethod {
     }
 }
 
-/// One scene through a network, as an array.
 fn estimate<S: Student>(
     network: &S,
     method: &'static str,
@@ -258,7 +251,6 @@ fn estimate<S: Student>(
     in_rows(method, size, values.map_err(unusable)?)
 }
 
-/// The cells of a map, row-major, as an array.
 fn in_rows(
     method: &'static str,
     [rows, columns]: [usize; 2],
@@ -327,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn a_threshold_keeps_the_cells_that_it_keeps_once_the_map_is_stretched() {
+    fn a_stretched_map_keeps_the_cells_over_its_threshold() {
         let map = Array2::from_shape_fn((16, 32), |(i, j)| 0.15 + 0.7 * ((i * 37 + j * 11) % 101) as f32 / 100.0);
         let stretched = Thesis::thresholded(map.clone());
         for eta in [0.1, 0.33, 0.701, 0.9] {

@@ -3,7 +3,7 @@
 use super::checkpoint;
 use super::lesson::lesson;
 use super::recipe::Recipe;
-use super::run::{Part, Progress, Run, TrainError, file};
+use super::run::{RunPart, RunProgress, TrainError, TrainingRun, file};
 use super::students::Student;
 use super::validation::{export, validate};
 use crate::maps::RangeAngleMap;
@@ -21,16 +21,15 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Trains by `recipe` until it ends or `run` says stop. `resume` goes on from the folder's checkpoint; `watch` is told after every step.
-///
 /// # Errors
 /// [`TrainError`].
 pub fn train<S: Student>(
     recipe: &Recipe,
     config: &S::Config,
-    run: &Run,
+    run: &TrainingRun,
     resume: bool,
-    mut watch: impl FnMut(&Progress),
-) -> Result<Progress, TrainError> {
+    mut watch: impl FnMut(&RunProgress),
+) -> Result<RunProgress, TrainError> {
     let has_time = run.max_steps != Some(0) && run.max_time != Some(Duration::ZERO);
     refuse_untrained(run, resume || has_time)?;
     let device = run.device.clone().autodiff();
@@ -46,7 +45,7 @@ pub fn train<S: Student>(
     let began = Instant::now();
     let before = progress.seconds;
     let mut saved = Instant::now();
-    let finished = |p: &Progress| {
+    let finished = |p: &RunProgress| {
         run.max_steps.is_some_and(|most| p.step >= most) || run.max_time.is_some_and(|most| began.elapsed() >= most)
     };
     'training: while progress.epoch < recipe.epochs {
@@ -85,32 +84,29 @@ pub fn train<S: Student>(
     Ok(progress)
 }
 
-/// Refuses weights that no step moved, unless the run asks for them.
-fn refuse_untrained(run: &Run, is_trained: bool) -> Result<(), TrainError> {
+fn refuse_untrained(run: &TrainingRun, is_trained: bool) -> Result<(), TrainError> {
     if is_trained || run.untrained { Ok(()) } else { Err(TrainError::Untrained) }
 }
 
-/// Network, optimizer and progress of a run that starts, or goes on from the checkpoint `from`; its new part is recorded.
 fn begin<S: Student>(
     recipe: &Recipe,
     config: &S::Config,
-    run: &Run,
+    run: &TrainingRun,
     from: Option<&PathBuf>,
     device: &Device,
-) -> Result<(S, ModuleOptimizer, Progress), TrainError> {
+) -> Result<(S, ModuleOptimizer, RunProgress), TrainError> {
     device.seed(recipe.seed);
     let mut network = S::fresh(config, device);
     let mut optimizer = recipe.optimizer.fresh();
-    let (mut progress, mut initial) = (Progress::default(), None);
+    let (mut progress, mut initial) = (RunProgress::default(), None);
     if let Some(folder) = from {
         let found = checkpoint::load(folder, recipe, &mut network, &mut optimizer)?;
         (progress, initial) = (found.progress, Some(found.weights_sha256));
     }
-    progress.parts.push(Part::starting(run, initial, progress.maps));
+    progress.parts.push(RunPart::starting(run, initial, progress.maps));
     Ok((network, optimizer, progress))
 }
 
-/// One step over `lessons`: the network that has moved, or the one that was given where the loss is not finite; and the loss.
 fn step<S: Student>(
     network: S,
     optimizer: &mut ModuleOptimizer,
@@ -145,7 +141,6 @@ fn target_tensor(targets: &[RangeAngleMap], device: &Device) -> Tensor<3> {
     Tensor::from_data(TensorData::new(values, vec![targets.len(), rows, columns]), device)
 }
 
-/// The run's CSV log.
 struct Log {
     path: PathBuf,
     file: fs::File,
@@ -167,7 +162,7 @@ impl Log {
         Ok(log)
     }
 
-    fn line(&mut self, p: &Progress, loss: f64, rate: f64) -> Result<(), TrainError> {
+    fn line(&mut self, p: &RunProgress, loss: f64, rate: f64) -> Result<(), TrainError> {
         self.write(&format!("{},{},{},{:.1},{rate},{loss},{}", p.step, p.epoch, p.maps, p.seconds, p.loss))
     }
 
@@ -179,7 +174,7 @@ impl Log {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::recipe::{Decay, Network, Optimizer, Share};
+    use crate::network::recipe::{Decay, KindShare, Network, Optimizer};
     use crate::network::thesis::{Thesis, ThesisConfig};
     use crate::radar::Radar;
 
@@ -195,19 +190,19 @@ mod tests {
             seed: 5,
             epochs: 2,
             batch: 2,
-            loss: crate::network::losses::Loss::MeanSquare,
+            loss: crate::network::losses::TrainingLoss::MeanSquare,
             validation_scenes: 1,
             network: Network::Thesis(config),
             optimizer: Optimizer::Sgd { learning_rate: 0.1, momentum: 0.9 },
             decay: Some(Decay { epochs: 1, factor: 0.5 }),
             thermal: None,
-            scenes: vec![Share { kind: Kind::Points(2), count: 6 }],
+            scenes: vec![KindShare { kind: Kind::Points(2), count: 6 }],
         };
         (recipe, config)
     }
 
-    fn run(folder: &Path, max_steps: u64) -> Run {
-        Run {
+    fn run(folder: &Path, max_steps: u64) -> TrainingRun {
+        TrainingRun {
             folder: folder.to_owned(),
             device: Device::flex(),
             radar: radar(),
@@ -240,10 +235,10 @@ mod tests {
         let error = train::<Thesis>(&recipe, &config, &idle, false, |_| {}).unwrap_err();
         assert!(matches!(error, TrainError::Untrained), "{error}");
         // As where the time ends before the first step does.
-        let hurried = Run { max_steps: None, max_time: Some(Duration::from_nanos(1)), ..idle.clone() };
+        let hurried = TrainingRun { max_steps: None, max_time: Some(Duration::from_nanos(1)), ..idle.clone() };
         let error = train::<Thesis>(&recipe, &config, &hurried, false, |_| {}).unwrap_err();
         assert!(matches!(error, TrainError::Untrained) && !weights.exists(), "{error}");
-        let asked = Run { untrained: true, ..idle };
+        let asked = TrainingRun { untrained: true, ..idle };
         train::<Thesis>(&recipe, &config, &asked, true, |_| {}).unwrap();
         assert!(weights.exists());
     }

@@ -26,13 +26,11 @@ pub struct UnetConfig {
 }
 
 impl Default for UnetConfig {
-    /// The shipped size.
     fn default() -> Self {
         UnetConfig { channels: 8, levels: 3, rows: 128 }
     }
 }
 
-/// Two 3x3 convolutions with ReLU.
 #[derive(Module, Debug)]
 struct Pair {
     conv1: Conv2d,

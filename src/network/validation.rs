@@ -2,7 +2,7 @@
 
 use super::lesson::lesson;
 use super::recipe::Recipe;
-use super::run::{Progress, Run, TrainError};
+use super::run::{RunProgress, TrainError, TrainingRun};
 use super::students::Student;
 use super::weights::RADAR_ENTRY;
 use crate::evaluate::tables::PRINTED_EXPERIMENT_2;
@@ -32,14 +32,13 @@ pub struct Validation {
 }
 
 /// Figures on validation scenes, which share no random stream with training or test scenes.
-///
 /// # Errors
 /// [`TrainError`] when a scene can't be simulated or the network can't use it.
 pub fn validate<S: Student>(
     network: &S,
     recipe: &Recipe,
     config: &S::Config,
-    run: &Run,
+    run: &TrainingRun,
 ) -> Result<Validation, TrainError> {
     let tables = S::tables(config, &run.radar)?;
     let generator = Generator::new(&run.radar, Reading::Program, Purpose::Validation, recipe.seed);
@@ -76,14 +75,13 @@ pub fn validate<S: Student>(
 }
 
 /// Writes `weights.safetensors`, with its record, into the run's folder.
-///
 /// # Errors
 /// [`TrainError::Checkpoint`] when it can't be written.
 pub fn export<S: Student>(
     network: &S,
     recipe: &Recipe,
-    run: &Run,
-    progress: &Progress,
+    run: &TrainingRun,
+    progress: &RunProgress,
     validation: &Validation,
 ) -> Result<(), TrainError> {
     let path = run.folder.join("weights.safetensors");

@@ -27,7 +27,7 @@ const MAX_TENSORS: usize = 10_000;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Provenance {
     /// All entries, by name: `network`, `recipe`, `trainer`, `optimiser`, `seed`, `maps_seen`, `validation`, `eta`, ... Of a run in
-    /// several parts `parts` has each one's record (JSON), in which what nobody kept says "not recorded".
+    /// several parts `parts` has each one's record (JSON), in which a missing record says "not recorded".
     pub entries: BTreeMap<String, String>,
 }
 
@@ -46,7 +46,6 @@ impl Provenance {
     }
 
     /// The radars of the training scenes: those of the entry [`DOMAIN_ENTRY`], else that of [`RADAR_ENTRY`], else table 3.1's.
-    ///
     /// # Errors
     /// [`WeightsError::Store`] where an entry of the file `name` can't be read.
     pub fn domain(&self, name: &str) -> Result<Domain, WeightsError> {
@@ -72,83 +71,34 @@ impl Provenance {
 
 /// Why a weight file can't be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum WeightsError {
     /// The file could not be read.
     #[error("{file}: {reason}")]
-    File {
-        /// Name of the file.
-        file: String,
-        /// What the system said.
-        reason: String,
-    },
+    File { file: String, reason: String },
     /// The file is not safetensors at all.
     #[error("{file} is not a safetensors file: {reason}")]
-    NotSafetensors {
-        /// Name of the file.
-        file: String,
-        /// What its first bytes lack.
-        reason: String,
-    },
+    NotSafetensors { file: String, reason: String },
     /// The file looks like a PyTorch checkpoint and can't be read as one.
     #[error("{file} is not a PyTorch checkpoint that can be read: {reason}")]
-    NotPytorch {
-        /// Name of the file.
-        file: String,
-        /// What the reader said.
-        reason: String,
-    },
+    NotPytorch { file: String, reason: String },
     /// The file ends early or goes on too long.
     #[error("{file} holds {found} bytes; its header promises {expected}; it was truncated or damaged")]
-    Length {
-        /// Name of the file.
-        file: String,
-        /// Bytes found.
-        found: usize,
-        /// Bytes promised by the header.
-        expected: usize,
-    },
+    Length { file: String, found: usize, expected: usize },
     /// The file is for another network.
     #[error("{file} holds weights of \"{found}\"; expected \"{expected}\"")]
-    Foreign {
-        /// Name of the file.
-        file: String,
-        /// Network named in the file.
-        found: String,
-        /// Network wanted.
-        expected: String,
-    },
+    Foreign { file: String, found: String, expected: String },
     /// The file names no network, and its tensors are those of none of ours.
     #[error(
         "{file} names no network, and none of ours has its tensors ({count} in all): {names}; expected weights of {expected}"
     )]
-    Unknown {
-        /// Name of the file.
-        file: String,
-        /// How many tensors it holds.
-        count: usize,
-        /// Names of the first.
-        names: String,
-        /// Networks that would do.
-        expected: String,
-    },
+    Unknown { file: String, count: usize, names: String, expected: String },
     /// A tensor that the network needs is missing, or one it doesn't know is there.
     #[error("{file}: tensor \"{tensor}\" {problem}")]
-    Tensor {
-        /// Name of the file.
-        file: String,
-        /// Name of the tensor.
-        tensor: String,
-        /// What is wrong with it, and what was expected.
-        problem: String,
-    },
+    Tensor { file: String, tensor: String, problem: String },
     /// The store refused the file.
     #[error("{file}: {reason}")]
-    Store {
-        /// Name of the file.
-        file: String,
-        /// What the store said.
-        reason: String,
-    },
+    Store { file: String, reason: String },
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -188,7 +138,6 @@ pub struct WeightFile<'a> {
 
 impl<'a> WeightFile<'a> {
     /// Reads the header of the file called `name` and checks its length.
-    ///
     /// # Errors
     /// [`WeightsError`] when it isn't safetensors or is cut short.
     pub fn parse(name: &str, bytes: &'a [u8]) -> Result<Self, WeightsError> {
@@ -245,7 +194,6 @@ impl<'a> WeightFile<'a> {
     }
 
     /// Checks that every tensor of the file is one that `known` accepts.
-    ///
     /// # Errors
     /// [`WeightsError::Tensor`] names the first that is none.
     #[cfg(feature = "network")]
@@ -266,7 +214,6 @@ impl<'a> WeightFile<'a> {
     }
 
     /// The same file with other tensor names.
-    ///
     /// # Errors
     /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub fn renamed(&self, rename: impl Fn(&str) -> String) -> Result<Vec<u8>, WeightsError> {
@@ -274,14 +221,13 @@ impl<'a> WeightFile<'a> {
         write(&self.name, &tensors, &self.provenance, self.data)
     }
 
-    /// What the weights are known by, whatever else the file says about itself.
+    /// What the weights are known by, independent of the file's other metadata.
     pub fn weights(&self) -> Weights {
         let sha256 = sha256::of_pieces([self.data]);
         Weights { sha256: sha256::short(&sha256).to_owned(), optimiser: self.provenance.optimiser().to_owned() }
     }
 
     /// Checks that the file holds weights of `network`.
-    ///
     /// # Errors
     /// [`WeightsError::Foreign`] otherwise.
     pub fn expect_network(&self, network: &str) -> Result<(), WeightsError> {
@@ -329,7 +275,7 @@ fn write<T: Serialize>(
 #[cfg(feature = "network")]
 mod tests {
     use super::*;
-    use crate::network::live::{Live, LiveConfig};
+    use crate::network::live::{LiveConfig, LiveNetwork};
     use burn::tensor::Device;
 
     const WEIGHTS: &[u8] = include_bytes!("../../tests/data/live_reference_weights.safetensors");
@@ -337,7 +283,7 @@ mod tests {
     fn load(bytes: &[u8], channels: [usize; 4]) -> Result<(), WeightsError> {
         let config = LiveConfig { channels, blocks: [1, 1, 1, 1], fine: 4 };
         let file = WeightFile::parse("test.safetensors", bytes)?;
-        file.load_into(&mut Live::new(&config, &Device::flex()), |_| false)
+        file.load_into(&mut LiveNetwork::new(&config, &Device::flex()), |_| false)
     }
 
     #[test]

@@ -15,8 +15,7 @@ impl PictureError {
     }
 }
 
-/// What panels are drawn on.
-pub(super) type Area<B> = DrawingArea<B, Shift>;
+pub(super) type PanelArea<B> = DrawingArea<B, Shift>;
 
 pub(super) const INK: RGBColor = RGBColor(28, 32, 38);
 pub(super) const FAINT_INK: RGBColor = RGBColor(104, 112, 122);
@@ -29,7 +28,6 @@ pub trait Drawing {
     fn size(&self) -> (u32, u32);
 
     /// Draws itself.
-    ///
     /// # Errors
     /// [`PictureError`] when plotters can't draw.
     fn draw<B: DrawingBackend>(&self, root: &DrawingArea<B, Shift>) -> Result<(), PictureError>;

@@ -10,19 +10,19 @@ use std::path::Path;
 
 /// Kind of picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum PictureFormat {
     /// A bitmap.
     Png,
     /// Lines and text as such, maps as bitmaps.
     Svg,
 }
 
-impl Format {
+impl PictureFormat {
     /// The kind that a file's name says, if it is one of these.
-    pub fn of_path(path: &Path) -> Option<Format> {
+    pub fn of_path(path: &Path) -> Option<PictureFormat> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-            "png" => Some(Format::Png),
-            "svg" => Some(Format::Svg),
+            "png" => Some(PictureFormat::Png),
+            "svg" => Some(PictureFormat::Svg),
             _ => None,
         }
     }
@@ -53,7 +53,6 @@ pub enum ComposeError {
 }
 
 /// Reconstructs and draws all panels; the bytes of a file.
-///
 /// # Errors
 /// [`ComposeError`] when the method fails or the panels can't be drawn.
 pub fn compose(
@@ -62,7 +61,7 @@ pub fn compose(
     signal: &BeatSignal,
     method: &dyn Reconstructor,
     style: &Style,
-    format: Format,
+    format: PictureFormat,
 ) -> Result<Vec<u8>, ComposeError> {
     let Style { floor, normalisation, colours, eta } = *style;
     let maps = LogMaps::heard_by(radar, &scene.disturbances.elements, signal);
@@ -93,7 +92,7 @@ pub fn compose(
         colours,
     };
     Ok(match format {
-        Format::Png => encode_png(&render(&panels)?)?,
-        Format::Svg => render_svg(&panels)?.into_bytes(),
+        PictureFormat::Png => encode_png(&render(&panels)?)?,
+        PictureFormat::Svg => render_svg(&panels)?.into_bytes(),
     })
 }

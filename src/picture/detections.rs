@@ -5,7 +5,7 @@ use ndarray::ArrayView2;
 
 /// What a cell of a thresholded output is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Detection {
+pub enum CellVerdict {
     /// Neither map has it.
     Nothing,
     /// The output alone has it, around something that the target has too.
@@ -18,58 +18,58 @@ pub enum Detection {
     Hit,
 }
 
-impl Detection {
+impl CellVerdict {
     /// Those that are seen, in the order of a legend.
-    pub const SEEN: [Detection; 4] = [Detection::Hit, Detection::Rim, Detection::FalseAlarm, Detection::Miss];
+    pub const SEEN: [CellVerdict; 4] = [CellVerdict::Hit, CellVerdict::Rim, CellVerdict::FalseAlarm, CellVerdict::Miss];
 
     /// Of a cell that the `target` has or not, and the `output`; a rim is a false alarm by itself.
-    pub fn of(target: bool, output: bool) -> Detection {
+    pub fn of(target: bool, output: bool) -> CellVerdict {
         match (target, output) {
-            (true, true) => Detection::Hit,
-            (false, true) => Detection::FalseAlarm,
-            (true, false) => Detection::Miss,
-            (false, false) => Detection::Nothing,
+            (true, true) => CellVerdict::Hit,
+            (false, true) => CellVerdict::FalseAlarm,
+            (true, false) => CellVerdict::Miss,
+            (false, false) => CellVerdict::Nothing,
         }
     }
 
     /// Its name in legends.
     pub fn name(self) -> &'static str {
         match self {
-            Detection::Nothing => "nothing",
-            Detection::Rim => "rim",
-            Detection::Miss => "miss",
-            Detection::FalseAlarm => "false alarm",
-            Detection::Hit => "hit",
+            CellVerdict::Nothing => "nothing",
+            CellVerdict::Rim => "rim",
+            CellVerdict::Miss => "miss",
+            CellVerdict::FalseAlarm => "false alarm",
+            CellVerdict::Hit => "hit",
         }
     }
 
     /// Its fill on a dark ground or on a light one. From nothing over misses and false alarms to hits each is at least twice as far from the
-    /// ground as the one before, in WCAG contrast, also for whoever sees two primary colours only.
+    /// ground as the one before, in WCAG contrast, also for dichromats.
     pub fn fill(self, dark: bool) -> Rgb {
         match (self, dark) {
-            (Detection::Nothing, true) => [18, 22, 30],
+            (CellVerdict::Nothing, true) => [18, 22, 30],
             // As the line around hits, so that both are one quiet band.
-            (Detection::Rim, _) => Detection::Hit.outline(dark),
-            (Detection::Miss, true) => [40, 92, 176],
-            (Detection::FalseAlarm, true) => [232, 152, 40],
-            (Detection::Hit, true) => [255, 255, 252],
-            (Detection::Nothing, false) => [252, 253, 255],
-            (Detection::Miss, false) => [130, 178, 234],
-            (Detection::FalseAlarm, false) => [150, 72, 0],
-            (Detection::Hit, false) => [12, 16, 22],
+            (CellVerdict::Rim, _) => CellVerdict::Hit.outline(dark),
+            (CellVerdict::Miss, true) => [40, 92, 176],
+            (CellVerdict::FalseAlarm, true) => [232, 152, 40],
+            (CellVerdict::Hit, true) => [255, 255, 252],
+            (CellVerdict::Nothing, false) => [252, 253, 255],
+            (CellVerdict::Miss, false) => [130, 178, 234],
+            (CellVerdict::FalseAlarm, false) => [150, 72, 0],
+            (CellVerdict::Hit, false) => [12, 16, 22],
         }
     }
 
     /// The line around its cells: apart from its fill and from the ground.
     pub fn outline(self, dark: bool) -> Rgb {
         match (self, dark) {
-            (Detection::Nothing | Detection::Rim, _) => self.fill(dark),
-            (Detection::Miss, true) => [128, 180, 246],
-            (Detection::FalseAlarm, true) => [138, 80, 12],
-            (Detection::Hit, true) => [132, 140, 154],
-            (Detection::Miss, false) => [40, 96, 168],
-            (Detection::FalseAlarm, false) => [226, 160, 96],
-            (Detection::Hit, false) => [128, 136, 150],
+            (CellVerdict::Nothing | CellVerdict::Rim, _) => self.fill(dark),
+            (CellVerdict::Miss, true) => [128, 180, 246],
+            (CellVerdict::FalseAlarm, true) => [138, 80, 12],
+            (CellVerdict::Hit, true) => [132, 140, 154],
+            (CellVerdict::Miss, false) => [40, 96, 168],
+            (CellVerdict::FalseAlarm, false) => [226, 160, 96],
+            (CellVerdict::Hit, false) => [128, 136, 150],
         }
     }
 }
@@ -80,8 +80,7 @@ const RIM_CELLS: usize = 3;
 const SPECK_CELLS: usize = 8;
 /// What stands out of the target by this much is there, although its threshold hides it, decibels.
 const STANDS_OUT_DB: f32 = 10.0;
-/// How far around a blob the target's surroundings reach, cells.
-const AROUND: usize = 5;
+const SURROUNDING_CELLS: usize = 5;
 
 /// What each cell of an output above `etas[0]` is beside a target above `etas[1]`, both `[range bins, columns]`, row by row.
 ///
@@ -92,10 +91,10 @@ pub fn told_apart(
     target: ArrayView2<'_, f32>,
     etas: [f32; 2],
     decibels: f32,
-) -> Vec<Detection> {
+) -> Vec<CellVerdict> {
     let (rows, columns) = output.dim();
-    let mut kinds: Vec<Detection> =
-        output.iter().zip(&target).map(|(&v, &t)| Detection::of(t > etas[1], v > etas[0])).collect();
+    let mut kinds: Vec<CellVerdict> =
+        output.iter().zip(&target).map(|(&v, &t)| CellVerdict::of(t > etas[1], v > etas[0])).collect();
     let near = |at: usize, by: usize, end: usize| at.saturating_sub(by)..(at + by + 1).min(end);
     let around = |at: usize, by: usize| {
         let (row, column) = (at / columns, at % columns);
@@ -103,7 +102,7 @@ pub fn told_apart(
     };
     let mut seen = vec![false; kinds.len()];
     for start in 0..kinds.len() {
-        if seen[start] || kinds[start] != Detection::FalseAlarm {
+        if seen[start] || kinds[start] != CellVerdict::FalseAlarm {
             continue;
         }
         seen[start] = true;
@@ -112,17 +111,17 @@ pub fn told_apart(
         while let Some(&at) = blob.get(next) {
             next += 1;
             for beside in around(at, 1) {
-                if kinds[beside] == Detection::FalseAlarm && !std::mem::replace(&mut seen[beside], true) {
+                if kinds[beside] == CellVerdict::FalseAlarm && !std::mem::replace(&mut seen[beside], true) {
                     blob.push(beside);
                 }
             }
         }
-        let is_there = |at: usize| matches!(kinds[at], Detection::Hit | Detection::Miss);
+        let is_there = |at: usize| matches!(kinds[at], CellVerdict::Hit | CellVerdict::Miss);
         let is_rim = blob.len() < SPECK_CELLS
             || blob.iter().any(|at| around(*at, RIM_CELLS).any(is_there))
             || stands_out(target, &blob) * decibels >= STANDS_OUT_DB;
         if is_rim {
-            blob.into_iter().for_each(|at| kinds[at] = Detection::Rim);
+            blob.into_iter().for_each(|at| kinds[at] = CellVerdict::Rim);
         }
     }
     kinds
@@ -138,8 +137,8 @@ fn stands_out(map: ArrayView2<'_, f32>, cells: &[usize]) -> f32 {
         all.fold((usize::MAX, 0), |(low, high), at| (low.min(at), high.max(at)))
     };
     let ((top, bottom), (left, right)) = (ends(|at, columns| at / columns), ends(|at, columns| at % columns));
-    let band = top.saturating_sub(AROUND)..(bottom + AROUND + 1).min(rows);
-    let across = left.saturating_sub(AROUND)..(right + AROUND + 1).min(columns);
+    let band = top.saturating_sub(SURROUNDING_CELLS)..(bottom + SURROUNDING_CELLS + 1).min(rows);
+    let across = left.saturating_sub(SURROUNDING_CELLS)..(right + SURROUNDING_CELLS + 1).min(columns);
     let is_beside = |r: usize, c: usize| !((top..=bottom).contains(&r) && (left..=right).contains(&c));
     let mut beside: Vec<f32> = band
         .flat_map(|r| across.clone().map(move |c| (r, c)))
@@ -176,7 +175,7 @@ mod tests {
         ),
     ];
 
-    /// Relative luminance of a colour as somebody sees it, 0 to 1.
+    /// Relative luminance of a colour as it is perceived, 0 to 1.
     fn luminance(colour: Rgb, vision: &[[f64; 3]; 3]) -> f64 {
         let linear = colour.map(|c| match f64::from(c) / 255.0 {
             c if c <= 0.040_45 => c / 12.92,
@@ -194,7 +193,7 @@ mod tests {
 
     #[test]
     fn every_two_fills_differ_under_common_colour_deficiencies() {
-        let all = [Detection::Nothing, Detection::Miss, Detection::FalseAlarm, Detection::Hit];
+        let all = [CellVerdict::Nothing, CellVerdict::Miss, CellVerdict::FalseAlarm, CellVerdict::Hit];
         for (name, vision) in &VISIONS {
             for dark in [true, false] {
                 for (i, a) in all.iter().enumerate() {
@@ -208,11 +207,11 @@ mod tests {
     }
 
     #[test]
-    fn every_outline_is_seen_beside_its_fill_under_common_colour_deficiencies() {
+    fn outlines_contrast_under_common_colour_deficiencies() {
         for (name, vision) in &VISIONS {
-            let outlined = Detection::SEEN.into_iter().filter(|kind| *kind != Detection::Rim);
+            let outlined = CellVerdict::SEEN.into_iter().filter(|kind| *kind != CellVerdict::Rim);
             for (kind, dark) in outlined.flat_map(|kind| [(kind, true), (kind, false)]) {
-                for beside in [kind.fill(dark), Detection::Nothing.fill(dark)] {
+                for beside in [kind.fill(dark), CellVerdict::Nothing.fill(dark)] {
                     let contrast = contrast(kind.outline(dark), beside, vision);
                     assert!(contrast >= 1.6, "{kind:?} beside {beside:?}, {name}, dark {dark}: {contrast}");
                 }
@@ -233,7 +232,7 @@ mod tests {
         output[[36, 3]] = 1.0;
         let count = |decibels: f32| {
             let kinds = told_apart(output.view(), target.view(), [0.8, 0.9], decibels);
-            Detection::SEEN.map(|kind| kinds.iter().filter(|k| **k == kind).count())
+            CellVerdict::SEEN.map(|kind| kinds.iter().filter(|k| **k == kind).count())
         };
         assert_eq!(count(100.0), [12, 4 * 10 - 12 + 12 + 1, 15, 0]);
         assert_eq!(count(0.0), [12, 4 * 10 - 12 + 1, 15 + 12, 0], "thresholds alone");

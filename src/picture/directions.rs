@@ -1,6 +1,6 @@
 //! A snapshot as curves over direction: what all elements see, what one end sees, and what a method makes of both ends.
 
-use super::canvas::{Area, Drawing, FAINT_INK, HAIRLINE, INK, PAPER, PictureError};
+use super::canvas::{Drawing, FAINT_INK, HAIRLINE, INK, PAPER, PanelArea, PictureError};
 use super::text::{self, Weight};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -27,7 +27,7 @@ pub struct Mark {
 
 /// Everything the picture of a snapshot shows.
 #[derive(Debug, Clone)]
-pub struct Directions<'a> {
+pub struct DirectionAxis<'a> {
     /// Its title.
     pub name: &'a str,
     /// A line beneath it.
@@ -42,12 +42,12 @@ const WIDTH: u32 = 1400;
 const HEIGHT: u32 = 640;
 const LOWEST_DB: f64 = -40.0;
 
-impl Drawing for Directions<'_> {
+impl Drawing for DirectionAxis<'_> {
     fn size(&self) -> (u32, u32) {
         (WIDTH, HEIGHT)
     }
 
-    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
+    fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
         root.fill(&PAPER).map_err(PictureError::new)?;
         let name = text::fitted(root, self.name, 32, Weight::Bold, WIDTH - 60)?;
         text::line(root, (30, 18), &name, 32, Weight::Bold, &INK)?;
@@ -83,7 +83,7 @@ impl Drawing for Directions<'_> {
 
 type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-impl Directions<'_> {
+impl DirectionAxis<'_> {
     fn draw_marks<B: DrawingBackend>(&self, chart: &mut Chart<'_, B>) -> Result<(), PictureError> {
         let (left, right) = self.span_degrees();
         for mark in self.found.iter().filter(|m| m.below_strongest_db > LOWEST_DB) {
@@ -98,7 +98,11 @@ impl Directions<'_> {
         Ok(())
     }
 
-    fn draw_curves<B: DrawingBackend>(&self, root: &Area<B>, chart: &mut Chart<'_, B>) -> Result<(), PictureError> {
+    fn draw_curves<B: DrawingBackend>(
+        &self,
+        root: &PanelArea<B>,
+        chart: &mut Chart<'_, B>,
+    ) -> Result<(), PictureError> {
         let (left, right) = self.span_degrees();
         let mut at = 30;
         for (number, curve) in self.curves.iter().enumerate() {

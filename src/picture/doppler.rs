@@ -1,18 +1,16 @@
 //! A range-Doppler map as a picture.
 
-use super::canvas::{Area, Drawing, PAPER, PictureError};
-use super::map_panel::{Cells, MapAxes, MapPanel};
-use super::{ColourMap, Format, encode_png, render, render_svg};
+use super::canvas::{Drawing, PAPER, PanelArea, PictureError};
+use super::map_panel::{MapAxes, MapCells, MapPanel};
+use super::{ColourMap, PictureFormat, encode_png, render, render_svg};
 use crate::maps::doppler::RangeDopplerMap;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
 use plotters::prelude::*;
 
-/// Size of the picture, pixels.
 const SIZE: (u32, u32) = (900, 700);
 
 /// The bytes of a file with the map, its axes and what its colours stand for.
-///
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
 pub fn compose_range_doppler(
@@ -20,13 +18,13 @@ pub fn compose_range_doppler(
     map: &RangeDopplerMap,
     normalisation: Normalisation,
     colours: ColourMap,
-    format: Format,
+    format: PictureFormat,
 ) -> Result<Vec<u8>, PictureError> {
     let lambda = map.log_magnitude().normalise(normalisation);
     let picture = Picture { radar, lambda: &lambda, colours };
     Ok(match format {
-        Format::Png => encode_png(&render(&picture)?)?,
-        Format::Svg => render_svg(&picture)?.into_bytes(),
+        PictureFormat::Png => encode_png(&render(&picture)?)?,
+        PictureFormat::Svg => render_svg(&picture)?.into_bytes(),
     })
 }
 
@@ -41,7 +39,7 @@ impl Drawing for Picture<'_> {
         SIZE
     }
 
-    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
+    fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
         root.fill(&PAPER).map_err(PictureError::new)?;
         let radar = self.radar;
         let velocity = |column: f64| radar.velocity_of_column_metres_per_second(column);
@@ -54,6 +52,6 @@ impl Drawing for Picture<'_> {
             radar.chirps,
             radar.unambiguous_velocity_metres_per_second()
         );
-        MapPanel { title, cells: Cells::Lambda(self.lambda.lambda.view(), self.colours) }.draw_over(root, &axes)
+        MapPanel { title, cells: MapCells::Lambda(self.lambda.lambda.view(), self.colours) }.draw_over(root, &axes)
     }
 }

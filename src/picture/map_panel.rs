@@ -1,8 +1,8 @@
 //! One range-angle map with title, axes and colour bar.
 
-use super::canvas::{Area, FAINT_INK, HAIRLINE, INK, PictureError};
+use super::canvas::{FAINT_INK, HAIRLINE, INK, PanelArea, PictureError};
 use super::colour::{ColourMap, Rgb};
-use super::detections::Detection;
+use super::detections::CellVerdict;
 use super::text::{self, Weight};
 use crate::radar::Radar;
 use ndarray::{Array2, ArrayView2};
@@ -10,20 +10,17 @@ use plotters::prelude::*;
 
 /// What a panel paints: cells `[range bins, columns]` as they are drawn, the leftmost column first.
 #[derive(Debug, Clone)]
-pub(super) enum Cells<'a> {
-    /// Lambda in colours, with a colour bar.
+pub(super) enum MapCells<'a> {
     Lambda(ArrayView2<'a, f32>, ColourMap),
-    /// The cells above a threshold.
     Above(ArrayView2<'a, f32>, f32),
     /// The output above its threshold: hits, misses and false alarms.
-    Detections(Array2<Detection>),
+    Detections(Array2<CellVerdict>),
 }
 
-/// A map and its title.
 #[derive(Debug, Clone)]
 pub(super) struct MapPanel<'a> {
     pub title: String,
-    pub cells: Cells<'a>,
+    pub cells: MapCells<'a>,
 }
 
 const NOTHING: Rgb = [22, 26, 34];
@@ -32,7 +29,6 @@ const HIT: Rgb = [245, 245, 240];
 const TITLE_HEIGHT: i32 = 40;
 const BAR_SPACE: i32 = 62;
 
-/// What the two axes of a map count, from end to end.
 pub(super) struct MapAxes {
     /// To the right, rising.
     pub x: [f64; 2],
@@ -45,7 +41,7 @@ pub(super) struct MapAxes {
 }
 
 impl MapPanel<'_> {
-    pub(super) fn draw<B: DrawingBackend>(&self, area: &Area<B>, radar: &Radar) -> Result<(), PictureError> {
+    pub(super) fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>, radar: &Radar) -> Result<(), PictureError> {
         let axes = MapAxes {
             x: [0.0, 1.0].map(|across| radar.cos_of_column(radar.column_across(across) + 0.5)),
             y: [0.0, radar.max_range_metres()],
@@ -55,7 +51,7 @@ impl MapPanel<'_> {
         self.draw_over(area, &axes)
     }
 
-    pub(super) fn draw_over<B: DrawingBackend>(&self, area: &Area<B>, axes: &MapAxes) -> Result<(), PictureError> {
+    pub(super) fn draw_over<B: DrawingBackend>(&self, area: &PanelArea<B>, axes: &MapAxes) -> Result<(), PictureError> {
         let (width, height) = area.dim_in_pixel();
         let (width, height) = (width as i32, height as i32);
         text::line(area, (62, 8), &self.title, 21, Weight::Bold, &INK)?;
@@ -92,18 +88,18 @@ impl MapPanel<'_> {
         let (chart_x, chart_y) = area.get_pixel_range();
         let (bar_left, bar_top, bar_height) = (x.end - chart_x.start + 12, y.start - chart_y.start, size.1 as i32);
         match &self.cells {
-            Cells::Lambda(_, colours) => colour_bar(area, (bar_left, bar_top), bar_height, *colours),
-            Cells::Above(..) => Ok(()),
-            Cells::Detections(_) => legend(area),
+            MapCells::Lambda(_, colours) => colour_bar(area, (bar_left, bar_top), bar_height, *colours),
+            MapCells::Above(..) => Ok(()),
+            MapCells::Detections(_) => legend(area),
         }
     }
 }
 
-impl Cells<'_> {
+impl MapCells<'_> {
     fn dim(&self) -> (usize, usize) {
         match self {
-            Cells::Lambda(map, _) | Cells::Above(map, _) => map.dim(),
-            Cells::Detections(kinds) => kinds.dim(),
+            MapCells::Lambda(map, _) | MapCells::Above(map, _) => map.dim(),
+            MapCells::Detections(kinds) => kinds.dim(),
         }
     }
 
@@ -128,18 +124,18 @@ impl Cells<'_> {
 
     fn colour(&self, cells: impl Iterator<Item = [usize; 2]>) -> Rgb {
         match self {
-            Cells::Lambda(map, colours) => colours.colour(cells.map(|c| map[c]).fold(0.0, f32::max)),
-            Cells::Above(map, eta) => {
+            MapCells::Lambda(map, colours) => colours.colour(cells.map(|c| map[c]).fold(0.0, f32::max)),
+            MapCells::Above(map, eta) => {
                 let mut cells = cells;
                 if cells.any(|c| map[c] > *eta) { HIT } else { NOTHING }
             }
-            Cells::Detections(kinds) => cells.map(|c| kinds[c]).max().unwrap_or(Detection::Nothing).fill(true),
+            MapCells::Detections(kinds) => cells.map(|c| kinds[c]).max().unwrap_or(CellVerdict::Nothing).fill(true),
         }
     }
 }
 
 fn colour_bar<B: DrawingBackend>(
-    area: &Area<B>,
+    area: &PanelArea<B>,
     (x, y): (i32, i32),
     height: i32,
     colours: ColourMap,
@@ -157,11 +153,10 @@ fn colour_bar<B: DrawingBackend>(
     text::line(area, (x, y - 24), "\u{39b}", 17, Weight::Normal, &INK)
 }
 
-/// What the colours of a detection panel mean, at the right of its title.
-fn legend<B: DrawingBackend>(area: &Area<B>) -> Result<(), PictureError> {
+fn legend<B: DrawingBackend>(area: &PanelArea<B>) -> Result<(), PictureError> {
     let (width, _) = area.dim_in_pixel();
     let mut x = width as i32 - BAR_SPACE;
-    for detection in Detection::SEEN.into_iter().rev() {
+    for detection in CellVerdict::SEEN.into_iter().rev() {
         let name = detection.name();
         let style = text::style(15, Weight::Normal, &FAINT_INK);
         let (name_width, _) = area.estimate_text_size(name, &style).map_err(PictureError::new)?;

@@ -30,14 +30,14 @@ mod scene_panel;
 mod text;
 
 pub use colour::ColourMap;
-pub use detections::{Detection, told_apart};
+pub use detections::{CellVerdict, told_apart};
 
 #[cfg(feature = "pictures")]
 pub use canvas::{Drawing, PictureError};
 #[cfg(feature = "pictures")]
-pub use compose::{ComposeError, Format, Style, compose};
+pub use compose::{ComposeError, PictureFormat, Style, compose};
 #[cfg(feature = "pictures")]
-pub use directions::{Curve, Directions, Mark};
+pub use directions::{Curve, DirectionAxis, Mark};
 #[cfg(feature = "pictures")]
 pub use doppler::compose_range_doppler;
 #[cfg(feature = "pictures")]

@@ -1,10 +1,10 @@
 //! Every panel on one picture: what [`render`] and [`render_svg`] draw.
 
-use super::canvas::{Area, Drawing, FAINT_INK, INK, PAPER, PictureError};
-use super::detections::{Detection, told_apart};
+use super::canvas::{Drawing, FAINT_INK, INK, PAPER, PanelArea, PictureError};
+use super::detections::{CellVerdict, told_apart};
 use super::lettering::Lettered;
-use super::map_panel::{Cells, MapPanel};
-use super::scene_panel::{self, Content};
+use super::map_panel::{MapCells, MapPanel};
+use super::scene_panel::{self, SceneContent};
 use super::{ColourMap, text};
 use crate::evaluate::{Metrics, TARGET_ETA, eta_text};
 use crate::maps::RangeAngleMap;
@@ -48,7 +48,6 @@ const LEFT: i32 = 700;
 const MARGIN: i32 = 24;
 
 /// Draws a picture on a bitmap; the panels are 2180 x 1120 pixels.
-///
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
 pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
@@ -60,7 +59,6 @@ pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
 }
 
 /// Draws the same picture as SVG: lines and text stay sharp at any size, the maps are bitmaps in it.
-///
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
 pub fn render_svg(drawing: &impl Drawing) -> Result<String, PictureError> {
@@ -75,19 +73,19 @@ impl Drawing for Panels<'_> {
         (WIDTH, HEIGHT)
     }
 
-    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
+    fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
         root.fill(&PAPER).map_err(PictureError::new)?;
         self.header(root)?;
         let (field_width, field_height) = (LEFT - MARGIN - 8, 396);
         let field = |row: i32| {
             root.clone().shrink((MARGIN, HEADER + 8 + row * (field_height + 12)), (field_width, field_height))
         };
-        scene_panel::draw(&field(0), self.radar, self.objects_title, Content::Scene(self.scene))?;
+        scene_panel::draw(&field(0), self.radar, self.objects_title, SceneContent::Scene(self.scene))?;
         let (title, map) = match self.target {
             Some(target) => ("Target, seen from above", target),
             None => ("Output, seen from above", self.output),
         };
-        scene_panel::draw(&field(1), self.radar, title, Content::Map(map, self.colours))?;
+        scene_panel::draw(&field(1), self.radar, title, SceneContent::Map(map, self.colours))?;
         let below = HEADER + 8 + 2 * (field_height + 12);
         let text = root.clone().shrink((MARGIN + 8, below), (field_width - 8, HEIGHT as i32 - below - 8));
         self.figures_and_notes(&text)?;
@@ -103,7 +101,7 @@ impl Drawing for Panels<'_> {
 }
 
 impl<'a> Panels<'a> {
-    fn header<B: DrawingBackend>(&self, root: &Area<B>) -> Result<(), PictureError> {
+    fn header<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
         let name = if self.scene.name.is_empty() { "Unnamed scene" } else { &self.scene.name };
         let name: String = name.chars().filter(|c| !c.is_control()).take(200).collect();
         let name = text::fitted(root, &name, 34, text::Weight::Bold, (LEFT - MARGIN) as u32)?;
@@ -111,14 +109,13 @@ impl<'a> Panels<'a> {
         text::line(root, (LEFT + 62, 30), self.about, 20, text::Weight::Normal, &FAINT_INK)
     }
 
-    /// Three maps above; below them the output and both thresholds, or the output and its threshold where there is no target.
     fn map_panels(&self) -> Vec<MapPanel<'a>> {
         let elements = |end| {
             let range = self.radar.end_range(end);
             format!("elements {} to {}", range.start, range.end - 1)
         };
         let drawn = |map: &'a RangeAngleMap| self.radar.left_to_right(&map.lambda);
-        let lambda = |title: String, map| MapPanel { title, cells: Cells::Lambda(drawn(map), self.colours) };
+        let lambda = |title: String, map| MapPanel { title, cells: MapCells::Lambda(drawn(map), self.colours) };
         let mut panels = vec![
             lambda(format!("Input 0: {}", elements(End::First)), self.first),
             lambda(format!("Input 1: {}", elements(End::Last)), self.last),
@@ -126,26 +123,25 @@ impl<'a> Panels<'a> {
         let output = lambda(format!("Output: {}", self.method), self.output);
         let title = format!("Output > {}", eta_text(self.eta));
         let Some(target) = self.target else {
-            panels.extend([output, MapPanel { title, cells: Cells::Above(drawn(self.output), self.eta) }]);
+            panels.extend([output, MapPanel { title, cells: MapCells::Above(drawn(self.output), self.eta) }]);
             return panels;
         };
         panels.extend([
             lambda(format!("Target: all {} elements", self.radar.elements), target),
             output,
-            MapPanel { title: format!("Target > {TARGET_ETA}"), cells: Cells::Above(drawn(target), TARGET_ETA) },
-            MapPanel { title, cells: Cells::Detections(self.told_apart(drawn(target), drawn(self.output))) },
+            MapPanel { title: format!("Target > {TARGET_ETA}"), cells: MapCells::Above(drawn(target), TARGET_ETA) },
+            MapPanel { title, cells: MapCells::Detections(self.told_apart(drawn(target), drawn(self.output))) },
         ]);
         panels
     }
 
-    /// What each cell of the output is beside the target.
-    fn told_apart(&self, target: ArrayView2<'_, f32>, output: ArrayView2<'_, f32>) -> Array2<Detection> {
+    fn told_apart(&self, target: ArrayView2<'_, f32>, output: ArrayView2<'_, f32>) -> Array2<CellVerdict> {
         let mut kinds = told_apart(output, target, [self.eta, TARGET_ETA], 0.0).into_iter();
-        Array2::from_shape_simple_fn(output.dim(), || kinds.next().unwrap_or(Detection::Nothing))
+        Array2::from_shape_simple_fn(output.dim(), || kinds.next().unwrap_or(CellVerdict::Nothing))
     }
 
     /// The three figures of the tables for this scene, then the scene's notes.
-    fn figures_and_notes<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
+    fn figures_and_notes<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Result<(), PictureError> {
         let Some(target) = self.target else { return text::paragraphs(area, (0, 0), &self.scene.notes, 18, &INK) };
         // What was found in a recording says nothing of what it holds.
         let has_echoes = !self.scene.is_silent() || self.objects_title != "Scene";

@@ -11,7 +11,6 @@ const EXIF: &[u8] = b"II\x2a\x00\x08\x00\x00\x00\
 apertura\x00";
 
 /// The picture as a PNG file's bytes.
-///
 /// # Errors
 /// [`PictureError`] when the encoder refuses.
 pub fn encode_png(picture: &RgbImage) -> Result<Vec<u8>, PictureError> {

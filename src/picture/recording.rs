@@ -1,8 +1,8 @@
 //! Pictures of recordings: the panels of a scene, or curves over direction where there is one snapshot.
 
 use super::canvas::Drawing;
-use super::compose::{ComposeError, Format, Style};
-use super::directions::{Curve, Directions, Mark};
+use super::compose::{ComposeError, PictureFormat, Style};
+use super::directions::{Curve, DirectionAxis, Mark};
 use super::{Panels, encode_png, render, render_svg};
 use crate::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap, Spectrum, channels_map};
 use crate::radar::{Carrier, Decibels, End, Radar};
@@ -40,14 +40,13 @@ pub fn maps_of(recording: &Recording) -> ([LogMap; 2], Option<LogMap>) {
 }
 
 /// Reconstructs from the recording's two ends and draws what it shows; the bytes of a file.
-///
 /// # Errors
 /// [`ComposeError`] when the method fails or the picture can't be drawn.
 pub fn compose_recording(
     recording: &Recording,
     method: &dyn Reconstructor,
     style: &Style,
-    format: Format,
+    format: PictureFormat,
 ) -> Result<Vec<u8>, ComposeError> {
     if recording.is_snapshot() {
         curves(recording, method, style, format)
@@ -56,10 +55,10 @@ pub fn compose_recording(
     }
 }
 
-fn bytes_of(drawing: &impl Drawing, format: Format) -> Result<Vec<u8>, ComposeError> {
+fn bytes_of(drawing: &impl Drawing, format: PictureFormat) -> Result<Vec<u8>, ComposeError> {
     Ok(match format {
-        Format::Png => encode_png(&render(drawing)?)?,
-        Format::Svg => render_svg(drawing)?.into_bytes(),
+        PictureFormat::Png => encode_png(&render(drawing)?)?,
+        PictureFormat::Svg => render_svg(drawing)?.into_bytes(),
     })
 }
 
@@ -77,7 +76,7 @@ fn panels(
     recording: &Recording,
     method: &dyn Reconstructor,
     style: &Style,
-    format: Format,
+    format: PictureFormat,
 ) -> Result<Vec<u8>, ComposeError> {
     let radar = &recording.radar;
     let ([first, last], full) = maps_of(recording);
@@ -125,7 +124,7 @@ fn curves(
     recording: &Recording,
     method: &dyn Reconstructor,
     style: &Style,
-    format: Format,
+    format: PictureFormat,
 ) -> Result<Vec<u8>, ComposeError> {
     let radar = &recording.radar;
     let ends = recording.two_ends();
@@ -157,10 +156,9 @@ fn curves(
         .collect();
     let about =
         format!("one snapshot at about {range} m, {} elements; found by {}: stems", radar.elements, method.name());
-    bytes_of(&Directions { name: &recording.name, about: &about, curves: &curves, found: &found }, format)
+    bytes_of(&DirectionAxis { name: &recording.name, about: &about, curves: &curves, found: &found }, format)
 }
 
-/// Angle from broadside, degrees.
 fn degrees(cos_theta: f64) -> f64 {
     cos_theta.clamp(-1.0, 1.0).asin().to_degrees()
 }
@@ -221,7 +219,7 @@ mod tests {
     fn recordings_are_drawn_with_or_without_a_target() {
         let mut recording = Preset::by_id("chip-8").unwrap().load().unwrap();
         let svg = |r: &Recording| {
-            let bytes = compose_recording(r, &Baseline, &Style::default(), Format::Svg).unwrap();
+            let bytes = compose_recording(r, &Baseline, &Style::default(), PictureFormat::Svg).unwrap();
             String::from_utf8(bytes).unwrap()
         };
         assert!(svg(&recording).contains("Target: all 8 elements"));

@@ -1,7 +1,7 @@
 //! The half plane ahead of the array from above, in metres: the scene, or a map projected onto it (thesis figure 2-12).
 
 use super::ColourMap;
-use super::canvas::{Area, FAINT_INK, HAIRLINE, INK, PAPER, PictureError};
+use super::canvas::{FAINT_INK, HAIRLINE, INK, PAPER, PanelArea, PictureError};
 use super::text::{self, Weight};
 use crate::maps::{RangeAngleMap, cartesian::project};
 use crate::radar::{End, Radar};
@@ -13,21 +13,18 @@ use std::f64::consts::PI;
 const ARRAY: RGBColor = RGBColor(120, 128, 138);
 const END: RGBColor = RGBColor(200, 62, 40);
 
-/// What lies in the half plane.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Content<'a> {
-    /// The reflectors of a scene.
+pub(super) enum SceneContent<'a> {
     Scene(&'a Scene),
-    /// A range-angle map, projected.
     Map(&'a RangeAngleMap, ColourMap),
 }
 
 /// Draws the half plane out to the maximum range, equal scale on both axes, with range rings, angle spokes and the array.
 pub(super) fn draw<B: DrawingBackend>(
-    area: &Area<B>,
+    area: &PanelArea<B>,
     radar: &Radar,
     title: &str,
-    content: Content,
+    content: SceneContent,
 ) -> Result<(), PictureError> {
     text::line(area, (8, 0), title, 21, Weight::Bold, &INK)?;
     let max = radar.max_range_metres();
@@ -44,7 +41,7 @@ pub(super) fn draw<B: DrawingBackend>(
         .y_label_area_size(labels_y)
         .build_cartesian_2d(-max..max, -behind..tall - behind)
         .map_err(PictureError::new)?;
-    if let Content::Map(map, colours) = content {
+    if let SceneContent::Map(map, colours) = content {
         draw_map(&mut chart, radar, map, colours, metres)?;
     }
     chart
@@ -63,12 +60,12 @@ pub(super) fn draw<B: DrawingBackend>(
         .map_err(PictureError::new)?;
 
     let line = match content {
-        Content::Scene(_) => HAIRLINE.mix(1.0),
-        Content::Map(..) => HAIRLINE.mix(0.35),
+        SceneContent::Scene(_) => HAIRLINE.mix(1.0),
+        SceneContent::Map(..) => HAIRLINE.mix(0.35),
     };
     draw_rings_and_spokes(&mut chart, max, line)?;
     draw_array(&mut chart, radar)?;
-    if let Content::Scene(scene) = content {
+    if let SceneContent::Scene(scene) = content {
         draw_objects(&mut chart, scene, max)?;
     }
     Ok(())
@@ -76,7 +73,6 @@ pub(super) fn draw<B: DrawingBackend>(
 
 type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// Paints a map, `metres` a pixel, onto the half plane.
 fn draw_map<B: DrawingBackend>(
     chart: &mut Chart<B>,
     radar: &Radar,
@@ -96,7 +92,6 @@ fn draw_map<B: DrawingBackend>(
     Ok(())
 }
 
-/// A ring every 10 m, the edge of the range, and a spoke every quarter of cos(theta).
 fn draw_rings_and_spokes<B: DrawingBackend>(
     chart: &mut Chart<B>,
     max: f64,
@@ -120,7 +115,6 @@ fn draw_rings_and_spokes<B: DrawingBackend>(
     Ok(())
 }
 
-/// The whole array, and its two ends.
 fn draw_array<B: DrawingBackend>(chart: &mut Chart<B>, radar: &Radar) -> Result<(), PictureError> {
     let element = |n: usize| (radar.element_x_metres(n), 0.0);
     let whole = LineSeries::new([element(0), element(radar.elements - 1)], ARRAY.stroke_width(5));
@@ -159,7 +153,6 @@ fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64
     Ok(())
 }
 
-/// A body's outline, closed, (x, y) in metres.
 fn outline(shape: &Shape) -> Vec<(f64, f64)> {
     match shape {
         Shape::Wall([a, b]) => vec![(a[0], a[1]), (b[0], b[1])],

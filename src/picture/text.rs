@@ -1,24 +1,21 @@
 //! Text on pictures, in fonts that come with the program: a picture looks the same on every machine.
 
-use super::canvas::{Area, PictureError};
+use super::canvas::{PanelArea, PictureError};
 use super::lettering::{BOLD, NORMAL};
 use crate::platform::register_font;
 use plotters::prelude::*;
 use plotters::style::FontStyle;
 use std::sync::OnceLock;
 
-/// Weight of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Weight {
     Normal,
     Bold,
 }
 
-/// The family all text is set in.
 pub(super) const FAMILY: &str = "sans-serif";
 
 /// Makes the embedded fonts known to plotters; does nothing the second time.
-///
 /// # Errors
 /// [`PictureError`] when an embedded font can't be read.
 pub fn register_fonts() -> Result<(), PictureError> {
@@ -31,7 +28,6 @@ pub fn register_fonts() -> Result<(), PictureError> {
     .clone()
 }
 
-/// A style of this size in pixels.
 pub(super) fn style(size: i32, weight: Weight, colour: &RGBColor) -> TextStyle<'static> {
     let style = match weight {
         Weight::Normal => FontStyle::Normal,
@@ -40,9 +36,8 @@ pub(super) fn style(size: i32, weight: Weight, colour: &RGBColor) -> TextStyle<'
     FontDesc::new(FontFamily::Name(FAMILY), f64::from(size), style).color(colour)
 }
 
-/// One line of text, its top left corner at `at`.
 pub(super) fn line<B: DrawingBackend>(
-    area: &Area<B>,
+    area: &PanelArea<B>,
     at: (i32, i32),
     text: &str,
     size: i32,
@@ -52,9 +47,8 @@ pub(super) fn line<B: DrawingBackend>(
     area.draw(&Text::new(text.to_owned(), at, style(size, weight, colour))).map_err(PictureError::new)
 }
 
-/// Shortens `text` until it fits `width` pixels; an ellipsis stands for what is left out.
 pub(super) fn fitted<B: DrawingBackend>(
-    area: &Area<B>,
+    area: &PanelArea<B>,
     text: &str,
     size: i32,
     weight: Weight,
@@ -70,9 +64,8 @@ pub(super) fn fitted<B: DrawingBackend>(
     Ok(shown)
 }
 
-/// Lines broken at spaces to the area's width; what does not fit its height is left out, with an ellipsis.
 pub(super) fn paragraphs<B: DrawingBackend>(
-    area: &Area<B>,
+    area: &PanelArea<B>,
     at: (i32, i32),
     text: &str,
     size: i32,

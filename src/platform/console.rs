@@ -1,6 +1,6 @@
 //! The console that the program was started from, where there is one.
 
-/// Takes the console of whoever started the program. On Windows a program with a window has none of its own.
+/// Takes the console of the parent process. On Windows a program with a window has none of its own.
 pub fn join() {
     #[cfg(windows)]
     {

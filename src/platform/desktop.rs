@@ -12,7 +12,6 @@ pub fn page_address() -> Option<String> {
     None
 }
 
-/// The weight file of the live network.
 #[cfg(feature = "live")]
 pub(crate) fn live_weights() -> std::borrow::Cow<'static, [u8]> {
     include_bytes!("../../assets/weights/live.safetensors").as_slice().into()
@@ -74,7 +73,6 @@ pub fn dropped(
 }
 
 /// Runs `work` on a thread called `name`.
-///
 /// # Errors
 /// When the system can't start a thread.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> std::io::Result<()> {
@@ -123,7 +121,6 @@ pub mod fs {
 
     impl Draft {
         /// Begins a file in `folder` that will take the place of `path`.
-        ///
         /// # Errors
         /// What the system says of the folder.
         pub fn begin(folder: &Path, path: &Path) -> io::Result<Draft> {
@@ -136,7 +133,6 @@ pub mod fs {
         }
 
         /// Puts the file in the place of `path`.
-        ///
         /// # Errors
         /// What the system says: the disk is full, the place can't be written.
         pub fn persist(self, path: &Path) -> io::Result<()> {
@@ -176,7 +172,6 @@ pub mod fs {
 }
 
 /// Asks by the system's dialog, on a thread of its own; `answer` gets the file, or `None` where the dialog was closed.
-///
 /// # Errors
 /// When the system can't start a thread.
 #[cfg(feature = "app")]
@@ -198,7 +193,6 @@ pub fn storage_folder(app_id: &str) -> Option<std::path::PathBuf> {
 }
 
 /// Opens the window and runs until it is closed.
-///
 /// # Errors
 /// Where there is no display or no OpenGL, or where `create` fails.
 #[cfg(feature = "app")]
@@ -217,7 +211,6 @@ pub fn open_window(app_id: &str, create: eframe::AppCreator<'static>) -> Result<
     eframe::run_native(app_id, native, create)
 }
 
-/// Gives pictures a font, so that they look the same on every machine.
 #[cfg(feature = "pictures")]
 pub(crate) fn register_font(
     family: &str,

@@ -30,7 +30,6 @@ pub fn put(path: &Path, bytes: Vec<u8>) {
 }
 
 /// The bytes of a file.
-///
 /// # Errors
 /// [`io::ErrorKind::NotFound`] where there is none.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
@@ -38,7 +37,6 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
 }
 
 /// The text of a file.
-///
 /// # Errors
 /// Where there is none, or where it is no UTF-8.
 pub fn read_to_string(path: &Path) -> io::Result<String> {
@@ -46,7 +44,6 @@ pub fn read_to_string(path: &Path) -> io::Result<String> {
 }
 
 /// Removes a file.
-///
 /// # Errors
 /// [`io::ErrorKind::NotFound`] where there is none.
 pub fn remove_file(path: &Path) -> io::Result<()> {
@@ -54,7 +51,6 @@ pub fn remove_file(path: &Path) -> io::Result<()> {
 }
 
 /// Makes a folder.
-///
 /// # Errors
 /// None.
 pub fn create_dir(path: &Path) -> io::Result<()> {
@@ -62,7 +58,6 @@ pub fn create_dir(path: &Path) -> io::Result<()> {
 }
 
 /// Makes a folder and those above it.
-///
 /// # Errors
 /// None.
 pub fn create_dir_all(path: &Path) -> io::Result<()> {
@@ -82,7 +77,6 @@ pub fn is_dir(path: &Path) -> bool {
 }
 
 /// The path itself: there are no links.
-///
 /// # Errors
 /// [`io::ErrorKind::NotFound`] where there is nothing.
 pub fn canonicalize(path: &Path) -> io::Result<PathBuf> {
@@ -114,7 +108,6 @@ impl Metadata {
 }
 
 /// What is known of a file or folder.
-///
 /// # Errors
 /// [`io::ErrorKind::NotFound`] where there is nothing.
 pub fn metadata(path: &Path) -> io::Result<Metadata> {
@@ -143,7 +136,6 @@ impl DirEntry {
 }
 
 /// Files and folders of a folder.
-///
 /// # Errors
 /// [`io::ErrorKind::NotFound`] where there is no such folder.
 pub fn read_dir(folder: &Path) -> io::Result<impl Iterator<Item = io::Result<DirEntry>> + use<>> {
@@ -162,7 +154,6 @@ pub struct File(Cursor<Arc<[u8]>>);
 
 impl File {
     /// Opens a file to read it.
-    ///
     /// # Errors
     /// [`io::ErrorKind::NotFound`] where there is none.
     pub fn open(path: &Path) -> io::Result<File> {
@@ -170,7 +161,6 @@ impl File {
     }
 
     /// What is known of it.
-    ///
     /// # Errors
     /// None.
     pub fn metadata(&self) -> io::Result<Metadata> {

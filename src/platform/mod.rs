@@ -50,7 +50,7 @@ pub struct FileQuestion {
     pub endings: Vec<String>,
     /// Where to look first.
     pub folder: Option<PathBuf>,
-    /// Name of the file where nobody chooses another.
+    /// Name of the file by default.
     pub name: String,
     /// Whether the file is read, not written.
     pub reads: bool,

@@ -50,7 +50,6 @@ pub fn page_address() -> Option<String> {
     Some(page_address_here())
 }
 
-/// The weight file of the live network, which the page fetched before it started the program.
 #[cfg(feature = "live")]
 pub(crate) fn live_weights() -> std::borrow::Cow<'static, [u8]> {
     fetched_weights().into()
@@ -99,7 +98,6 @@ pub mod fs {
 
     impl Draft {
         /// Begins a file that will take the place of another.
-        ///
         /// # Errors
         /// None here.
         pub fn begin(_folder: &Path, _path: &Path) -> io::Result<Draft> {
@@ -107,7 +105,6 @@ pub mod fs {
         }
 
         /// Puts the file in the place of `path`.
-        ///
         /// # Errors
         /// When the browser's storage is full or forbidden.
         pub fn persist(self, path: &Path) -> io::Result<()> {
@@ -132,7 +129,6 @@ pub mod fs {
     }
 
     /// Writes a file as a whole.
-    ///
     /// # Errors
     /// When the browser's storage is full or forbidden.
     pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
@@ -152,7 +148,6 @@ pub mod fs {
     }
 
     /// Removes a file.
-    ///
     /// # Errors
     /// [`io::ErrorKind::NotFound`] where there is none.
     pub fn remove_file(path: impl AsRef<Path>) -> io::Result<()> {
@@ -163,7 +158,6 @@ pub mod fs {
     }
 
     /// Gives a file another name.
-    ///
     /// # Errors
     /// Where there is no such file, or no room.
     pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
@@ -173,7 +167,6 @@ pub mod fs {
 }
 
 /// Asks by the browser's dialog for a file to read. A file to write is a download: its name is the answer at once.
-///
 /// # Errors
 /// None here.
 #[cfg(feature = "app")]
@@ -206,7 +199,6 @@ pub fn dropped(
     });
 }
 
-/// Keeps the bytes of a file that was opened or dropped; the path under which it is read.
 fn opened(name: &str, bytes: Vec<u8>) -> PathBuf {
     let path = Path::new(OPENED).join(name);
     memory_files::put(&path, bytes);
@@ -228,7 +220,6 @@ pub fn storage_folder(_app_id: &str) -> Option<PathBuf> {
 }
 
 /// Opens the window on the page's canvas and returns at once.
-///
 /// # Errors
 /// Where the page has no canvas; a page without WebGL tells a sentence instead.
 #[cfg(feature = "app")]
@@ -255,7 +246,6 @@ pub fn open_window(_app_id: &str, create: eframe::AppCreator<'static>) -> Result
     Ok(())
 }
 
-/// The browser has fonts of its own.
 #[cfg(feature = "pictures")]
 pub(crate) fn register_font(
     _family: &str,

@@ -9,9 +9,8 @@ use super::{Convention, Pair, Radar};
 use std::fmt;
 use std::sync::Arc;
 
-/// Fewest and most elements, as for every radar.
-const FEWEST: usize = 2;
-const MOST: usize = 65536;
+const MIN_ELEMENTS: usize = 2;
+const MAX_ELEMENTS: usize = 65536;
 
 /// How far the elements that pairs make may stand off an even line, as a part of the spacing.
 const MOST_OFF: f64 = 0.01;
@@ -25,7 +24,6 @@ const MOST_DIVISIONS: usize = 4;
 /// How far the middle of the line may lie off x = 0 without being moved there, as a part of the spacing.
 const CENTRED: f64 = 1e-6;
 
-/// Farthest that an antenna may stand off the line, metres either way.
 const MOST_Y_METRES: f64 = 1.0;
 
 /// Transmitters and receivers whose pairs make a line of elements at even places along x.
@@ -37,10 +35,8 @@ const MOST_Y_METRES: f64 = 1.0;
 pub struct Antennas {
     transmitter_x_metres: Arc<[f64]>,
     receiver_x_metres: Arc<[f64]>,
-    /// As long as the list of x.
     transmitter_y_metres: Arc<[f64]>,
     receiver_y_metres: Arc<[f64]>,
-    /// Numbers of transmitter and receiver of each element; nothing at a gap.
     pairs: Arc<[Option<[usize; 2]>]>,
 }
 
@@ -56,69 +52,34 @@ impl fmt::Debug for Antennas {
 
 /// Why antennas make no array.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum AntennasError {
     /// A list is empty or holds something that is no place.
     #[error("{list} has {found}; expected finite numbers, at least one")]
-    Places {
-        /// Which list.
-        list: &'static str,
-        /// What was found.
-        found: String,
-    },
+    Places { list: &'static str, found: String },
     /// A list of y is not as long as that of x.
     #[error("{list} has {found} numbers; expected {expected}, one for each antenna")]
-    Length {
-        /// Which list.
-        list: &'static str,
-        /// How many it has.
-        found: usize,
-        /// How many antennas there are.
-        expected: usize,
-    },
+    Length { list: &'static str, found: usize, expected: usize },
     /// An antenna stands too far off the line.
     #[error("number {} of {list} is {found}; expected at most {MOST_Y_METRES} m off the line, either way", index + 1)]
-    OffLine {
-        /// Which list.
-        list: &'static str,
-        /// Which number of it, from 0.
-        index: usize,
-        /// The number.
-        found: f64,
-    },
+    OffLine { list: &'static str, index: usize, found: f64 },
     /// Too few or too many pairs.
-    #[error("{transmitters} transmitters and {receivers} receivers make {} elements; expected {FEWEST} to {MOST}", transmitters.saturating_mul(*receivers))]
-    Count {
-        /// Transmitters.
-        transmitters: usize,
-        /// Receivers.
-        receivers: usize,
-    },
+    #[error("{transmitters} transmitters and {receivers} receivers make {} elements; expected {MIN_ELEMENTS} to {MAX_ELEMENTS}", transmitters.saturating_mul(*receivers))]
+    Count { transmitters: usize, receivers: usize },
     /// The pairs don't stand on one even line.
     #[error(
         "the midpoint of transmitter {} and receiver {} stands {:.3} mm off the even line, whose places are {:.3} mm apart; expected at most {:.3} mm",
         transmitter + 1, receiver + 1, off_metres * 1e3, spacing_metres * 1e3, MOST_OFF * spacing_metres * 1e3
     )]
-    Uneven {
-        /// Number of the transmitter.
-        transmitter: usize,
-        /// Number of the receiver.
-        receiver: usize,
-        /// How far it stands off.
-        off_metres: f64,
-        /// Distance between neighbouring places.
-        spacing_metres: f64,
-    },
+    Uneven { transmitter: usize, receiver: usize, off_metres: f64, spacing_metres: f64 },
     /// All pairs stand at one place.
     #[error("all pairs have one midpoint; expected a line of them")]
     OnePlace,
     /// The places that pairs leave free make the line too long.
     #[error(
-        "the pairs stand on a line of {elements} places; expected as many as such antennas make, {FEWEST} to {MOST}"
+        "the pairs stand on a line of {elements} places; expected as many as such antennas make, {MIN_ELEMENTS} to {MAX_ELEMENTS}"
     )]
-    Line {
-        /// Places of the line, gaps too.
-        elements: usize,
-    },
+    Line { elements: usize },
 }
 
 /// The pairs from left to right, and where the midpoint of each stands.
@@ -174,22 +135,21 @@ impl Midpoints {
 
 impl Antennas {
     /// Antennas at these places, metres along x. The middle of the line that their pairs make is moved to x = 0.
-    ///
     /// # Errors
     /// [`AntennasError`] where their pairs make no line of 2 to 65536 even places.
     pub fn new(transmitter_x_metres: &[f64], receiver_x_metres: &[f64]) -> Result<Self, AntennasError> {
         check_places("transmitter_x_metres", transmitter_x_metres)?;
         check_places("receiver_x_metres", receiver_x_metres)?;
         let (transmitters, receivers) = (transmitter_x_metres.len(), receiver_x_metres.len());
-        if !(FEWEST..=MOST).contains(&transmitters.saturating_mul(receivers)) {
+        if !(MIN_ELEMENTS..=MAX_ELEMENTS).contains(&transmitters.saturating_mul(receivers)) {
             return Err(AntennasError::Count { transmitters, receivers });
         }
         let midpoints = Midpoints::of(transmitter_x_metres, receiver_x_metres);
         let spacing_metres = midpoints.spacing_metres()?;
         let elements = (midpoints.length_metres() / spacing_metres).round() + 1.0;
         // Antennas that stand apart make one place more at least than there are others beside the first; fewer are taken for one.
-        let fewest = (apart(transmitter_x_metres) + apart(receiver_x_metres) - 1).max(FEWEST);
-        if !(fewest as f64..=MOST as f64).contains(&elements) {
+        let fewest = (apart(transmitter_x_metres) + apart(receiver_x_metres) - 1).max(MIN_ELEMENTS);
+        if !(fewest as f64..=MAX_ELEMENTS as f64).contains(&elements) {
             return Err(AntennasError::Line { elements: elements as usize });
         }
         let mut pairs = vec![None; elements as usize];
@@ -211,12 +171,11 @@ impl Antennas {
 
     /// Receivers two spacings apart and transmitters a whole row of receivers apart, so that the pairs make one line of
     /// `transmitters * receivers` elements.
-    ///
     /// # Errors
     /// [`AntennasError`] where that is no array.
     pub fn filled(transmitters: usize, receivers: usize, spacing_metres: f64) -> Result<Self, AntennasError> {
         let line = |count: usize, apart: f64| -> Vec<f64> {
-            (0..count.min(MOST)).map(|i| (i as f64 - (count as f64 - 1.0) / 2.0) * apart).collect()
+            (0..count.min(MAX_ELEMENTS)).map(|i| (i as f64 - (count as f64 - 1.0) / 2.0) * apart).collect()
         };
         let apart = 2.0 * spacing_metres;
         Antennas::new(&line(transmitters, receivers as f64 * apart), &line(receivers, apart))
@@ -294,7 +253,6 @@ impl Antennas {
     }
 }
 
-/// How many places of the list differ.
 fn apart(places: &[f64]) -> usize {
     let mut sorted = places.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -355,7 +313,6 @@ impl Radar {
     }
 
     /// The physical radar of `transmitters` and `receivers` whose pairs make one filled line, its other constants those of `self`.
-    ///
     /// # Errors
     /// [`AntennasError`] where that is no array.
     pub fn of_pairs(self, transmitters: usize, receivers: usize) -> Result<Self, AntennasError> {

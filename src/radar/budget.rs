@@ -45,7 +45,6 @@ pub struct LinkBudget {
 }
 
 impl Default for LinkBudget {
-    /// About that of a single-chip radar of 77 GHz with patch antennas: 12 dBm, 10 dBi, 12 dB, isotropic.
     fn default() -> Self {
         LinkBudget {
             transmit_power_dbm: 12.0,
@@ -58,7 +57,6 @@ impl Default for LinkBudget {
 
 impl LinkBudget {
     /// Checks every number.
-    ///
     /// # Errors
     /// [`RadarError::Budget`] names the first that can't be, what is allowed, and why.
     pub fn validate(&self) -> Result<(), RadarError> {

@@ -71,7 +71,7 @@ impl From<Carrier> for Convention {
 }
 
 impl Radar {
-    /// The convention that its samples follow, whatever the spacing of its elements.
+    /// The convention that its samples follow, at any spacing of its elements.
     pub fn convention(&self) -> Convention {
         self.carrier.into()
     }
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_default_radar_has_the_filled_spacing_of_the_thesis_convention() {
+    fn the_default_radar_has_the_thesis_conventions_spacing() {
         let radar = Radar::default();
         assert_eq!(radar.convention(), Convention::Thesis);
         assert_eq!(radar.filled_spacing_metres(), radar.element_spacing_metres);

@@ -7,35 +7,19 @@ const COLUMNS: [&str; 4] = ["place in mm", "forward in mm", "gain in dB", "phase
 
 /// Why a text is no list of elements.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum ElementListError {
     /// A cell holds no number.
     #[error("line {line}, {column}: \"{found}\" is no number")]
-    Cell {
-        /// From 1.
-        line: usize,
-        /// What was expected there.
-        column: &'static str,
-        /// What stands there, cut to a few letters.
-        found: String,
-    },
+    Cell { line: usize, column: &'static str, found: String },
     /// A line has more columns than are known.
     #[error(
         "line {line} has {found} columns; expected at most 4: place in mm, forward in mm, gain in dB, phase in degrees"
     )]
-    Columns {
-        /// From 1.
-        line: usize,
-        /// How many.
-        found: usize,
-    },
+    Columns { line: usize, found: usize },
     /// Other than one line an element.
     #[error("{found} lines for {expected} elements; expected one line an element, the leftmost first")]
-    Lines {
-        /// How many.
-        found: usize,
-        /// The radar's elements.
-        expected: usize,
-    },
+    Lines { found: usize, expected: usize },
 }
 
 /// Letters of a cell that are shown.
@@ -45,7 +29,6 @@ impl BuiltArray {
     /// The elements that `text` describes: a line an element, the leftmost first. A line holds up to four numbers with tabs, semicolons, commas or
     /// spaces between them: how far the element stands from its place towards +x and off the line towards the scene (millimetres), its gain
     /// (decibels) and its phase (degrees). Missing numbers are 0; a cell left empty between two tabs is, too.
-    ///
     /// # Errors
     /// [`ElementListError`] names line and column.
     pub fn from_list(text: &str, elements: usize) -> Result<BuiltArray, ElementListError> {

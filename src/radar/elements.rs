@@ -24,7 +24,6 @@ pub struct ElementError {
 }
 
 impl Default for ElementError {
-    /// An element that is as it should be.
     fn default() -> Self {
         ElementError {
             gain: Decibels(0.0),
@@ -94,7 +93,6 @@ pub struct BuiltArray {
     pub elements: Vec<ElementError>,
 }
 
-/// A built array as files hold it.
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Lists {
@@ -167,39 +165,22 @@ impl TryFrom<Lists> for BuiltArray {
     }
 }
 
-/// Most elements of an array that is read.
 const MOST_ELEMENTS: usize = 65536;
 
 /// What no element can do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum BuiltArrayError {
     /// Another number of elements.
     #[error("{found} elements are described; the radar has {expected}")]
-    Count {
-        /// Elements described.
-        found: usize,
-        /// Elements of the radar.
-        expected: usize,
-    },
+    Count { found: usize, expected: usize },
     /// Not a usable number.
     #[error("element {element}: {field} is {value}; expected a number from -{most} to {most}")]
-    Value {
-        /// Which element.
-        element: usize,
-        /// Name of the quantity.
-        field: &'static str,
-        /// The number found.
-        value: f64,
-        /// Largest magnitude that is taken.
-        most: f64,
-    },
+    Value { element: usize, field: &'static str, value: f64, most: f64 },
 }
 
-/// Largest gain error, decibels.
 const MOST_GAIN: f64 = 200.0;
-/// Largest phase error, degrees.
 const MOST_PHASE: f64 = 3600.0;
-/// Largest position error, millimetres.
 const MOST_POSITION: f64 = 1000.0;
 
 impl BuiltArray {
@@ -293,7 +274,6 @@ impl BuiltArray {
     }
 
     /// Checks that the list fits `radar` and holds usable numbers.
-    ///
     /// # Errors
     /// [`BuiltArrayError`] names the element and the quantity.
     pub fn validate(&self, radar: &Radar) -> Result<(), BuiltArrayError> {
@@ -308,7 +288,6 @@ impl BuiltArray {
                 ("position_millimetres", e.position_millimetres, MOST_POSITION),
                 ("forward_millimetres", e.forward_millimetres, MOST_POSITION),
             ] {
-                // Not finite is not within either.
                 if value.is_nan() || value.abs() > most {
                     return Err(BuiltArrayError::Value { element, field, value, most });
                 }
@@ -345,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn draws_of_192_elements_scatter_by_five_per_cent_around_what_was_asked() {
+    fn draws_of_192_elements_scatter_by_five_per_cent() {
         let radar = Radar { elements: 192, ..Radar::default() };
         let asked = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.0 };
         let draws = 400;

@@ -11,7 +11,6 @@ use rand_chacha::ChaCha8Rng;
 pub struct Layout {
     /// Position of each element, metres; in rising order but for [`Layout::of_numbers`].
     pub x_metres: Vec<f64>,
-    /// Antennas of each element, where transmitters stand apart from receivers.
     pairs: Option<Vec<Pair>>,
 }
 
@@ -24,7 +23,6 @@ pub struct LayoutError {
 }
 
 /// Checks a layout that is a list of numbers of elements.
-///
 /// # Errors
 /// The element that is not there or that is given twice, and what was expected.
 pub fn check_layout(layout: &[usize], elements: usize) -> Result<(), String> {
@@ -72,7 +70,6 @@ impl Layout {
     ///
     /// Places are kept on the grid, as multi-coset sampling keeps them (thesis figures 1-2 and 1-3): what is lost is then
     /// elements, not the array's unambiguous field of view.
-    ///
     /// # Errors
     /// [`LayoutError`] for no element or for more than `radar` has.
     pub fn random(radar: &Radar, count: usize, seed: u64) -> Result<Self, LayoutError> {
@@ -90,7 +87,6 @@ impl Layout {
         Ok(Layout::of_elements(radar, chosen))
     }
 
-    /// Of these elements those that hear.
     fn of_elements(radar: &Radar, elements: impl IntoIterator<Item = usize>) -> Self {
         let elements: Vec<usize> = elements.into_iter().filter(|n| !radar.is_gap(*n)).collect();
         let pairs = (!radar.is_monostatic()).then(|| elements.iter().map(|n| radar.pair(*n)).collect());

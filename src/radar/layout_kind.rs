@@ -34,7 +34,6 @@ const MOST_CHANNELS: usize = 64;
 
 impl LayoutKind {
     /// Where the elements stand on `radar`.
-    ///
     /// # Errors
     /// [`LayoutError`] for a random layout of no element or of more than `radar` has.
     pub fn layout(self, radar: &Radar) -> Result<Layout, LayoutError> {

@@ -17,13 +17,12 @@ const BYTES_PER_END_PAIR: u64 = 256;
 const BYTES_PER_CHIRP_SAMPLE: u64 = 18 * 16;
 
 impl Radar {
-    /// Bytes of the samples of all chirps; none for a single one.
     pub(super) fn chirp_bytes(&self) -> u64 {
         let all = |n: usize| (n as u64).saturating_mul(self.samples as u64).saturating_mul(BYTES_PER_CHIRP_SAMPLE);
         if self.chirps > 1 { all(self.chirps) } else { 0 }
     }
 
-    /// Upper bound on the bytes of memory that the signal and the maps of this radar ask for, whatever command or method makes them;
+    /// Upper bound on the bytes of memory that the signal and the maps of this radar ask for, by any command or method;
     /// networks refuse radars other than the one they were trained for, and come on top.
     ///
     /// `tests/library/memory.rs` holds every method to it.
@@ -34,7 +33,6 @@ impl Radar {
         cells.saturating_add(ends).saturating_add(self.chirp_bytes())
     }
 
-    /// Refuses a radar that asks for more than [`MAX_MEMORY_BYTES`].
     pub(super) fn check_memory(&self) -> Result<(), RadarError> {
         let bytes = self.memory_bytes();
         if bytes <= MAX_MEMORY_BYTES && self.chirp_bytes() <= MAX_MEMORY_BYTES / 2 {

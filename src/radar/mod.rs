@@ -148,92 +148,34 @@ impl Default for Radar {
 
 /// What is wrong with a [`Radar`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum RadarError {
     /// A quantity that must be finite and positive is not.
     #[error("radar.{field} is {value}; it must be a finite number above 0")]
-    NotPositive {
-        /// Name of the field.
-        field: &'static str,
-        /// The value found.
-        value: f64,
-    },
+    NotPositive { field: &'static str, value: f64 },
     /// A count is outside what the maps can hold.
     #[error("radar.{field} is {value}; it must be between {min} and {max}")]
-    Count {
-        /// Name of the field.
-        field: &'static str,
-        /// The value found.
-        value: usize,
-        /// Smallest allowed value.
-        min: usize,
-        /// Largest allowed value.
-        max: usize,
-    },
+    Count { field: &'static str, value: usize, min: usize, max: usize },
     /// The signal and the maps would not fit into the memory that a radar may ask for.
     #[error(
         "radar.{field} asks for too much memory: {elements} elements by {samples} samples with ends of {end_elements} need {bytes}; \
          at most {most} can be had"
     )]
-    Memory {
-        /// The larger of the two counts that make the maps.
-        field: &'static str,
-        /// Elements asked for.
-        elements: usize,
-        /// Samples asked for.
-        samples: usize,
-        /// Elements of each end asked for.
-        end_elements: usize,
-        /// What [`Radar::memory_bytes`] counts.
-        bytes: Bytes,
-        /// [`MAX_MEMORY_BYTES`].
-        most: Bytes,
-    },
+    Memory { field: &'static str, elements: usize, samples: usize, end_elements: usize, bytes: Bytes, most: Bytes },
     /// A chirp would begin before the last one ends.
     #[error("radar.chirp_interval_seconds is {interval}; it must be at least chirp_seconds, which is {chirp}")]
-    Interval {
-        /// From one chirp to the next, seconds.
-        interval: f64,
-        /// Duration of a chirp, seconds.
-        chirp: f64,
-    },
+    Interval { interval: f64, chirp: f64 },
     /// The samples of all chirps would not fit into the memory that a radar may ask for.
     #[error(
         "radar.chirps asks for too much memory: a range-Doppler map of {chirps} chirps by {samples} samples needs {bytes}; at most {most} can be had"
     )]
-    ChirpMemory {
-        /// Chirps asked for.
-        chirps: usize,
-        /// Samples asked for.
-        samples: usize,
-        /// Bytes of the samples of all chirps.
-        bytes: Bytes,
-        /// Half of [`MAX_MEMORY_BYTES`].
-        most: Bytes,
-    },
+    ChirpMemory { chirps: usize, samples: usize, bytes: Bytes, most: Bytes },
     /// A number of the link budget can't be.
     #[error("radar.budget.{field} is {value}; expected {expected}")]
-    Budget {
-        /// Name of the number.
-        field: &'static str,
-        /// The value found.
-        value: f64,
-        /// What is allowed, and why.
-        expected: &'static str,
-    },
+    Budget { field: &'static str, value: f64, expected: &'static str },
     /// Elements or spacing are not those that the pairs of antennas make.
     #[error("radar.{field} is {value}; its {transmitters} transmitters and {receivers} receivers make {expected}")]
-    Pairs {
-        /// Name of the field.
-        field: &'static str,
-        /// The value found.
-        value: f64,
-        /// What the pairs make.
-        expected: f64,
-        /// How many transmitters there are.
-        transmitters: usize,
-        /// How many receivers there are.
-        receivers: usize,
-    },
+    Pairs { field: &'static str, value: f64, expected: f64, transmitters: usize, receivers: usize },
 }
 
 impl RadarError {
@@ -253,7 +195,6 @@ impl RadarError {
 
 impl Radar {
     /// Checks every field.
-    ///
     /// # Errors
     /// [`RadarError`] names the first field that is not finite and positive, or a count out of range
     /// (1 to 65536 samples, 2 to 65536 elements, each end between 1 element and half the array, 1 to 4096 chirps), elements or a spacing

@@ -21,7 +21,6 @@ const fn half_wavelength_metres(carrier_hz: f64) -> f64 {
     SPEED_OF_LIGHT / carrier_hz / 2.0
 }
 
-/// Table 3.1 of the thesis.
 const TABLE_3_1: Radar = Radar {
     antennas: None,
     focus_off_line: false,
@@ -44,7 +43,6 @@ const TABLE_3_1: Radar = Radar {
 pub static ALL: LazyLock<Vec<RadarPreset>> =
     LazyLock::new(|| MONOSTATIC.iter().cloned().chain(of_pairs().into_iter().flatten()).collect());
 
-/// Radars whose transmitters stand apart from their receivers.
 fn of_pairs() -> [Option<RadarPreset>; 2] {
     let preset = |id, name, about, radar: Result<Radar, AntennasError>| {
         Some(RadarPreset { id, name, about, radar: radar.ok()? })
@@ -70,7 +68,6 @@ fn of_pairs() -> [Option<RadarPreset>; 2] {
     ]
 }
 
-/// Radars whose elements send and hear by themselves.
 const MONOSTATIC: &[RadarPreset] = &[
     RadarPreset {
         id: "table-3.1",

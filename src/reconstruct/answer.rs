@@ -17,7 +17,7 @@ pub struct Request {
     pub noise: NoisePrior,
     /// How the map it is compared with is normalised.
     pub normalisation: Normalisation,
-    /// Where the echoes of a single sample come from, metres, if anybody knows: one sample has no ranges of its own. They count as
+    /// Where the echoes of a single sample come from, metres, if it is known: one sample has no ranges of its own. They count as
     /// plane waves all the same. Chirps of several samples know their ranges.
     pub snapshot_range_metres: Option<f64>,
     /// Whether a method with a memory ([`Reconstructor::following`](super::Reconstructor::following)) may start from its last answer,
@@ -39,7 +39,6 @@ pub struct LayoutSamples {
 }
 
 impl Default for Request {
-    /// The thesis' conventions.
     fn default() -> Self {
         Request {
             noise: NoisePrior::Rounding,

@@ -7,10 +7,8 @@ use ndarray::{Array2, Axis, concatenate};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Directions that are looked at on either side.
 const STEPS: i32 = 48;
 
-/// Range profiles of the elements of both ends.
 pub(super) struct Beam<'a> {
     radar: &'a Radar,
     elements: Vec<usize>,

@@ -7,7 +7,7 @@ use crate::maps::Aperture;
 use crate::maps::focus::map_of;
 use crate::radar::{BuiltArray, Radar};
 use crate::scene::Reflector;
-use crate::signal::path::Pairs;
+use crate::signal::path::PairBlocks;
 use crate::signal::phase::EchoModel;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use crate::signal::split::{CHUNK, Factors, STRIDE, add_products, fill_factors};
@@ -16,17 +16,14 @@ use ndarray::Axis;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Elements side by side.
 const W: usize = LANES_F64;
 
-/// A place and the complex gain found for it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gained {
     pub reflector: Reflector,
     pub gain: Complex64,
 }
 
-/// The whole array's map of `found` in `ends`, over the measured noise.
 pub(super) fn of_echoes(
     radar: &Radar,
     ends: &TwoEnds,
@@ -38,7 +35,7 @@ pub(super) fn of_echoes(
     let mut signal = BeatSignal::silence(radar);
     signal.samples.axis_chunks_iter_mut(Axis(0), W).into_par_iter().enumerate().for_each(|(block, mut rows)| {
         let element = |lane: usize| (block * W + lane).min(radar.elements - 1);
-        let pairs = Pairs::new(|lane| radar.pair(element(lane)));
+        let pairs = PairBlocks::new(|lane| radar.pair(element(lane)));
         let sum = Simd::chosen().run(Sum { model: &model, pairs, found, samples: radar.samples });
         for (lane, mut row) in rows.outer_iter_mut().enumerate() {
             for (out, v) in row.iter_mut().zip(&sum) {
@@ -63,10 +60,9 @@ pub(super) fn of_echoes(
     }
 }
 
-/// Echoes added up at neighbouring elements.
 struct Sum<'a> {
     model: &'a EchoModel,
-    pairs: Pairs<W>,
+    pairs: PairBlocks<W>,
     found: &'a [Gained],
     samples: usize,
 }

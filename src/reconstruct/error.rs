@@ -4,38 +4,20 @@ use crate::task::Cancelled;
 
 /// Why a reconstruction gave nothing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum ReconstructError {
-    /// Somebody asked it to stop.
+    /// It was cancelled.
     #[error("cancelled")]
     Cancelled,
     /// The samples have another shape than the radar's ends.
     #[error("{what} has shape {found:?}; expected {expected:?}")]
-    Shape {
-        /// Which input.
-        what: &'static str,
-        /// Its shape.
-        found: Vec<usize>,
-        /// The shape it must have.
-        expected: Vec<usize>,
-    },
+    Shape { what: &'static str, found: Vec<usize>, expected: Vec<usize> },
     /// A sample is NaN or infinite.
     #[error("sample {sample} of element {element} of the {end} end is not finite")]
-    NotFinite {
-        /// "first" or "last".
-        end: &'static str,
-        /// Element within the end.
-        element: usize,
-        /// Sample within the chirp.
-        sample: usize,
-    },
+    NotFinite { end: &'static str, element: usize, sample: usize },
     /// The method can't work on this radar or on these samples.
     #[error("{method}: {reason}")]
-    Unusable {
-        /// Name of the method.
-        method: &'static str,
-        /// Why, and what would help.
-        reason: String,
-    },
+    Unusable { method: &'static str, reason: String },
 }
 
 impl From<Cancelled> for ReconstructError {

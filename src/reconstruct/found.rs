@@ -13,7 +13,6 @@ const SPAN: Decibels = Decibels(20.0);
 /// Dynamic range of the map whose peaks are looked for.
 const MAP_RANGE: Decibels = Decibels(60.0);
 
-/// Most peaks of a map that are listed.
 const MOST_PEAKS: usize = 256;
 
 /// Arrays of at most so many elements have columns so wide that the fringes of their two ends fall between them: a peak's direction is
@@ -24,7 +23,6 @@ const FEW_ELEMENTS: usize = 128;
 const ONE_PEAK: f64 = 0.5;
 
 /// Reconstructs, and lists what was found as [`find`] does.
-///
 /// # Errors
 /// As [`Reconstructor::reconstruct`].
 pub fn reconstruct_and_find(
@@ -41,7 +39,6 @@ pub fn reconstruct_and_find(
 /// What `method` found where `answer` is its answer to `request`, the strongest first: its own reflectors, or the peaks of its map
 /// within 20 dB of the strongest. A map that `request` stretches by its smallest cell knows no decibels: its peaks come from a second
 /// one.
-///
 /// # Errors
 /// As [`Reconstructor::reconstruct`].
 pub fn find(
@@ -62,7 +59,6 @@ pub fn find(
     }
 }
 
-/// The peaks of a map whose Lambda spans [`MAP_RANGE`].
 fn found_in_map(radar: &Radar, ends: &TwoEnds, answer: &Reconstruction) -> Vec<Detection> {
     let decibels = answer.lambda.lambda.mapv(|v| (f64::from(v) - 1.0) * MAP_RANGE.0);
     let peaks = peaks(decibels.view(), SPAN.0, MOST_PEAKS);

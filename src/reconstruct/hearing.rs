@@ -9,7 +9,6 @@ use crate::signal::floor::thesis_noise_of_echo;
 use ndarray::{ArrayView1, ArrayView2};
 use num_complex::Complex64;
 
-/// Variance of the white complex noise of a sample of either end, of which `noise` is known.
 pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, noise: NoisePrior) -> f64 {
     Hearing::beneath(radar, ends, noise).ends_noise_variance(radar, ends)
 }
@@ -19,7 +18,7 @@ pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, noise: NoisePri
 pub struct Hearing {
     /// Variance a sample that is believed where more than [`MARGIN`] times as much is heard.
     expected: f64,
-    /// Variance a sample, where somebody knows it.
+    /// Variance a sample, where it is known.
     known: Option<f64>,
 }
 

@@ -27,7 +27,6 @@ mod hearing;
 mod hybrid;
 mod judge;
 mod noise;
-mod noise_test;
 mod own_threshold;
 mod power;
 mod prior;
@@ -36,6 +35,7 @@ mod reconstructor;
 mod rows;
 pub mod search;
 mod seen;
+mod significance;
 mod trained;
 mod untrained;
 
@@ -49,8 +49,6 @@ pub use grid::{Fista, MatchedFilter, Omp, layout_matched_filter};
 pub use hybrid::Hybrid;
 pub use judge::{blended, network_weight};
 #[cfg(feature = "live")]
-pub(crate) use noise_test::level_above_mean_decades;
-#[cfg(feature = "live")]
 pub(crate) use own_threshold::own_threshold;
 pub use prior::{NoisePrior, NoisePriorError};
 pub use reconstructor::{About, Reconstructor, Weights, check_ends};
@@ -58,5 +56,7 @@ pub use rows::{
     BARTLETT, CAPON, CAPON_PEAKS, ESPRIT, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS, MUSIC, MUSIC_PEAKS, ROOT_MUSIC,
     ROOT_MUSIC_PEAKS, RowMethod,
 };
+#[cfg(feature = "live")]
+pub(crate) use significance::level_above_mean_decades;
 pub use trained::TrainedNoise;
 pub use untrained::untrained_noise;

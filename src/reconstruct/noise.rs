@@ -21,7 +21,6 @@ const EVEN: f64 = 0.03;
 /// Noise that is assumed where too few samples tell it from side lobes, as a part of the samples' mean power: 60 dB down.
 const ASSUMED: f64 = 1e-6;
 
-/// Variance of white noise in the samples of `channels`.
 pub(super) fn noise_variance<'a>(radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> f64 {
     noise_heard(radar, channels).variance
 }

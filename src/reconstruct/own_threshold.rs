@@ -14,7 +14,7 @@ const TARGET_ETA: f32 = 0.9;
 const FALSE_ALARM: f64 = 0.0092;
 
 /// Cells whose doubt decides how far below [`TARGET_ETA`] the threshold lies: those whose own Lambda is as near to it.
-const NEAR: std::ops::Range<f32> = 0.75..0.95;
+const DOUBT_LAMBDAS: std::ops::Range<f32> = 0.75..0.95;
 
 /// The part of those cells whose doubt is covered.
 const COVERED: f64 = 0.9;
@@ -31,7 +31,7 @@ const STEPS: usize = 4096;
 pub(crate) fn own_threshold(answer: &RangeAngleMap, doubt: Option<&RangeAngleMap>) -> f32 {
     let below = quantile(answer.lambda.iter().copied().filter(|v| *v <= TARGET_ETA), 1.0 - FALSE_ALARM).unwrap_or(0.0);
     let doubtful = doubt.map(|doubt| {
-        let near = answer.lambda.iter().zip(&doubt.lambda).filter(|(v, _)| NEAR.contains(*v));
+        let near = answer.lambda.iter().zip(&doubt.lambda).filter(|(v, _)| DOUBT_LAMBDAS.contains(*v));
         TARGET_ETA - quantile(near.map(|(_, doubt)| *doubt), COVERED).unwrap_or(0.0)
     });
     let eta = doubtful.unwrap_or(0.0).max(below).min(EXACT_ETA);

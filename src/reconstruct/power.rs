@@ -1,7 +1,7 @@
 //! From an estimate of the whole array's power to Lambda, over the floor that lies beneath it.
 
 use super::answer::{Reconstruction, Request};
-use super::noise_test::{cell_noise, least_eta};
+use super::significance::{cell_noise, least_eta};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Radar;
 use ndarray::{Array2, Zip};
@@ -48,7 +48,6 @@ pub(super) fn lambda_of_power(
 /// The largest of n exponential powers of mean 1 is `ln n` and this on average.
 const EULER: f64 = 0.577_215_664_901_532_9;
 
-/// A reconstruction that knows no reflectors, only power.
 pub(super) fn of_power(radar: &Radar, power: Array2<f64>, noise_variance: f64, request: &Request) -> Reconstruction {
     let (lambda, least) = lambda_of_power(radar, power, noise_variance, request);
     Reconstruction {

@@ -7,7 +7,7 @@ use crate::signal::Floor;
 use std::fmt;
 use std::str::FromStr;
 
-/// What a method is told of the noise beneath the samples. A simulator knows its [`Floor`]; whoever holds samples alone knows no more than
+/// What a method is told of the noise beneath the samples. A simulator knows its [`Floor`]; a recording's samples tell no more than
 /// this.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum NoisePrior {
@@ -18,13 +18,12 @@ pub enum NoisePrior {
     Nothing,
     /// White complex noise.
     White {
-        /// Root of its mean square in a sample, in the samples' unit; `None` where nobody knows, and methods measure it.
+        /// Root of its mean square in a sample, in the samples' unit; `None` where it is unknown and methods measure it.
         sigma: Option<f64>,
     },
 }
 
 impl From<Floor> for NoisePrior {
-    /// What is told of a simulated floor: which kind it is, and not how loud.
     fn from(floor: Floor) -> Self {
         match floor {
             Floor::Thesis => NoisePrior::Rounding,

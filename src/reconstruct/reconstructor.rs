@@ -4,7 +4,7 @@ use super::answer::{LayoutSamples, Reconstruction, Request};
 use super::error::ReconstructError;
 use super::family::Family;
 use super::hearing::ends_noise_variance;
-use super::noise_test::tested;
+use super::significance::tested;
 use super::trained::TrainedNoise;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
@@ -50,7 +50,6 @@ pub trait Reconstructor: Send + Sync {
     }
 
     /// Says at once whether the method can work on samples of `radar`.
-    ///
     /// # Errors
     /// [`ReconstructError::Unusable`] says what is in the way.
     fn check_radar(&self, _radar: &Radar) -> Result<(), ReconstructError> {
@@ -75,7 +74,6 @@ pub trait Reconstructor: Send + Sync {
 
     /// Says at once whether the method can work on samples of `radar`: [`Reconstructor::check_radar`], whether the ends have elements enough,
     /// and whether it knows such antennas.
-    ///
     /// # Errors
     /// [`ReconstructError::Unusable`] says what is in the way.
     fn check_array(&self, radar: &Radar) -> Result<(), ReconstructError> {
@@ -94,15 +92,13 @@ pub trait Reconstructor: Send + Sync {
 
     /// Estimates the whole array's map from `ends`, which have the radar's shape, are finite, and whose largest real or imaginary
     /// part lies between 1 and 2. Reflectivities are relative to those samples.
-    ///
     /// # Errors
     /// [`ReconstructError`] when cancelled, or as the method says.
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError>;
 
     /// Estimates the whole array's map from `ends`: checks them, scales them for [`Reconstructor::estimate`], takes the scale
-    /// off what was found, and raises the answer's threshold to where noise does not reach (`noise_test.rs`). Silence is answered
+    /// off what was found, and raises the answer's threshold to where noise does not reach (`significance`). Silence is answered
     /// with [`Reconstruction::silence`].
-    ///
     /// # Errors
     /// [`ReconstructError`], on a radar the method can't work on, on samples of the wrong shape or not finite, when cancelled, or
     /// as the method says.
@@ -125,7 +121,7 @@ pub trait Reconstructor: Send + Sync {
             Arc::new(LayoutSamples { layout: heard.layout.clone(), samples: heard.samples.mapv(|v| v * gain) })
         });
         let request = &Request { noise: request.noise.scaled(gain), heard, ..request.clone() };
-        // From within, a parallel step is handed to whoever is idle; from without, its caller would sleep through each one.
+        // From within, a parallel step is handed to an idle thread; from without, its caller would sleep through each one.
         let found = rayon::scope(|_| self.estimate(radar, &ends, request))?;
         // What was cancelled while it was drawn is no answer.
         request.task.check()?;
@@ -151,7 +147,6 @@ pub trait Reconstructor: Send + Sync {
     }
 
     /// Says whether the method can work on ends of which one heard nothing at all: by default none can, as it joins both.
-    ///
     /// # Errors
     /// [`ReconstructError::Unusable`] names the deaf end.
     fn check_hearing(&self, ends: &TwoEnds) -> Result<(), ReconstructError> {
@@ -167,7 +162,6 @@ pub trait Reconstructor: Send + Sync {
 
     /// Estimates the whole array's map from the thesis networks' own input, `[4, range bins, columns]`
     /// ([`mag_phase`](crate::maps::network_input::mag_phase)).
-    ///
     /// # Errors
     /// [`ReconstructError::Unusable`] from every method that needs the samples themselves; [`ReconstructError::Shape`].
     fn reconstruct_mag_phase(&self, _: &Radar, _: &Array3<f64>) -> Result<Reconstruction, ReconstructError> {
@@ -218,7 +212,6 @@ pub trait Reconstructor: Send + Sync {
 }
 
 /// Checks that both ends have the radar's shape and hold finite samples only.
-///
 /// # Errors
 /// [`ReconstructError::Shape`] or [`ReconstructError::NotFinite`].
 pub fn check_ends(radar: &Radar, ends: &TwoEnds) -> Result<(), ReconstructError> {

@@ -7,9 +7,8 @@ use crate::radar::{Pair, Radar};
 /// Far fields away at which a wave counts as plane: its front is curved by less than 1e-5 wavelengths over the array.
 pub(super) const FAR_AWAY: f64 = 1e4;
 
-/// Where a place lies in the polar grid of a point of the array's axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Seen {
+pub(super) struct PolarView {
     /// Distance in metres.
     pub range_metres: f64,
     /// Cosine of the angle to the array's axis.
@@ -17,15 +16,15 @@ pub(super) struct Seen {
 }
 
 /// How a point of the array's axis at `from_x_metres` sees the reflector at (`range_metres`, `cos_theta`) of the centre.
-pub(super) fn seen_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -> Seen {
+pub(super) fn seen_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -> PolarView {
     let x = range_metres * cos_theta.clamp(-1.0, 1.0);
     let square = range_metres * range_metres - 2.0 * x * from_x_metres + from_x_metres * from_x_metres;
     let range = square.max(1e-12).sqrt();
-    Seen { range_metres: range, cos_theta: ((x - from_x_metres) / range).clamp(-1.0, 1.0) }
+    PolarView { range_metres: range, cos_theta: ((x - from_x_metres) / range).clamp(-1.0, 1.0) }
 }
 
 /// How an antenna at `place_metres`, (x, y), sees the reflector at (`range_metres`, `cos_theta`) of the centre, before the array.
-fn seen_at(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> Seen {
+fn seen_at(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> PolarView {
     let [from_x_metres, from_y_metres] = place_metres;
     if from_y_metres == 0.0 {
         return seen_from(from_x_metres, range_metres, cos_theta);
@@ -33,19 +32,19 @@ fn seen_at(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> Seen {
     let cos = cos_theta.clamp(-1.0, 1.0);
     let (x, y) = (range_metres * cos - from_x_metres, range_metres * (1.0 - cos * cos).sqrt() - from_y_metres);
     let range = x.hypot(y).max(1e-6);
-    Seen { range_metres: range, cos_theta: (x / range).clamp(-1.0, 1.0) }
+    PolarView { range_metres: range, cos_theta: (x / range).clamp(-1.0, 1.0) }
 }
 
 /// How a pair of antennas sees the reflector at (`range_metres`, `cos_theta`) of the centre: half the way there and back, and the mean of both
 /// cosines, by which the range changes where both antennas move.
-pub(super) fn seen_by(pair: Pair, range_metres: f64, cos_theta: f64) -> Seen {
+pub(super) fn seen_by(pair: Pair, range_metres: f64, cos_theta: f64) -> PolarView {
     let [transmitter, receiver] = pair.places_metres();
     let there = seen_at(transmitter, range_metres, cos_theta);
     if pair.is_one() {
         return there;
     }
     let back = seen_at(receiver, range_metres, cos_theta);
-    Seen {
+    PolarView {
         range_metres: (there.range_metres + back.range_metres) / 2.0,
         cos_theta: (there.cos_theta + back.cos_theta) / 2.0,
     }

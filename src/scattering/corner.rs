@@ -5,7 +5,7 @@
 
 use super::face::Face;
 use super::geometry::V;
-use super::{Antennas, EchoKind, PathEcho, Wave};
+use super::{AntennaPlaces, EchoKind, PathEcho, Wave};
 
 /// Sign of a further reflection: -1 for E along z, +1 for H along z.
 const BOUNCE: f64 = -1.0;
@@ -14,13 +14,13 @@ const BOUNCE: f64 = -1.0;
 const LEAST_METRES: f64 = 1e-9;
 
 /// The six echoes of the corner between two arms, the first order first; `first` ends where `second` begins.
-pub fn echoes(wave: &Wave, antennas: &Antennas, first: &Face, second: &Face) -> [PathEcho; 6] {
+pub fn echoes(wave: &Wave, antennas: &AntennaPlaces, first: &Face, second: &Face) -> [PathEcho; 6] {
     let [a, b, c] = one_order(wave, antennas, first, second);
     let [d, e, f] = one_order(wave, antennas, second, first);
     [a, b, c, d, e, f]
 }
 
-fn one_order(wave: &Wave, antennas: &Antennas, first: &Face, second: &Face) -> [PathEcho; 3] {
+fn one_order(wave: &Wave, antennas: &AntennaPlaces, first: &Face, second: &Face) -> [PathEcho; 3] {
     let transmitter = V::from(antennas.transmitter_metres);
     let image = mirrored(transmitter, first);
     let outside = |place: V, face: &Face| (place - face.from).dot(face.outward());
@@ -40,7 +40,7 @@ fn one_order(wave: &Wave, antennas: &Antennas, first: &Face, second: &Face) -> [
     let clip = |u: f64| u.clamp(0.0, second.length_metres);
     let lit = if is_open { [clip(hits[0].min(hits[1])), clip(hits[0].max(hits[1]))] } else { [0.0, 0.0] };
     let both = Face { is_two_sided: false, reflectivity: BOUNCE * first.reflectivity * second.reflectivity, ..*second };
-    let seen = Antennas { transmitter_metres: image.into(), ..*antennas };
+    let seen = AntennaPlaces { transmitter_metres: image.into(), ..*antennas };
     both.lit_echoes(wave, &seen, lit).map(|echo| PathEcho { kind: EchoKind::DoubleBounce, ..echo })
 }
 

@@ -2,7 +2,7 @@
 
 use super::sight::{Array, Screen};
 use super::strips::Strips;
-use super::{Antennas, PathEcho, Scatterer};
+use super::{AntennaPlaces, PathEcho, Scatterer};
 use crate::radar::Radar;
 use crate::scene::{Object, Reflector, Scene};
 use rayon::prelude::*;
@@ -10,17 +10,17 @@ use std::sync::Arc;
 
 /// An object, and the bodies that may hide a part of it from an element. Two that are equal have the same echoes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct SeenObject {
     /// The object.
     pub object: Object,
     /// Bodies that stand between it and the array, or nearly so; none for most objects.
     pub hidden_by: Arc<[Arc<Object>]>,
 }
 
-impl From<Object> for Seen {
+impl From<Object> for SeenObject {
     /// An object that nothing hides.
     fn from(object: Object) -> Self {
-        Seen { object, hidden_by: Arc::default() }
+        SeenObject { object, hidden_by: Arc::default() }
     }
 }
 
@@ -64,21 +64,21 @@ impl Bodies {
 }
 
 /// Objects from which on the bodies that may hide them are looked for on several threads.
-const MANY: usize = 32;
+const MIN_PARALLEL_OBJECTS: usize = 32;
 
-impl Seen {
+impl SeenObject {
     /// Every object of a scene, with what may hide it from `radar`.
-    pub fn all(radar: &Radar, scene: &Scene) -> Vec<Seen> {
+    pub fn all(radar: &Radar, scene: &Scene) -> Vec<SeenObject> {
         let bodies = Bodies::of(radar, scene);
         let is_mirrored = scene.disturbances.mirror.is_some();
         let seen = |(index, object): (usize, &Object)| {
             if bodies.screens.is_empty() {
-                return Seen::from(object.clone());
+                return SeenObject::from(object.clone());
             }
             let all = is_mirrored && object.body().is_some();
-            Seen { object: object.clone(), hidden_by: bodies.hiding(index, object, all) }
+            SeenObject { object: object.clone(), hidden_by: bodies.hiding(index, object, all) }
         };
-        scene.objects.par_iter().enumerate().with_min_len(MANY).map(seen).collect()
+        scene.objects.par_iter().enumerate().with_min_len(MIN_PARALLEL_OBJECTS).map(seen).collect()
     }
 
     /// It made ready, before `radar`.
@@ -91,7 +91,6 @@ impl Seen {
         self.object.echo_count()
     }
 
-    /// Whether its echoes are those of its reflectors, and nothing hides them.
     fn is_points(&self) -> bool {
         self.object.body().is_none() && self.hidden_by.is_empty()
     }
@@ -112,7 +111,7 @@ impl Echoing {
         if !scene.has_bodies() {
             return Echoing { points: scene.echoing(radar), scatterers: Vec::new() };
         }
-        let mut all = Echoing::seen(radar, &Seen::all(radar, scene));
+        let mut all = Echoing::seen(radar, &SeenObject::all(radar, scene));
         if let Some(mirror) = scene.disturbances.mirror {
             all.scatterers = all.scatterers.into_iter().map(|s| s.in_mirror(mirror)).collect();
             // Ghosts of points come after all reflectors.
@@ -122,7 +121,7 @@ impl Echoing {
     }
 
     /// The echoes of these objects, without a mirror.
-    pub fn seen(radar: &Radar, seen: &[Seen]) -> Self {
+    pub fn seen(radar: &Radar, seen: &[SeenObject]) -> Self {
         let mut all = Echoing::default();
         for one in seen {
             if one.is_points() {
@@ -147,9 +146,9 @@ impl Echoing {
 
 /// The echoes of every body as the middle of the array hears them, each with the index of its object.
 pub fn heard_in_the_middle(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho)> {
-    let antennas = Antennas::at([0.0, 0.0]);
+    let antennas = AntennaPlaces::at([0.0, 0.0]);
     let mut all = Vec::new();
-    for (index, seen) in Seen::all(radar, scene).iter().enumerate().filter(|(_, s)| s.object.body().is_some()) {
+    for (index, seen) in SeenObject::all(radar, scene).iter().enumerate().filter(|(_, s)| s.object.body().is_some()) {
         let mut echoes = Vec::new();
         seen.scatterer(radar).echoes(&antennas, &mut echoes);
         all.extend(echoes.into_iter().filter(PathEcho::is_heard).map(|echo| (index, echo)));
@@ -157,7 +156,7 @@ pub fn heard_in_the_middle(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho
     all
 }
 
-/// What echoes, as whatever evaluates samples takes it.
+/// What echoes, as the algorithms for samples take it.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a> {
     /// Reflectors that nothing hides.
@@ -202,7 +201,7 @@ impl Sources<'_> {
     }
 
     /// Replaces `out` by the echoes of all scatterers at `pair`, those it doesn't hear included: their order is the same everywhere.
-    pub fn scattered(&self, antennas: impl Into<Antennas>, out: &mut Vec<PathEcho>) {
+    pub fn scattered(&self, antennas: impl Into<AntennaPlaces>, out: &mut Vec<PathEcho>) {
         out.clear();
         let antennas = antennas.into();
         self.scatterers.iter().for_each(|s| s.echoes(&antennas, out));

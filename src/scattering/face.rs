@@ -6,7 +6,7 @@
 
 use super::geometry::{V, hypotenuse, root};
 use super::transition::{slope, transition};
-use super::{Antennas, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
+use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
 
 /// An antenna on the line of a face is taken to be this far beside it, metres.
@@ -31,28 +31,26 @@ impl Face {
     /// The face from one end to the other, (x, y) in metres.
     pub fn new([from, to]: [[f64; 2]; 2], is_two_sided: bool, reflectivity: f64) -> Self {
         let (from, to) = (V::from(from), V::from(to));
-        // A face of no length has no echo, in whatever direction it leads.
+        // A face of no length has no echo, in any direction.
         let length_metres = (to - from).norm().max(1e-12);
         Face { from, along: (to - from) * length_metres.recip(), length_metres, is_two_sided, reflectivity }
     }
 
-    /// Unit vector to its outside.
     pub(super) fn outward(&self) -> V {
         self.along.right()
     }
 
-    /// The place `u` metres along it.
     pub(super) fn place(&self, u: f64) -> V {
         self.from + self.along * u
     }
 
     /// Its glint, the diffraction of its beginning and that of its end.
-    pub fn echoes(&self, wave: &Wave, antennas: &Antennas) -> [PathEcho; 3] {
+    pub fn echoes(&self, wave: &Wave, antennas: &AntennaPlaces) -> [PathEcho; 3] {
         self.lit_echoes(wave, antennas, [0.0, self.length_metres])
     }
 
     /// The same where only the stretch `lit_metres` along it is lit.
-    pub(super) fn lit_echoes(&self, wave: &Wave, antennas: &Antennas, lit_metres: [f64; 2]) -> [PathEcho; 3] {
+    pub(super) fn lit_echoes(&self, wave: &Wave, antennas: &AntennaPlaces, lit_metres: [f64; 2]) -> [PathEcho; 3] {
         let [low, high] = lit_metres;
         let seen = Heights::new(self, antennas);
         let silent = |u: f64, kind| PathEcho::silent(self.place(u).into(), kind);
@@ -102,7 +100,6 @@ struct Heights {
     outside: bool,
 }
 
-/// The specular point.
 struct Foot {
     along_metres: f64,
     range_metres: f64,
@@ -119,7 +116,7 @@ struct Edge {
 }
 
 impl Heights {
-    fn new(face: &Face, antennas: &Antennas) -> Self {
+    fn new(face: &Face, antennas: &AntennaPlaces) -> Self {
         let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(|p| V::from(p) - face.from);
         let (ht, hr) = (t.dot(face.outward()), r.dot(face.outward()));
         Heights {

@@ -2,7 +2,6 @@
 
 use std::ops::{Add, Mul, Sub};
 
-/// A place or a direction in the plane, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct V(pub f64, pub f64);
 
@@ -66,7 +65,6 @@ pub(super) fn hypotenuse(a: f64, b: f64) -> f64 {
     root(a * a + b * b)
 }
 
-/// Square root.
 pub(super) fn root(v: f64) -> f64 {
     v.sqrt()
 }

@@ -38,7 +38,7 @@ mod sight;
 mod strips;
 pub mod transition;
 
-pub use echoing::{Echoing, Seen, Sources, heard_in_the_middle};
+pub use echoing::{Echoing, SeenObject, Sources, heard_in_the_middle};
 pub use scatterer::Scatterer;
 
 use crate::radar::{Pair, Pattern, Radar};
@@ -50,24 +50,24 @@ pub const REFERENCE_LENGTH_METRES: f64 = 1.0;
 
 /// Where an echo leaves and where it is heard, (x, y) in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Antennas {
+pub struct AntennaPlaces {
     /// The transmitter.
     pub transmitter_metres: [f64; 2],
     /// The receiver.
     pub receiver_metres: [f64; 2],
 }
 
-impl From<Pair> for Antennas {
+impl From<Pair> for AntennaPlaces {
     fn from(pair: Pair) -> Self {
         let [transmitter_metres, receiver_metres] = pair.places_metres();
-        Antennas { transmitter_metres, receiver_metres }
+        AntennaPlaces { transmitter_metres, receiver_metres }
     }
 }
 
-impl Antennas {
+impl AntennaPlaces {
     /// Both antennas at one place.
     pub fn at(place_metres: [f64; 2]) -> Self {
-        Antennas { transmitter_metres: place_metres, receiver_metres: place_metres }
+        AntennaPlaces { transmitter_metres: place_metres, receiver_metres: place_metres }
     }
 }
 
@@ -148,7 +148,6 @@ pub struct PathEcho {
 }
 
 impl PathEcho {
-    /// No echo, from this place.
     pub(crate) fn silent(place_metres: [f64; 2], kind: EchoKind) -> Self {
         PathEcho {
             range_metres: 0.0,
@@ -166,7 +165,6 @@ impl PathEcho {
         self.amplitude != Complex64::default()
     }
 
-    /// This echo, its amplitude times a number.
     pub(crate) fn times(self, factor: Complex64) -> Self {
         PathEcho { amplitude: self.amplitude * factor, tilt: self.tilt * factor, ..self }
     }

@@ -3,7 +3,7 @@
 use super::corner;
 use super::face::Face;
 use super::geometry::{V, crosses};
-use super::{Antennas, EchoKind, PathEcho, Wave};
+use super::{AntennaPlaces, EchoKind, PathEcho, Wave};
 use crate::scene::shape::inner_corners;
 use num_complex::Complex64;
 
@@ -16,7 +16,6 @@ pub struct Outline {
     faces: Vec<Face>,
     /// Corners that point inwards.
     inner: Vec<usize>,
-    /// The same, for each corner.
     is_inner: Vec<bool>,
 }
 
@@ -43,7 +42,7 @@ impl Outline {
     }
 
     /// Adds a glint for each face, an edge for each corner, and six double reflections for each inner corner.
-    pub fn echoes(&self, wave: &Wave, antennas: &Antennas, out: &mut Vec<PathEcho>) {
+    pub fn echoes(&self, wave: &Wave, antennas: &AntennaPlaces, out: &mut Vec<PathEcho>) {
         let count = self.faces.len();
         let begin = out.len();
         out.resize(begin + 2 * count, PathEcho::silent([0.0, 0.0], EchoKind::Edge));
@@ -82,8 +81,7 @@ impl Outline {
         }
     }
 
-    /// Whether an arm of its own stands between `place` and an antenna.
-    pub(super) fn hides(&self, place: V, antennas: &Antennas) -> bool {
+    pub(super) fn hides(&self, place: V, antennas: &AntennaPlaces) -> bool {
         let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(V::from);
         self.faces.iter().any(|face| {
             let (a, b) = (face.from, face.place(face.length_metres));
@@ -93,7 +91,6 @@ impl Outline {
         })
     }
 
-    /// Whether any of its corners points inwards.
     pub(super) fn has_inner_corners(&self) -> bool {
         !self.inner.is_empty()
     }

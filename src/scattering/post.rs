@@ -2,13 +2,12 @@
 //! Section Handbook*, chapter 4).
 
 use super::geometry::{V, root};
-use super::{Antennas, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
+use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
 
 /// Radii over the wavelength, as physical wave number times radius, from which on the next term improves the first.
 const LEAST_REFINED: f64 = 5.0;
 
-/// Steps of Newton's method from the bisector of the two directions.
 const STEPS: usize = 3;
 
 /// A circle.
@@ -26,7 +25,7 @@ impl Circle {
     }
 
     /// Its echo; none where an antenna stands inside. `refined` adds the next term of the series.
-    pub fn echo(&self, wave: &Wave, antennas: &Antennas, refined: bool) -> PathEcho {
+    pub fn echo(&self, wave: &Wave, antennas: &AntennaPlaces, refined: bool) -> PathEcho {
         let Circle { centre, radius_metres: radius, reflectivity } = *self;
         let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(|p| V::from(p) - centre);
         let (far_t, far_r) = (t.norm(), r.norm());

@@ -1,7 +1,7 @@
 //! What the echoes are held against: quadrature of physical optics over a face, and the exact series of a cylinder.
 
 use super::transition::EIGHTH_TURN;
-use super::{Antennas, REFERENCE_LENGTH_METRES};
+use super::{AntennaPlaces, REFERENCE_LENGTH_METRES};
 use crate::radar::Radar;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -27,7 +27,7 @@ pub fn face(
     radar: &Radar,
     [a, b]: [[f64; 2]; 2],
     r: f64,
-    antennas: &Antennas,
+    antennas: &AntennaPlaces,
     samples: &[usize],
     panel_radians: f64,
 ) -> Vec<Complex64> {
@@ -86,8 +86,8 @@ fn bessel(x: f64, top: usize) -> (Vec<f64>, Vec<f64>) {
     (first, second)
 }
 
-/// The exact echo of a perfect cylinder at sample `n`, E along the post, from a line source that is also the observer, whatever of its
-/// phase is that of the way to the cylinder's nearest point included.
+/// The exact echo of a perfect cylinder at sample `n`, E along the post, from a line source that is also the observer, the
+/// phase of the way to the cylinder's nearest point included.
 pub fn post(radar: &Radar, centre: [f64; 2], radius: f64, antenna: [f64; 2], n: usize) -> Complex64 {
     let away = (antenna[0] - centre[0]).hypot(antenna[1] - centre[1]);
     let k = radians_per_metre(radar, n as f64) / 2.0;

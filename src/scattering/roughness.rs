@@ -5,7 +5,7 @@
 
 use super::face::Face;
 use super::geometry::V;
-use super::{Antennas, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
+use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -17,7 +17,6 @@ pub fn coherent(wave: &Wave, deviation_metres: f64, cos_incidence: f64) -> f64 {
     (-(wave.radians_per_metre * deviation_metres * cos_incidence).powi(2) / 2.0).exp()
 }
 
-/// A place that a rough face scatters from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Grain {
     place: V,
@@ -30,7 +29,6 @@ struct Grain {
 pub struct RoughFace {
     face: Face,
     deviation_metres: f64,
-    /// Length that each grain stands for, metres.
     share_metres: f64,
     grains: Vec<Grain>,
 }
@@ -54,7 +52,7 @@ impl RoughFace {
     }
 
     /// Adds the echo of every grain.
-    pub fn echoes(&self, wave: &Wave, antennas: &Antennas, out: &mut Vec<PathEcho>) {
+    pub fn echoes(&self, wave: &Wave, antennas: &AntennaPlaces, out: &mut Vec<PathEcho>) {
         let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(V::from);
         let outward = self.face.outward();
         out.extend(self.grains.iter().map(|grain| {

@@ -6,7 +6,7 @@ use super::polygon::Outline;
 use super::post::Circle;
 use super::roughness::{RoughFace, coherent};
 use super::shadow::{Obstacle, behind};
-use super::{Antennas, EchoKind, PathEcho, Wave};
+use super::{AntennaPlaces, EchoKind, PathEcho, Wave};
 use crate::radar::Radar;
 use crate::scene::body::{DIFFUSE_SPACING_METRES, MAX_DIFFUSE, diffuse_points};
 use crate::scene::{Body, Mirror, Object, Reflector, Shape};
@@ -91,7 +91,7 @@ impl Scatterer {
     }
 
     /// Adds its echoes at a pair of antennas.
-    pub fn echoes(&self, antennas: &Antennas, out: &mut Vec<PathEcho>) {
+    pub fn echoes(&self, antennas: &AntennaPlaces, out: &mut Vec<PathEcho>) {
         let begin = out.len();
         self.direct(antennas, out);
         self.through_pattern(antennas, |place| [place, place], &mut out[begin..]);
@@ -106,7 +106,7 @@ impl Scatterer {
     }
 
     /// What comes back without a mirror.
-    fn direct(&self, antennas: &Antennas, out: &mut Vec<PathEcho>) {
+    fn direct(&self, antennas: &AntennaPlaces, out: &mut Vec<PathEcho>) {
         let begin = out.len();
         let wave = &self.wave;
         match &self.source {
@@ -142,7 +142,7 @@ impl Scatterer {
     /// Takes off what elements of a pattern don't send and hear: `towards` is where a wave leaves for and comes from.
     fn through_pattern(
         &self,
-        antennas: &Antennas,
+        antennas: &AntennaPlaces,
         towards: impl Fn([f64; 2]) -> [[f64; 2]; 2],
         echoes: &mut [PathEcho],
     ) {
@@ -156,11 +156,11 @@ impl Scatterer {
     }
 
     /// Both ways by the mirror, and one way each: both orders of the latter are one echo of twice the amplitude.
-    fn ghosts(&self, mirror: &Mirror, antennas: &Antennas, out: &mut Vec<PathEcho>) {
+    fn ghosts(&self, mirror: &Mirror, antennas: &AntennaPlaces, out: &mut Vec<PathEcho>) {
         let count = self.echo_count() / 3;
         let image = |[x, y]: [f64; 2]| mirror.image_metres(x, y);
-        let there = Antennas { transmitter_metres: image(antennas.transmitter_metres), ..*antennas };
-        let both = Antennas { receiver_metres: image(antennas.receiver_metres), ..there };
+        let there = AntennaPlaces { transmitter_metres: image(antennas.transmitter_metres), ..*antennas };
+        let both = AntennaPlaces { receiver_metres: image(antennas.receiver_metres), ..there };
         let begin = out.len();
         for (seen, factor, back_by_mirror) in
             [(both, mirror.reflection.powi(2), true), (there, 2.0 * mirror.reflection, false)]
@@ -180,7 +180,7 @@ impl Scatterer {
     }
 }
 
-fn point(wave: &Wave, antennas: &Antennas, point: &Reflector) -> PathEcho {
+fn point(wave: &Wave, antennas: &AntennaPlaces, point: &Reflector) -> PathEcho {
     let place = [point.x_metres, point.y_metres];
     let leg = |antenna: [f64; 2]| (antenna[0] - place[0]).hypot(antenna[1] - place[1]);
     let (there, back) = (leg(antennas.transmitter_metres), leg(antennas.receiver_metres));

@@ -5,7 +5,7 @@
 
 use super::geometry::{V, hypotenuse, root};
 use super::transition::{passing, transition};
-use super::{Antennas, PathEcho, Wave};
+use super::{AntennaPlaces, PathEcho, Wave};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -15,14 +15,12 @@ const FADE: [f64; 2] = [3.0, FADED];
 /// Fresnel's measure from which on an edge has no effect at all.
 pub(super) const FADED: f64 = 6.0;
 
-/// Most corners of an obstacle that need no memory of their own.
-const FEW: usize = 16;
+const MAX_INLINE_CORNERS: usize = 16;
 
 /// What hides: convex.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstacle {
     shape: Convex,
-    /// A circle around it.
     centre: V,
     radius_metres: f64,
 }
@@ -30,7 +28,6 @@ pub struct Obstacle {
 #[derive(Debug, Clone, PartialEq)]
 enum Convex {
     Circle,
-    /// Corners, in order; the two ends of a wall.
     Corners(Vec<V>),
 }
 
@@ -65,7 +62,6 @@ impl Obstacle {
         Obstacle { shape: Convex::Corners(corners), centre, radius_metres }
     }
 
-    /// What passes on `way`.
     fn passage(&self, way: &Way) -> Passage {
         let Way { antenna, unit, widest_square, ref ray } = *way;
         let full = ray.full;
@@ -88,8 +84,8 @@ impl Obstacle {
             }
             Convex::Corners(corners) => {
                 let seen = |c: &V| ((*c - antenna).dot(unit), unit.cross(*c - antenna));
-                if corners.len() <= FEW {
-                    let mut few = [(0.0, 0.0); FEW];
+                if corners.len() <= MAX_INLINE_CORNERS {
+                    let mut few = [(0.0, 0.0); MAX_INLINE_CORNERS];
                     few.iter_mut().zip(corners).for_each(|(f, c)| *f = seen(c));
                     edges.meet_outline(ray, &few[..corners.len()]);
                 } else {
@@ -124,11 +120,8 @@ impl Way {
     }
 }
 
-/// A way, with lengths in metres.
 struct Ray {
-    /// To the place.
     full: f64,
-    /// And on behind it.
     whole: f64,
     half_kappa: f64,
 }
@@ -153,7 +146,6 @@ impl Ray {
     }
 }
 
-/// The outermost edges that were met.
 struct Edges {
     top: f64,
     low: f64,
@@ -215,8 +207,7 @@ impl Edges {
     }
 }
 
-/// An echo as it is behind obstacles.
-pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &Antennas, mut echo: PathEcho) -> PathEcho {
+pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &AntennaPlaces, mut echo: PathEcho) -> PathEcho {
     if obstacles.is_empty() {
         return echo;
     }

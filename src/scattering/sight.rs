@@ -10,7 +10,6 @@ use super::shadow::FADED;
 use crate::radar::{BuiltArray, Radar};
 use crate::scene::{Object, Shape};
 
-/// The array, as what bodies stand before.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Array {
     /// The corners of a rectangle that no antenna stands beyond, metres.
@@ -19,7 +18,6 @@ pub(super) struct Array {
     faded: f64,
 }
 
-/// What may hide something: a convex hull, or a circle.
 #[derive(Debug, Clone)]
 pub(super) struct Screen {
     corners: Vec<V>,
@@ -29,7 +27,6 @@ pub(super) struct Screen {
     farthest: f64,
 }
 
-/// All ways from the array to an object.
 #[derive(Debug, Clone)]
 pub(super) struct Ways {
     hull: Vec<V>,
@@ -176,7 +173,7 @@ fn hull(mut places: Vec<V>) -> Vec<V> {
 mod tests {
     use super::*;
     use crate::radar::ElementError;
-    use crate::scattering::{Antennas, Scatterer};
+    use crate::scattering::{AntennaPlaces, Scatterer};
     use crate::scene::{Block, Point, Polygon, Post, Wall};
     use proptest::prelude::*;
 
@@ -207,7 +204,7 @@ mod tests {
         radar: &Radar,
         object: &Object,
         hidden_by: &[Object],
-        antennas: &Antennas,
+        antennas: &AntennaPlaces,
     ) -> Vec<crate::scattering::PathEcho> {
         let mut out = Vec::new();
         Scatterer::new(radar, object, hidden_by).echoes(antennas, &mut out);
@@ -226,7 +223,7 @@ mod tests {
             let shape = screen.body().unwrap().shape();
             if !array.ways_to(&object).may_pass(&array.screen(&shape)) {
                 for n in [0, 100, 511, 800, 1023] {
-                    let antennas = Antennas::from(radar.pair(n));
+                    let antennas = AntennaPlaces::from(radar.pair(n));
                     let (free, behind) = (echoes(&radar, &object, &[], &antennas), echoes(&radar, &object, std::slice::from_ref(&screen), &antennas));
                     prop_assert_eq!(free, behind);
                 }
@@ -253,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_beside_the_ways_is_left_out_though_circles_around_both_meet() {
+    fn a_body_beside_the_ways_is_left_out() {
         let array = Array::of(&Radar::default(), &BuiltArray::default());
         let wall = Object::Wall(Wall::new(-8.0, 20.0, 16.0, 75.0));
         let may = |x: f64| {

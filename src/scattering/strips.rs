@@ -81,7 +81,7 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever is nearer than the margin is found.
+        /// A disc nearer than the margin is found.
         #[test]
         fn what_is_near_is_found(
             places in prop::collection::vec((-30.0..30.0f64, 0.5..35.0f64, 0.0..3.0f64), 0..60),

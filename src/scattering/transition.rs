@@ -6,13 +6,13 @@ use num_complex::Complex64;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// From here on the series for large arguments is used.
-const FAR: f64 = 6.0;
+const SERIES_ARGUMENT: f64 = 6.0;
 
 /// `e^{j pi/4}`.
 pub const EIGHTH_TURN: Complex64 = Complex64::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2);
 
-/// Coefficients of `T` over Chebyshev's polynomials of `2 w / FAR - 1`; the largest relative error is 1e-10.
-const NEAR: [[f64; 2]; 27] = [
+/// Coefficients of `T` over Chebyshev's polynomials of `2 w / SERIES_ARGUMENT - 1`; the largest relative error is 1e-10.
+const CHEBYSHEV_COEFFICIENTS: [[f64; 2]; 27] = [
     [0.15220033138621655, -0.059032052451183564],
     [-0.1852116021916685, 0.021792813603750957],
     [0.09903855073599477, 0.017599819526617037],
@@ -44,17 +44,20 @@ const NEAR: [[f64; 2]; 27] = [
 
 /// `T(w)` for `w >= 0`: within 2e-10 of its size.
 pub fn transition(w: f64) -> Complex64 {
-    if w < FAR {
+    if w < SERIES_ARGUMENT {
         // Clenshaw's recurrence.
-        let x2 = 2.0 * (2.0 * w / FAR - 1.0);
+        let x2 = 2.0 * (2.0 * w / SERIES_ARGUMENT - 1.0);
         let (mut a, mut b) = ([0.0; 2], [0.0; 2]);
-        for c in NEAR[1..].iter().rev() {
+        for c in CHEBYSHEV_COEFFICIENTS[1..].iter().rev() {
             // Summed so that a step waits for one product and one sum of the step before.
             let next = [x2 * a[0] + (c[0] - b[0]), x2 * a[1] + (c[1] - b[1])];
             (b, a) = (a, next);
         }
         let x = x2 / 2.0;
-        return Complex64::new(NEAR[0][0] + x * a[0] - b[0], NEAR[0][1] + x * a[1] - b[1]);
+        return Complex64::new(
+            CHEBYSHEV_COEFFICIENTS[0][0] + x * a[0] - b[0],
+            CHEBYSHEV_COEFFICIENTS[0][1] + x * a[1] - b[1],
+        );
     }
     // erfcx(z) = (1 - 1/(2 z^2) + 3/(2 z^2)^2 - ...) / (sqrt(pi) z); z^2 = j w^2.
     let over = 0.5 / (w * w);

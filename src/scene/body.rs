@@ -357,7 +357,6 @@ impl Body<'_> {
         places
     }
 
-    /// The first element of `radar`'s array that stands inside, or on a wall.
     pub(super) fn covered_element(&self, radar: &Radar) -> Option<usize> {
         let shape = self.shape();
         let (low, high) = shape.extent();

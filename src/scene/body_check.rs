@@ -6,7 +6,6 @@ use super::body::{
 };
 use super::shape::{doubled_area, extent, out_of_reach, touch};
 
-/// What is said of the number of a body that is wrong.
 struct Check {
     object: usize,
     kind: &'static str,
@@ -73,7 +72,6 @@ impl Check {
     }
 }
 
-/// Checks the numbers of a wall, a box, a post or a polygon; `object` is used in the message only.
 pub(super) fn validate(body: &Body<'_>, object: usize) -> Result<(), SceneError> {
     let check = Check { object, kind: body.kind() };
     let angle = |value: f64| check.value("angle_degrees", value, value.is_finite(), "a finite number");

@@ -40,7 +40,6 @@ pub struct Interferer {
 }
 
 impl Default for Interferer {
-    /// A car ahead that interferes for a tenth of the chirp.
     fn default() -> Self {
         Interferer { x_metres: 6.0, y_metres: 25.0, strength: 0.1, crossing: 0.6, duration: 0.1 }
     }
@@ -71,7 +70,6 @@ pub struct Mirror {
 }
 
 impl Default for Mirror {
-    /// A guard rail at the left, along the road.
     fn default() -> Self {
         Mirror { x_metres: -5.0, y_metres: 0.0, direction_degrees: 90.0, reflection: 0.5 }
     }
@@ -152,7 +150,6 @@ impl Disturbances {
     }
 
     /// Checks that every number is usable and that the elements are those of `radar`.
-    ///
     /// # Errors
     /// [`SceneError`] names what is wrong.
     pub fn validate(&self, radar: &Radar) -> Result<(), SceneError> {

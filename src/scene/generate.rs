@@ -21,7 +21,7 @@ pub use room::NoRoom;
 use super::{Line, Object, Point, Scene};
 use crate::radar::Radar;
 use beyond::BeyondField;
-use field::Field;
+use field::PlacementField;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -53,7 +53,6 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// A number of its own, for keys of random streams.
     pub(crate) fn number(self) -> u8 {
         match self {
             Purpose::Training => 1,
@@ -74,7 +73,6 @@ pub struct Generator {
     seed: u64,
 }
 
-/// Points in each of the tables' lines.
 const LINE_POINTS: usize = 75;
 
 impl Generator {
@@ -132,7 +130,9 @@ impl Generator {
             | Kind::Dynamic
             | Kind::Near
             | Kind::Fences
-            | Kind::Rain => Field { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng),
+            | Kind::Rain => {
+                PlacementField { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
+            }
             Kind::Bodies | Kind::Street | Kind::Rails | Kind::Occlusion | Kind::Rough => {
                 things::objects(kind, self.max_range, rng)
             }
@@ -145,7 +145,6 @@ impl Generator {
         Scene { name, noise_seed: self.noise_seed(kind, number), objects, ..Scene::default() }
     }
 
-    /// A random point: normal range and normal angle, both clipped as the author's program clips them.
     fn point(&self, rng: &mut ChaCha8Rng) -> Object {
         let normal: f64 = StandardNormal.sample(rng);
         let range = self.max_range / 2.0 + 0.3 * self.max_range * normal;

@@ -60,7 +60,6 @@ pub struct Scene {
 }
 
 impl Default for Scene {
-    /// An empty scene.
     fn default() -> Self {
         let (name, notes) = (String::new(), String::new());
         Scene { name, notes, noise_seed: 0, shadows: true, disturbances: Disturbances::default(), objects: Vec::new() }
@@ -89,83 +88,32 @@ pub const MAX_REFLECTORS: usize = 200_000;
 
 /// Why a scene can't be simulated. Messages count objects from 1, as the app does.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum SceneError {
     /// A number of an object is not usable.
     #[error("object {} ({kind}): {field} is {value}; expected {expected}", object + 1)]
-    Value {
-        /// Index of the object in the scene, from 0.
-        object: usize,
-        /// What kind of object it is.
-        kind: &'static str,
-        /// Name of the field.
-        field: &'static str,
-        /// The value found.
-        value: f64,
-        /// What was expected instead.
-        expected: &'static str,
-    },
+    Value { object: usize, kind: &'static str, field: &'static str, value: f64, expected: &'static str },
     /// A reflector sits on an element of the array, where its echo would be infinite.
     #[error(
         "object {} ({kind}): its reflector at x = {x_metres} m, y = {y_metres} m lies on element {element} of the array; move it at least {MIN_ELEMENT_DISTANCE_METRES} m away",
         object + 1
     )]
-    OnElement {
-        /// Index of the object in the scene, from 0.
-        object: usize,
-        /// What kind of object it is.
-        kind: &'static str,
-        /// Position of the reflector, metres.
-        x_metres: f64,
-        /// Position of the reflector, metres.
-        y_metres: f64,
-        /// The element it lies on.
-        element: usize,
-    },
+    OnElement { object: usize, kind: &'static str, x_metres: f64, y_metres: f64, element: usize },
     /// The outline of a body makes no sense.
     #[error("object {} ({kind}): {fault}", object + 1)]
-    Outline {
-        /// Index of the object in the scene, from 0.
-        object: usize,
-        /// What kind of object it is.
-        kind: &'static str,
-        /// What is wrong, and what was expected.
-        fault: String,
-    },
+    Outline { object: usize, kind: &'static str, fault: String },
     /// An element of the array stands inside a body, or on a wall.
     #[error("object {} ({kind}): element {element} of the array lies inside it or on it; move it away from the array", object + 1)]
-    Covers {
-        /// Index of the object in the scene, from 0.
-        object: usize,
-        /// What kind of object it is.
-        kind: &'static str,
-        /// The element.
-        element: usize,
-    },
+    Covers { object: usize, kind: &'static str, element: usize },
     /// More reflectors, or more objects, than can be simulated.
     #[error("the scene has {count} {what}; at most {MAX_REFLECTORS} can be simulated")]
-    TooMany {
-        /// Reflectors or objects in the scene.
-        count: usize,
-        /// "reflectors", "objects", "echoes" or "reflectors and ghosts".
-        what: &'static str,
-    },
+    TooMany { count: usize, what: &'static str },
     /// The elements as they are built are not those of the radar.
     #[error("disturbances.elements: {0}")]
     Elements(#[from] BuiltArrayError),
     /// A number of an interferer or a mirror is not usable.
     #[error("{what}: {field} is {value}; expected a number from {low} to {high}")]
-    Disturbance {
-        /// "interferer" or "mirror".
-        what: &'static str,
-        /// Name of the field.
-        field: &'static str,
-        /// The value found.
-        value: f64,
-        /// Smallest that is taken.
-        low: f64,
-        /// Largest that is taken.
-        high: f64,
-    },
+    Disturbance { what: &'static str, field: &'static str, value: f64, low: f64, high: f64 },
     /// The radar that is to see it makes no sense, or asks for too much memory.
     #[error(transparent)]
     Radar(#[from] RadarError),
@@ -215,7 +163,6 @@ impl Scene {
     }
 
     /// Checks that the scene holds no more than [`MAX_REFLECTORS`] reflectors and objects, before anything is made of them.
-    ///
     /// # Errors
     /// [`SceneError::TooMany`] says how many there are.
     pub fn check_count(&self) -> Result<(), SceneError> {
@@ -223,7 +170,6 @@ impl Scene {
     }
 
     /// Checks that `more` objects have room beside those of the scene.
-    ///
     /// # Errors
     /// [`SceneError::TooMany`] says how many there would be.
     pub fn check_room(&self, more: &[Object]) -> Result<(), SceneError> {
@@ -238,7 +184,6 @@ impl Scene {
     /// Checks that `radar` can see this scene: the radar valid, every number finite and in range, no reflector on an element.
     ///
     /// Reflectors behind the array (y < 0), beyond the maximum range (they wrap) and very far away are all allowed.
-    ///
     /// # Errors
     /// [`SceneError`] names the object or the radar's field, and what was expected.
     pub fn validate(&self, radar: &Radar) -> Result<(), SceneError> {

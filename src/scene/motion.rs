@@ -54,7 +54,6 @@ impl Object {
         if range > 0.0 { (x * vx + y * vy) / range } else { vx.hypot(vy) }
     }
 
-    /// Checks the velocity; `index` is used in the message only.
     pub(super) fn check_velocity(&self, index: usize) -> Result<(), SceneError> {
         let names = ["velocity_x_metres_per_second", "velocity_y_metres_per_second"];
         for (field, value) in names.into_iter().zip(self.velocity_metres_per_second()) {

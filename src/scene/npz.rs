@@ -14,7 +14,6 @@ pub const Y_KEY: &str = "all_point_y";
 const MAX_ARRAY_BYTES: u64 = 8 * MAX_REFLECTORS as u64 + 1024;
 
 /// Reads the reflectors of an archive as points of reflectivity 1; other arrays in it are left alone.
-///
 /// # Errors
 /// [`NpzError`] when a key is missing, is not one row of finite numbers, or the two differ in length.
 pub fn read(path: &Path) -> Result<Scene, NpzError> {
@@ -32,7 +31,6 @@ pub fn read(path: &Path) -> Result<Scene, NpzError> {
 
 /// Writes the reflectors of a scene, and of its bodies where the array's middle sees them echo. Reflectivities, names, shadows and what made
 /// the points (a line, a cluster, a body) are not part of this format.
-///
 /// # Errors
 /// [`NpzError::Io`] when the file can't be written.
 pub fn write(path: &Path, scene: &Scene) -> Result<(), NpzError> {
@@ -40,7 +38,6 @@ pub fn write(path: &Path, scene: &Scene) -> Result<(), NpzError> {
 }
 
 /// Adds the two position arrays to an archive that holds more.
-///
 /// # Errors
 /// [`NpzError::Io`] when the file can't be written.
 pub fn add_positions(out: &mut NpzOutput, scene: &Scene) -> Result<(), NpzError> {

@@ -346,7 +346,6 @@ impl Object {
         }
     }
 
-    /// Checks every number; `index` is used in the message only.
     pub(super) fn validate(&self, index: usize) -> Result<(), SceneError> {
         const FINITE: &str = "a finite number";
         self.check_velocity(index)?;

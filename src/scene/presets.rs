@@ -58,7 +58,6 @@ impl Preset {
     }
 
     /// The scene.
-    ///
     /// # Errors
     /// None for the presets of [`ALL`]: a test reads each of them.
     pub fn load(&self) -> Result<SceneFile, SceneTextError> {

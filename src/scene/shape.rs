@@ -1,6 +1,5 @@
 //! Outlines of bodies, and the plane geometry that they need.
 
-/// Whether a coordinate is farther away than any scene reaches.
 pub(super) fn out_of_reach(metres: f64) -> bool {
     metres.abs() > 1e12
 }
@@ -40,7 +39,6 @@ pub(super) fn doubled_area(corners: &[[f64; 2]]) -> f64 {
     corners.windows(2).map(|w| (from(&w[0]), from(&w[1]))).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
 }
 
-/// Whether two stretches touch or cross.
 pub(super) fn touch([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     let side = |o: [f64; 2], u: [f64; 2], v: [f64; 2]| (u[0] - o[0]) * (v[1] - o[1]) - (u[1] - o[1]) * (v[0] - o[0]);
     let between =

@@ -37,7 +37,6 @@ impl Object {
     }
 }
 
-/// Direction of a polygon's first corner, seen from its middle.
 fn first_corner_degrees(polygon: &Polygon) -> f64 {
     let [x, y] = polygon.centre_metres();
     polygon.corners_metres.first().map_or(0.0, |corner| (corner[1] - y).atan2(corner[0] - x).to_degrees())

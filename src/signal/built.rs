@@ -12,8 +12,7 @@ use crate::task::Task;
 use num_complex::Complex64;
 
 /// Beat signal of a scene as `array` hears it, with the ghosts and the interferer of the scene, over the named floor; `seed` picks the
-/// floor's noise, which each element's receiver adds whatever its gain: that of an ideal array, except in dead elements, which hear nothing.
-///
+/// floor's noise, which each element's receiver adds at any gain: that of an ideal array, except in dead elements, which hear nothing.
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate_built(

@@ -20,7 +20,7 @@ use super::run::samples_of;
 use super::samples::BeatSignal;
 use super::unfinished::Unfinished;
 use crate::radar::{BuiltArray, Radar};
-use crate::scattering::{Echoing, PathEcho, Seen, Sources};
+use crate::scattering::{Echoing, PathEcho, SeenObject, Sources};
 use crate::scene::{Object, Scene, SceneError};
 use crate::task::Task;
 use ndarray::{Array2, Array3, Axis, concatenate, s};
@@ -64,7 +64,6 @@ pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
 }
 
 /// Samples of every chirp of `radar` over the named floor; `seed` picks its noise.
-///
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated, at the first chirp or at the last.
 pub fn simulate_chirps(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<ChirpSamples, SceneError> {
@@ -72,7 +71,6 @@ pub fn simulate_chirps(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) ->
 }
 
 /// [`simulate_chirps`], unless `task` is cancelled before it is done.
-///
 /// # Errors
 /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
 pub fn simulate_chirps_for(
@@ -117,14 +115,11 @@ pub fn simulate_chirps_for(
     Ok(ChirpSamples { samples })
 }
 
-/// Which objects are evaluated at every chirp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Moving {
-    /// None: everything rests.
     Nothing,
     /// Those that move; they change nothing of what rests.
     Some,
-    /// All: a body that moves hides what rests, or a mirror shows bodies.
     Everything,
 }
 
@@ -138,7 +133,6 @@ impl Moving {
         }
     }
 
-    /// What echoes of the objects that are evaluated once.
     fn rest(self, radar: &Radar, scene: &Scene) -> Echoing {
         match self {
             Moving::Nothing => Echoing::of(radar, scene),
@@ -147,7 +141,6 @@ impl Moving {
         }
     }
 
-    /// What echoes of those that are evaluated at every chirp, at a time.
     fn at(self, radar: &Radar, scene: &Scene, seconds: f64) -> Echoing {
         match self {
             Moving::Nothing => Echoing::default(),
@@ -157,19 +150,17 @@ impl Moving {
     }
 }
 
-/// What echoes of a part of the objects, the others hiding it.
 fn part(radar: &Radar, scene: &Scene, keep: impl Fn(&Object) -> bool) -> Echoing {
     if !scene.has_bodies() {
         let objects = scene.objects.iter().filter(|o| keep(o)).cloned().collect();
         let disturbances = scene.disturbances.clone();
         return Echoing::of(radar, &Scene { objects, disturbances, ..Scene::default() });
     }
-    let seen = Seen::all(radar, scene);
-    let kept: Vec<Seen> = seen.into_iter().filter(|seen| keep(&seen.object)).collect();
+    let seen = SeenObject::all(radar, scene);
+    let kept: Vec<SeenObject> = seen.into_iter().filter(|seen| keep(&seen.object)).collect();
     Echoing::seen(radar, &kept)
 }
 
-/// Noiseless samples of what rests at the chosen elements, `[elements, samples]`.
 fn at_rest(
     task: &Task,
     radar: &Radar,
@@ -192,7 +183,6 @@ fn at_rest(
     concatenate(Axis(0), &[first.view(), last.view()]).unwrap_or_else(|_| empty())
 }
 
-/// What is evaluated at every chirp.
 struct Motion<'a> {
     radar: &'a Radar,
     scene: &'a Scene,
@@ -203,7 +193,6 @@ struct Motion<'a> {
 }
 
 impl Motion<'_> {
-    /// Adds the echoes that move to the samples of a chirp, `[elements, samples]`.
     fn add(&self, chirp: usize, samples: &mut ndarray::ArrayViewMut2<'_, Complex64>) {
         if *self.moving == Moving::Nothing {
             return;
@@ -244,7 +233,6 @@ impl Motion<'_> {
         out.extend(scattered.iter().map(|e| self.model.heard::<1, false>(path(e)).first()));
     }
 
-    /// Adds an echo whose range grows by `way_metres` during the chirp.
     fn add_echo(&self, echo: &Echo, way_metres: f64, gain: Complex64, samples: &mut [Complex64]) {
         let per_sample = way_metres / self.radar.samples as f64;
         let carrier = self.radar.carrier_turns_per_metre() * per_sample;

@@ -12,8 +12,8 @@
 //! where no digits cancel but at the kernels' centres, `d = 0` and `d = +-N/(N-1)`, around which `z - 1` and the small factor of `g` are
 //! expanded together. Side lobes fall as `1 / (pi d^3)` of the peak: 12 bins either side for 1e-3, 110 for 1e-6.
 
-use super::heard::Heard;
-use super::path::{Pairs, Path, range_span_metres};
+use super::heard::HeardEchoes;
+use super::path::{PairBlocks, Path, range_span_metres};
 use super::phase::{EchoLanes, EchoModel};
 use super::rows::Rows;
 use super::simd::{ComplexLanes, Lanes, Real, phasor};
@@ -25,7 +25,7 @@ use std::f64::consts::{PI, TAU};
 /// Fewest samples for which the centres of the kernels lie apart from their repetitions.
 const MIN_SAMPLES: usize = 8;
 /// Bins around the peak where the kernels' centres lie.
-const NEAR: f64 = 1.5;
+const PEAK_BINS: f64 = 1.5;
 
 /// Bins on either side of a reflector's range in which its profile exceeds a quarter of `tolerance` times its peak: what is left out adds
 /// up over reflectors, and all in step.
@@ -113,8 +113,8 @@ impl<T: Real> ClosedForm<T> {
     pub(super) fn add_block<const W: usize, const FMA: bool>(
         &self,
         model: &EchoModel,
-        pairs: Pairs<W>,
-        heard: Heard<'_, W>,
+        pairs: PairBlocks<W>,
+        heard: HeardEchoes<'_, W>,
         quiet: f64,
         cells: &mut [ComplexLanes<T, W>],
     ) {
@@ -165,11 +165,11 @@ impl<T: Real> ClosedForm<T> {
             let turned = turning.times::<FMA>(ComplexLanes { re: Lanes::splat(w.re), im: Lanes::splat(w.im) });
             let distance = narrow - Lanes::splat(T::of(j as f64));
             let mut value = (turned - still).scaled(far::<T, W, FMA>(distance, bins, sin_edge));
-            if (j as f64) > lowest - NEAR && (j as f64) < highest + NEAR {
+            if (j as f64) > lowest - PEAK_BINS && (j as f64) < highest + PEAK_BINS {
                 let exact = offset - of(j as f64);
                 let near = self.near::<W, FMA>(exact, carrier);
                 for i in 0..W {
-                    if exact.0[i].abs() < NEAR {
+                    if exact.0[i].abs() < PEAK_BINS {
                         (value.re.0[i], value.im.0[i]) = (near.re.0[i], near.im.0[i]);
                     }
                 }
@@ -180,7 +180,7 @@ impl<T: Real> ClosedForm<T> {
         }
     }
 
-    /// The profile less than [`NEAR`] bins from the peak: expanded around the nearest of the three kernels' centres.
+    /// The profile less than [`PEAK_BINS`] bins from the peak: expanded around the nearest of the three kernels' centres.
     #[inline(always)]
     fn near<const W: usize, const FMA: bool>(
         &self,

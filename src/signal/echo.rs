@@ -23,7 +23,6 @@ pub fn add_echo(model: &EchoModel, pair: Pair, reflector: &Reflector, gain: Comp
     }
 }
 
-/// Echo of one reflector at one element, as the geometric series it is: `start * step^n1`.
 #[derive(Debug, Clone, Copy)]
 struct Series {
     start: Complex64,
@@ -37,7 +36,6 @@ struct Series {
 pub struct ArrayEcho {
     /// Whose echo it is; its reflectivity is 1.
     pub reflector: Reflector,
-    /// One an element.
     series: Vec<Series>,
     samples: usize,
     norm: f64,

@@ -5,12 +5,12 @@
 //! A level in dBm needs a convention for the power of a sample, and this is the program's: in the thesis' convention the sample `y` of one
 //! reflector has amplitude `P_out sigma / R^2`, with `P_out` in watts, `R` in metres and no unit for sigma; its power `|y|^2` counts as
 //! watts, so its level is `10 log10(|y|^2 / 1 mW)`. A reflector of sigma 1 at 20 m before a radar of 100 W has amplitude 0.25, which is
-//! +18 dBm. The number says nothing of the watts in anybody's receiver; it makes noise the same for every scene.
+//! +18 dBm. The number says nothing of the watts in a receiver; it makes noise the same for every scene.
 //!
 //! Where the radar has a link budget ([`crate::radar::budget`]), a level is one in its receivers: a sample `y` counts for what the radar
 //! equation has there.
 
-use super::path::{Pairs, plain_path};
+use super::path::{PairBlocks, plain_path};
 use super::samples::BeatSignal;
 use super::simd::{Kernel, LANES_F64, Lanes, Simd};
 use crate::radar::{DecibelMilliwatts, Decibels, Radar};
@@ -37,7 +37,7 @@ pub enum Floor {
     Exact,
     /// Thermal noise at this signal-to-noise ratio, measured per sample over the whole array.
     Snr(Decibels),
-    /// Thermal noise of this level a sample, whatever the scene: an empty scene over it is noise alone. The [module](self) says what a
+    /// Thermal noise of this level a sample, for any scene: an empty scene over it is noise alone. The [module](self) says what a
     /// sample's level is.
     #[serde(rename = "dbm")]
     Level(DecibelMilliwatts),
@@ -52,12 +52,12 @@ pub const SNR_DECIBELS: std::ops::RangeInclusive<f64> = -100.0..=300.0;
 pub const LEVEL_DECIBEL_MILLIWATTS: std::ops::RangeInclusive<f64> = -300.0..=200.0;
 
 impl Floor {
-    /// Whether it is white noise of a level that nobody but the samples tells.
+    /// Whether it is white noise of a level that the samples alone tell.
     pub fn is_thermal(self) -> bool {
         matches!(self, Floor::Snr(_) | Floor::Level(_) | Floor::Thermal)
     }
 
-    /// Variance of its noise where that has a level whatever the scene.
+    /// Variance of its noise where that has a level independent of the scene.
     pub fn level_variance(self, radar: &Radar) -> Option<f64> {
         match self {
             Floor::Level(level) if radar.budget.is_none() => Some(level.watts()),
@@ -67,7 +67,7 @@ impl Floor {
         }
     }
 
-    /// Whether its noise has a level whatever the scene.
+    /// Whether its noise has a level independent of the scene.
     pub fn has_level(self) -> bool {
         matches!(self, Floor::Level(_) | Floor::Thermal)
     }
@@ -134,7 +134,6 @@ pub fn thesis_noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>)
 /// Variance of an echo's rounding, for each unit of its power and of the squared ulp of its phase.
 const THESIS_ROUNDING: f64 = 1.0 / 12.0;
 
-/// Phase that the thesis' program rounds, for each metre.
 fn thesis_radians_per_metre(radar: &Radar) -> f64 {
     radar.carrier_radians_per_metre().abs()
 }
@@ -208,7 +207,7 @@ impl Kernel for BlockPowers<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let pairs = Pairs::new(|i| self.radar.pair(self.first_element + i));
+        let pairs = PairBlocks::new(|i| self.radar.pair(self.first_element + i));
         let mut total = Lanes::splat(0.0);
         for r in self.reflectors {
             let (range, mut amplitude) = plain_path(self.radar, &pairs, r);
@@ -221,7 +220,7 @@ impl Kernel for BlockPowers<'_> {
     }
 }
 
-/// White complex noise of unit variance for one element, the same for the same seed whatever thread asks.
+/// White complex noise of unit variance for one element, the same for the same seed on any thread.
 pub fn unit_noise(seed: u64, element: usize) -> impl Iterator<Item = Complex64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(element as u64);

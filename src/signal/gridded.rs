@@ -4,9 +4,9 @@
 //! Klinteberg, SIAM J. Sci. Comput. 41, C479, 2019); one transform of the grid and a division by the kernel's own transform give the
 //! samples. The cost of a reflector is a dozen cells instead of 512 samples.
 
-use super::heard::Heard;
+use super::heard::HeardEchoes;
 use super::lane_fft::LaneFft;
-use super::path::Pairs;
+use super::path::PairBlocks;
 use super::phase::{EchoLanes, EchoModel};
 use super::simd::{ComplexLanes, Lanes, Real, phasor};
 use crate::radar::Radar;
@@ -90,16 +90,16 @@ pub struct Gridding<T: Real> {
 
 /// Room for [`block_signal`] to work in.
 #[derive(Debug, Clone)]
-pub struct Scratch<T, const W: usize> {
+pub struct GriddedScratch<T, const W: usize> {
     grid: Vec<ComplexLanes<T, W>>,
     spare: Vec<ComplexLanes<T, W>>,
 }
 
-impl<T: Real, const W: usize> Scratch<T, W> {
+impl<T: Real, const W: usize> GriddedScratch<T, W> {
     /// For chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
-        Scratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples] }
+        GriddedScratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples] }
     }
 }
 
@@ -140,12 +140,12 @@ const SHORT: usize = 16;
 pub(super) fn block_signal<T: Real, const W: usize, const FMA: bool>(
     plan: &Gridding<T>,
     model: &EchoModel,
-    pairs: Pairs<W>,
-    heard: Heard<'_, W>,
-    scratch: &mut Scratch<T, W>,
+    pairs: PairBlocks<W>,
+    heard: HeardEchoes<'_, W>,
+    scratch: &mut GriddedScratch<T, W>,
     out: &mut [ComplexLanes<T, W>],
 ) {
-    let Scratch { grid, spare } = scratch;
+    let GriddedScratch { grid, spare } = scratch;
     grid.fill(ComplexLanes::zero());
     if heard.len() > SHORT {
         spare.fill(ComplexLanes::zero());

@@ -1,6 +1,6 @@
 //! What a block of elements hears: points, whose paths are worked out on the way, and paths that were worked out before.
 
-use super::path::{Pairs, Path};
+use super::path::{PairBlocks, Path};
 use super::phase::{EchoLanes, EchoModel};
 use crate::radar::Pair;
 use crate::scattering::{PathEcho, Sources};
@@ -8,15 +8,15 @@ use crate::scene::Reflector;
 
 /// Echoes at a block of pairs, in a fixed order.
 #[derive(Clone, Copy)]
-pub(super) struct Heard<'a, const W: usize> {
+pub(super) struct HeardEchoes<'a, const W: usize> {
     points: &'a [Reflector],
     paths: &'a [Path<W>],
 }
 
-impl<'a, const W: usize> Heard<'a, W> {
+impl<'a, const W: usize> HeardEchoes<'a, W> {
     /// The points first, then the paths.
     pub fn new(points: &'a [Reflector], paths: &'a [Path<W>]) -> Self {
-        Heard { points, paths }
+        HeardEchoes { points, paths }
     }
 
     /// How many.
@@ -27,7 +27,7 @@ impl<'a, const W: usize> Heard<'a, W> {
 
     /// Echo `index` at `pairs`.
     #[inline(always)]
-    pub fn echo<const FMA: bool>(&self, model: &EchoModel, pairs: Pairs<W>, index: usize) -> EchoLanes<W> {
+    pub fn echo<const FMA: bool>(&self, model: &EchoModel, pairs: PairBlocks<W>, index: usize) -> EchoLanes<W> {
         match self.points.get(index) {
             Some(point) => model.echo_lanes::<W, FMA>(pairs, point),
             None => model.heard::<W, FMA>(self.paths[index - self.points.len()]),

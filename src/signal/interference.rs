@@ -1,4 +1,4 @@
-//! Somebody else's chirp in our receivers.
+//! Another radar's chirp in our receivers.
 
 use super::samples::BeatSignal;
 use crate::radar::{BuiltArray, Radar};
@@ -13,7 +13,7 @@ const FILTER_ORDER: i32 = 8;
 /// Adds what each element hears of `interferer`: where its frequency comes near ours the difference is a chirp of its own, through zero at
 /// `crossing`, which the receiver's filter lets pass while it is below half a turn a sample.
 ///
-/// The waves come one way only: an element's phase follows the wavelength once, whichever way echoes are counted.
+/// The waves come one way only: an element's phase follows the wavelength once, for both carriers.
 pub fn add_interference(radar: &Radar, array: &BuiltArray, interferer: &Interferer, signal: &mut BeatSignal) {
     let samples = radar.samples as f64;
     let sweep = 1.0 / (interferer.duration * samples);

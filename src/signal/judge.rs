@@ -68,7 +68,6 @@ pub fn pair_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, pair: Pai
     sums.iter().map(|p| Complex64::new(p.re.hi() + p.re.lo(), p.im.hi() + p.im.lo())).collect()
 }
 
-/// Square root by one Newton step in double-double.
 fn root(a: TwoFloat) -> TwoFloat {
     let guess = a.hi().sqrt();
     (TwoFloat::from(guess) + a / guess) * 0.5

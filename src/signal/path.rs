@@ -16,20 +16,19 @@ use std::f64::consts::TAU;
 
 /// Pairs of antennas, one a lane.
 #[derive(Debug, Clone, Copy)]
-pub struct Pairs<const W: usize> {
+pub struct PairBlocks<const W: usize> {
     transmitter_x_metres: Lanes<f64, W>,
     receiver_x_metres: Lanes<f64, W>,
     /// y of transmitters and receivers; `None` where all stand on the array's line.
     y_metres: Option<[Lanes<f64, W>; 2]>,
-    /// Whether every pair is one antenna.
     is_monostatic: bool,
 }
 
-impl<const W: usize> Pairs<W> {
+impl<const W: usize> PairBlocks<W> {
     /// The pairs that `pair` tells for lanes 0, 1 and so on.
     pub fn new(pair: impl Fn(usize) -> Pair) -> Self {
         let pairs: [Pair; W] = std::array::from_fn(pair);
-        Pairs {
+        PairBlocks {
             transmitter_x_metres: Lanes(pairs.map(|p| p.transmitter_x_metres)),
             receiver_x_metres: Lanes(pairs.map(|p| p.receiver_x_metres)),
             y_metres: (!pairs.iter().all(Pair::is_on_line))
@@ -40,15 +39,15 @@ impl<const W: usize> Pairs<W> {
 }
 
 /// Elements that hear what they sent.
-impl<const W: usize> From<Lanes<f64, W>> for Pairs<W> {
+impl<const W: usize> From<Lanes<f64, W>> for PairBlocks<W> {
     #[inline(always)]
     fn from(element_x_metres: Lanes<f64, W>) -> Self {
         let (transmitter_x_metres, receiver_x_metres) = (element_x_metres, element_x_metres);
-        Pairs { transmitter_x_metres, receiver_x_metres, y_metres: None, is_monostatic: true }
+        PairBlocks { transmitter_x_metres, receiver_x_metres, y_metres: None, is_monostatic: true }
     }
 }
 
-impl<const W: usize> Pairs<W> {
+impl<const W: usize> PairBlocks<W> {
     /// y of transmitters and receivers, each `None` on the array's line.
     #[inline(always)]
     fn ahead(&self) -> [Option<Lanes<f64, W>>; 2] {
@@ -56,18 +55,16 @@ impl<const W: usize> Pairs<W> {
     }
 }
 
-impl From<Pair> for Pairs<1> {
+impl From<Pair> for PairBlocks<1> {
     fn from(pair: Pair) -> Self {
-        Pairs::new(|_| pair)
+        PairBlocks::new(|_| pair)
     }
 }
 
 /// Range and complex amplitude of one echo at `W` pairs.
 #[derive(Debug, Clone, Copy)]
 pub struct Path<const W: usize> {
-    /// Half the way there and back, metres.
     pub(super) range_metres: Double<Lanes<f64, W>>,
-    /// Amplitude, real.
     pub(super) amplitude: Lanes<f64, W>,
     /// Turns by which the amplitude's phase is not 0; `None` where it is 0 in every lane.
     pub(super) turns: Option<Lanes<f64, W>>,
@@ -88,7 +85,7 @@ impl<const W: usize> Path<W> {
     pub(super) fn of_point<const FMA: bool>(
         power_watts: f64,
         pattern: Option<Pattern>,
-        pairs: &Pairs<W>,
+        pairs: &PairBlocks<W>,
         r: &Reflector,
     ) -> Self {
         let scale = power_watts * r.reflectivity;
@@ -146,11 +143,10 @@ fn leg<const W: usize, const FMA: bool>(
     sum(root, residual.zip(root, |a, b| a / (2.0 * b)))
 }
 
-/// Range and amplitude of a point in plain f64, for whatever forms no phase of them.
 #[inline(always)]
 pub(super) fn plain_path<const W: usize>(
     radar: &Radar,
-    pairs: &Pairs<W>,
+    pairs: &PairBlocks<W>,
     r: &Reflector,
 ) -> (Lanes<f64, W>, Lanes<f64, W>) {
     let scale = radar.transmit_power_watts * r.reflectivity;
@@ -230,15 +226,15 @@ pub enum By {
 
 /// How much an echo changes for each unit of what moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Change {
+pub struct PathChange {
     /// Change of the range, metres.
     pub range_metres: f64,
     /// Relative change of the amplitude.
     pub amplitude: f64,
 }
 
-impl Change {
-    /// How the echo of a point at (`x_metres`, `y_metres`) changes, whatever its reflectivity.
+impl PathChange {
+    /// How the echo of a point at (`x_metres`, `y_metres`) changes, for any reflectivity.
     pub fn of_point(pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
         let range_metres = x_metres.hypot(y_metres);
         let [there, back] = pair.places_metres().map(|[antenna, ahead]| {
@@ -256,7 +252,7 @@ impl Change {
             let change = half_square / leg;
             [change, -change / leg]
         });
-        Change { range_metres: (there[0] + back[0]) / 2.0, amplitude: there[1] + back[1] }
+        PathChange { range_metres: (there[0] + back[0]) / 2.0, amplitude: there[1] + back[1] }
     }
 
     /// The same between elements of a pattern.
@@ -273,11 +269,11 @@ impl Change {
             };
             of_y / (y_metres - antenna_y)
         };
-        // Change::amplitude is the change of minus the logarithms of both legs.
+        // PathChange::amplitude is the change of minus the logarithms of both legs.
         let of_log_cos = of_log_y(pair.transmitter_y_metres)
             + of_log_y(pair.receiver_y_metres)
-            + Change::of_point(pair, [x_metres, y_metres], by).amplitude;
-        Change { amplitude: self.amplitude + pattern.relative_change(of_log_cos), ..self }
+            + PathChange::of_point(pair, [x_metres, y_metres], by).amplitude;
+        PathChange { amplitude: self.amplitude + pattern.relative_change(of_log_cos), ..self }
     }
 
     /// Relative change of the sample where an echo's phase turns by `turns_per_metre`.
@@ -293,7 +289,7 @@ mod tests {
     use super::*;
     use crate::radar::{Carrier, LinkBudget};
 
-    const APART: Pair = Pair::on_line(-0.4, 0.7);
+    const SEPARATE_PAIR: Pair = Pair::on_line(-0.4, 0.7);
 
     /// Antennas on a bumper that is bent.
     const BENT: Pair = Pair {
@@ -323,7 +319,7 @@ mod tests {
         // cos^n is one half at 30 degrees.
         let exponent = 0.5f64.ln() / 30f64.to_radians().cos().ln();
         for r in [point(2.0, 11.0), point(-9.0, 5.0), point(0.0, 14.0), point(3.0, -8.0)] {
-            for pair in [APART, BENT, Pair::at(0.3)] {
+            for pair in [SEPARATE_PAIR, BENT, Pair::at(0.3)] {
                 let cos = |[x, y]: [f64; 2]| (r.y_metres - y).abs() / (r.x_metres - x).hypot(r.y_metres - y);
                 let [there, back] = pair.places_metres().map(cos);
                 let power = (there * back).powf(exponent);
@@ -343,7 +339,7 @@ mod tests {
     fn the_echo_between_antennas_apart_is_the_judges() {
         for radar in radars() {
             for r in [point(2.0, 11.0), point(-7.0, 0.3), point(0.1, 60.0)] {
-                for pair in [APART, BENT] {
+                for pair in [SEPARATE_PAIR, BENT] {
                     let echo = EchoModel::new(&radar).echo(pair, &r);
                     let judged = judge::pair_signal(&radar, &[r], pair);
                     for (n1, judged) in judged.iter().enumerate() {
@@ -360,7 +356,7 @@ mod tests {
         let radar = Radar::default();
         let model = EchoModel::new(&radar);
         let r = point(2.0, 11.0);
-        for pair in [APART, BENT] {
+        for pair in [SEPARATE_PAIR, BENT] {
             let swapped = Pair {
                 transmitter_x_metres: pair.receiver_x_metres,
                 receiver_x_metres: pair.transmitter_x_metres,
@@ -375,7 +371,7 @@ mod tests {
     fn antennas_at_one_place_are_one_element_bit_for_bit() {
         let model = EchoModel::new(&Radar::default());
         let (x, r) = (0.3, point(2.0, 11.0));
-        let apart = Pairs::<1> { is_monostatic: false, ..Pairs::from(Lanes([x])) };
+        let apart = PairBlocks::<1> { is_monostatic: false, ..PairBlocks::from(Lanes([x])) };
         assert_eq!(model.echo_lanes::<1, false>(apart, &r), model.echo_lanes::<1, false>(Lanes([x]), &r));
     }
 
@@ -384,7 +380,7 @@ mod tests {
         for radar in radars() {
             let model = EchoModel::new(&radar);
             let r = point(2.0, 11.0);
-            let (range, amplitude) = thesis_path(&radar, APART, &r);
+            let (range, amplitude) = thesis_path(&radar, SEPARATE_PAIR, &r);
             let factor = Complex64::from_polar(1.5, 2.0);
             let plain = model.heard::<1, false>(Path::new([range], [Complex64::from(amplitude)])).first();
             let turned = model.heard::<1, false>(Path::new([range], [factor * amplitude])).first();
@@ -410,14 +406,14 @@ mod tests {
         for radar in radars().into_iter().chain([narrow()]) {
             let model = EchoModel::new(&radar);
             for by in [By::X, By::Y, By::Range, By::CosTheta] {
-                for pair in [APART, BENT, Pair::at(0.3)] {
+                for pair in [SEPARATE_PAIR, BENT, Pair::at(0.3)] {
                     for n1 in [0, 300] {
                         let at = |step| {
                             let [x, y] = moved(by, step);
                             model.echo(pair, &point(x, y)).sample(n1)
                         };
                         let expected = (at(STEP) - at(-STEP)) / (2.0 * STEP) / at(0.0);
-                        let change = Change::of_point(pair, [x, y], by).through(radar.pattern(), pair, [x, y], by);
+                        let change = PathChange::of_point(pair, [x, y], by).through(radar.pattern(), pair, [x, y], by);
                         let found = change.of_sample(radar.turns_per_metre(n1 as f64));
                         assert!((found - expected).norm() < 1e-6 * expected.norm(), "{by:?}: {found}, {expected}");
                     }
@@ -429,11 +425,12 @@ mod tests {
     #[test]
     fn plain_paths_agree_with_exact_ones() {
         let r = point(2.0, 11.0);
-        for (radar, pair) in
-            [Radar::default(), narrow()].into_iter().flat_map(|r| [APART, BENT, Pair::at(0.3)].map(|p| (r.clone(), p)))
+        for (radar, pair) in [Radar::default(), narrow()]
+            .into_iter()
+            .flat_map(|r| [SEPARATE_PAIR, BENT, Pair::at(0.3)].map(|p| (r.clone(), p)))
         {
             let echo = EchoModel::new(&radar).echo(pair, &r);
-            let (range, amplitude) = plain_path(&radar, &Pairs::from(pair), &r);
+            let (range, amplitude) = plain_path(&radar, &PairBlocks::from(pair), &r);
             let thesis = thesis_path(&radar, pair, &r);
             for (range, amplitude) in [(range.0[0], amplitude.0[0]), thesis] {
                 assert!((range - echo.distance_metres).abs() < 1e-14 * range);

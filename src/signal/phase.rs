@@ -8,7 +8,7 @@
 //! is the case of a single lane.
 
 use super::double::{Double, product, rest};
-use super::path::{Pairs, Path};
+use super::path::{PairBlocks, Path};
 use super::simd::Lanes;
 use crate::radar::{Pair, Pattern, Radar};
 use crate::scene::Reflector;
@@ -120,7 +120,7 @@ impl EchoModel {
     #[inline(always)]
     pub fn echo_lanes<const W: usize, const FMA: bool>(
         &self,
-        pairs: impl Into<Pairs<W>>,
+        pairs: impl Into<PairBlocks<W>>,
         r: &Reflector,
     ) -> EchoLanes<W> {
         self.heard::<W, FMA>(Path::of_point::<FMA>(self.power_watts, self.pattern, &pairs.into(), r))

@@ -5,7 +5,7 @@ use super::closed_form;
 use super::path::largest_amplitude;
 use super::simd::Simd;
 use crate::radar::Radar;
-use crate::scattering::{Echoing, Seen, Sources};
+use crate::scattering::{Echoing, SeenObject, Sources};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -127,13 +127,13 @@ pub fn amplitude_bound<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> f6
 }
 
 /// [`amplitude_bound`] of all that these objects reflect, object by object.
-pub fn amplitude_bound_of(radar: &Radar, seen: &[Seen]) -> f64 {
+pub fn amplitude_bound_of(radar: &Radar, seen: &[SeenObject]) -> f64 {
     amplitude_bounds(radar, seen.iter()).iter().sum()
 }
 
 /// [`amplitude_bound`] of each of these objects.
-pub fn amplitude_bounds<'a>(radar: &Radar, seen: impl Iterator<Item = &'a Seen>) -> Vec<f64> {
-    let seen: Vec<&Seen> = seen.collect();
-    let bound = |one: &&Seen| amplitude_bound(radar, &Echoing::seen(radar, std::slice::from_ref(*one)));
+pub fn amplitude_bounds<'a>(radar: &Radar, seen: impl Iterator<Item = &'a SeenObject>) -> Vec<f64> {
+    let seen: Vec<&SeenObject> = seen.collect();
+    let bound = |one: &&SeenObject| amplitude_bound(radar, &Echoing::seen(radar, std::slice::from_ref(*one)));
     seen.par_iter().with_min_len(4).map(bound).collect()
 }

@@ -65,7 +65,6 @@ impl TwoEnds {
     }
 
     /// The inverse of [`TwoEnds::flat`] for the ends of `radar`.
-    ///
     /// # Panics
     /// When there are fewer samples than `radar`'s ends have.
     pub fn of_flat(radar: &Radar, samples: &[Complex64]) -> Self {

@@ -16,9 +16,8 @@ use crate::task::Task;
 ///
 /// The fastest algorithm whose error stays far beneath the floor is used; `floor::Floor::Thesis` is exact phase and the noise that
 /// rounding leaves in the thesis' evaluation. [`super::direct::beat_signal`] makes that evaluation itself, rounding and all,
-/// [`super::exact`] and [`super::beat_signal`] any other. The same arguments give the same bits on the same instructions, whatever was
-/// computed before and on however many threads.
-///
+/// [`super::exact`] and [`super::beat_signal`] any other. The same arguments give the same bits on the same instructions,
+/// on any number of threads.
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {
@@ -26,7 +25,6 @@ pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result
 }
 
 /// [`simulate`], unless `task` is cancelled before it is done.
-///
 /// # Errors
 /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
 pub fn simulate_for(
@@ -46,7 +44,6 @@ pub fn simulate_for(
 }
 
 /// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them.
-///
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate_ends(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<TwoEnds, SceneError> {
@@ -54,7 +51,6 @@ pub fn simulate_ends(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> R
 }
 
 /// [`simulate_ends`], unless `task` is cancelled before it is done.
-///
 /// # Errors
 /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
 pub fn simulate_ends_for(

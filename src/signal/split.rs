@@ -3,8 +3,8 @@
 //! Recurrences drift as they run; this does not: every phasor is the product of four that were evaluated from their exact phase.
 //! Summed over reflectors it is a matrix product, carried out in registers, one lane an element.
 
-use super::heard::Heard;
-use super::path::Pairs;
+use super::heard::HeardEchoes;
+use super::path::PairBlocks;
 use super::phase::{EchoLanes, EchoModel};
 use super::simd::{ComplexLanes, Real, phasor};
 use crate::scene::Reflector;
@@ -57,30 +57,29 @@ impl<T: Real, const W: usize> Factors<T, W> {
 
 /// Room for [`block_signal`] to work in.
 #[derive(Debug, Clone)]
-pub struct Scratch<T, const W: usize> {
+pub struct SplitScratch<T, const W: usize> {
     factors: Vec<Factors<T, W>>,
     padded: Vec<ComplexLanes<T, W>>,
 }
 
-impl<T: Real, const W: usize> Scratch<T, W> {
+impl<T: Real, const W: usize> SplitScratch<T, W> {
     /// For chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let factors = vec![Factors::new(samples); CHUNK];
         let padded = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];
-        Scratch { factors, padded }
+        SplitScratch { factors, padded }
     }
 }
 
-/// Beat signal of all that is `heard` at `pairs`, one vector a sample.
 #[inline(always)]
 pub(super) fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     model: &EchoModel,
-    pairs: Pairs<W>,
-    heard: Heard<'_, W>,
+    pairs: PairBlocks<W>,
+    heard: HeardEchoes<'_, W>,
     samples: usize,
-    scratch: &'s mut Scratch<T, W>,
+    scratch: &'s mut SplitScratch<T, W>,
 ) -> &'s mut [ComplexLanes<T, W>] {
-    let Scratch { factors, padded } = scratch;
+    let SplitScratch { factors, padded } = scratch;
     padded.fill(ComplexLanes::zero());
     for begin in (0..heard.len()).step_by(CHUNK) {
         let count = CHUNK.min(heard.len() - begin);
@@ -98,7 +97,7 @@ pub(super) fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
 #[inline(always)]
 pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
     model: &EchoModel,
-    pairs: impl Into<Pairs<W>>,
+    pairs: impl Into<PairBlocks<W>>,
     r: &Reflector,
     rows: &mut [ComplexLanes<T, W>],
     columns: &mut [ComplexLanes<T, W>; STRIDE],

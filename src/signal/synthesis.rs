@@ -1,14 +1,14 @@
 //! Runs a block algorithm over the whole array: elements in blocks of one vector, blocks in parallel.
 //!
-//! Every block is computed alone and in the same order whatever the number of threads, so results do not depend on it.
+//! Every block is computed alone and in the same order for any number of threads, so results do not depend on it.
 
 use super::algorithm::Algorithm;
 use super::closed_form::ClosedForm;
 use super::floor::unit_noise;
 use super::gridded::{self, Gridding};
-use super::heard::{self, Heard};
+use super::heard::{self, HeardEchoes};
 use super::lane_fft::LaneFft;
-use super::path::{Pairs, Path};
+use super::path::{PairBlocks, Path};
 use super::phase::EchoModel;
 use super::plan::{BEST_TOLERANCE, Plan};
 use super::rows::Rows;
@@ -98,11 +98,10 @@ enum Method<T: Real> {
 }
 
 enum Scratch<T, const W: usize> {
-    Split(split::Scratch<T, W>),
-    Gridded(gridded::Scratch<T, W>, Vec<ComplexLanes<T, W>>),
+    Split(split::SplitScratch<T, W>),
+    Gridded(gridded::GriddedScratch<T, W>, Vec<ComplexLanes<T, W>>),
 }
 
-/// One block of samples.
 struct Block<'a, 'b, T: Real, const W: usize> {
     synthesis: &'a Synthesis<T, W>,
     first_element: usize,
@@ -115,9 +114,9 @@ impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
     #[inline(always)]
     fn samples<const FMA: bool>(self) -> &'b mut [ComplexLanes<T, W>] {
         let s = self.synthesis;
-        let pairs = Pairs::new(s.pair_of(self.first_element));
+        let pairs = PairBlocks::new(s.pair_of(self.first_element));
         let samples = s.radar.samples;
-        let heard = Heard::new(self.points, self.paths);
+        let heard = HeardEchoes::new(self.points, self.paths);
         match (self.scratch, &s.method) {
             (Scratch::Gridded(scratch, out), Method::Gridded(gridding)) => {
                 gridded::block_signal::<T, W, FMA>(gridding, &s.model, pairs, heard, scratch, out);
@@ -129,7 +128,6 @@ impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
     }
 }
 
-/// Samples, written as rows of f64.
 struct ToRows<'a, 'b, T: Real, const W: usize>(Block<'a, 'b, T, W>, &'b mut [Complex64]);
 
 impl<T: Real, const W: usize> Kernel for ToRows<'_, '_, T, W> {
@@ -146,7 +144,6 @@ impl<T: Real, const W: usize> Kernel for ToRows<'_, '_, T, W> {
     }
 }
 
-/// Samples of a block, or those already in place, windowed and transformed over range.
 struct ToProfiles<'a, 'b, T: Real, const W: usize>(
     &'a Synthesis<T, W>,
     Option<Block<'a, 'b, T, W>>,
@@ -169,7 +166,6 @@ impl<T: Real, const W: usize> Kernel for ToProfiles<'_, '_, T, W> {
     }
 }
 
-/// Profiles of a block in closed form, added to what is there.
 struct AddProfiles<'a, 'b, T: Real, const W: usize> {
     synthesis: &'a Synthesis<T, W>,
     plan: &'a ClosedForm<T>,
@@ -185,8 +181,8 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let s = self.synthesis;
-        let pairs = Pairs::new(s.pair_of(self.first_element));
-        let heard = Heard::new(self.points, self.paths);
+        let pairs = PairBlocks::new(s.pair_of(self.first_element));
+        let heard = HeardEchoes::new(self.points, self.paths);
         self.plan.add_block::<W, FMA>(&s.model, pairs, heard, self.quiet, self.cells);
     }
 }
@@ -218,7 +214,6 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         Synthesis { array: array.clone(), ..self }
     }
 
-    /// The antennas of lanes 0, 1 and so on of the block that begins with `first_element`.
     fn pair_of(&self, first_element: usize) -> impl Fn(usize) -> Pair {
         move |lane| self.array.pair(&self.radar, first_element + lane)
     }
@@ -235,8 +230,10 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
     fn scratch(&self) -> Scratch<T, W> {
         let samples = self.radar.samples;
         match self.method {
-            Method::Gridded(_) => Scratch::Gridded(gridded::Scratch::new(samples), vec![ComplexLanes::zero(); samples]),
-            Method::Split | Method::ClosedForm(_) => Scratch::Split(split::Scratch::new(samples)),
+            Method::Gridded(_) => {
+                Scratch::Gridded(gridded::GriddedScratch::new(samples), vec![ComplexLanes::zero(); samples])
+            }
+            Method::Split | Method::ClosedForm(_) => Scratch::Split(split::SplitScratch::new(samples)),
         }
     }
 

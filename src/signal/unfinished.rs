@@ -9,17 +9,17 @@ pub enum Unfinished {
     /// The scene can't be simulated.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// Somebody cancelled the task.
+    /// The task was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
 impl Unfinished {
-    /// What is wrong with the scene, for work on a task that nobody else holds.
+    /// What is wrong with the scene, for work on a task without another owner.
     pub(crate) fn of_scene(self) -> SceneError {
         match self {
             Unfinished::Scene(error) => error,
-            Unfinished::Cancelled(_) => unreachable!("nobody else can cancel it"),
+            Unfinished::Cancelled(_) => unreachable!("the task has no other owner"),
         }
     }
 }

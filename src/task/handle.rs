@@ -3,12 +3,12 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-/// Somebody asked the work to stop.
+/// The work was cancelled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
 
-/// Handle shared between long work and whoever waits for it.
+/// Handle shared between long work and its waiting caller.
 #[derive(Debug, Clone, Default)]
 pub struct Task {
     cancelled: Arc<AtomicBool>,
@@ -42,7 +42,6 @@ impl Task {
     }
 
     /// Stops a computation with `?` when it was cancelled.
-    ///
     /// # Errors
     /// [`Cancelled`] after [`Task::cancel`].
     pub fn check(&self) -> Result<(), Cancelled> {

@@ -66,11 +66,8 @@ struct Shared<Q, T> {
 /// Takes one request and gives its reply; the state of the work is inside.
 type Step<Q, T> = Box<dyn FnMut(Generation, Q, &Task) -> Reply<T>>;
 
-/// Where the work is done.
 enum Place<Q, T> {
-    /// On a thread, which has the name; it starts with the first request.
     Thread { name: String, started: Cell<bool> },
-    /// On the thread that asks for replies, where there is no other.
     Here(RefCell<Step<Q, T>>),
 }
 
@@ -99,7 +96,6 @@ fn step<S, Q, T>(
     }
 }
 
-/// Starts a thread that does what `shared` is asked for until it is told to stop. Where a panic ends the thread, another takes its place.
 fn serve<Q: Send + 'static, T: Send + 'static>(name: String, shared: Arc<Shared<Q, T>>) -> std::io::Result<()> {
     let called = name.clone();
     platform::spawn(&called, move || {
@@ -120,7 +116,6 @@ fn serve<Q: Send + 'static, T: Send + 'static>(name: String, shared: Arc<Shared<
 impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
     /// A worker whose thread is called `name` and starts with the first request. `start` makes the state that `work` keeps from request to
     /// request; `wake` is called from the thread after each reply.
-    ///
     /// # Errors
     /// None at present: a thread that can't be started is told with the first reply.
     pub fn spawn<S: 'static>(
@@ -143,7 +138,6 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         Ok(Worker { shared: Arc::new(Shared { slot: Mutex::new(slot), ready: Condvar::new(), step, wake }), place })
     }
 
-    /// Has the request that waits done.
     fn begin(&self) {
         match &self.place {
             Place::Here(_) => (self.shared.wake)(),
@@ -212,7 +206,6 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         std::mem::take(&mut self.shared.lock().replies)
     }
 
-    /// Does what waits, where there is no thread to do it.
     fn work_here(&self) {
         let Place::Here(step) = &self.place else { return };
         let pending = self.shared.lock().pending.take();
@@ -228,7 +221,6 @@ impl<Q, T> Shared<Q, T> {
         platform::lock(&self.slot)
     }
 
-    /// Hands over what came of the request that ran.
     fn reply(&self, reply: Reply<T>) {
         let mut slot = self.lock();
         slot.running = None;
@@ -271,7 +263,7 @@ impl<Q, T> Drop for Worker<Q, T> {
             running.task.cancel();
         }
         drop(slot);
-        // Nobody waits for the thread: work that doesn't look at its task would keep the window from closing.
+        // The thread is not joined: work that doesn't look at its task would keep the window from closing.
         self.shared.ready.notify_all();
     }
 }

@@ -1,17 +1,15 @@
 //! The blob of one reflector: its peak, its half-power widths, its first side lobes.
 
-use super::response::{Response, Row};
+use super::response::{Response, ResponseRow};
 use super::squint::cell_seen_from;
-use super::{Cell, elements};
+use super::{MapPlace, elements};
 use crate::maps::{Aperture, Spectrum};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
 
-/// Parts that a column is looked at in.
 const FINE: usize = 8;
 /// Steps to a bin while looking for the peak.
 const STEPS_PER_BIN: f64 = 4.0;
-/// Golden ratio's smaller part.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
 
 /// A ripple below this is not reported as a side lobe: it is below every floor but the exact one. A blob that the near field draws out
@@ -22,7 +20,7 @@ pub const LEAST_LOBE: Decibels = Decibels(-100.0);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blob {
     /// The peak.
-    pub peak: Cell,
+    pub peak: MapPlace,
     /// Magnitude of the peak, as on the complex map.
     pub magnitude: f64,
     /// From the peak to either side, the columns over which it stays above half power; half the map where it never falls so low.
@@ -42,7 +40,6 @@ pub struct SideLobe {
     pub level: Decibels,
 }
 
-/// A row in fine columns, seen from its highest.
 struct Profile {
     /// Magnitudes, the highest first, rising columns, all around the map.
     cells: Vec<f64>,
@@ -51,7 +48,7 @@ struct Profile {
 }
 
 impl Profile {
-    fn new(row: &Row, spectrum: &Spectrum, columns: usize) -> Self {
+    fn new(row: &ResponseRow, spectrum: &Spectrum, columns: usize) -> Self {
         let mut cells = row.magnitudes(spectrum);
         let highest = (0..cells.len()).max_by(|a, b| cells[*a].total_cmp(&cells[*b])).unwrap_or(0);
         cells.rotate_left(highest);
@@ -123,7 +120,10 @@ impl Blob {
             (level.0 > LEAST_LOBE.0).then_some(SideLobe { columns: steps * fine, level })
         };
         Some(Blob {
-            peak: Cell { bin: bin.rem_euclid(radar.samples as f64), column: column.rem_euclid(radar.elements as f64) },
+            peak: MapPlace {
+                bin: bin.rem_euclid(radar.samples as f64),
+                column: column.rem_euclid(radar.elements as f64),
+            },
             magnitude,
             columns: sides.map(|upward| profile.half_power(upward) * fine),
             bins: sides.map(along_bins),
@@ -150,7 +150,7 @@ fn maximum(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
 
 /// The path of a reflector's blob as the array hears it from one element of `aperture` to the next: `points` cells, from the first
 /// element to the last.
-pub(super) fn path(radar: &Radar, reflector: &Reflector, aperture: Aperture, points: usize) -> Vec<Cell> {
+pub(super) fn path(radar: &Radar, reflector: &Reflector, aperture: Aperture, points: usize) -> Vec<MapPlace> {
     let elements = elements(radar, aperture);
     let (left, right) =
         (radar.element_x_metres(elements.start), radar.element_x_metres(elements.end.saturating_sub(1)));
@@ -226,7 +226,7 @@ pub(super) mod tests {
     }
 
     /// Measures it on the simulated samples alone.
-    fn simulated_through(radar: &Radar, reflector: &Reflector, aperture: Aperture, at: Cell) -> Cross {
+    fn simulated_through(radar: &Radar, reflector: &Reflector, aperture: Aperture, at: MapPlace) -> Cross {
         let signal = exact::beat_signal(radar, &[*reflector]).samples;
         let turned = |weights: Vec<f64>, turns: f64| -> Vec<Complex64> {
             let turn = |(n, w): (usize, f64)| w * Complex64::cis(-std::f64::consts::TAU * turns * n as f64);
@@ -300,7 +300,7 @@ pub(super) mod tests {
         let cross = simulated_through(radar, reflector, aperture, blob.peak);
         let there = cross.row[0];
         prop_assert!((blob.magnitude / there - 1.0).abs() < 1e-6, "{blob:?}, seen {there}");
-        let seen = Cell { bin: bin as f64 / PARTS as f64, column: column as f64 / PARTS as f64 };
+        let seen = MapPlace { bin: bin as f64 / PARTS as f64, column: column as f64 / PARTS as f64 };
         let (bins_off, columns_off) = blob.peak.offset_to(&seen, radar);
         // Of two peaks of the same height either will do.
         let same_height = there > 0.995 * highest;
@@ -309,7 +309,7 @@ pub(super) mod tests {
 
         Around { cells: &cross.column, from: 0 }.hold_widths(blob.bins)?;
         // The row in the same fine columns as the prediction, so that both find the same shallow valleys.
-        let whole = Cell { column: (blob.peak.column * FINE as f64).round() / FINE as f64, ..blob.peak };
+        let whole = MapPlace { column: (blob.peak.column * FINE as f64).round() / FINE as f64, ..blob.peak };
         let row = simulated_through(radar, reflector, aperture, whole).row;
         let near = [row.len() - 1, 0, 1];
         let from = near.into_iter().max_by(|a, b| row[*a].total_cmp(&row[*b])).unwrap_or(0);

@@ -1,6 +1,6 @@
 //! A chirp and its echoes as frequencies against time: what is sent, what returns, and the beat as their difference.
 //!
-//! The samples depend on the bandwidth and on the number of samples alone: the beat turns `2 R B / c` times in a chirp, whatever its duration
+//! The samples depend on the bandwidth and on the number of samples alone: the beat turns `2 R B / c` times in a chirp, for any duration
 //! (thesis section 2.1). The thesis' radar has no duration; [`Radar::chirp_seconds`] gives it one. The chirp here is the one that table 3.1
 //! names, which rises from the carrier. That of the thesis' formula falls from half of it ([`crate::radar::Convention`]); its beats are as high.
 
@@ -9,7 +9,7 @@ use crate::scene::{Interferer, Scene};
 
 /// A linear chirp.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Chirp {
+pub struct ChirpShape {
     /// Frequency at its start, hertz.
     pub start_hz: f64,
     /// Swept bandwidth, hertz.
@@ -22,7 +22,7 @@ pub struct Chirp {
 
 /// What one pair of antennas hears of one object.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Heard {
+pub struct BeatTone {
     /// Index of the object in the scene.
     pub object: usize,
     /// Half the way from the transmitter to the object and on to the receiver, metres.
@@ -31,11 +31,11 @@ pub struct Heard {
     pub amplitude: f64,
 }
 
-impl Chirp {
+impl ChirpShape {
     /// The chirp of a radar.
-    pub fn of(radar: &Radar) -> Chirp {
+    pub fn of(radar: &Radar) -> ChirpShape {
         let Radar { carrier_hz: start_hz, bandwidth_hz, chirp_seconds: duration_seconds, samples, .. } = *radar;
-        Chirp { start_hz, bandwidth_hz, duration_seconds, samples }
+        ChirpShape { start_hz, bandwidth_hz, duration_seconds, samples }
     }
 
     /// How fast the frequency rises, hertz a second.
@@ -72,9 +72,9 @@ pub fn delay_seconds(range_metres: f64) -> f64 {
 }
 
 /// What a pair of antennas hears of every object, nearest first. A line, a cluster or a body is heard at each of its reflectors.
-pub fn heard(radar: &Radar, scene: &Scene, element: usize) -> Vec<Heard> {
+pub fn heard(radar: &Radar, scene: &Scene, element: usize) -> Vec<BeatTone> {
     let pair = radar.pair(element);
-    let mut all: Vec<Heard> = scene
+    let mut all: Vec<BeatTone> = scene
         .objects
         .iter()
         .enumerate()
@@ -85,7 +85,7 @@ pub fn heard(radar: &Radar, scene: &Scene, element: usize) -> Vec<Heard> {
             let [(there, _), (back, _)] = ways;
             let amplitude =
                 left(ways[0]) * left(ways[1]) * radar.transmit_power_watts * r.reflectivity / (there * back);
-            Heard { object, range_metres: (there + back) / 2.0, amplitude }
+            BeatTone { object, range_metres: (there + back) / 2.0, amplitude }
         })
         .collect();
     all.sort_by(|a, b| a.range_metres.total_cmp(&b.range_metres));
@@ -101,13 +101,13 @@ mod tests {
     #[test]
     fn a_beat_is_the_slope_times_the_way_there_and_back() {
         let radar = Radar::default();
-        let chirp = Chirp::of(&radar);
+        let chirp = ChirpShape::of(&radar);
         // 2 GHz in 25.6 us, 20 m away: 40 m of way are 133.4 ns.
         let beat = 2e9 / 25.6e-6 * (2.0 * 20.0 / 299_792_458.0);
         assert!((chirp.beat_hz(20.0) / beat - 1.0).abs() < 1e-12);
         assert!((chirp.beat_hz(20.0) - 10.423e6).abs() < 1e3, "{}", chirp.beat_hz(20.0));
         assert!((chirp.range_bin(beat) - radar.bin_of_range(20.0)).abs() < 1e-9);
-        let longer = Chirp::of(&Radar { chirp_seconds: 1e-3, ..radar.clone() });
+        let longer = ChirpShape::of(&Radar { chirp_seconds: 1e-3, ..radar.clone() });
         assert!((longer.range_bin(longer.beat_hz(20.0)) - radar.bin_of_range(20.0)).abs() < 1e-9);
         assert!((chirp.sent_hz(25.6e-6) - 79e9).abs() < 1.0);
     }
@@ -119,7 +119,7 @@ mod tests {
             let scene = Scene::of_points([(x, y)]);
             let profiles = range_transform(&radar, &simulate(&radar, &scene, Floor::Exact, 0).unwrap()).profiles;
             for element in [0, 40] {
-                let chirp = Chirp::of(&radar);
+                let chirp = ChirpShape::of(&radar);
                 let [one] = heard(&radar, &scene, element)[..] else { panic!("one object") };
                 let bin = chirp.range_bin(chirp.beat_hz(one.range_metres));
                 let row = profiles.row(element);
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn an_interferer_crosses_when_it_says() {
-        let chirp = Chirp::of(&Radar::default());
+        let chirp = ChirpShape::of(&Radar::default());
         let interferer = Interferer { crossing: 0.6, duration: 0.1, ..Interferer::default() };
         assert!(chirp.interferer_above_hz(&interferer, 0.6 * 25.6e-6).abs() < 1e-3);
         // Half a turn a sample, 10 MHz of 20, after half of its duration.

@@ -1,9 +1,8 @@
 //! Quantities that follow from a radar's constants alone.
 
-use super::{Pattern, fold_period_cos, squint_factor};
+use super::{WindowPattern, fold_period_cos, squint_factor};
 use crate::radar::{Decibels, Radar};
 
-/// Half power, in decibels.
 const HALF_POWER: Decibels = Decibels(3.010_299_956_639_812);
 
 /// The consequences of one radar's constants (thesis table 3.1 and section 2.2).
@@ -20,7 +19,7 @@ pub struct Consequences {
     /// Half-power beam width of one end.
     pub end_beam: BeamWidth,
     /// Columns from a blob to its first grating lobe: the angle transform repeats after one turn from element to element, which is the
-    /// width of the map whatever the spacing.
+    /// width of the map at any spacing.
     pub grating_columns: f64,
     /// The same in cos(theta): below 2 some directions have a grating lobe among the others (M. I. Skolnik, "Introduction to Radar
     /// Systems", on arrays).
@@ -52,7 +51,7 @@ pub struct BeamWidth {
 impl BeamWidth {
     fn new(radar: &Radar, elements: usize) -> Self {
         let all = radar.elements as f64;
-        let bins = Pattern::new(radar.window, elements).main_lobe_bins(HALF_POWER);
+        let bins = WindowPattern::new(radar.window, elements).main_lobe_bins(HALF_POWER);
         let columns = bins.map_or(all, |bins| bins * all / elements as f64);
         let cos_theta = (columns / all * fold_period_cos(radar)).min(2.0);
         BeamWidth { columns, cos_theta, radians: 2.0 * (cos_theta / 2.0).asin() }
@@ -67,7 +66,9 @@ impl Consequences {
         Consequences {
             range_bin_metres: bin,
             max_range_metres: radar.max_range_metres(),
-            range_width_metres: Pattern::new(radar.window, radar.samples).main_lobe_bins(HALF_POWER).map(|w| w * bin),
+            range_width_metres: WindowPattern::new(radar.window, radar.samples)
+                .main_lobe_bins(HALF_POWER)
+                .map(|w| w * bin),
             full_beam: BeamWidth::new(radar, radar.elements),
             end_beam: BeamWidth::new(radar, radar.end_elements),
             grating_columns: radar.elements as f64,

@@ -20,7 +20,6 @@ impl Ellipse {
         if !(x + y).is_finite() {
             return None;
         }
-        // Eigenvalues of the covariance; the smaller one from the determinant, which keeps the digits of a thin ellipse.
         let spread = ((x - y) / 2.0).hypot(both);
         let major = (x + y) / 2.0 + spread;
         let minor = ((x * y - both * both) / major).max(0.0);

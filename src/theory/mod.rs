@@ -38,7 +38,7 @@ pub use comb::comb_teeth;
 pub use consequences::Consequences;
 pub use ellipse::Ellipse;
 pub use overlay::Overlay;
-pub use pattern::Pattern;
+pub use pattern::WindowPattern;
 pub use phasors::Phasors;
 pub use response::Response;
 pub use squint::{blob_cell, squint_factor};
@@ -50,22 +50,21 @@ use std::ops::Range;
 
 /// A place on a map, between its cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cell {
+pub struct MapPlace {
     /// Row: range bins from the array, wrapped into `0..samples`.
     pub bin: f64,
     /// Column, wrapped into `0..elements`.
     pub column: f64,
 }
 
-impl Cell {
+impl MapPlace {
     /// Bins and columns from here to `other`, the short way around the map.
-    pub fn offset_to(&self, other: &Cell, radar: &Radar) -> (f64, f64) {
+    pub fn offset_to(&self, other: &MapPlace, radar: &Radar) -> (f64, f64) {
         let short = |d: f64, len: usize| d - (d / len as f64).round() * len as f64;
         (short(other.bin - self.bin, radar.samples), short(other.column - self.column, radar.elements))
     }
 }
 
-/// Elements that a map is made of.
 fn elements(radar: &Radar, aperture: Aperture) -> Range<usize> {
     match aperture {
         Aperture::Full => 0..radar.elements,
@@ -73,7 +72,6 @@ fn elements(radar: &Radar, aperture: Aperture) -> Range<usize> {
     }
 }
 
-/// Position of the middle of an aperture on the x axis, metres.
 fn centre_metres(radar: &Radar, aperture: Aperture) -> f64 {
     match aperture {
         Aperture::Full => 0.0,

@@ -1,13 +1,12 @@
 //! All predictions for one reflector on one map, to be drawn over it.
 
-use super::{Blob, Cell, Streak, blob_cell, centre_metres, comb_teeth, fold_partners, wrap_partners};
+use super::{Blob, MapPlace, Streak, blob_cell, centre_metres, comb_teeth, fold_partners, wrap_partners};
 use crate::maps::Aperture;
 use crate::radar::{Decibels, Polar, Radar};
 use crate::scene::Reflector;
 
 /// How far below its peak a streak is followed.
 pub const STREAK: Decibels = Decibels(20.0);
-/// Teeth of the comb on either side.
 const TEETH_DRAWN: usize = 3;
 /// Wrap partners are looked for up to so many maximum ranges.
 const WRAPS: f64 = 3.0;
@@ -22,7 +21,7 @@ pub struct Overlay {
     /// How far the near field draws it out, [`STREAK`] down.
     pub streak: Streak,
     /// Where the next teeth of the two ends' comb stand.
-    pub teeth: Vec<Cell>,
+    pub teeth: Vec<MapPlace>,
     /// cos(theta) of the other directions that share its column.
     pub fold_partners: Vec<f64>,
     /// The other ranges that share its bin, metres.
@@ -45,8 +44,7 @@ impl Overlay {
     }
 }
 
-/// Where what stands on the next teeth would show on the whole array's map.
-fn teeth(radar: &Radar, reflector: &Reflector) -> Vec<Cell> {
+fn teeth(radar: &Radar, reflector: &Reflector) -> Vec<MapPlace> {
     let place = radar.polar_of(reflector.x_metres, reflector.y_metres);
     let cell = |cos: f64| {
         let (x_metres, y_metres) = (place.range_metres * cos, place.range_metres * (1.0 - cos * cos).max(0.0).sqrt());

@@ -10,7 +10,7 @@ const FINE_STEPS: f64 = 64.0;
 
 /// The transform of a symmetric window over a few points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pattern {
+pub struct WindowPattern {
     cosines: [f64; 3],
     len: usize,
 }
@@ -24,10 +24,10 @@ pub struct Lobe {
     pub level: Decibels,
 }
 
-impl Pattern {
+impl WindowPattern {
     /// The pattern of `window` over `len` points, or of what [`WindowFunction::for_points`] has in its place.
     pub fn new(window: WindowFunction, len: usize) -> Self {
-        Pattern { cosines: window.for_points(len).cosines(), len: len.max(1) }
+        WindowPattern { cosines: window.for_points(len).cosines(), len: len.max(1) }
     }
 
     /// `sum_n w[n] cos(2 pi (n - (len - 1)/2) bins / len)`, real since the window is symmetric; exact.
@@ -92,7 +92,7 @@ mod tests {
     fn patterns_are_the_transform_of_their_weights() {
         for window in WindowFunction::ALL {
             for len in [1, 2, 3, 12, 33] {
-                let pattern = Pattern::new(window, len);
+                let pattern = WindowPattern::new(window, len);
                 for bins in [0.0, 0.3, 1.0, 1.5, 7.25, len as f64 - 0.1, len as f64, 40.3] {
                     let turn = |n: usize| 2.0 * PI * (n as f64 - (len as f64 - 1.0) / 2.0) * bins / len as f64;
                     let sum: f64 = window.weights(len).iter().enumerate().map(|(n, w)| w * turn(n).cos()).sum();
@@ -111,11 +111,11 @@ mod tests {
             (WindowFunction::Hamming, 1.30, -43.0),
             (WindowFunction::Blackman, 1.68, -58.0),
         ] {
-            let pattern = Pattern::new(window, 1024);
+            let pattern = WindowPattern::new(window, 1024);
             assert!((pattern.main_lobe_bins(Decibels(3.01)).unwrap() - width).abs() < 0.04, "{window:?}");
             let lobe = pattern.highest_side_lobe().unwrap();
             assert!((lobe.level.0 - level).abs() < 1.0, "{window:?}: {lobe:?}");
         }
-        assert_eq!(Pattern::new(WindowFunction::Hann, 3).main_lobe_bins(Decibels(3.0)), None, "one weight");
+        assert_eq!(WindowPattern::new(WindowFunction::Hann, 3).main_lobe_bins(Decibels(3.0)), None, "one weight");
     }
 }

@@ -1,9 +1,9 @@
 //! The range-angle map of one reflector in closed form, at any fraction of a bin and of a column.
 //!
-//! A sum over the elements of equation 3.3's windowed transform over range, which is the window's [`Pattern`] moved to the element's own
+//! A sum over the elements of equation 3.3's windowed transform over range, which is the window's [`WindowPattern`] moved to the element's own
 //! distance; nothing is approximated, so near field, range migration and squint are all in it.
 
-use super::{Pattern, elements};
+use super::{WindowPattern, elements};
 use crate::maps::{Aperture, Spectrum};
 use crate::radar::Radar;
 use crate::scene::Reflector;
@@ -16,14 +16,14 @@ use std::f64::consts::{PI, TAU};
 pub struct Response {
     samples: usize,
     columns: usize,
-    over_range: Pattern,
+    over_range: WindowPattern,
     /// Distance in range bins, and amplitude with window, scale and carrier's phase, of every element.
     elements: Vec<(f64, Complex64)>,
 }
 
 /// A row of the map of one reflector: the elements' parts of it.
 #[derive(Debug, Clone)]
-pub struct Row {
+pub struct ResponseRow {
     columns: usize,
     parts: Vec<Complex64>,
 }
@@ -42,13 +42,13 @@ impl Response {
         Response {
             samples: radar.samples,
             columns: radar.elements,
-            over_range: Pattern::new(radar.window, radar.samples),
+            over_range: WindowPattern::new(radar.window, radar.samples),
             elements: elements.zip(window).map(heard).collect(),
         }
     }
 
     /// The row at `bin`.
-    pub fn row(&self, bin: f64) -> Row {
+    pub fn row(&self, bin: f64) -> ResponseRow {
         let samples = self.samples as f64;
         let part = |(distance_bins, amplitude): &(f64, Complex64)| {
             let offset = distance_bins - bin;
@@ -56,7 +56,7 @@ impl Response {
             let middle = Complex64::cis(PI * (samples - 1.0) / samples * offset);
             amplitude * middle * self.over_range.at(offset)
         };
-        Row { columns: self.columns, parts: self.elements.iter().map(part).collect() }
+        ResponseRow { columns: self.columns, parts: self.elements.iter().map(part).collect() }
     }
 
     /// Magnitude at `bin` and `column`: what [`crate::maps::angle_transform`] has in the cell, where both are whole.
@@ -65,7 +65,7 @@ impl Response {
     }
 }
 
-impl Row {
+impl ResponseRow {
     /// Magnitude at `column`.
     pub fn magnitude(&self, column: f64) -> f64 {
         let turns = (column - (self.columns / 2) as f64) / self.columns as f64;

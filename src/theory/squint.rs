@@ -6,7 +6,7 @@
 //! decides the column. In the thesis' convention (one-way carrier with minus, two-way beat with plus), a chirp that falls, it is that of
 //! `f - B` in place of `f`: 2.6 % lower. In the physical one, a chirp that rises, it is that of `f + B / 2`.
 
-use super::{Cell, centre_metres};
+use super::{MapPlace, centre_metres};
 use crate::maps::Aperture;
 use crate::radar::Radar;
 
@@ -20,14 +20,14 @@ pub fn squint_factor(radar: &Radar) -> f64 {
 ///
 /// The middle of the streak of a near reflector; [`super::Blob`] finds the very peak, which for table 3.1 lies up to half a bin and one
 /// column beside it where the reflector is much nearer than the aperture's far field.
-pub fn blob_cell(radar: &Radar, x_metres: f64, y_metres: f64, aperture: Aperture) -> Cell {
+pub fn blob_cell(radar: &Radar, x_metres: f64, y_metres: f64, aperture: Aperture) -> MapPlace {
     cell_seen_from(radar, x_metres, y_metres, centre_metres(radar, aperture))
 }
 
 /// The place in the map of the part of the blob that the elements around `element_x_metres` see.
-pub(super) fn cell_seen_from(radar: &Radar, x_metres: f64, y_metres: f64, element_x_metres: f64) -> Cell {
+pub(super) fn cell_seen_from(radar: &Radar, x_metres: f64, y_metres: f64, element_x_metres: f64) -> MapPlace {
     let polar = radar.polar_of(x_metres - element_x_metres, y_metres);
-    Cell {
+    MapPlace {
         bin: radar.bin_of_range(polar.range_metres).rem_euclid(radar.samples as f64),
         column: radar.column_of_cos(polar.cos_theta * squint_factor(radar)),
     }

@@ -6,20 +6,19 @@
 
 use super::blob::path;
 use super::response::Response;
-use super::{Blob, Cell};
+use super::{Blob, MapPlace};
 use crate::maps::{Aperture, Spectrum};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Points of a path.
 const POINTS: usize = 65;
 
 /// How far one reflector is drawn out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Streak {
     /// The cells answered for by the elements, from the first to the last: a curve that the streak follows.
-    pub path: Vec<Cell>,
+    pub path: Vec<MapPlace>,
     /// From the peak to nearer and to farther ranges, the bins over which cells joined to it stay above the level.
     pub bins: [usize; 2],
     /// From the peak to lower and to higher columns, likewise.
@@ -44,7 +43,7 @@ impl Streak {
 }
 
 /// Reach, down and up each of two dimensions, of the cells above `level` that are joined to `peak` around a map of `size`.
-fn extent(peak: Cell, size: [usize; 2], level: f64, mut cell: impl FnMut(usize, usize) -> f64) -> [[usize; 2]; 2] {
+fn extent(peak: MapPlace, size: [usize; 2], level: f64, mut cell: impl FnMut(usize, usize) -> f64) -> [[usize; 2]; 2] {
     let start = [peak.bin, peak.column].map(|v| v.round() as i64);
     let mut seen = BTreeSet::from([[0i64, 0]]);
     let mut open = vec![[0i64, 0]];

@@ -6,7 +6,7 @@ use apertura::app::{
 };
 use apertura::evaluate::rows::{Row, read_rows, write_rows};
 use apertura::evaluate::sets::Folder;
-use apertura::evaluate::worsen::{Aim, Measure};
+use apertura::evaluate::worsen::{Aim, WorseningMeasure};
 use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
 use apertura::scene::Scene;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
@@ -190,7 +190,8 @@ fn what_a_search_finds_is_one_undo_step() {
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     s.ask(RowsCommand::Show(best));
     let before = s.state().editor().scene().clone();
-    let choice = SearchChoice { aim: Aim::Worsen, measure: Measure::SquaredError, within_metres: 2.0, tries: 48 };
+    let choice =
+        SearchChoice { aim: Aim::Worsen, measure: WorseningMeasure::SquaredError, within_metres: 2.0, tries: 48 };
     s.ask_and_wait(Command::Rows(RowsCommand::Search(choice)));
     let path = s.state().search_path().to_vec();
     assert!(path.len() > 1, "something near is worse");

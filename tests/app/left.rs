@@ -4,7 +4,7 @@
 use crate::session::{Session, harness};
 use apertura::app::{DocumentCommand, ExportCommand, MapKind, Panel, ViewCommand, WindowCommand};
 use apertura::files::npz::write_npz;
-use apertura::picture::{Format, Style, compose, compose_recording};
+use apertura::picture::{PictureFormat, Style, compose, compose_recording};
 use apertura::radar::{Convention, Radar};
 use apertura::reconstruct::{Baseline, Reconstructor};
 use apertura::recording;
@@ -164,12 +164,12 @@ fn files() -> [(&'static str, Vec<u8>); 3] {
     let of_scene = |convention| {
         let (radar, scene) = (radar(convention), Scene::of_points([POINT.into()]));
         let signal = simulate(&radar, &scene, style.floor, 0).unwrap();
-        compose(&radar, &scene, &signal, &Baseline, &style, Format::Png).unwrap()
+        compose(&radar, &scene, &signal, &Baseline, &style, PictureFormat::Png).unwrap()
     };
     [
         ("thesis", of_scene(Convention::Thesis)),
         ("physical", of_scene(Convention::Physical)),
-        ("recording", compose_recording(&recording, &Baseline, &style, Format::Png).unwrap()),
+        ("recording", compose_recording(&recording, &Baseline, &style, PictureFormat::Png).unwrap()),
     ]
 }
 

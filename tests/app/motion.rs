@@ -2,7 +2,7 @@
 
 use crate::session::{Session, step_until};
 use apertura::app::{Command, EditCommand, Panel, RadarCommand, ViewCommand, WindowCommand};
-use apertura::interact::{Change, Field};
+use apertura::interact::{Field, FieldChange};
 use apertura::radar::Radar;
 use eframe::egui::{Key, Modifiers, vec2};
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 fn moving() -> Session {
     let mut s = Session::start();
     s.press(Modifiers::COMMAND, Key::A);
-    s.ask(EditCommand::SetField(Field::VelocityY, Change::To(10.0)));
+    s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(10.0)));
     s.ask(RadarCommand::Set(Box::new(Radar { chirps: 64, ..s.state().radar().clone() })));
     s
 }
@@ -33,7 +33,7 @@ fn the_range_doppler_map_costs_nothing_while_it_is_closed_or_sends_one_chirp() {
     assert_eq!(s.state().radar().chirps, 64);
     s.ask(WindowCommand::TogglePanel(Panel::RangeDoppler));
     let asked = s.state().dopplers_asked();
-    s.ask(EditCommand::SetField(Field::VelocityY, Change::To(3.0)));
+    s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(3.0)));
     assert_eq!(s.state().dopplers_asked(), asked);
 }
 
@@ -66,7 +66,7 @@ fn time_goes_on_while_motion_is_played() {
     s.app.run_steps(5);
     assert_eq!(s.state().time_seconds(), stopped);
     s.ask(ViewCommand::SetTime(0.0));
-    s.ask(EditCommand::SetField(Field::VelocityY, Change::To(0.0)));
+    s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(0.0)));
     s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));
     s.app.run_steps(5);
     assert_eq!(s.state().time_seconds(), 0.0, "nothing moves");

@@ -4,14 +4,14 @@ use crate::session::Session;
 use apertura::app::{
     ChirpSettings, Command, DocumentCommand, MapKind, Panel, RadarCommand, Units, ViewCommand, WindowCommand,
 };
-use apertura::engine::Stage;
+use apertura::engine::EngineStage;
 use apertura::maps::Normalisation;
 use apertura::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
 use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
 use apertura::scene::Object;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
-use apertura::theory::chirp::{Chirp, heard};
+use apertura::theory::chirp::{ChirpShape, heard};
 use eframe::egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
@@ -40,7 +40,7 @@ fn another_normalisation_simulates_nothing() {
         assert_eq!(s.state().settings().normalisation, normalisation);
         assert!(s.state().work_done().1 >= painted + 6, "every map was painted again");
         let report = s.state().report().unwrap();
-        for stage in [Stage::Signal, Stage::FirstMap, Stage::LastMap, Stage::FullMap] {
+        for stage in [EngineStage::Signal, EngineStage::FirstMap, EngineStage::LastMap, EngineStage::FullMap] {
             assert!(!report.ran(stage), "{stage}");
         }
     }
@@ -76,8 +76,11 @@ fn hidden_panels_are_not_computed() {
     assert_eq!(s.state().pictures(), [MapKind::Input0, MapKind::Target, MapKind::TargetAbove]);
     s.ask(DocumentCommand::RandomScene(Kind::Set2));
     let report = s.state().report().unwrap();
-    assert!(report.ran(Stage::FirstMap) && report.ran(Stage::FullMap));
-    assert!(!report.ran(Stage::LastMap) && !report.ran(Stage::Ends), "nobody looks at input 1 or an output");
+    assert!(report.ran(EngineStage::FirstMap) && report.ran(EngineStage::FullMap));
+    assert!(
+        !report.ran(EngineStage::LastMap) && !report.ran(EngineStage::Ends),
+        "nobody looks at input 1 or an output"
+    );
     s.ask(WindowCommand::TogglePanel(Panel::Map(MapKind::Input1)));
     assert!(s.state().pictures().contains(&MapKind::Input1));
 }
@@ -89,7 +92,9 @@ fn a_maximised_map_is_the_only_one_computed() {
     assert_eq!(s.state().pictures(), [MapKind::Input0]);
     s.ask(DocumentCommand::RandomScene(Kind::Set1));
     let report = s.state().report().unwrap();
-    assert!(report.ran(Stage::FirstMap) && !report.ran(Stage::FullMap) && !report.ran(Stage::LastMap));
+    assert!(
+        report.ran(EngineStage::FirstMap) && !report.ran(EngineStage::FullMap) && !report.ran(EngineStage::LastMap)
+    );
     s.press(Modifiers::NONE, Key::Escape);
     assert_eq!(s.state().pictures().len(), 6);
 }
@@ -191,7 +196,7 @@ fn the_beat_on_screen_is_that_of_the_strongest_echo() {
     assert_eq!(s.state().chirps_asked(), 0, "a closed panel costs nothing");
     s.ask(WindowCommand::OpenPanel(Panel::Chirp));
     let bin = |s: &Session| {
-        let chirp = Chirp::of(s.state().radar());
+        let chirp = ChirpShape::of(s.state().radar());
         let echoes = heard(s.state().radar(), s.state().editor().scene(), s.state().settings().chirp.element);
         let strongest = echoes.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
         chirp.range_bin(chirp.beat_hz(strongest.range_metres))

@@ -5,7 +5,7 @@ use apertura::app::{
     DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ThresholdChoice, ViewCommand,
     WindowCommand, WorkCommand,
 };
-use apertura::engine::{Outcome, StageReport};
+use apertura::engine::{StageOutcome, StageReport};
 use apertura::evaluate::threshold::ThresholdSearch;
 use apertura::files::npz::Npz;
 use apertura::radar::{Carrier, Radar};
@@ -262,7 +262,7 @@ fn an_edit_does_not_wait_for_a_heavy_scene_to_come_to_rest() {
     std::fs::write(&path, radar.to_owned() + &cluster).unwrap();
     s.ask(DocumentCommand::OpenPath(path));
     let said = |s: &Session, text: &str| {
-        let says = |stage: &StageReport| matches!(&stage.outcome, Outcome::Computed(what) if what.contains(text));
+        let says = |stage: &StageReport| matches!(&stage.outcome, StageOutcome::Computed(what) if what.contains(text));
         s.state().report().unwrap().stages.iter().any(says)
     };
     // A machine may be so quick that the scene rests before the edit is seen, but not every time.

@@ -132,9 +132,9 @@ fn a_start_without_display_draws_the_default_scene() {
     apertura(&folder).assert().success().stderr(contains("picture")).stdout(contains("apertura.png"));
     let picture = folder.path().join("apertura.png");
     assert!(image::open(&picture).unwrap().width() > 1000);
-    std::fs::write(&picture, "somebody's own file").unwrap();
+    std::fs::write(&picture, "another program's file").unwrap();
     apertura(&folder).assert().success().stdout(contains("apertura-2.png"));
-    assert_eq!(std::fs::read(&picture).unwrap(), b"somebody's own file");
+    assert_eq!(std::fs::read(&picture).unwrap(), b"another program's file");
     assert_eq!(names(folder.path()), ["apertura-2.png", "apertura.png"]);
 }
 

@@ -210,7 +210,7 @@ fn samples_of_another_radar_are_told() {
 }
 
 #[test]
-fn shipped_recordings_are_reconstructed_without_a_word_about_their_radar() {
+fn shipped_recordings_are_reconstructed_without_a_radar() {
     let folder = folder();
     let run = |input: &str, more: &[&str]| {
         apertura(&folder).arg("reconstruct").arg(input).args(["-o", "o.npz"]).args(more).assert()
@@ -233,7 +233,7 @@ fn shipped_recordings_are_reconstructed_without_a_word_about_their_radar() {
     run(&format!("{SHIPPED}/chip-8.npz"), &[])
         .failure()
         .stderr(contains("has no array \"sub0\"").and(contains("samples")));
-    // The ends of a snapshot whose range nobody told.
+    // The ends of a snapshot of unknown range.
     apertura(&folder).args(["maps", &cascade, "-o", "maps.npz"]).assert().success();
     std::fs::write(folder.path().join("r.toml"), "[radar]\nelements = 86\nsamples = 1\n").unwrap();
     run("maps.npz", &["--radar", "r.toml", "--method", "sbl"]).success();

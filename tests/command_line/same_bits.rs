@@ -1,6 +1,6 @@
 //! One scene, one seed, the same settings: the same bits in the engine behind the app, in a campaign, and from the command line.
 
-use apertura::engine::{Engine, Wanted};
+use apertura::engine::{Engine, MapRequest};
 use apertura::evaluate::Metrics;
 use apertura::evaluate::campaign::Campaign;
 use apertura::evaluate::sets::SceneSet;
@@ -17,14 +17,14 @@ use ndarray::{Ix2, Ix3};
 /// An engine in which much has happened: other scenes, other floors, drags.
 fn with_a_past(scene: &Scene) -> Engine {
     let mut engine = Engine::new(Radar::default());
-    let wanted = Wanted::default();
+    let wanted = MapRequest::default();
     let mut moved = scene.clone();
     engine.update(&Scene::of_points([(-4.0, 9.0)]), &wanted).unwrap();
     for _ in 0..3 {
         moved.objects[0].translate(0.3, 0.1);
         engine.update(&moved, &wanted).unwrap();
     }
-    engine.update(&moved, &Wanted { floor: Floor::Exact, ..wanted }).unwrap();
+    engine.update(&moved, &MapRequest { floor: Floor::Exact, ..wanted }).unwrap();
     engine.update(scene, &wanted).unwrap();
     engine
 }
@@ -43,7 +43,7 @@ fn a_scene_at_rest_has_the_bits_of_the_command_line() {
     program.current_dir(&folder).args(["maps", "scene.toml", "-o", "maps.npz"]).assert().success();
     let mut written = Npz::open(&folder.path().join("maps.npz")).unwrap();
 
-    let frame = with_a_past(&scene).settle(&scene, &Wanted::default()).unwrap();
+    let frame = with_a_past(&scene).settle(&scene, &MapRequest::default()).unwrap();
     let ends = frame.ends.unwrap();
     for (key, end) in [("sub0", End::First), ("sub1", End::Last)] {
         assert_eq!(written.complexes::<Ix2>(key).unwrap().t(), *ends.end(end), "{key}");
@@ -59,7 +59,7 @@ fn figures_of_a_scene_at_rest_are_those_of_a_campaign() {
     let tallies = campaign.run(&[SceneSet::Generated(Kind::Set2)], &[&Baseline], &Default::default(), |_| ()).unwrap();
     let generator = Generator::new(&campaign.radar, Reading::Program, Purpose::Test, campaign.seed);
     let scene = generator.scene(Kind::Set2, 0);
-    let wanted = Wanted { seed: scene.noise_seed, ..Wanted::default() };
+    let wanted = MapRequest { seed: scene.noise_seed, ..MapRequest::default() };
     let frame = with_a_past(&scene).settle(&scene, &wanted).unwrap();
     let found = Baseline.reconstruct(&campaign.radar, &frame.ends.unwrap(), &Request::default()).unwrap();
     let metrics = Metrics::of(&frame.full.unwrap().lambda, &found.lambda, Baseline.eta());

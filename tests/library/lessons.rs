@@ -7,7 +7,7 @@ use apertura::maps::{Aperture, LogMap, LogMaps};
 use apertura::radar::{Decibels, End, Polar, Radar, SPEED_OF_LIGHT, WindowFunction};
 use apertura::scene::{Object, Point, Reflector, Scene};
 use apertura::signal::{BeatSignal, Floor, simulate};
-use apertura::theory::{Consequences, Pattern, Response, comb_teeth, fold_period_cos};
+use apertura::theory::{Consequences, Response, WindowPattern, comb_teeth, fold_period_cos};
 
 fn maps(radar: &Radar, scene: &Scene) -> LogMaps {
     LogMaps::of_signal(radar, &simulate(radar, scene, Floor::Exact, 0).unwrap())
@@ -231,7 +231,7 @@ fn lean(map: &LogMap) -> f64 {
 }
 
 #[test]
-fn a_near_grating_lobe_leans_the_other_way_than_a_reflector_there() {
+fn a_near_grating_lobe_leans_against_a_reflectors_lean() {
     let lesson = lesson("grating-lobes");
     let radar = &lesson.steps[3].radar;
     let lobe = lean(&maps(radar, &lesson.steps[3].scene()).full);
@@ -265,7 +265,7 @@ fn twelve_arrows_close_as_far_out_as_the_lesson_says() {
 #[test]
 fn windows_fall_as_the_lesson_says() {
     let level = |window: WindowFunction, bins: f64| {
-        let pattern = Pattern::new(window, 512);
+        let pattern = WindowPattern::new(window, 512);
         let near = (-32..=32).map(|i| (pattern.at(bins + f64::from(i) / 64.0) / pattern.at(0.0)).abs());
         20.0 * near.fold(0.0, f64::max).log10()
     };

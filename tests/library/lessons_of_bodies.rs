@@ -147,7 +147,7 @@ fn the_right_end_misses_a_glint_by_as_much_as_its_lesson_says() {
 }
 
 #[test]
-fn the_right_end_sees_a_hidden_point_as_weakly_as_its_lesson_says() {
+fn the_right_end_sees_the_lessons_hidden_point_weakly() {
     let id = "what-one-end-sees";
     let (radar, seen) = (physical(), maps(&scene(id, 3)));
     let [first, last] = [(&seen.first, End::First), (&seen.last, End::Last)]
@@ -171,7 +171,7 @@ fn roughness_weakens_a_glint_by_as_much_as_its_lesson_says() {
 }
 
 #[test]
-fn roughness_brightens_a_wall_that_looks_away_as_its_lesson_says() {
+fn roughness_brightens_a_wall_that_looks_away() {
     let mut turned = scene(ON_ROUGHNESS, 3);
     let smooth = brightest(&maps(&turned).full);
     let Object::Wall(wall) = &mut turned.objects[0] else { panic!() };

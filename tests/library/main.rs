@@ -34,6 +34,6 @@ mod taught;
 mod which_radar;
 mod whole_files;
 
-/// Damaged files are read in bounded memory: somebody has to count.
+/// Damaged files are read in bounded memory: allocations are counted.
 #[global_allocator]
 static ALLOCATOR: damage::allocation::Counting = damage::allocation::Counting;

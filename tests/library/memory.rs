@@ -1,8 +1,8 @@
-//! What a radar asks for stays below what `Radar::memory_bytes` counts, whoever makes its maps.
+//! What a radar asks for stays below what `Radar::memory_bytes` counts, by any method.
 //!
 //! Each measurement has a process of its own: this test program again, asked for the test called `child`.
 
-use apertura::engine::{Engine, Wanted};
+use apertura::engine::{Engine, MapRequest};
 use apertura::files::memory::{peak_resident_bytes, reset_peak_resident, resident_bytes};
 use apertura::maps::archive::write_maps;
 use apertura::methods;
@@ -13,7 +13,7 @@ use apertura::signal::{Floor, simulate};
 use std::process::Command;
 
 /// What the child is asked to do: `WORK ELEMENTS SAMPLES END`.
-const ASKED: &str = "APERTURA_TEST_MEMORY";
+const CHILD_VARIABLE: &str = "APERTURA_TEST_MEMORY";
 
 /// What the program and its threads hold beside the maps, bytes.
 const OVERHEAD: u64 = 32 << 20;
@@ -21,7 +21,7 @@ const OVERHEAD: u64 = 32 << 20;
 #[test]
 #[ignore = "the child of the tests below"]
 fn child() {
-    let Ok(asked) = std::env::var(ASKED) else { return };
+    let Ok(asked) = std::env::var(CHILD_VARIABLE) else { return };
     let words: Vec<&str> = asked.split(' ').collect();
     let [work, numbers @ ..] = words.as_slice() else { panic!("{asked}") };
     let numbers: Vec<usize> = numbers.iter().map(|n| n.parse().unwrap()).collect();
@@ -42,7 +42,7 @@ fn child() {
         "engine" => {
             let mut engine = Engine::new(radar.clone());
             for floor in [Floor::Thesis, Floor::Exact] {
-                engine.update(&scene, &Wanted { floor, ..Wanted::default() }).unwrap();
+                engine.update(&scene, &MapRequest { floor, ..MapRequest::default() }).unwrap();
             }
         }
         name => {
@@ -61,7 +61,7 @@ fn child() {
 fn held(work: &str, radar: &Radar) -> Option<u64> {
     let mut child = Command::new(std::env::current_exe().unwrap());
     child.args(["--exact", "memory::child", "--ignored", "--nocapture"]);
-    child.env(ASKED, format!("{work} {} {} {}", radar.elements, radar.samples, radar.end_elements));
+    child.env(CHILD_VARIABLE, format!("{work} {} {} {}", radar.elements, radar.samples, radar.end_elements));
     let output = child.output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{work}: {said} {}", String::from_utf8_lossy(&output.stderr));

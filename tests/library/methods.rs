@@ -1,4 +1,4 @@
-//! What every reconstruction method promises, whatever it is made of: shape, range, determinism, independence of gain, an answer
+//! What every reconstruction method promises, of any kind: shape, range, determinism, independence of gain, an answer
 //! to degenerate samples, and an end when asked to stop. New methods are held to it by being in the list.
 
 use apertura::evaluate::detection_rates;
@@ -14,7 +14,7 @@ use num_complex::Complex64;
 use std::time::{Duration, Instant};
 
 /// Longest any method may take for one map, even on a busy machine in an unoptimised build.
-const LONGEST: Duration = Duration::from_secs(120);
+const MAX_RUN_TIME: Duration = Duration::from_secs(120);
 
 /// Least difference between P_D and P_FA on a crowded scene.
 const LEAST_APART: f64 = 0.1;
@@ -42,7 +42,7 @@ fn run(method: &dyn Reconstructor, ends: &TwoEnds, what: &str) -> Reconstruction
     let answer = method
         .reconstruct(&radar(), ends, &Request::default())
         .unwrap_or_else(|error| panic!("{name} on {what}: {error}"));
-    assert!(start.elapsed() < LONGEST, "{name} on {what} took {:?}", start.elapsed());
+    assert!(start.elapsed() < MAX_RUN_TIME, "{name} on {what} took {:?}", start.elapsed());
     assert_eq!(answer.lambda.lambda.dim(), (512, 1024), "{name} on {what}");
     for ((row, column), v) in answer.lambda.lambda.indexed_iter() {
         assert!((0.0..=1.0).contains(v), "{name} on {what}: {v} at row {row}, column {column}");
@@ -109,7 +109,7 @@ fn a_single_sample_has_an_answer() {
     // An end that heard nothing at all is refused.
     single.last[[3, 100]] = Complex64::new(0.0, 1e-9);
     for method in methods::all() {
-        // Such a sample is alike at all ranges: what its map should be nobody can say.
+        // Such a sample is alike at all ranges: its map is undefined.
         run(&*method, &single, "a single sample");
     }
 }
@@ -159,7 +159,7 @@ fn ten_thousand_candidates_fit_into_bounded_memory() {
     assert!((200.0..600.0).contains(&grown), "grew by {grown} MB");
 }
 
-/// In a process of its own, whose memory nobody else uses.
+/// In a process of its own, for memory of its own.
 #[test]
 #[ignore = "run by ten_thousand_candidates_fit_into_bounded_memory"]
 fn ten_thousand_candidates() {
@@ -194,7 +194,7 @@ fn whoever_is_asked_to_stop_stops() {
     let ends = ends_of(&two_points(), Floor::Thesis);
     let request = Request::default();
     request.task.cancel();
-    // The baseline is done before anybody could ask.
+    // The baseline is done before a cancellation could reach it.
     for method in methods::all().into_iter().filter(|m| m.name() != "baseline") {
         let answer = method.reconstruct(&radar(), &ends, &request);
         assert_eq!(answer, Err(ReconstructError::Cancelled), "{}", method.name());

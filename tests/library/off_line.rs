@@ -1,6 +1,6 @@
 //! Transmitters and receivers on a bumper that is bent: samples held to sums of their own, focused maps, methods, and mirrored captures.
 
-use apertura::engine::{Engine, Wanted};
+use apertura::engine::{Engine, MapRequest};
 use apertura::evaluate::squared_error;
 use apertura::files::npz::write_npz;
 use apertura::maps::{LogMaps, Normalisation, RangeAngleMap};
@@ -122,7 +122,7 @@ fn transmitters_in_the_place_of_receivers_hear_the_same() {
 }
 
 #[test]
-fn an_array_that_stands_back_as_a_whole_hears_a_scene_farther_away() {
+fn an_array_moved_back_hears_its_scene_farther_away() {
     let radar = straight(4, 6);
     let antennas = radar.antennas.clone().unwrap().off_line(&[-0.25; 4], &[-0.25; 6]).unwrap();
     let moved = radar.clone().with_antennas(antennas);
@@ -144,7 +144,7 @@ fn target(radar: &Radar, scene: &Scene) -> RangeAngleMap {
 }
 
 #[test]
-fn focusing_makes_the_map_of_a_bent_array_that_of_a_straight_one() {
+fn focusing_a_bent_array_gives_a_straight_arrays_map() {
     let radar = straight(12, 16);
     let reference = target(&radar, &far_points());
     println!("12 x 16 pairs, five points at 10 to 20 m: SE of the map against that of the straight array");
@@ -174,7 +174,7 @@ fn elements_that_send_and_hear_by_themselves_are_focused_too() {
 fn the_engine_shows_the_focused_map() {
     let radar = Radar { focus_off_line: true, ..bent(&straight(4, 12), 0.004) };
     let (mut engine, scene) = (Engine::new(radar.clone()), far_points());
-    let wanted = Wanted { floor: Floor::Exact, ..Wanted::default() };
+    let wanted = MapRequest { floor: Floor::Exact, ..MapRequest::default() };
     let expected = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Exact, 0).unwrap());
     let expected = expected.full.normalise(wanted.normalisation).lambda;
     for frame in [engine.update(&scene, &wanted).unwrap(), engine.settle(&scene, &wanted).unwrap()] {

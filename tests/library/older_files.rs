@@ -14,7 +14,7 @@ use apertura::recording;
 use apertura::scene::file::{self, SceneFile};
 use apertura::scene::generate::{Kind, Purpose, Reading};
 use apertura::scene::{Block, GaussianCluster, Line, Object, Point, Polygon, Post, Wall};
-use apertura::share::Shared;
+use apertura::share::SharedScene;
 use apertura::signal::Floor;
 use std::fs::{self, File};
 use std::path::PathBuf;
@@ -114,14 +114,14 @@ fn an_archive_of_points_is_read() {
     assert_eq!(reflectors, 227);
 }
 
-fn shared(name: &str) -> Shared {
-    Shared::from_text(&fs::read_to_string(path(name)).unwrap()).unwrap()
+fn shared(name: &str) -> SharedScene {
+    SharedScene::from_text(&fs::read_to_string(path(name)).unwrap()).unwrap()
 }
 
 #[test]
 fn scenes_that_were_shared_as_text_are_read() {
     for name in ["thesis", "bodies", "pairs"] {
-        let Shared { file, view } = shared(&format!("shared-{name}.txt"));
+        let SharedScene { file, view } = shared(&format!("shared-{name}.txt"));
         assert_eq!(file, scene(&format!("scene-{name}.toml")));
         assert_eq!((view.floor.to_string(), view.normalisation.to_string()), ("dbm=-20".into(), "db=60".into()));
         assert_eq!((view.method.as_str(), view.eta, view.lesson), ("nomp", None, None));
@@ -130,7 +130,7 @@ fn scenes_that_were_shared_as_text_are_read() {
 
 #[test]
 fn all_that_a_shared_view_can_say_is_read() {
-    let Shared { file, view } = shared("shared-view.txt");
+    let SharedScene { file, view } = shared("shared-view.txt");
     assert_eq!(file, scene("scene-thesis.toml"));
     assert_eq!((view.eta, view.target_eta), (Some(0.5), 0.85));
     assert_eq!((view.cartesian, view.marks, view.theory), (true, true, false));

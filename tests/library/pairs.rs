@@ -2,7 +2,7 @@
 
 use super::off_line::{largest_difference, sample};
 use apertura::bounds::cramer_rao;
-use apertura::engine::{Engine, Wanted};
+use apertura::engine::{Engine, MapRequest};
 use apertura::files::npz::write_npz;
 use apertura::maps::{LogMaps, Normalisation};
 use apertura::methods;
@@ -49,7 +49,7 @@ fn gaps_are_alike_in_every_computation() {
     let radar = with_gaps();
     let scene = Scene::of_points([(0.6, 4.4), (-2.0, 6.0)]);
     let mut engine = Engine::new(radar.clone());
-    let wanted = Wanted { floor: Floor::Exact, ..Wanted::default() };
+    let wanted = MapRequest { floor: Floor::Exact, ..MapRequest::default() };
     let [followed, settled] = [engine.update(&scene, &wanted).unwrap(), engine.settle(&scene, &wanted).unwrap()];
     assert_eq!(followed.full.unwrap().lambda.lambda, settled.full.unwrap().lambda.lambda);
     let chirps = Radar { chirps: 4, ..radar.clone() };
@@ -216,7 +216,7 @@ fn captured(radar: &Radar, points: &[(f64, f64)], sigma: f64, rng: &mut ChaCha8R
     });
     let folder = tempfile::tempdir().unwrap();
     write_npz(&folder.path().join("c.npz"), |out| out.add("cube", &cube)).unwrap();
-    // Whoever wrote the file counted x from its own zero.
+    // The file counts x from its own zero.
     let from_zero = |places: &[f64]| format!("{:?}", places.iter().map(|x| x + 0.25).collect::<Vec<_>>());
     let text = format!(
         "format = 2\n[radar]\nconvention = \"physical\"\ncarrier_hz = {:?}\nbandwidth_hz = {:?}\nend_elements = {}\n\

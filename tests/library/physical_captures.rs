@@ -164,7 +164,7 @@ fn pairs_in_the_one_way_reading_give_their_true_directions() {
 }
 
 #[test]
-fn pairs_halfway_between_their_antennas_give_their_true_directions_two_way() {
+fn halfway_pairs_give_true_two_way_directions() {
     let folder = tempfile::tempdir().unwrap();
     for made in UPWARDS {
         write_pairs(made, folder.path());

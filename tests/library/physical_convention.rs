@@ -80,7 +80,7 @@ fn peak_cos(radar: &Radar, scene: &Scene, bin: f64) -> f64 {
 }
 
 #[test]
-fn blobs_stand_farther_from_broadside_in_the_physical_convention_alone() {
+fn physical_blobs_stand_farther_from_broadside() {
     let (range, cos) = (12.0f64, 0.6f64);
     let scene = Scene::of_points([(range * cos, range * (1.0 - cos * cos).sqrt())]);
     for (convention, expected) in [(Convention::Thesis, 1.0 - 1.0 / 77.0), (Convention::Physical, 1.0 + 0.5 / 77.0)] {

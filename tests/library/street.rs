@@ -40,7 +40,7 @@ fn the_wall_reaches_over_the_range_of_the_post() {
 }
 
 #[test]
-fn a_drag_along_the_ring_merges_post_and_wall_in_both_inputs_alone() {
+fn a_drag_along_the_ring_merges_post_and_wall_in_inputs() {
     assert_eq!(blobs_at(5.4), [2, 2, 2], "as the scene opens");
     for degrees in [26.0, 28.0] {
         assert_eq!(blobs_at(degrees), [1, 1, 2], "the post at {degrees}°");

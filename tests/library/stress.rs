@@ -1,7 +1,7 @@
 //! Scenes built to break numerics: nothing infinite, every promise kept, incremental sums where a fresh build ends.
 
 use apertura::benchmark::stress::{self, StressRequest, StressScene, random_edits, scene_cases};
-use apertura::engine::Wanted;
+use apertura::engine::MapRequest;
 use apertura::maps::Normalisation;
 use apertura::radar::{Decibels, Radar};
 use apertura::scene::{Object, Point, Scene};
@@ -37,7 +37,7 @@ fn every_scene_holds_on_the_whole_radar() {
 fn edits_over_no_floor_end_within_their_tolerance() {
     let radar = Radar { samples: 256, ..small() };
     let normalisation = Normalisation::DynamicRange(Decibels(100.0));
-    let wanted = Wanted { floor: Floor::Exact, normalisation, ends: false, ..Wanted::default() };
+    let wanted = MapRequest { floor: Floor::Exact, normalisation, ends: false, ..MapRequest::default() };
     let report = random_edits(&radar, &wanted, 200, 3).unwrap();
     assert!((report.most_difference / 2.5e-6 - 1.0).abs() < 1e-12);
     assert!(report.worst_difference <= report.most_difference, "{:e}", report.worst_difference);
@@ -47,7 +47,7 @@ fn edits_over_no_floor_end_within_their_tolerance() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// Whatever the points, every algorithm stays finite and keeps its promise.
+    /// On any points, every algorithm stays finite and keeps its promise.
     #[test]
     fn any_points_are_summed_as_promised(
         points in prop::collection::vec((-60.0..60.0f64, -60.0..60.0f64, -32.0..32.0f64, any::<bool>()), 0..7),

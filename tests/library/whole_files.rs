@@ -46,7 +46,7 @@ fn folder_of_child() -> Option<PathBuf> {
     std::env::var_os(FOLDER).map(PathBuf::from)
 }
 
-/// Says, for whoever outlives this process, that everything up to `number` is safe.
+/// Tells the parent process that everything up to `number` is safe.
 fn safe(number: usize) {
     let mut out = io::stdout();
     let _nobody_listens = writeln!(out, "safe {number}").and_then(|()| out.flush());

@@ -6,7 +6,7 @@ use crate::interact::Document;
 use crate::lesson::shipped;
 use crate::platform;
 use crate::radar::Radar;
-use crate::share::{LessonPlace, Part, ShareError, Shared, View};
+use crate::share::{LessonPlace, ShareError, SharedScene, SharedView, VisiblePart};
 use eframe::egui::pos2;
 
 /// The text of what is on screen; says why where there can be none.
@@ -57,12 +57,12 @@ pub fn of(state: &State) -> Result<String, ShareError> {
     share(state).to_text()
 }
 
-fn share(state: &State) -> Shared {
+fn share(state: &State) -> SharedScene {
     let settings = &state.settings;
     let method = state.method().map_or_else(String::new, |m| m.name().to_owned());
     let is_shipped = |id: &str| shipped::ALL.iter().any(|s| s.id == id);
     let lesson = state.lesson.as_ref().filter(|run| is_shipped(&run.id));
-    let view = View {
+    let view = SharedView {
         floor: settings.floor,
         normalisation: settings.normalisation,
         colours: settings.colours,
@@ -77,27 +77,27 @@ fn share(state: &State) -> Shared {
         theory: settings.show_theory,
         lesson: lesson.map(|run| LessonPlace { id: run.id.clone(), step: run.step + 1 }),
     };
-    Shared { file: state.editor.document().to_file(), view }
+    SharedScene { file: state.editor.document().to_file(), view }
 }
 
-fn part(view: MapView) -> Part {
+fn part(view: MapView) -> VisiblePart {
     let [left, bottom, right, top] =
         [view.low.x, view.low.y, view.high.x, view.high.y].map(|edge| edge.clamp(0.0, 1.0));
-    Part { left, bottom, right, top }
+    VisiblePart { left, bottom, right, top }
 }
 
 /// A part of the columns as a part of what is drawn, and back: texts count from the first column.
-fn by_column(radar: &Radar, part: Part) -> Part {
-    if radar.columns_fall() { Part { left: 1.0 - part.right, right: 1.0 - part.left, ..part } } else { part }
+fn by_column(radar: &Radar, part: VisiblePart) -> VisiblePart {
+    if radar.columns_fall() { VisiblePart { left: 1.0 - part.right, right: 1.0 - part.left, ..part } } else { part }
 }
 
 /// Opens a text that was shared; on any error the scene on screen stays.
 pub fn open(state: &mut State, text: &str) {
-    let shared = match Shared::from_text(text) {
+    let shared = match SharedScene::from_text(text) {
         Ok(shared) => shared,
         Err(error) => return state.notices.error(format!("{error}\nThe scene on screen was kept.")),
     };
-    let Shared { file, view } = shared;
+    let SharedScene { file, view } = shared;
     if let Some(place) = &view.lesson {
         let index = shipped::ALL.iter().position(|lesson| lesson.id == place.id);
         match index {
@@ -120,11 +120,11 @@ pub fn open(state: &mut State, text: &str) {
     }
 }
 
-fn look(state: &mut State, view: View) {
+fn look(state: &mut State, view: SharedView) {
     if !state.methods.all.iter().any(|m| m.name() == view.method) {
         state.notices.info(format!("There is no method \"{}\" here; another one is shown.", view.method));
     }
-    let seen = |part: Part| MapView { low: pos2(part.left, part.bottom), high: pos2(part.right, part.top) };
+    let seen = |part: VisiblePart| MapView { low: pos2(part.left, part.bottom), high: pos2(part.right, part.top) };
     state.map_views.range_angle = seen(by_column(state.radar(), view.range_angle_part));
     state.map_views.cartesian = seen(view.cartesian_part);
     let settings = &mut state.settings;
@@ -151,9 +151,9 @@ mod tests {
     #[test]
     fn the_part_of_a_map_in_a_text_counts_from_the_first_column() {
         let (thesis, physical) = (Radar::default(), Radar::default().in_convention(Convention::Physical));
-        let drawn = Part { left: 0.0, right: 0.25, ..Part::default() };
+        let drawn = VisiblePart { left: 0.0, right: 0.25, ..VisiblePart::default() };
         assert_eq!(by_column(&thesis, drawn), drawn);
-        assert_eq!(by_column(&physical, drawn), Part { left: 0.75, right: 1.0, ..drawn });
+        assert_eq!(by_column(&physical, drawn), VisiblePart { left: 0.75, right: 1.0, ..drawn });
         assert_eq!(by_column(&physical, by_column(&physical, drawn)), drawn);
     }
 }

@@ -53,13 +53,13 @@ fn draw(ui: &mut Ui, question: &SaveQuestion) -> Option<SaveAnswer> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::file::Loss;
+    use crate::scene::file::FileLoss;
     use eframe::egui::Key;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
     fn asked() -> Harness<'static, Vec<Command>> {
-        let losses = vec![Loss::Radar, Loss::Structure { objects: 1, points: 40 }];
+        let losses = vec![FileLoss::Radar, FileLoss::Structure { objects: 1, points: 40 }];
         let question = SaveQuestion { path: "/there/walls.npz".into(), doubt: Doubt::Losses(losses) };
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
             asked.extend(show(ui.ctx(), Input { question: Some(&question) }));

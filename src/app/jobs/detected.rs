@@ -1,6 +1,6 @@
 //! What a detector with a constant false-alarm rate finds in the maps on screen; computed only while one is in use.
 
-use crate::engine::Frame;
+use crate::engine::EngineFrame;
 use crate::maps::cfar::Cfar;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use std::sync::Arc;
@@ -38,7 +38,7 @@ impl Detector {
     pub fn detect(
         &mut self,
         cfar: Option<Cfar>,
-        frame: &Frame,
+        frame: &EngineFrame,
         target_is_wanted: bool,
         outputs: [Option<&Arc<RangeAngleMap>>; 2],
     ) -> Detected {

@@ -8,7 +8,7 @@ use crate::app::state::{MethodSlot, State};
 use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::maps::archive::{write_maps, write_recorded_maps};
-use crate::picture::{Format, Style, compose, compose_recording, maps_of};
+use crate::picture::{PictureFormat, Style, compose, compose_recording, maps_of};
 use crate::platform;
 use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
@@ -63,7 +63,7 @@ impl Exports {
     /// # Errors
     /// Why it could not be begun.
     pub fn picture(&self, state: &State, path: PathBuf) -> Result<String, String> {
-        let format = Format::of_path(&path).ok_or_else(|| Purpose::ExportPicture.unknown_ending(&path))?;
+        let format = PictureFormat::of_path(&path).ok_or_else(|| Purpose::ExportPicture.unknown_ending(&path))?;
         let Some(method) = state.method().cloned() else {
             return Err("There is no method to draw the output of.".to_owned());
         };

@@ -6,7 +6,7 @@ use super::scene_maps::Truth;
 use super::source::Source;
 use crate::app::shared::Shared;
 use crate::app::state::{MethodSlot, Panel, State};
-use crate::evaluate::failure::{Cell, Failures, Footprints};
+use crate::evaluate::failure::{CellIndex, Failures, Footprints};
 #[cfg(test)]
 use crate::evaluate::failure::{Fate, Ghost};
 use crate::maps::RangeAngleMap;
@@ -37,7 +37,7 @@ pub struct Verdict {
     /// Cells of its footprint, or of the ghost.
     pub cells: usize,
     /// The brightest of them in the output.
-    pub brightest: Option<Cell>,
+    pub brightest: Option<CellIndex>,
 }
 
 /// What became of everything in one output.
@@ -130,11 +130,11 @@ fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
     let Truth { source: Source { scene, .. }, target, .. } = &request.truth;
     let fates = |output: &Output| {
         let failures = footprints.judge_cells(target, &output.lambda, &output.judged.above(output.eta));
-        let brightest = |cells: &[Cell]| {
-            let lambda = |cell: &Cell| output.lambda.lambda[*cell];
+        let brightest = |cells: &[CellIndex]| {
+            let lambda = |cell: &CellIndex| output.lambda.lambda[*cell];
             cells.iter().copied().max_by(|a, b| lambda(a).total_cmp(&lambda(b)))
         };
-        let verdict = |object, cells: &[Cell]| Verdict { object, cells: cells.len(), brightest: brightest(cells) };
+        let verdict = |object, cells: &[CellIndex]| Verdict { object, cells: cells.len(), brightest: brightest(cells) };
         let objects = footprints.cells().iter().enumerate().map(|(index, cells)| verdict(Some(index), cells));
         let ghosts = failures.ghosts.iter().map(|ghost| verdict(None, &ghost.cells));
         let verdicts = objects.chain(ghosts).collect();
@@ -147,9 +147,9 @@ fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
 #[cfg(test)]
 impl Fates {
     /// Fates of a scene's objects, each of 40 cells, and ghosts of 12 cells, at a threshold of 0.8.
-    pub fn made_up(scene: Scene, fates: &[Fate], ghosts: &[Cell]) -> Fates {
+    pub fn made_up(scene: Scene, fates: &[Fate], ghosts: &[CellIndex]) -> Fates {
         let object = |index: usize| Verdict { object: Some(index), cells: 40, brightest: None };
-        let ghost = |at: &Cell| Verdict { object: None, cells: 12, brightest: Some(*at) };
+        let ghost = |at: &CellIndex| Verdict { object: None, cells: 12, brightest: Some(*at) };
         let nothing = || Shared::new(RangeAngleMap { lambda: ndarray::Array2::zeros((1, 1)) });
         let failures = Failures {
             objects: fates.to_vec(),

@@ -2,7 +2,7 @@
 
 use super::rest::{Motion, Rest};
 use super::scene_maps::{MapsRequest, MapsResult, MapsState};
-use crate::engine::Stage;
+use crate::engine::EngineStage;
 use crate::platform::Instant;
 use crate::signal::Unfinished;
 use crate::task::{Reply, Task, Worker};
@@ -87,7 +87,7 @@ impl MapsJob {
             *ends = before.clone();
         }
         on_maps(&result);
-        let only_settled = result.request.at_rest && result.frame.report.ran(Stage::Signal);
+        let only_settled = result.request.at_rest && result.frame.report.ran(EngineStage::Signal);
         if !only_settled || self.took.is_none() {
             self.took = Some(result.took);
         }

@@ -7,7 +7,7 @@ use crate::app::widgets::textures::colour_table;
 use crate::app::widgets::theme;
 use crate::evaluate::TARGET_ETA;
 use crate::maps::{RangeAngleMap, cartesian};
-use crate::picture::{ColourMap, Detection, told_apart};
+use crate::picture::{CellVerdict, ColourMap, told_apart};
 use crate::radar::Radar;
 use eframe::egui::{Color32, ColorImage};
 use ndarray::ArrayView2;
@@ -146,25 +146,25 @@ fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<
 }
 
 /// Fills of hits, rims, misses and false alarms, and an outline around each patch of them.
-fn fills(kinds: &[Detection], (rows, columns): (usize, usize), dark: bool) -> Vec<Color32> {
+fn fills(kinds: &[CellVerdict], (rows, columns): (usize, usize), dark: bool) -> Vec<Color32> {
     // A map of many cells is shrunk on screen: a thinner outline would be lost there.
     let [wide, high] = [(columns / ON_SCREEN[0]).max(1), (rows / ON_SCREEN[1]).max(1)];
-    let mut around = vec![Detection::Nothing; kinds.len()];
+    let mut around = vec![CellVerdict::Nothing; kinds.len()];
     let near = |at: usize, by: usize, end: usize| at.saturating_sub(by)..(at + by + 1).min(end);
     for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
         let kind = kinds[row * columns + column];
         let is_edge = || {
             let mut beside = near(row, 1, rows).flat_map(|r| near(column, 1, columns).map(move |c| r * columns + c));
-            beside.any(|at| kinds[at] == Detection::Nothing)
+            beside.any(|at| kinds[at] == CellVerdict::Nothing)
         };
-        if kind != Detection::Nothing && is_edge() {
+        if kind != CellVerdict::Nothing && is_edge() {
             for at in near(row, high, rows).flat_map(|r| near(column, wide, columns).map(move |c| r * columns + c)) {
                 around[at] = around[at].max(kind);
             }
         }
     }
-    let colour = |(kind, around): (Detection, Detection)| {
-        let [r, g, b] = if kind == Detection::Nothing { around.outline(dark) } else { kind.fill(dark) };
+    let colour = |(kind, around): (CellVerdict, CellVerdict)| {
+        let [r, g, b] = if kind == CellVerdict::Nothing { around.outline(dark) } else { kind.fill(dark) };
         Color32::from_rgb(r, g, b)
     };
     kinds.iter().copied().zip(around).map(colour).collect()
@@ -221,9 +221,9 @@ mod tests {
             let painted = painter.paint(&radar, MapKind::OutputAbove, &subject).image.pixels.clone();
             let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
             // The cell of neither map is beside a hit: the outline of what it touches most telling.
-            let expected = [Detection::Hit.outline(dark)]
+            let expected = [CellVerdict::Hit.outline(dark)]
                 .into_iter()
-                .chain([Detection::Miss, Detection::Rim, Detection::Hit].map(|kind| kind.fill(dark)));
+                .chain([CellVerdict::Miss, CellVerdict::Rim, CellVerdict::Hit].map(|kind| kind.fill(dark)));
             let expected: Vec<Color32> = expected.map(colour).collect();
             assert_eq!(painted, expected);
         }
@@ -237,7 +237,7 @@ mod tests {
         let colours = fills(&kinds, target.dim(), true);
         let of = |[r, g, b]: [u8; 3]| colours.iter().filter(|c| **c == Color32::from_rgb(r, g, b)).count();
         let [inside, around, beside] =
-            [Detection::Hit.fill(true), Detection::Hit.outline(true), Detection::Nothing.fill(true)].map(of);
+            [CellVerdict::Hit.fill(true), CellVerdict::Hit.outline(true), CellVerdict::Nothing.fill(true)].map(of);
         assert_eq!([inside, around, beside], [15, 5 * 7 - 15, 81 - 5 * 7]);
     }
 

@@ -17,7 +17,7 @@ use super::scene_maps::{MapsRequest, MapsResult, Scores, Truth};
 use super::source::Source;
 use crate::app::shared::Shared;
 use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, Panel, State};
-use crate::engine::Wanted;
+use crate::engine::MapRequest;
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
 use crate::platform::Instant;
@@ -99,7 +99,7 @@ impl Pipeline {
         let all = looked_at.every_map;
         let output = looked_at.outputs.contains(&true);
         let settings = &state.settings;
-        let wanted = Wanted {
+        let wanted = MapRequest {
             floor: settings.floor,
             seed: state.editor.scene().noise_seed,
             normalisation: settings.normalisation,

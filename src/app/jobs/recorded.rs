@@ -1,6 +1,6 @@
 //! A recording in the place of a scene: its maps, and what the reflectors laid over it leave unexplained.
 
-use crate::engine::{Frame, Outcome, ReadyMap, Report, Stage, StageReport, Wanted};
+use crate::engine::{EngineFrame, EngineReport, EngineStage, MapRequest, ReadyMap, StageOutcome, StageReport};
 use crate::maps::{LambdaScale, LogMap, Normalisation, RangeAngleMap};
 use crate::picture::maps_of;
 use crate::platform::Instant;
@@ -95,7 +95,7 @@ impl RecordedMaps {
     }
 
     /// The maps that are wanted; what did not change since the last call is the same `Arc` as then.
-    pub fn frame(&mut self, wanted: &Wanted) -> Frame {
+    pub fn frame(&mut self, wanted: &MapRequest) -> EngineFrame {
         let start = Instant::now();
         if self.normalisation.replace(wanted.normalisation) != Some(wanted.normalisation) {
             let ready = |log: &Option<LogMap>| log.as_ref().map(|log| ready(log, log.scale(wanted.normalisation)));
@@ -103,21 +103,24 @@ impl RecordedMaps {
             self.shown = None;
         }
         let took = std::mem::take(&mut self.took);
-        let stage = |stage, took, what: &str| StageReport { stage, took, outcome: Outcome::Computed(what.to_owned()) };
+        let stage =
+            |stage, took, what: &str| StageReport { stage, took, outcome: StageOutcome::Computed(what.to_owned()) };
         let stages = match took {
-            Duration::ZERO => vec![StageReport { stage: Stage::Signal, took, outcome: Outcome::Skipped("recorded") }],
+            Duration::ZERO => {
+                vec![StageReport { stage: EngineStage::Signal, took, outcome: StageOutcome::Skipped("recorded") }]
+            }
             took => vec![
-                stage(Stage::Signal, Duration::ZERO, "recorded"),
-                stage(Stage::FullMap, took, "all maps of the recording"),
+                stage(EngineStage::Signal, Duration::ZERO, "recorded"),
+                stage(EngineStage::FullMap, took, "all maps of the recording"),
             ],
         };
-        Frame {
+        EngineFrame {
             first: self.ready[0].clone().filter(|_| wanted.first),
             last: self.ready[1].clone().filter(|_| wanted.last),
             full: self.ready[2].clone().filter(|_| wanted.full),
             ends: Some(self.ends.clone()).filter(|_| wanted.ends),
             settled: true,
-            report: Report { stages, total: took + start.elapsed() },
+            report: EngineReport { stages, total: took + start.elapsed() },
         }
     }
 
@@ -164,7 +167,7 @@ mod tests {
         (radar.clone(), Arc::new(Recording::of_signal(radar, signal)))
     }
 
-    const WANTED: Wanted = Wanted {
+    const WANTED: MapRequest = MapRequest {
         floor: Floor::Exact,
         seed: 0,
         normalisation: Normalisation::DynamicRange(Decibels(60.0)),
@@ -198,7 +201,7 @@ mod tests {
         let (radar, recording) = recorded();
         let mut maps = RecordedMaps::new(&recording, &radar, &BuiltArray::default());
         let (a, b) = (maps.frame(&WANTED), maps.frame(&WANTED));
-        assert!(Arc::ptr_eq(&a.full.unwrap().lambda, &b.full.unwrap().lambda) && !b.report.ran(Stage::FullMap));
+        assert!(Arc::ptr_eq(&a.full.unwrap().lambda, &b.full.unwrap().lambda) && !b.report.ran(EngineStage::FullMap));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::app::state::State;
 use crate::files::write_bytes;
 use crate::lesson::Lesson;
 use crate::methods;
-use crate::picture::{ColourMap, Format, Style, compose};
+use crate::picture::{ColourMap, PictureFormat, Style, compose};
 use crate::platform::{self, Instant};
 use crate::radar::counted;
 use crate::scene::Scene;
@@ -270,7 +270,7 @@ fn draw_step(
     let style = Style { floor: step.view.floor, normalisation: step.view.normalisation, colours, eta: None };
     let signal = signal::simulate(&step.radar, &scene, style.floor, step.view.seed).map_err(|e| e.to_string())?;
     let draw = |method: &dyn crate::reconstruct::Reconstructor| {
-        compose(&step.radar, &scene, &signal, method, &style, Format::Png).map_err(|e| e.to_string())
+        compose(&step.radar, &scene, &signal, method, &style, PictureFormat::Png).map_err(|e| e.to_string())
     };
     // A network that knows another radar draws nothing: any radar has the method of `preferred_for`.
     draw(method.as_ref()).or_else(|_| draw(methods::preferred_for(&step.radar).as_ref()))

@@ -7,7 +7,7 @@ use super::source::Source;
 use super::subject::{Paint, Subject};
 use crate::app::shared::Shared;
 use crate::app::state::{DifferenceView, MapKind, Projection};
-use crate::engine::{Engine, Frame, ReadyMap, Wanted};
+use crate::engine::{Engine, EngineFrame, MapRequest, ReadyMap};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs, squared_error};
 use crate::maps::cfar::Cfar;
 use crate::maps::{LambdaScale, RangeAngleMap};
@@ -39,7 +39,7 @@ pub struct MapsRequest {
     /// Where the samples come from.
     pub source: Source,
     /// Which maps, and how.
-    pub wanted: Wanted,
+    pub wanted: MapRequest,
     /// Whether the scene rests: its maps are then those of the command line, bit for bit.
     pub at_rest: bool,
     /// Maps that somebody looks at.
@@ -83,7 +83,7 @@ pub struct MapsResult {
     /// What was asked for.
     pub request: MapsRequest,
     /// The maps.
-    pub frame: Frame,
+    pub frame: EngineFrame,
     /// What the scene leaves of a recording, where somebody looks at it, or why it can't be fitted.
     pub unexplained: Option<Result<Unexplained, String>>,
     /// What a detector finds in them, where one is in use.
@@ -185,7 +185,7 @@ impl MapsState {
         &mut self,
         request: &MapsRequest,
         task: &Task,
-    ) -> Result<(Frame, Option<Result<Unexplained, String>>), Unfinished> {
+    ) -> Result<(EngineFrame, Option<Result<Unexplained, String>>), Unfinished> {
         let MapsRequest { source: Source { radar, scene, recording, .. }, wanted, .. } = request;
         if let Some(recording) = recording {
             scene.validate(radar)?;
@@ -264,7 +264,7 @@ fn beside(request: &MapsRequest, slot: usize) -> f32 {
 
 /// What the picture of one map shows; `None` where there is no such map.
 fn subject(
-    frame: &Frame,
+    frame: &EngineFrame,
     unexplained: Option<&Result<Unexplained, String>>,
     request: &MapsRequest,
     detected: &Detected,

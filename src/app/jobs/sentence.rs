@@ -5,7 +5,7 @@ use crate::app::state::Cursor;
 use crate::app::widgets::direction::angle_degrees;
 use crate::app::widgets::numbers::signed;
 use crate::evaluate::TARGET_ETA;
-use crate::picture::Detection;
+use crate::picture::CellVerdict;
 use crate::radar::Radar;
 use ndarray::Array2;
 
@@ -29,10 +29,11 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
             count => format!("{} above the threshold; {}", cells(count), lowered(&peaks(radar, map))),
         },
         (Paint::Detections { eta, .. }, Some(target)) => {
-            let of =
-                |kind| map.iter().zip(target).filter(move |(v, t)| Detection::of(**t > TARGET_ETA, **v > eta) == kind);
+            let of = |kind| {
+                map.iter().zip(target).filter(move |(v, t)| CellVerdict::of(**t > TARGET_ETA, **v > eta) == kind)
+            };
             let [hits, alarms, misses] =
-                [Detection::Hit, Detection::FalseAlarm, Detection::Miss].map(|kind| of(kind).count());
+                [CellVerdict::Hit, CellVerdict::FalseAlarm, CellVerdict::Miss].map(|kind| of(kind).count());
             format!("{} hit, {alarms} false alarms, {misses} missed; {}", cells(hits), lowered(&peaks(radar, map)))
         }
         (Paint::Difference { .. }, Some(target)) => largest_difference(radar, map, target),

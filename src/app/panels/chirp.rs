@@ -9,7 +9,7 @@ use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
 use crate::radar::{Carrier, Radar};
 use crate::scene::Scene;
-use crate::theory::chirp::{Chirp, Heard, delay_seconds, heard};
+use crate::theory::chirp::{BeatTone, ChirpShape, delay_seconds, heard};
 use eframe::egui::{self, CursorIcon, Id, Rect, Sense, Stroke, Ui, vec2};
 
 /// The part of the chirp that the delay from the farthest range is drawn as, where delays are shorter.
@@ -52,7 +52,7 @@ pub struct Input<'a> {
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
-        let chirp = Chirp::of(input.radar);
+        let chirp = ChirpShape::of(input.radar);
         let element = input.settings.element.min(input.radar.elements - 1);
         let mut echoes = match input.is_recorded {
             true => Vec::new(),
@@ -99,7 +99,7 @@ fn parts(area: Rect) -> [Rect; 3] {
 }
 
 /// How many times as long delays are drawn: a chirp lasts far longer than its echoes take to return.
-fn stretch(radar: &Radar, chirp: &Chirp) -> f64 {
+fn stretch(radar: &Radar, chirp: &ChirpShape) -> f64 {
     let longest = delay_seconds(radar.max_range_metres());
     (DRAWN_DELAY * chirp.duration_seconds / longest).max(1.0)
 }
@@ -171,8 +171,8 @@ fn legend(ui: &mut Ui, input: &Input<'_>, stretch: f64) {
 /// What all three charts are drawn from.
 struct Shown<'a> {
     input: &'a Input<'a>,
-    chirp: Chirp,
-    echoes: &'a [Heard],
+    chirp: ChirpShape,
+    echoes: &'a [BeatTone],
     stretch: f64,
 }
 
@@ -211,7 +211,7 @@ impl Shown<'_> {
     }
 
     /// The beat as the difference of the two lines, at a part of the time in which an echo is heard while the chirp is sent.
-    fn difference(&self, drawn: &Drawn<'_>, echo: &Heard, [late, part]: [f64; 2], stroke: Stroke) {
+    fn difference(&self, drawn: &Drawn<'_>, echo: &BeatTone, [late, part]: [f64; 2], stroke: Stroke) {
         let (microseconds, giga) = (1e6 * self.chirp.duration_seconds, self.chirp.bandwidth_hz / 1e9);
         let time = late + part * (microseconds - late).max(0.0);
         let [sent, returned] = [time, time - late].map(|t| giga * t / microseconds);
@@ -223,7 +223,7 @@ impl Shown<'_> {
         painter.text(at, egui::Align2::LEFT_CENTER, name, egui::FontId::proportional(12.0), stroke.color);
     }
 
-    fn name(&self, echo: &Heard) -> String {
+    fn name(&self, echo: &BeatTone) -> String {
         format!("{} {}", self.input.scene.objects[echo.object].kind(), echo.object + 1)
     }
 

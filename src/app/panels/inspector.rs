@@ -8,7 +8,7 @@ use crate::app::widgets::direction::angle_of_place_degrees;
 use crate::app::widgets::entry::{arrange, button};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::signed;
-use crate::interact::{Change, Coordinates, Editor, Shared};
+use crate::interact::{Coordinates, Editor, FieldChange, SharedField};
 use crate::radar::{Radar, counted};
 use crate::scene::Scene;
 use eframe::egui;
@@ -135,7 +135,7 @@ fn seen(ui: &mut Ui, radar: &Radar, [x, y]: [f64; 2], coordinates: Coordinates) 
 
 /// A number to drag or to type; what becomes of it in all objects. Where it differs between them, typing sets it in all, dragging moves
 /// it in all by the same.
-fn number(ui: &mut Ui, shared: &Shared, metres_per_point: f64) -> Option<Change> {
+fn number(ui: &mut Ui, shared: &SharedField, metres_per_point: f64) -> Option<FieldChange> {
     let look = look(shared.field);
     let shown = shared.is_same.then(|| rounded(shared.first, &look, metres_per_point)).flatten();
     let tooltip = match &shown {
@@ -177,11 +177,11 @@ fn number(ui: &mut Ui, shared: &Shared, metres_per_point: f64) -> Option<Change>
     }
     let asked = asked?;
     if !shared.is_same && response.dragged() {
-        return Some(Change::By(asked - base));
+        return Some(FieldChange::By(asked - base));
     }
     ui.data_mut(|d| d.insert_temp(entered, asked));
     // A number that was looked at only comes back as it was printed.
-    (!shared.is_same || (asked - base).abs() > 0.5e-6).then_some(Change::To(asked))
+    (!shared.is_same || (asked - base).abs() > 0.5e-6).then_some(FieldChange::To(asked))
 }
 
 /// A length that a drag left, with as many digits as a point of the canvas is worth; `None` for one that has no more than three decimals

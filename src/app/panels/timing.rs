@@ -1,7 +1,7 @@
 //! What each stage of the last update cost, and what was skipped and why.
 
 use crate::app::state::Command;
-use crate::engine::{Outcome, Report};
+use crate::engine::{EngineReport, StageOutcome};
 use eframe::egui;
 use eframe::egui::{Grid, Label, RichText, ScrollArea, Ui};
 use std::time::Duration;
@@ -15,7 +15,7 @@ pub struct Input<'a> {
 /// An update of the maps.
 pub struct Update<'a> {
     /// Stage by stage.
-    pub report: &'a Report,
+    pub report: &'a EngineReport,
     /// Time with pictures.
     pub took: Duration,
     /// Pictures painted since the start.
@@ -53,11 +53,11 @@ fn table(ui: &mut Ui, update: &Update<'_>) {
     for stage in &update.report.stages {
         ui.label(stage.stage.to_string());
         match &stage.outcome {
-            Outcome::Computed(what) => {
+            StageOutcome::Computed(what) => {
                 ui.monospace(milliseconds(stage.took));
                 ui.add(Label::new(what).wrap());
             }
-            Outcome::Skipped(why) => {
+            StageOutcome::Skipped(why) => {
                 ui.weak("–");
                 ui.add(Label::new(RichText::new(format!("skipped: {why}")).weak()).wrap());
             }
@@ -83,7 +83,7 @@ fn table(ui: &mut Ui, update: &Update<'_>) {
 mod tests {
     use super::*;
     use crate::app::widgets::seen;
-    use crate::engine::{Engine, Wanted};
+    use crate::engine::{Engine, MapRequest};
     use crate::radar::Radar;
     use crate::scene::Scene;
     use egui_kittest::Harness;
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn an_output_of_an_earlier_scene_is_told() {
         let mut engine = Engine::new(Radar { elements: 64, samples: 32, ..Radar::default() });
-        let frame = engine.update(&Scene::of_points([(0.0, 10.0)]), &Wanted::default()).unwrap();
+        let frame = engine.update(&Scene::of_points([(0.0, 10.0)]), &MapRequest::default()).unwrap();
         let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
             let took = Duration::from_millis(12);
             let update =

@@ -4,7 +4,7 @@ use super::view::MapView;
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::rows::Row;
 use crate::evaluate::sets::{Case, SceneSet};
-use crate::evaluate::worsen::{Aim, Measure};
+use crate::evaluate::worsen::{Aim, WorseningMeasure};
 use crate::interact::Document;
 use crate::maps::Normalisation;
 use crate::radar::Radar;
@@ -87,7 +87,7 @@ pub struct SearchChoice {
     /// Worse scenes, or a repair.
     pub aim: Aim,
     /// What worse means.
-    pub measure: Measure,
+    pub measure: WorseningMeasure,
     /// How far objects may move, metres.
     pub within_metres: f64,
     /// Scenes to try.

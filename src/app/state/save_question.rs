@@ -1,6 +1,6 @@
 //! A question before a scene is written to a file.
 
-use crate::scene::file::Loss;
+use crate::scene::file::FileLoss;
 use std::path::PathBuf;
 
 /// What would be written where, and what speaks against it.
@@ -16,7 +16,7 @@ pub struct SaveQuestion {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Doubt {
     /// It would not give these back.
-    Losses(Vec<Loss>),
+    Losses(Vec<FileLoss>),
     /// Somebody else has written something else to it.
     Changed,
 }

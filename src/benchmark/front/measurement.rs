@@ -2,8 +2,8 @@
 
 use super::super::times::{bare_ms, quantile};
 use super::reference::{Reference, SEED, maps_of, profile};
-use super::{Convention, Entrant, Front, FrontRequest, FrontRow, FrontTask, LambdaError};
-use crate::engine::{Engine, Forced, Wanted};
+use super::{Entrant, Front, FrontRequest, FrontRow, FrontTask, LambdaError, MapConvention};
+use crate::engine::{Engine, Forced, MapRequest};
 use crate::files::memory::{peak_resident_bytes, reset_peak_resident};
 use crate::maps::tolerance;
 use crate::platform::Instant;
@@ -22,7 +22,6 @@ const SLOW_REPEATS: [usize; 2] = [3, 1];
 /// More reflectors than this take the slow algorithms minutes: they are left out.
 const MOST_PLAIN: usize = 1000;
 
-/// One row to be measured.
 #[derive(Clone, Copy)]
 struct Job {
     task: FrontTask,
@@ -35,7 +34,6 @@ struct Job {
 ///
 /// `on_row` is called with the part that is done (0 to 1) and each new row, in order. As soon as `cancelled` says so, what is measured by
 /// then is returned. Everything runs on the calling thread and rayon's.
-///
 /// # Errors
 /// [`SceneError`] when the radar can't see the scenes.
 pub fn measure(
@@ -87,7 +85,7 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
     let mut jobs = Vec::new();
     for tolerance in &request.tolerances {
         let mut planned = Plan::cheapest(count, amplitude, *tolerance);
-        if Convention::for_tolerance(*tolerance).floor == Floor::Exact {
+        if MapConvention::for_tolerance(*tolerance).floor == Floor::Exact {
             planned = planned.on_few_rows(radar, count);
         }
         for entrant in &request.entrants {
@@ -99,7 +97,7 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
             };
             for precision in precisions {
                 let sum = plan::Sum { algorithm, reflectors: count, amplitude };
-                let Convention { floor, normalisation } = Convention::for_tolerance(*tolerance);
+                let MapConvention { floor, normalisation } = MapConvention::for_tolerance(*tolerance);
                 if tolerance::refusal(*precision, &sum, floor, normalisation).is_some() {
                     continue;
                 }
@@ -127,13 +125,11 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
     jobs
 }
 
-/// All three maps, drawn by `convention`.
-fn wanted(convention: Convention) -> Wanted {
-    let Convention { floor, normalisation } = convention;
-    Wanted { floor, normalisation, seed: SEED, ends: false, ..Wanted::default() }
+fn wanted(convention: MapConvention) -> MapRequest {
+    let MapConvention { floor, normalisation } = convention;
+    MapRequest { floor, normalisation, seed: SEED, ends: false, ..MapRequest::default() }
 }
 
-/// One of the fast algorithms, by the live engine.
 fn fast_row(
     radar: &Radar,
     scene: &Scene,
@@ -141,7 +137,7 @@ fn fast_row(
     job: &Job,
     repeats: usize,
 ) -> Result<FrontRow, SceneError> {
-    let convention = Convention::for_tolerance(job.plan.tolerance);
+    let convention = MapConvention::for_tolerance(job.plan.tolerance);
     let mut engine = Engine::new(radar.clone());
     engine.force(Forced {
         algorithm: match job.entrant {
@@ -177,7 +173,7 @@ fn fast_row(
     let peak_bytes = peak_resident_bytes();
     let signal_error = reference.signal_error(radar, |element| engine.range_profile(element));
     let mut lambda = Vec::new();
-    for other in Convention::BOTH {
+    for other in MapConvention::BOTH {
         let drawn = if other == convention { frame.clone() } else { engine.update(scene, &wanted(other))? };
         lambda.extend(maps_of(&drawn).map(|maps| reference.lambda_error(other, maps)));
     }
@@ -187,7 +183,7 @@ fn fast_row(
 /// The plain formulas: signal, transforms and maps without any of the fast paths.
 fn plain_row(radar: &Radar, reference: &Reference, job: &Job, repeats: usize) -> FrontRow {
     let repeats = repeats.min(SLOW_REPEATS[usize::from(reference.reflectors.len() > 50)]);
-    let convention = Convention::for_tolerance(job.plan.tolerance);
+    let convention = MapConvention::for_tolerance(job.plan.tolerance);
     reset_peak_resident();
     let once = || {
         let start = Instant::now();
@@ -199,7 +195,7 @@ fn plain_row(radar: &Radar, reference: &Reference, job: &Job, repeats: usize) ->
     let times = std::iter::once(first).chain((1..repeats).map(|_| once().0)).collect();
     let peak_bytes = peak_resident_bytes();
     let signal_error = reference.signal_error(radar, |element| profile(radar, signal.samples.view(), element));
-    let lambda = Convention::BOTH.map(|other| {
+    let lambda = MapConvention::BOTH.map(|other| {
         let drawn;
         let maps = if other == convention {
             &maps
@@ -220,7 +216,7 @@ fn row(
     lambda: Vec<LambdaError>,
     peak_bytes: Option<u64>,
 ) -> FrontRow {
-    let convention = Convention::for_tolerance(job.plan.tolerance);
+    let convention = MapConvention::for_tolerance(job.plan.tolerance);
     let timed = lambda.iter().find(|l| l.convention == convention);
     FrontRow {
         task: job.task,

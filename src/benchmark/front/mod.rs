@@ -1,7 +1,7 @@
 //! The front of run time against error: how long three Lambda maps take, and how far they are from the truth, by algorithm,
 //! precision, tolerance and number of reflectors.
 //!
-//! [`measure`] does the work for `apertura bench` and for whoever wants to draw the front while it grows: it calls back with every row and
+//! [`measure`] does the work for `apertura bench` and for the window, which draws the front while it grows: it calls back with every row and
 //! stops when asked to. [`FrontRequest::short`] takes a second or two, [`FrontRequest::full`] about a minute.
 //!
 //! The floor's noise is made beforehand, for the plain algorithms as for the fast ones; it is scaled to the scene's level inside the time.
@@ -24,20 +24,16 @@ use std::str::FromStr;
 /// tolerance nor single precision nor dragging, and give one row for each number of reflectors up to 1000.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontRequest {
-    /// Numbers of reflectors.
     pub reflectors: Vec<usize>,
     /// Errors allowed, relative to the peak.
     pub tolerances: Vec<f64>,
-    /// Who takes part.
     pub entrants: Vec<Entrant>,
-    /// What is timed.
     pub tasks: Vec<FrontTask>,
     /// Timed repeats of every measurement; 0 counts as 1.
     pub repeats: usize,
 }
 
 impl FrontRequest {
-    /// All there is, for these numbers of reflectors.
     pub fn full(reflectors: Vec<usize>, repeats: usize) -> Self {
         FrontRequest {
             reflectors,
@@ -65,9 +61,7 @@ impl FrontRequest {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum Entrant {
-    /// Whatever the planner chooses.
     Planned,
-    /// This algorithm.
     Forced(Algorithm),
 }
 
@@ -115,12 +109,10 @@ impl TryFrom<String> for Entrant {
 pub enum FrontTask {
     /// Nothing of the scene is known before.
     Scratch,
-    /// One of the reflectors moved.
     Drag,
 }
 
 impl FrontTask {
-    /// "scratch" or "drag".
     pub fn name(self) -> &'static str {
         match self {
             FrontTask::Scratch => "scratch",
@@ -131,33 +123,32 @@ impl FrontTask {
 
 /// What lies beneath the reflectors, and how decades become Lambda: no error of Lambda means anything without both.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Convention {
-    /// The floor.
+pub struct MapConvention {
     #[serde(with = "as_text")]
     pub floor: Floor,
-    /// The normalisation.
     #[serde(with = "as_text")]
     pub normalisation: Normalisation,
 }
 
-impl Convention {
+impl MapConvention {
     /// The thesis': its rounding floor, normalised from the smallest to the largest cell.
-    pub const THESIS: Convention = Convention { floor: Floor::Thesis, normalisation: Normalisation::MinMax };
-    /// Stable whatever the precision: no floor, 100 dB below the peak.
-    pub const FIXED_RANGE: Convention =
-        Convention { floor: Floor::Exact, normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)) };
-    /// No floor, normalised by the smallest cell: the picture's floor is the last bits of whatever computed it.
-    pub const NO_FLOOR: Convention = Convention { floor: Floor::Exact, normalisation: Normalisation::MinMax };
-    /// Both of those that errors are given for.
-    pub const BOTH: [Convention; 2] = [Convention::FIXED_RANGE, Convention::THESIS];
+    pub const THESIS: MapConvention = MapConvention { floor: Floor::Thesis, normalisation: Normalisation::MinMax };
+    /// Stable in any precision: no floor, 100 dB below the peak.
+    pub const FIXED_RANGE: MapConvention = MapConvention {
+        floor: Floor::Exact,
+        normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)),
+    };
+    /// No floor, normalised by the smallest cell: the picture's floor is the last bits of the algorithm.
+    pub const NO_FLOOR: MapConvention = MapConvention { floor: Floor::Exact, normalisation: Normalisation::MinMax };
+    pub const BOTH: [MapConvention; 2] = [MapConvention::FIXED_RANGE, MapConvention::THESIS];
 
     /// The convention that maps of this tolerance are good for, and timed with.
-    pub fn for_tolerance(tolerance: f64) -> Convention {
-        if tolerance >= 1e-6 { Convention::FIXED_RANGE } else { Convention::THESIS }
+    pub fn for_tolerance(tolerance: f64) -> MapConvention {
+        if tolerance >= 1e-6 { MapConvention::FIXED_RANGE } else { MapConvention::THESIS }
     }
 }
 
-impl fmt::Display for Convention {
+impl fmt::Display for MapConvention {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.floor, self.normalisation)
     }
@@ -181,23 +172,17 @@ mod as_text {
 /// How far three maps are from the exact path's, over one floor and normalisation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LambdaError {
-    /// What the maps are drawn by.
     #[serde(flatten)]
-    pub convention: Convention,
-    /// Largest error of a cell.
+    pub convention: MapConvention,
     pub max: f64,
-    /// Root of the mean squared error.
     pub rms: f64,
 }
 
 /// One measurement: a point of the front.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FrontRow {
-    /// What was timed.
     pub task: FrontTask,
-    /// Reflectors in the scene.
     pub reflectors: usize,
-    /// Who computed.
     pub algorithm: Entrant,
     /// What the planner chose for the whole scene, or the algorithm again.
     pub chosen: Algorithm,
@@ -205,16 +190,13 @@ pub struct FrontRow {
     pub precision: Precision,
     /// Error asked for, relative to the peak.
     pub tolerance: f64,
-    /// What the timed maps are drawn by.
     #[serde(flatten)]
-    pub convention: Convention,
-    /// Median over the repeats.
+    pub convention: MapConvention,
     pub median_ms: f64,
     /// From the first to the third quartile of the repeats.
     pub spread_ms: f64,
     /// Fastest of the repeats.
     pub fastest_ms: f64,
-    /// Repeats.
     pub repeats: usize,
     /// Largest error of a range cell against the judge (every range bin of a few elements), relative to the largest.
     pub signal_error: f64,
@@ -222,7 +204,7 @@ pub struct FrontRow {
     pub lambda_error: f64,
     /// Root of the mean squared error, likewise.
     pub lambda_rms_error: f64,
-    /// Errors of Lambda in every convention of [`Convention::BOTH`].
+    /// Errors of Lambda in every convention of [`MapConvention::BOTH`].
     pub lambda: Vec<LambdaError>,
     /// Largest resident size of the process while it ran, where the system tells.
     pub peak_bytes: Option<u64>,
@@ -233,10 +215,7 @@ pub struct FrontRow {
 pub struct Front {
     /// Median time of a bare 512 x 1024 single-precision transform on one thread, in the same run.
     pub bare_fft_ms: f64,
-    /// Threads the maps were computed on.
     pub threads: usize,
-    /// Instructions used.
     pub simd: Simd,
-    /// The measurements.
     pub rows: Vec<FrontRow>,
 }

@@ -1,7 +1,7 @@
 //! What the rows of a front are measured against.
 
-use super::{Convention, LambdaError};
-use crate::engine::Frame;
+use super::{LambdaError, MapConvention};
+use crate::engine::EngineFrame;
 use crate::maps::{Aperture, LogMaps, RangeAngleMap, channels_range_transform};
 use crate::radar::{End, Radar};
 use crate::scene::Reflector;
@@ -22,14 +22,11 @@ pub(in crate::benchmark) const SEED: u64 = 0;
 /// phasor split in f64 stands in, which the tests hold to the last bits.
 const MOST_EXACT: usize = 300;
 
-/// The truth about one scene.
 pub(in crate::benchmark) struct Reference {
-    /// The scene's reflectors.
     pub reflectors: Vec<Reflector>,
     profiles: JudgedProfiles,
-    /// The exact path's maps, one triple for each of [`Convention::BOTH`].
+    /// The exact path's maps, one triple for each of [`MapConvention::BOTH`].
     maps: [[RangeAngleMap; 3]; 2],
-    /// The floor's noise before it is scaled.
     pub noise: UnitNoise,
 }
 
@@ -43,7 +40,7 @@ impl Reference {
             }
         };
         let noise = UnitNoise::new(radar);
-        let maps = Convention::BOTH.map(|convention| noise.plain_maps(radar, &reflectors, &signal, convention));
+        let maps = MapConvention::BOTH.map(|convention| noise.plain_maps(radar, &reflectors, &signal, convention));
         Reference { profiles: JudgedProfiles::new(radar, &reflectors), maps, noise, reflectors }
     }
 
@@ -53,9 +50,9 @@ impl Reference {
     }
 
     /// Errors of three maps drawn by `convention`.
-    pub fn lambda_error(&self, convention: Convention, maps: [&RangeAngleMap; 3]) -> LambdaError {
+    pub fn lambda_error(&self, convention: MapConvention, maps: [&RangeAngleMap; 3]) -> LambdaError {
         let [fixed_range, thesis] = &self.maps;
-        let expected = if convention == Convention::THESIS { thesis } else { fixed_range };
+        let expected = if convention == MapConvention::THESIS { thesis } else { fixed_range };
         difference(convention, maps, expected.each_ref())
     }
 }
@@ -93,9 +90,8 @@ impl JudgedProfiles {
     }
 }
 
-/// How far two triples of maps, drawn by `convention`, are apart.
 pub(in crate::benchmark) fn difference(
-    convention: Convention,
+    convention: MapConvention,
     a: [&RangeAngleMap; 3],
     b: [&RangeAngleMap; 3],
 ) -> LambdaError {
@@ -129,7 +125,7 @@ impl UnitNoise {
         radar: &Radar,
         reflectors: &[Reflector],
         signal: &BeatSignal,
-        convention: Convention,
+        convention: MapConvention,
     ) -> [RangeAngleMap; 3] {
         let maps = match floor::noise_variance(radar, reflectors, convention.floor) {
             None => LogMaps::of_signal(radar, signal),
@@ -144,7 +140,6 @@ impl UnitNoise {
     }
 }
 
-/// Range profile of one channel's samples.
 pub(in crate::benchmark) fn profile(
     radar: &Radar,
     samples: ArrayView2<'_, Complex64>,
@@ -154,8 +149,7 @@ pub(in crate::benchmark) fn profile(
     Some(channels_range_transform(radar, row).profiles.into_iter().collect())
 }
 
-/// The three maps of a frame; `None` if one was not wanted.
-pub(in crate::benchmark) fn maps_of(frame: &Frame) -> Option<[&RangeAngleMap; 3]> {
+pub(in crate::benchmark) fn maps_of(frame: &EngineFrame) -> Option<[&RangeAngleMap; 3]> {
     let [a, b, c] = APERTURES.map(|a| frame.map(a).map(|m| m.lambda.as_ref()));
     Some([a?, b?, c?])
 }

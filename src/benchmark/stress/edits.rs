@@ -1,6 +1,6 @@
 //! Many random edits through the incremental engine: where they end, and what they leave in memory.
 
-use crate::engine::{Engine, Wanted};
+use crate::engine::{Engine, MapRequest};
 use crate::files::memory::resident_bytes;
 use crate::maps::tolerance::tolerance_for;
 use crate::radar::Radar;
@@ -12,10 +12,8 @@ use serde::Serialize;
 /// Compared with a fresh engine so often over a run, at least.
 const COMPARISONS: usize = 20;
 
-/// What a run of random edits came to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EditReport {
-    /// Edits made.
     pub edits: usize,
     /// Largest difference from an engine that starts afresh, over the run: of range cells, relative to a cell in which all echoes of the
     /// scene agree. Tolerances are relative to the same.
@@ -44,10 +42,9 @@ fn random_object(rng: &mut impl RngExt) -> Object {
 }
 
 /// Adds, removes, replaces, reorders and moves objects at random (`seed`), in the conventions of `wanted`.
-///
 /// # Errors
 /// [`SceneError`] when a random object happens to lie on an element.
-pub fn random_edits(radar: &Radar, wanted: &Wanted, edits: usize, seed: u64) -> Result<EditReport, SceneError> {
+pub fn random_edits(radar: &Radar, wanted: &MapRequest, edits: usize, seed: u64) -> Result<EditReport, SceneError> {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let mut engine = Engine::new(radar.clone());
     let mut scene = Scene { objects: (0..12).map(|_| random_object(&mut rng)).collect(), ..Scene::default() };
@@ -85,7 +82,6 @@ pub fn random_edits(radar: &Radar, wanted: &Wanted, edits: usize, seed: u64) -> 
     Ok(report)
 }
 
-/// Largest difference between the range profiles of two engines, relative to a cell in which all echoes of `scene` agree.
 fn difference(radar: &Radar, engine: &Engine, fresh: &Engine, scene: &Scene) -> Option<f64> {
     let weights: f64 = radar.window.weights(radar.samples).iter().sum();
     let together = amplitude_bound(radar, &scene.reflectors()) * weights / (radar.samples as f64).sqrt();

@@ -10,8 +10,8 @@ pub use edits::{EditReport, random_edits};
 pub use scenes::{StressScene, all, moved_by_one_ulp};
 
 use super::front::reference::{JudgedProfiles, SEED, UnitNoise, difference, maps_of, profile};
-use super::front::{Convention, LambdaError};
-use crate::engine::{Engine, Forced, Wanted};
+use super::front::{LambdaError, MapConvention};
+use crate::engine::{Engine, Forced, MapRequest};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::scene::{Reflector, Scene, SceneError};
@@ -26,16 +26,13 @@ const TOLERANCES: [(Precision, f64); 2] = [(Precision::F32, 1e-6), (Precision::F
 /// The process may grow by this much over the edits after the first twentieth: what allocators keep.
 const MOST_GROWTH_BYTES: u64 = 16 << 20;
 /// The conventions that maps are drawn in: the two that errors are given for, and the trap.
-const CONVENTIONS: [Convention; 3] = [Convention::FIXED_RANGE, Convention::THESIS, Convention::NO_FLOOR];
+const CONVENTIONS: [MapConvention; 3] = [MapConvention::FIXED_RANGE, MapConvention::THESIS, MapConvention::NO_FLOOR];
 
-/// How much is tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StressRequest {
     /// Points of the scene in which many coincide.
     pub coincident: usize,
-    /// Random edits.
     pub edits: usize,
-    /// Picks the edits.
     pub seed: u64,
 }
 
@@ -45,16 +42,12 @@ impl Default for StressRequest {
     }
 }
 
-/// One scene by one algorithm in one precision.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StressCase {
     /// What is hard about the scene.
     pub scene: &'static str,
-    /// Its reflectors.
     pub reflectors: usize,
-    /// The algorithm.
     pub algorithm: Algorithm,
-    /// The precision asked for.
     pub precision: Precision,
     /// Largest error of a range cell against the judge (every range bin of a few elements), relative to what the amplitudes could add up to.
     pub signal_error: f64,
@@ -67,89 +60,40 @@ pub struct StressCase {
 }
 
 impl StressCase {
-    /// Whether everything is finite and the promise kept.
     pub fn holds(&self) -> bool {
         self.not_finite == 0 && self.tolerance.is_none_or(|t| self.signal_error <= t)
     }
 }
 
-/// What came of it all.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StressReport {
-    /// Every scene by every algorithm.
     pub cases: Vec<StressCase>,
     /// Scenes that were refused with an error, as they must be, and what the error says.
     pub refused: Vec<(&'static str, String)>,
-    /// Random edits over the thesis' floor, in f64.
     pub edits: EditReport,
 }
 
-/// Why a stress run failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum StressFailure {
-    /// Numbers that are no numbers.
     #[error("{scene}, {algorithm} in {precision}: {count} values are not finite; expected none")]
-    NotFinite {
-        /// The scene.
-        scene: &'static str,
-        /// The algorithm.
-        algorithm: Algorithm,
-        /// The precision.
-        precision: Precision,
-        /// How many.
-        count: usize,
-    },
-    /// A promise not kept.
+    NotFinite { scene: &'static str, algorithm: Algorithm, precision: Precision, count: usize },
     #[error("{scene}, {algorithm} in {precision}: error {error:.1e}; expected at most {tolerance:.0e}")]
-    Inaccurate {
-        /// The scene.
-        scene: &'static str,
-        /// The algorithm.
-        algorithm: Algorithm,
-        /// The precision.
-        precision: Precision,
-        /// The error found.
-        error: f64,
-        /// The error promised.
-        tolerance: f64,
-    },
-    /// Incremental sums drifted.
+    Inaccurate { scene: &'static str, algorithm: Algorithm, precision: Precision, error: f64, tolerance: f64 },
     #[error("{edits} edits end {difference:.1e} from a fresh build; expected at most {most:.1e}")]
-    Drift {
-        /// Edits made.
-        edits: usize,
-        /// The difference.
-        difference: f64,
-        /// What it may be.
-        most: f64,
-    },
+    Drift { edits: usize, difference: f64, most: f64 },
     /// Memory grows: the engine's caches at all, or the process by more than allocators keep.
     #[error("{what} grew from {early} to {late} bytes over {edits} edits; expected no growth")]
-    Memory {
-        /// "caches" or "the process".
-        what: &'static str,
-        /// Bytes after the first edits.
-        early: u64,
-        /// Bytes in the end.
-        late: u64,
-        /// Edits made.
-        edits: usize,
-    },
+    Memory { what: &'static str, early: u64, late: u64, edits: usize },
     /// A scene that should have been refused was not, or the other way round.
     #[error("{scene}: {what}")]
-    Refusal {
-        /// The scene.
-        scene: &'static str,
-        /// What went wrong.
-        what: String,
-    },
+    Refusal { scene: &'static str, what: String },
 }
 
 impl StressReport {
     /// Whether everything held; the first thing that did not otherwise.
     ///
     /// Memory is that of the whole process: where it does other things meanwhile, [`StressReport::numbers`] is all that can be said.
-    ///
     /// # Errors
     /// [`StressFailure`].
     pub fn verdict(&self) -> Result<(), StressFailure> {
@@ -164,7 +108,6 @@ impl StressReport {
     }
 
     /// Whether every number is right, and the engine's caches don't grow.
-    ///
     /// # Errors
     /// [`StressFailure`].
     pub fn numbers(&self) -> Result<(), StressFailure> {
@@ -193,7 +136,6 @@ impl StressReport {
 /// Runs every scene by every algorithm on `radar`, and random edits on `small`. `progress` is called with the part that is done, 0 to 1.
 ///
 /// Above a thousand reflectors the plain algorithms are left out: they take minutes.
-///
 /// # Errors
 /// [`StressFailure::Refusal`] when a scene is refused that should not be, or the other way round.
 pub fn run(
@@ -226,7 +168,7 @@ pub fn run(
         }
     }
     progress(scenes.len() as f32 / steps);
-    let wanted = Wanted { ends: false, ..Wanted::default() };
+    let wanted = MapRequest { ends: false, ..MapRequest::default() };
     let edits = random_edits(small, &wanted, request.edits, request.seed)
         .map_err(|e| StressFailure::Refusal { scene: "random edits", what: e.to_string() })?;
     progress(1.0);
@@ -234,7 +176,6 @@ pub fn run(
 }
 
 /// One scene by one algorithm, in every precision it has.
-///
 /// # Errors
 /// [`SceneError`] when the radar can't see the scene.
 pub fn scene_cases(radar: &Radar, scene: &StressScene, algorithm: Algorithm) -> Result<Vec<StressCase>, SceneError> {
@@ -246,7 +187,6 @@ pub fn scene_cases(radar: &Radar, scene: &StressScene, algorithm: Algorithm) -> 
     TOLERANCES.into_iter().map(case).collect()
 }
 
-/// What a scene's profiles are, and how large they could be.
 struct Judged {
     reflectors: Vec<Reflector>,
     moved: Scene,
@@ -282,7 +222,7 @@ fn fast_case(
     let mut signal_error = 0.0;
     for convention in CONVENTIONS {
         let (floor, normalisation) = (convention.floor, convention.normalisation);
-        let wanted = Wanted { floor, normalisation, seed: SEED, ends: false, ..Wanted::default() };
+        let wanted = MapRequest { floor, normalisation, seed: SEED, ends: false, ..MapRequest::default() };
         let frame = engine.update(&scene.scene, &wanted)?;
         let profile = |element| {
             // A scene without reflectors has no profiles to speak of.
@@ -338,7 +278,6 @@ fn case(
     StressCase { scene: scene.name, reflectors, algorithm, precision, signal_error, tolerance, not_finite, ulp_change }
 }
 
-/// Cells that are no Lambda.
 fn out_of_range(map: &RangeAngleMap) -> usize {
     map.lambda.iter().filter(|v| !(0.0..=1.0).contains(*v)).count()
 }

@@ -3,12 +3,9 @@
 use crate::radar::Radar;
 use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Object, Point, Reflector, Scene};
 
-/// A scene and what is hard about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StressScene {
-    /// What is hard about it.
     pub name: &'static str,
-    /// The scene, all of points.
     pub scene: Scene,
     /// Whether it must be refused instead of simulated.
     pub refused: bool,

@@ -102,7 +102,7 @@ fn far_ahead_the_amplitude_is_as_sure_as_all_samples_together() {
 }
 
 #[test]
-fn the_amplitude_of_a_near_reflector_suffers_from_its_unknown_place() {
+fn an_unknown_place_costs_a_near_reflectors_amplitude() {
     let radar = Radar::default();
     let layout = Layout::one_end(&radar, End::First);
     let r = at(0.05, 0.0);

@@ -1,9 +1,9 @@
 //! `apertura bench --bodies`: how long scenes of bodies take, how that grows with their number, and run time against error of a face.
 
-use crate::benchmark::bodies::{self, Case, Row, Times};
-use crate::benchmark::faces::{self, FaceRow, Way};
-use crate::benchmark::front::Convention;
-use crate::commands::figure::{Drawn, Figure, save, save_numbers, tick};
+use crate::benchmark::bodies::{self, BodyCase, BodyRow, BodyTimes};
+use crate::benchmark::faces::{self, FaceFormula, FaceRow};
+use crate::benchmark::front::MapConvention;
+use crate::commands::figure::{Drawing, DrawingResult, save, save_numbers, tick};
 use crate::commands::{CommandError, print};
 use crate::radar::{Radar, counted};
 use plotters::coord::Shift;
@@ -18,21 +18,20 @@ const COLOURS: [RGBColor; 5] = [
     RGBColor(30, 70, 160),
 ];
 
-/// Sizes of the crowds.
 const COUNTS: [usize; 6] = [3, 10, 30, 100, 300, 1000];
 
 #[derive(serde::Serialize)]
 struct Report<'a> {
     #[serde(flatten)]
-    times: &'a Times,
+    times: &'a BodyTimes,
     faces: &'a [FaceRow],
 }
 
 /// Measures, prints, and draws `bodies.svg`, `faces.svg`, the same as PNG, and `bodies.json` into `output`.
 pub fn run(repeats: usize, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
-    let cases: Vec<Case> =
-        Case::street().into_iter().chain(COUNTS.map(Case::crowd)).chain(COUNTS.map(Case::points)).collect();
-    let bar = indicatif::ProgressBar::new(cases.len() as u64 * Convention::BOTH.len() as u64);
+    let cases: Vec<BodyCase> =
+        BodyCase::street().into_iter().chain(COUNTS.map(BodyCase::crowd)).chain(COUNTS.map(BodyCase::points)).collect();
+    let bar = indicatif::ProgressBar::new(cases.len() as u64 * MapConvention::BOTH.len() as u64);
     let times = bodies::measure(&Radar::default(), &cases, repeats, |_| bar.inc(1)).map_err(CommandError::failed)?;
     bar.finish_and_clear();
     let (chart, faces) = (Chart { times }, FaceChart { rows: faces::measure(&Radar::default()) });
@@ -57,7 +56,7 @@ fn face_line(row: &FaceRow) -> String {
     format!("{:36} {:20} {:>9.1e} {:>10.1} us", row.face, row.way, row.error, row.microseconds)
 }
 
-fn heading(times: &Times) -> String {
+fn heading(times: &BodyTimes) -> String {
     format!(
         "three maps on {}, {}; in brackets multiples of the bare transform on one thread, {:.3} ms in this run\n\
          {:8} {:>7} {:>6}  {:16} {:>20} {:>20}  {}",
@@ -74,7 +73,7 @@ fn heading(times: &Times) -> String {
     )
 }
 
-fn line(row: &Row, bare_fft_ms: f64) -> String {
+fn line(row: &BodyRow, bare_fft_ms: f64) -> String {
     let time = |ms: f64| format!("{ms:.3} ({:.1})", ms / bare_fft_ms);
     format!(
         "{:8} {:>7} {:>6}  {:16} {:>20} {:>20}  {}",
@@ -89,17 +88,16 @@ fn line(row: &Row, bare_fft_ms: f64) -> String {
 }
 
 struct Chart {
-    times: Times,
+    times: BodyTimes,
 }
 
-/// A line of the chart: what it is called, its colour, and objects and multiples of the bare transform.
 type Line = (&'static str, RGBColor, Vec<(f64, f64)>);
 
 impl Chart {
     fn lines(&self) -> Vec<Line> {
-        let of = |scene: &'static str, time: fn(&Row) -> f64| {
+        let of = |scene: &'static str, time: fn(&BodyRow) -> f64| {
             let rows = self.times.rows.iter().filter(move |r| r.scene == scene);
-            let rows = rows.filter(|r| r.convention == Convention::FIXED_RANGE);
+            let rows = rows.filter(|r| r.convention == MapConvention::FIXED_RANGE);
             rows.map(|r| (r.objects as f64, time(r) / self.times.bare_fft_ms)).collect()
         };
         vec![
@@ -111,12 +109,12 @@ impl Chart {
     }
 }
 
-impl Figure for Chart {
+impl Drawing for Chart {
     fn size(&self) -> (u32, u32) {
         (1000, 640)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
         let lines = self.lines();
         let all = lines.iter().flat_map(|(.., line)| line.iter());
         let (low, high) = all.fold((f64::INFINITY, 0.0f64), |(a, b), (_, t)| (a.min(*t), b.max(*t)));
@@ -155,12 +153,12 @@ struct FaceChart {
     rows: Vec<FaceRow>,
 }
 
-impl Figure for FaceChart {
+impl Drawing for FaceChart {
     fn size(&self) -> (u32, u32) {
         (1000, 640)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
         let span = |of: fn(&FaceRow) -> f64| {
             let (low, high) = self.rows.iter().map(of).fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
             (low.max(f64::MIN_POSITIVE) / 2.0..high * 2.0).log_scale()
@@ -178,7 +176,7 @@ impl Figure for FaceChart {
             .x_label_formatter(&tick)
             .y_label_formatter(&tick)
             .draw()?;
-        for (i, way) in Way::ALL.iter().enumerate() {
+        for (i, way) in FaceFormula::ALL.iter().enumerate() {
             let (colour, name) = (COLOURS[i % COLOURS.len()], way.to_string());
             let rows: Vec<_> = self.rows.iter().filter(|r| r.way == name).map(|r| (r.microseconds, r.error)).collect();
             chart

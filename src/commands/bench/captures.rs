@@ -8,23 +8,19 @@ use std::f64::consts::TAU;
 use std::io::Cursor;
 use std::time::Instant;
 
-/// Samples and receivers of the capture.
 const SAMPLES: usize = 256;
 const RECEIVERS: usize = 4;
 /// Its size where a `.cfg` says its counts, and where none does, bytes.
 const WITH_CONFIG: usize = 1 << 20;
 const WITHOUT: usize = 4 << 20;
-/// Times of which the median is told.
 const TIMES: usize = 5;
 
 /// What sets such a radar up.
 const CONFIG: &str = "channelCfg 15 5 0\nadcCfg 2 1\nprofileCfg 0 77 30 6 80 0 0 60 1 256 4000 0 0 30\nchirpCfg 0 0 0 0 0 0 0 1\n\
                       chirpCfg 1 1 0 0 0 0 0 4\nframeCfg 0 1 32 0 100 1 0\n";
 
-/// The time of one search.
 #[derive(Debug, Serialize)]
 pub struct CaptureRow {
-    /// What was searched.
     name: &'static str,
     bytes: usize,
     layouts: usize,
@@ -63,7 +59,6 @@ fn timed(name: &'static str, bytes: usize, profile: Option<&RadarProfile>) -> Re
     Ok(CaptureRow { name, bytes, layouts, median_ms: times[TIMES / 2] })
 }
 
-/// Three echoes over a little noise, as two lanes send them.
 fn capture(bytes: usize) -> Vec<u8> {
     let mut state = 3u32;
     let mut noise = move || {

@@ -16,7 +16,6 @@ const LEAST_ERROR: f64 = 1e-16;
 const MOST_ERROR: f64 = 1e-2;
 /// Radius of the dot of the fewest reflectors, pixels.
 const LEAST_DOT: i32 = 4;
-/// How much larger the ring around a dot is.
 const RING: i32 = 3;
 const LEGEND_DOT: i32 = 5;
 
@@ -53,7 +52,6 @@ fn style(entrant: Entrant) -> ShapeStyle {
     }
 }
 
-/// What the sizes of the dots mean.
 fn sizes(counts: &[usize]) -> String {
     let numbers = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
     match counts {

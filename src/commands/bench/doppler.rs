@@ -1,23 +1,18 @@
 //! One object dragged while the range-Doppler panel is open: three maps and the map of 128 chirps after every move.
 
 use crate::commands::CommandError;
-use crate::engine::{Engine, Wanted};
+use crate::engine::{Engine, MapRequest};
 use crate::maps::doppler::range_doppler;
 use crate::radar::Radar;
 use crate::scene::Scene;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Chirps of the radar.
 const CHIRPS: usize = 128;
-/// Numbers of points, each of which moves.
 const POINTS: [usize; 2] = [10, 100];
-/// Moves that are timed.
 const MOVES: usize = 20;
-/// Moves before those.
 const WARM_UP: usize = 2;
 
-/// Times with one number of points.
 #[derive(Debug, Serialize)]
 pub struct DopplerRow {
     points: usize,
@@ -28,7 +23,6 @@ pub struct DopplerRow {
 }
 
 impl DopplerRow {
-    /// A line of the table.
     pub fn line(&self) -> String {
         format!(
             "dragging one of {:>3} moving points, {} chirps: {:.1} ms from the move to the range-Doppler map and three maps \
@@ -43,7 +37,6 @@ impl DopplerRow {
     }
 }
 
-/// Points at ranges of 5 to 35 m, each with a velocity of its own.
 fn moving(points: usize) -> Scene {
     let mut scene = Scene::of_points((0..points).map(|i| {
         let part = (i as f64 + 0.5) / points as f64;
@@ -57,14 +50,13 @@ fn moving(points: usize) -> Scene {
     scene
 }
 
-/// Drags one point in a small and in a large scene.
 pub fn measure() -> Result<Vec<DopplerRow>, CommandError> {
     POINTS.into_iter().map(drag).collect()
 }
 
 fn drag(points: usize) -> Result<DopplerRow, CommandError> {
     let radar = Radar { chirps: CHIRPS, ..Radar::default() };
-    let wanted = Wanted::default();
+    let wanted = MapRequest::default();
     let (mut engine, mut scene) = (Engine::new(radar.clone()), moving(points));
     let mut times = Vec::new();
     for step in 0..WARM_UP + MOVES {

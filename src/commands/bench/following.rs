@@ -10,19 +10,15 @@ use crate::signal::{Floor, simulate};
 use serde::Serialize;
 use std::time::Instant;
 
-/// The method that follows.
 const METHOD: &str = "hybrid";
 
-/// Points of a scene.
 const POINTS: usize = 20;
 
 /// Moves of one of them in each scene.
 pub const MOVES: u32 = 10;
 
-/// From one move to the next, metres.
 const STEP_METRES: [f64; 2] = [0.04, 0.02];
 
-/// What was measured.
 #[derive(Debug, Serialize)]
 pub struct Followed {
     method: &'static str,
@@ -30,13 +26,11 @@ pub struct Followed {
     scenes: u32,
     moves: usize,
     median_milliseconds: f64,
-    /// That nine of ten moves don't exceed.
     most_milliseconds: f64,
     worst_milliseconds: f64,
 }
 
 impl Followed {
-    /// A line of the table.
     pub fn line(&self) -> String {
         let Followed { method, points, scenes, moves, .. } = self;
         format!(
@@ -51,7 +45,6 @@ impl Followed {
 }
 
 /// Drags a point in `count` test scenes of a crowd, less those points that are too many; a new draw of the floor at every move.
-///
 /// # Errors
 /// [`CommandError`] where the method fails.
 pub fn measure(count: u32, on_map: impl Fn()) -> Result<Followed, CommandError> {

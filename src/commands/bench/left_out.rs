@@ -13,24 +13,19 @@ use crate::signal::Floor;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Scenes of few and of many reflectors.
 const KINDS: [Kind; 2] = [Kind::Points(10), Kind::Mixed(4)];
 
-/// What was measured on scenes of one kind.
 #[derive(Debug, Serialize)]
 pub struct LeftOut {
     kind: Kind,
     scenes: u32,
-    /// Mean part that is computed.
     computed: f64,
-    /// Largest difference of a cell of Lambda from that of the whole.
     largest_error: f32,
     median_milliseconds: f64,
     whole_median_milliseconds: f64,
 }
 
 impl LeftOut {
-    /// A line of the table.
     pub fn line(&self) -> String {
         format!(
             "live, {}: {:.0} % of side lobes in range computed, {:.1} ms for {:.1} with all of them, Lambda at most {:.0e} off ({})",
@@ -45,7 +40,6 @@ impl LeftOut {
 }
 
 /// Compares on `count` test scenes of each kind; nothing where the live network can't be read.
-///
 /// # Errors
 /// [`CommandError`] where the network fails.
 pub fn measure(count: u32) -> Result<Vec<LeftOut>, CommandError> {
@@ -75,7 +69,7 @@ fn of_kind(live: &LiveMethod, kind: Kind, count: u32) -> Result<LeftOut, Command
             times[at].push(start.elapsed().as_secs_f64() * 1e3);
             decades.map_err(CommandError::failed)
         };
-        // By turns, as whichever comes second finds the samples at hand.
+        // By turns, as the second one finds the samples at hand.
         let (part, whole) = if number % 2 == 0 {
             (timed(0, false)?, timed(1, true)?)
         } else {
@@ -90,7 +84,6 @@ fn of_kind(live: &LiveMethod, kind: Kind, count: u32) -> Result<LeftOut, Command
     Ok(left_out)
 }
 
-/// Largest difference of a cell of both maps' Lambda.
 fn distance(a: &Decades, b: &Decades, normalisation: Normalisation) -> f32 {
     let peak = |map: &[f32]| map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let [of_a, of_b] = [a, b].map(|d| LambdaScale::new(d.minimum.into(), peak(&d.map).into(), normalisation));

@@ -2,7 +2,7 @@
 
 use crate::commands::{CommandError, print};
 use crate::network;
-use crate::network::live::engine::Scratch;
+use crate::network::live::engine::LiveScratch;
 use crate::network::live::features::FeatureExtractor;
 use crate::radar::{Radar, counted};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
@@ -10,15 +10,12 @@ use crate::signal::{Floor, simulate};
 use serde::Serialize;
 use std::time::Instant;
 
-/// Test scenes that are timed.
 const SCENES: u32 = 15;
 
-/// Median times over test scenes of set 2.
 #[derive(Debug, Serialize)]
 struct Pass {
     threads: usize,
     scenes: u32,
-    /// The matched filters that the network reads.
     features_milliseconds: f64,
     /// The network as it ships: what doesn't show in a scene's map is left out.
     forward_milliseconds: f64,
@@ -26,7 +23,6 @@ struct Pass {
     dense_forward_milliseconds: f64,
 }
 
-/// Measures and prints.
 pub fn run(json: bool) -> Result<(), CommandError> {
     let pass = measure(SCENES)?;
     if json {
@@ -46,7 +42,7 @@ fn measure(scenes: u32) -> Result<Pass, CommandError> {
     let radar = Radar::default();
     let extractor = FeatureExtractor::new(&radar).map_err(CommandError::failed)?;
     let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
-    let mut scratch = Scratch::default();
+    let mut scratch = LiveScratch::default();
     let mut times = [const { Vec::new() }; 3];
     // The first scene warms up, and isn't counted.
     for number in 0..=scenes {

@@ -4,7 +4,6 @@ use crate::benchmark::front::{self, Front, FrontRequest, FrontRow};
 use crate::commands::CommandError;
 use crate::radar::Radar;
 
-/// Measures `request` under a progress bar.
 pub fn measured(request: &FrontRequest) -> Result<Front, CommandError> {
     let bar = indicatif::ProgressBar::new(1000);
     let on_row = |part: f32, _: &FrontRow| bar.set_position((1e3 * part) as u64);

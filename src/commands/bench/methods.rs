@@ -5,7 +5,7 @@ use super::following::{self, Followed};
 #[cfg(feature = "network")]
 use super::left_out::{self, LeftOut};
 use crate::commands::CommandError;
-use crate::commands::figure::{Drawn, Figure, save, save_numbers, tick};
+use crate::commands::figure::{Drawing, DrawingResult, save, save_numbers, tick};
 use crate::commands::print;
 use crate::evaluate::Estimate;
 use crate::evaluate::campaign::Campaign;
@@ -26,14 +26,11 @@ use std::path::Path;
 /// The time of a crowded scene depends on how close its reflectors are; a few scenes give no median.
 const FEWEST_CROWDS: u32 = 20;
 
-/// Methods whose time grows with the number of reflectors.
 const SEARCHERS: [&str; 3] = ["hybrid", "iaa", "sbl"];
 
-/// What was measured.
 #[derive(Debug, Serialize)]
 struct Report {
     threads: usize,
-    /// Test scenes of each set.
     scenes: u32,
     methods: Vec<MethodRow>,
     crowds: Vec<Crowd>,
@@ -42,25 +39,20 @@ struct Report {
     left_out: Vec<LeftOut>,
 }
 
-/// One method over all three sets.
 #[derive(Debug, Serialize)]
 struct MethodRow {
     method: &'static str,
-    /// By set.
     squared_error: [Estimate; 3],
-    /// By set.
     median_milliseconds: [f64; 3],
 }
 
 impl MethodRow {
-    /// Mean over the sets: milliseconds, SE.
     fn mean(&self) -> (f64, f64) {
         let error = self.squared_error.iter().map(|e| e.mean).sum::<f64>() / 3.0;
         (self.median_milliseconds.iter().sum::<f64>() / 3.0, error)
     }
 }
 
-/// One of [`SEARCHERS`] on scenes of many reflectors.
 #[derive(Debug, Clone, Serialize)]
 struct Crowd {
     method: &'static str,
@@ -153,7 +145,6 @@ fn method_rows(count: u32, methods: &[&dyn Reconstructor], on_map: impl Fn()) ->
     Ok(methods.iter().map(row).collect())
 }
 
-/// The [`SEARCHERS`] on the first `count` test scenes of `kind` that hold `reflectors` reflectors.
 fn crowds_of(
     count: u32,
     kind: Kind,
@@ -198,10 +189,8 @@ fn crowds_of(
         .collect())
 }
 
-/// Height of a name on the chart, pixels.
 const LABEL: i32 = 15;
 
-/// Where a name stands on the chart, pixels; [`LABEL`] high.
 #[derive(Clone, Copy)]
 struct Spot {
     x: i32,
@@ -216,12 +205,12 @@ impl Spot {
     }
 }
 
-impl Figure for Report {
+impl Drawing for Report {
     fn size(&self) -> (u32, u32) {
         (1000, 640)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
         let dots: Vec<(f64, f64)> = self.methods.iter().map(MethodRow::mean).collect();
         let span = |values: &mut dyn Iterator<Item = f64>| {
             let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));

@@ -5,7 +5,6 @@ mod captures;
 mod chart;
 mod doppler;
 mod following;
-mod growth;
 mod instructions;
 #[cfg(feature = "network")]
 mod left_out;
@@ -68,13 +67,9 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["algorithms", "others", "methods"])]
     every_simd: bool,
 
-    /// Measure what the planner chooses for up to 10 000 reflectors instead; draws growth.svg and growth.png
-    #[arg(long, conflicts_with_all = ["reflectors", "algorithms", "others", "methods", "every_simd"])]
-    growth: bool,
-
     /// Measure scenes of walls, boxes, posts and polygons instead: a street, and crowds of up to 1000, from scratch and while one is dragged;
     /// and run time against error of a face; draws bodies.svg, faces.svg and both as PNG
-    #[arg(long, conflicts_with_all = ["reflectors", "algorithms", "others", "methods", "every_simd", "growth"])]
+    #[arg(long, conflicts_with_all = ["reflectors", "algorithms", "others", "methods", "every_simd"])]
     bodies: bool,
 
     /// Measure every reconstruction method instead, run time against squared error, and hybrid, iaa and sbl on 10 and on 300 reflectors;
@@ -84,12 +79,12 @@ pub struct Args {
 
     /// Measure what the window computes most instead: three maps, and the live network; with RAYON_NUM_THREADS=1 on one thread, as a page
     /// does by ?measure. With --json a list of name and milliseconds (median)
-    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "bodies", "every_simd", "output"])]
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "bodies", "every_simd", "output"])]
     one_thread: bool,
 
     /// Measure how long the layouts of a raw capture take to find instead: of 1 MiB with a .cfg and of 4 MiB without. With --json a list of
     /// name, bytes, layouts and median_ms
-    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "bodies", "every_simd", "output"])]
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "bodies", "every_simd", "output"])]
     captures: bool,
 
     #[command(flatten)]
@@ -98,7 +93,7 @@ pub struct Args {
     /// Measure the live network instead: its features, its forward pass as it ships, and the same with nothing left out. With --json one
     /// object: threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds (medians)
     #[cfg(feature = "network")]
-    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "growth", "bodies", "every_simd", "output"])]
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "bodies", "every_simd", "output"])]
     live: bool,
 
     /// Test scenes of each set, with --methods
@@ -110,16 +105,12 @@ pub struct Args {
 struct Report<'a> {
     #[serde(flatten)]
     front: &'a Front,
-    /// One reflector dragged, from the pointer's move to three maps.
     mouse: Vec<mouse::MouseRow>,
-    /// The same with a range-Doppler map besides.
     doppler: Vec<doppler::DopplerRow>,
-    /// The same tasks by other tools; none if nobody asked.
     others: Option<Equal>,
 }
 
 impl Args {
-    /// Measures, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
         let repeats = self.repeats as usize;
         if self.methods {
@@ -138,9 +129,6 @@ impl Args {
         }
         if self.every_simd {
             return instructions::run(&self.reflectors, self.repeats, self.json);
-        }
-        if self.growth {
-            return growth::run(repeats, self.json, self.output.as_deref());
         }
         if self.bodies {
             return bodies::run(repeats, self.json, self.output.as_deref());

@@ -1,9 +1,9 @@
 //! One reflector dragged with the mouse: from the pointer's move, through the editor and the worker's thread, until three Lambda maps
 //! are back.
 
-use crate::benchmark::front::{Convention, scattered};
+use crate::benchmark::front::{MapConvention, scattered};
 use crate::commands::CommandError;
-use crate::engine::{Engine, Frame, Wanted};
+use crate::engine::{Engine, EngineFrame, MapRequest};
 use crate::interact::{Editor, Place, Snap};
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
@@ -13,28 +13,22 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Instant;
 
-/// Reflectors of the scenes.
 const REFLECTORS: [usize; 2] = [10, 300];
-/// Moves that are timed.
 const MOVES: usize = 100;
 /// Moves before those: the reflector leaves the sum at rest.
 const WARM_UP: usize = 4;
 /// Metres of scene beneath a point of the view, as in a canvas of some 600 points.
 const METRES_PER_POINT: f64 = 0.1;
 
-/// Transmitters and receivers of the radar of pairs.
 const PAIRS: [usize; 2] = [12, 16];
 
-/// One scene.
 #[derive(Debug, Serialize)]
 pub struct MouseRow {
-    /// Elements of the radar.
     elements: usize,
-    /// Whether they are pairs of a transmitter and a receiver.
     of_pairs: bool,
     reflectors: usize,
     #[serde(flatten)]
-    convention: Convention,
+    convention: MapConvention,
     moves: usize,
     median_ms: f64,
     worst_ms: f64,
@@ -57,8 +51,8 @@ impl MouseRow {
     }
 }
 
-type Asked = (Arc<Scene>, Wanted);
-type Answer = Result<Frame, SceneError>;
+type Asked = (Arc<Scene>, MapRequest);
+type Answer = Result<EngineFrame, SceneError>;
 
 /// Drags in small and large scenes, over no floor and over the thesis', with the thesis' radar and with one of pairs.
 pub fn measure() -> Result<Vec<MouseRow>, CommandError> {
@@ -76,13 +70,12 @@ fn drags(radar: &Radar) -> Result<Vec<MouseRow>, CommandError> {
         "maps",
         move || Engine::new(own.clone()),
         |engine, (scene, wanted): Asked, _| engine.update(&scene, &wanted),
-        // Nobody listens any more once all is measured.
         move || wake.send(()).unwrap_or_default(),
     )
     .map_err(CommandError::failed)?;
     let mut rows = Vec::new();
     for reflectors in REFLECTORS {
-        for convention in Convention::BOTH {
+        for convention in MapConvention::BOTH {
             let [median_ms, worst_ms] = drag(&worker, &woken, reflectors, convention)?;
             let (elements, of_pairs) = (radar.elements, !radar.is_monostatic());
             rows.push(MouseRow { elements, of_pairs, reflectors, convention, moves: MOVES, median_ms, worst_ms });
@@ -96,10 +89,14 @@ fn drag(
     worker: &Worker<Asked, Answer>,
     woken: &Receiver<()>,
     reflectors: usize,
-    convention: Convention,
+    convention: MapConvention,
 ) -> Result<[f64; 2], CommandError> {
-    let wanted =
-        Wanted { floor: convention.floor, normalisation: convention.normalisation, ends: false, ..Wanted::default() };
+    let wanted = MapRequest {
+        floor: convention.floor,
+        normalisation: convention.normalisation,
+        ends: false,
+        ..MapRequest::default()
+    };
     let mut editor = Editor::new(scattered(reflectors));
     let shown = || -> Result<(), CommandError> {
         woken.recv().map_err(CommandError::failed)?;

@@ -1,8 +1,8 @@
 //! The same tasks by other tools: same scene, same maps, same accuracy, one thread on both sides.
 
-use crate::benchmark::front::{Convention, scattered};
+use crate::benchmark::front::{MapConvention, scattered};
 use crate::commands::{CommandError, print};
-use crate::engine::{Engine, Forced, Wanted};
+use crate::engine::{Engine, Forced, MapRequest};
 use crate::files::npz::write_npz;
 use crate::maps::channels_range_transform;
 use crate::radar::Radar;
@@ -14,11 +14,10 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-/// Elements whose samples are compared with the judge's.
 const JUDGED: [usize; 4] = [0, 341, 682, 1023];
 /// The tasks, by the name that the script knows, with how the maps are drawn and the error that a sample may have.
-const TASKS: [(&str, Convention, f64); 2] =
-    [("thesis", Convention::THESIS, 1e-12), ("fixed", Convention::FIXED_RANGE, 1e-6)];
+const TASKS: [(&str, MapConvention, f64); 2] =
+    [("thesis", MapConvention::THESIS, 1e-12), ("fixed", MapConvention::FIXED_RANGE, 1e-6)];
 
 /// Both tasks by all tools.
 #[derive(Debug, Serialize)]
@@ -26,29 +25,24 @@ pub struct Equal {
     tasks: Vec<EqualTask>,
 }
 
-/// One task.
 #[derive(Debug, Serialize)]
 struct EqualTask {
     task: &'static str,
     #[serde(flatten)]
-    convention: Convention,
+    convention: MapConvention,
     tolerance: f64,
     rows: Vec<Row>,
-    /// Tools that are not installed, or why the script could not run.
     missing: Vec<String>,
 }
 
-/// One tool's three maps of one scene.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Row {
     tool: String,
     reflectors: usize,
     median_ms: f64,
-    /// Largest error of a range cell of the judged elements, relative to the largest.
     signal_error: f64,
 }
 
-/// What the script prints.
 #[derive(Deserialize)]
 struct Printed {
     rows: Vec<Row>,
@@ -92,7 +86,6 @@ fn run(script: &Path, task: &str, folder: &Path, counts: &[usize]) -> Result<Pri
     serde_json::from_slice(&output.stdout).map_err(|e| format!("{} printed something else: {e}", script.display()))
 }
 
-/// One scene with the judge's samples.
 struct Reference {
     count: usize,
     /// Range profiles of the judged elements, `[elements, bins]`.
@@ -100,7 +93,6 @@ struct Reference {
 }
 
 impl Reference {
-    /// Judges the scene, and writes it with its samples as `COUNT.npz` into `folder`.
     fn write(radar: &Radar, count: usize, folder: &Path) -> Result<Reference, CommandError> {
         use rayon::prelude::*;
         let reflectors = scattered(count).reflectors();
@@ -117,20 +109,25 @@ impl Reference {
         Ok(Reference { count, profiles: channels_range_transform(radar, samples.view()).profiles })
     }
 
-    /// This program's time from nothing, the floor's noise included, and its error.
-    fn own(&self, radar: &Radar, convention: Convention, tolerance: f64, repeats: usize) -> Result<Row, CommandError> {
+    fn own(
+        &self,
+        radar: &Radar,
+        convention: MapConvention,
+        tolerance: f64,
+        repeats: usize,
+    ) -> Result<Row, CommandError> {
         let scene = scattered(self.count);
         let mut engine = Engine::new(radar.clone());
         engine.force(Forced { tolerance: Some(tolerance), ..Forced::default() });
         let mut times = Vec::new();
         for repeat in 0..=repeats {
-            let wanted = Wanted {
+            let wanted = MapRequest {
                 floor: convention.floor,
                 normalisation: convention.normalisation,
                 // Another seed is other noise, made inside the time.
                 seed: repeat as u64,
                 ends: false,
-                ..Wanted::default()
+                ..MapRequest::default()
             };
             engine.forget();
             let start = Instant::now();

@@ -1,8 +1,8 @@
 //! The pictures of `apertura bounds`.
 
-use super::report::{Bound, BoundRow, Report, columns_to_cos};
+use super::report::{Bound, BoundRow, BoundsReport, columns_to_cos};
 use crate::bounds::Ambiguity;
-use crate::commands::figure::{Drawn, Figure, tick};
+use crate::commands::figure::{Drawing, DrawingResult, tick};
 use crate::evaluate::Placement;
 use crate::picture::ColourMap;
 use crate::radar::{Polar, Radar, counted};
@@ -25,7 +25,6 @@ const COLOURS: [RGBColor; 7] = [
 /// Position error over signal-to-noise ratio.
 type ErrorChart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, LogCoord<f64>>>;
 
-/// What stands beside the axes of an [`ErrorChart`], and what they span.
 struct ErrorAxes {
     caption: &'static str,
     snr_db: Range<f64>,
@@ -56,7 +55,7 @@ impl ErrorAxes {
     }
 }
 
-fn legend<'a, B: DrawingBackend + 'a>(chart: &mut ErrorChart<'a, B>) -> Drawn<B> {
+fn legend<'a, B: DrawingBackend + 'a>(chart: &mut ErrorChart<'a, B>) -> DrawingResult<B> {
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::UpperRight)
@@ -66,14 +65,14 @@ fn legend<'a, B: DrawingBackend + 'a>(chart: &mut ErrorChart<'a, B>) -> Drawn<B>
 }
 
 /// Bound over signal-to-noise ratio, a line a layout.
-pub struct BoundsFigure<'a>(pub &'a Report);
+pub struct BoundsFigure<'a>(pub &'a BoundsReport);
 
-impl Figure for BoundsFigure<'_> {
+impl Drawing for BoundsFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 600)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
         let report = self.0;
         let rows = || report.layouts.iter().flat_map(|l| &l.bounds);
         let values = rows().flat_map(|b| [b.alone, b.beside_another]).flatten().map(|b| b.position_millimetres);
@@ -105,12 +104,12 @@ impl Figure for BoundsFigure<'_> {
 /// Error of the Newton search over signal-to-noise ratio, beside the bound.
 pub struct PlacementFigure<'a>(pub &'a [Placement]);
 
-impl Figure for PlacementFigure<'_> {
+impl Drawing for PlacementFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 600)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
         let errors = self.0.iter().map(|p| 1e3 * p.error_metres).filter(|e| e.is_finite());
         let (low, high) = span(errors.chain(self.0.iter().map(|p| 1e3 * p.bound_metres)));
         let (from, to) = span_of_snr(self.0.iter().map(|p| p.snr_db));
@@ -138,9 +137,7 @@ impl Figure for PlacementFigure<'_> {
 
 /// Ambiguity functions over range and cos(theta), a panel a layout.
 pub struct AmbiguityFigure<'a> {
-    /// Scales the axes.
     pub radar: &'a Radar,
-    /// The reflector.
     pub centre: Polar,
     /// Names and patches around the reflector.
     pub patches: &'a [(String, Ambiguity)],
@@ -149,12 +146,12 @@ pub struct AmbiguityFigure<'a> {
 /// Decibels below the reflector's own that are black.
 const RANGE_DB: f64 = 30.0;
 
-impl Figure for AmbiguityFigure<'_> {
+impl Drawing for AmbiguityFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 60 + 230 * self.patches.len().max(1) as u32)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
         let caption = format!("Which places sound like the reflector in the middle: 0 to -{RANGE_DB} dB");
         let area = area.margin(8, 0, 0, 0).titled(&caption, ("sans-serif", 22))?;
         let bin = self.radar.range_resolution_metres();

@@ -12,7 +12,7 @@ use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};
 use crate::scene::Reflector;
 use crate::task::Task;
 use chart::{AmbiguityFigure, BoundsFigure, PlacementFigure};
-use report::{Bound, BoundRow, LayoutReport, Report, columns_to_cos};
+use report::{Bound, BoundRow, BoundsReport, LayoutReport, columns_to_cos};
 use std::path::PathBuf;
 
 /// Bound the error of any unbiased position estimate, and show which places are nearly indistinguishable, for several element layouts
@@ -69,7 +69,6 @@ pub struct Args {
     output: Option<PathBuf>,
 }
 
-/// A place before the radar.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     x_metres: f64,
@@ -101,7 +100,6 @@ fn apart(text: &str) -> Result<f64, String> {
 }
 
 impl Args {
-    /// Computes, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
         let radar = Radar::default();
         let reflector = Reflector { x_metres: self.at.x_metres, y_metres: self.at.y_metres, reflectivity: 1.0 };
@@ -112,7 +110,7 @@ impl Args {
             .map(|kind| Ok((*kind, kind.layout(&radar).map_err(CommandError::failed)?)))
             .collect::<Result<_, CommandError>>()?;
         let other = self.neighbour(&radar, centre)?;
-        let report = Report {
+        let report = BoundsReport {
             x_metres: reflector.x_metres,
             y_metres: reflector.y_metres,
             apart_columns: self.apart,
@@ -138,7 +136,6 @@ impl Args {
         report.print()
     }
 
-    /// The second reflector.
     fn neighbour(&self, radar: &Radar, centre: Polar) -> Result<Reflector, CommandError> {
         let column = columns_to_cos(radar);
         let cos = centre.cos_theta + self.apart * column;

@@ -6,9 +6,8 @@ use crate::evaluate::Placement;
 use crate::radar::{Radar, counted};
 use serde::Serialize;
 
-/// Everything the command says; its JSON.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct BoundsReport {
     pub x_metres: f64,
     pub y_metres: f64,
     pub apart_columns: f64,
@@ -17,7 +16,6 @@ pub struct Report {
     pub monte_carlo: Vec<Placement>,
 }
 
-/// One layout.
 #[derive(Debug, Serialize)]
 pub struct LayoutReport {
     pub layout: String,
@@ -62,10 +60,8 @@ impl Bound {
     }
 }
 
-/// What stands above [`cells`].
 const HEADINGS: &str = " range, mm    columns position, mm amplitude, dB";
 
-/// One bound as a part of a line.
 fn cells(bound: Option<Bound>) -> String {
     match bound {
         Some(b) => format!(
@@ -76,7 +72,7 @@ fn cells(bound: Option<Bound>) -> String {
     }
 }
 
-impl Report {
+impl BoundsReport {
     pub fn print(&self) -> Result<(), CommandError> {
         print(&format!(
             "One reflector at ({}, {}) m, and another {} beside it",

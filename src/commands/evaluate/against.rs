@@ -5,7 +5,6 @@ use crate::evaluate::statistics::Paired;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// Two methods on the same scenes.
 #[derive(Debug, Serialize)]
 pub struct Against {
     first: String,
@@ -45,7 +44,6 @@ impl Against {
 /// Adds them to a set's table.
 pub fn write(against: &[Against], text: &mut String) {
     for pair in against {
-        // Writing to a string can't fail.
         let _ = writeln!(text, "{}", pair.told);
     }
 }

@@ -8,7 +8,6 @@ use crate::radar::counted;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// How well the doubt of one method finds its failures.
 #[derive(Debug, Serialize)]
 pub struct DoubtReport {
     method: String,
@@ -36,7 +35,6 @@ impl DoubtReport {
 /// Adds a line a method to a table: the part of the cells whose error is at most their doubt.
 pub fn write_within<'a>(methods: impl IntoIterator<Item = (&'a String, &'a Estimate)>, text: &mut String) {
     for (method, part) in methods {
-        // Writing to a string can't fail.
         let _ = writeln!(
             text,
             "doubt of {method}: the error of {} % of the cells is at most their doubt; 90 % is the aim over noise that it was trained on",
@@ -51,7 +49,6 @@ pub fn write<'a>(reports: impl IntoIterator<Item = &'a DoubtReport>, text: &mut 
         let area = area.map_or("-".to_owned(), |area| format!("{area:.3}"));
         let error = standard_error.map_or_else(String::new, |error| format!(" \u{b1} {error:.3}"));
         let failures = counted(*failures, "failure", "failures");
-        // Writing to a string can't fail.
         let _ = writeln!(
             text,
             "doubt of {method} against failures: area under the ROC curve {area}{error} ({failures} in {rows} rows, SE from \

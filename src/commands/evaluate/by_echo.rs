@@ -4,7 +4,6 @@ use crate::evaluate::echoes::{CLASSES, EchoTally};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// The echoes of one method on one set; lists have a number a class.
 #[derive(Debug, Serialize)]
 pub struct EchoReport {
     /// Where each class begins, dB below the scene's strongest echo; the last one has no end.
@@ -30,7 +29,6 @@ impl EchoReport {
 pub fn write(methods: &[(&str, &EchoReport)], width: usize, text: &mut String) {
     let Some((_, first)) = methods.first() else { return };
     let title = "echoes found, by dB below the";
-    // Writing to a string can't fail.
     let _ = write!(text, "{title:<width$} {:>9}", "all");
     for (i, from) in first.below_db.iter().enumerate() {
         let class = first.below_db.get(i + 1).map_or(format!("{from}+"), |to| format!("{from}-{to}"));

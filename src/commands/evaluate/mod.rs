@@ -12,7 +12,7 @@ use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::campaign::{Campaign, Shard};
 use crate::evaluate::rows::{
-    KeptError, Key, Lack, Row, RowFile, WHY_NO_OTHER_FORMAT, Wanted, key, lacks, merge, read_table, write_merged,
+    KeptError, Key, Lack, Row, RowFile, RunRows, WHY_NO_OTHER_FORMAT, key, lacks, merge, read_table, write_merged,
 };
 use crate::evaluate::sets::{Folder, SceneSet};
 use crate::maps::cfar::Cfar;
@@ -20,8 +20,8 @@ use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::{Kind, Reading};
 use crate::task::Task;
-use progress::Progress;
-use report::Report;
+use progress::MapProgress;
+use report::EvaluationReport;
 use std::collections::HashSet;
 use std::fs::File;
 use std::path::PathBuf;
@@ -89,7 +89,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE.csv")]
     rows: Option<PathBuf>,
 
-    /// Replace the file of --rows, whatever it contains
+    /// Replace the file of --rows, with any content
     #[arg(long, requires = "rows")]
     overwrite: bool,
 
@@ -138,10 +138,9 @@ pub struct Args {
 }
 
 impl Args {
-    /// Runs every method over every set, or reads rows, and prints the tables.
     pub fn run(self) -> Result<(), CommandError> {
         let (rows, missing) = if self.merge.is_empty() { (self.measure()?, Vec::new()) } else { self.merged()? };
-        let report = Report::of(&rows, missing, self.failures_from);
+        let report = EvaluationReport::of(&rows, missing, self.failures_from);
         if self.json {
             print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?)
         } else {
@@ -183,12 +182,12 @@ impl Args {
         for said in campaign.untrained(&sets, &methods).map_err(CommandError::failed)? {
             eprintln!("apertura: {said}");
         }
-        let wanted = Wanted::new(&empty);
+        let wanted = RunRows::new(&empty);
         let open = |path: &PathBuf| RowFile::open(path, &wanted, self.overwrite);
         let mut file = self.rows.as_ref().map(open).transpose().map_err(told)?;
         let maps = scenes * methods.len() as u64;
         let done = self.done(file.as_ref(), maps);
-        let mut progress = Progress::new(maps - done.len() as u64, Duration::from_secs(self.progress.into()));
+        let mut progress = MapProgress::new(maps - done.len() as u64, Duration::from_secs(self.progress.into()));
         let is_done = |set: &str, index: u32, method: &str| {
             !done.is_empty() && done.contains(&(set.into(), index, method.into()))
         };
@@ -209,7 +208,6 @@ impl Args {
         }
     }
 
-    /// The rows that were found before, which standard error tells of.
     fn done(&self, file: Option<&RowFile>, maps: u64) -> HashSet<Key> {
         let done: HashSet<Key> = file.iter().flat_map(|file| file.present.iter().map(key)).collect();
         if let (Some(path), false) = (&self.rows, done.is_empty()) {
@@ -222,7 +220,6 @@ impl Args {
         done
     }
 
-    /// The rows of all files, and what lacks of their runs.
     fn merged(&self) -> Result<(Vec<Row>, Vec<Lack>), CommandError> {
         let (mut tables, mut problems) = (Vec::new(), Vec::new());
         for path in &self.merge {

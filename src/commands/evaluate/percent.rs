@@ -2,12 +2,10 @@
 
 use crate::evaluate::Estimate;
 
-/// A rate in percent, with its standard error.
 pub(super) fn percent_of(rate: &Estimate) -> String {
     percent(rate.mean, rate.standard_error)
 }
 
-/// A mean rate and its standard error in percent; a dash where there is none.
 pub(super) fn percent(mean: f64, standard_error: f64) -> String {
     match mean.is_nan() {
         true => "-".to_owned(),

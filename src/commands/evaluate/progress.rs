@@ -6,9 +6,8 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 /// Counts maps and tells of them on standard error.
-pub struct Progress {
+pub struct MapProgress {
     bar: ProgressBar,
-    /// How often a line is told; `None` on a terminal.
     every: Option<Duration>,
     begun: Instant,
     told: Instant,
@@ -16,18 +15,16 @@ pub struct Progress {
     total: u64,
 }
 
-impl Progress {
+impl MapProgress {
     /// Of a run that makes `total` maps; off a terminal a line every so often.
     pub fn new(total: u64, every: Duration) -> Self {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} maps, {eta} left");
-        // indicatif hides the bar where standard error is a file or a pipe.
         let bar = ProgressBar::new(total).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         let every = (!std::io::stderr().is_terminal()).then_some(every);
         let now = Instant::now();
-        Progress { bar, every, begun: now, told: now, done: 0, total }
+        MapProgress { bar, every, begun: now, told: now, done: 0, total }
     }
 
-    /// A row is found.
     pub fn row(&mut self, row: &Row) {
         self.done += 1;
         self.bar.set_message(row.set.to_string());
@@ -44,7 +41,6 @@ impl Progress {
         format!("{} of {} maps, now set {set}; {so_far} so far, about {left} left", self.done, self.total)
     }
 
-    /// Takes the bar away.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
@@ -56,7 +52,7 @@ mod tests {
 
     #[test]
     fn a_line_says_how_much_is_left() {
-        let progress = Progress { done: 30, ..Progress::new(120, Duration::from_secs(30)) };
+        let progress = MapProgress { done: 30, ..MapProgress::new(120, Duration::from_secs(30)) };
         let line = progress.line("walls", Duration::from_secs(60));
         assert_eq!(line, "30 of 120 maps, now set walls; 60 seconds so far, about 3 minutes left");
     }

@@ -17,7 +17,7 @@ use std::fmt::Write;
 
 /// What the command found; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct EvaluationReport {
     count: usize,
     seed: Option<u64>,
     floor: Option<String>,
@@ -27,7 +27,6 @@ pub struct Report {
     radar: Option<String>,
     missing: Vec<Lack>,
     sets: Vec<SetReport>,
-    /// Of the rows of all sets, a method that says its doubt each; empty for one set.
     doubt: Vec<DoubtReport>,
 }
 
@@ -35,10 +34,8 @@ pub struct Report {
 struct SetReport {
     #[serde(serialize_with = "number_or_name")]
     set: String,
-    /// What its scenes hold.
     description: &'static str,
     printed: Option<PrintedColumns>,
-    /// At which methods are held against each other.
     false_alarm: f64,
     methods: Vec<MethodReport>,
     /// The first method against each of the others.
@@ -80,7 +77,6 @@ struct MethodReport {
     near_best: Option<f64>,
 }
 
-/// P_D and P_FA by a detector of constant false-alarm rate.
 #[derive(Debug, Serialize)]
 struct CfarReport {
     detector: String,
@@ -99,7 +95,6 @@ impl CfarReport {
     }
 }
 
-/// P_D where every scene's P_FA is held to a rate.
 #[derive(Debug, Serialize)]
 struct AtPrinted {
     /// Says that this is not the thesis' P_D, which is at one threshold.
@@ -113,7 +108,6 @@ struct AtPrinted {
 /// What stands for the description of scenes that are files.
 const OF_A_FOLDER: &str = "scenes of a folder";
 
-/// Width of a method's name and what stands behind it, characters; more where one needs more.
 const LABEL: usize = 26;
 
 fn number_or_name<S: Serializer>(set: &str, serializer: S) -> Result<S::Ok, S::Error> {
@@ -123,7 +117,6 @@ fn number_or_name<S: Serializer>(set: &str, serializer: S) -> Result<S::Ok, S::E
     }
 }
 
-/// Names in the order they first appear.
 fn names<'a>(rows: &[&'a Row], name: impl Fn(&'a Row) -> &'a str) -> Vec<&'a str> {
     let mut seen: Vec<&str> = Vec::new();
     for row in rows {
@@ -134,26 +127,24 @@ fn names<'a>(rows: &[&'a Row], name: impl Fn(&'a Row) -> &'a str) -> Vec<&'a str
     seen
 }
 
-/// How well the doubt of every method that says it finds failures.
 fn of_methods(rows: &[&Row], limit: Option<f64>) -> Vec<DoubtReport> {
     names(rows, |row| &row.method).into_iter().filter_map(|name| DoubtReport::of(name, rows, limit)).collect()
 }
 
-impl Report {
+impl EvaluationReport {
     /// The tables of `rows`, of whose whole run `missing` lacks. `limit` is the least squared error of a failure that doubt is to find; failures
     /// are the worst tenth without it.
-    pub fn of(rows: &[Row], missing: Vec<Lack>, limit: Option<f64>) -> Report {
+    pub fn of(rows: &[Row], missing: Vec<Lack>, limit: Option<f64>) -> EvaluationReport {
         let all: Vec<&Row> = rows.iter().collect();
         let sets: Vec<SetReport> = names(&all, |row| &row.set)
             .into_iter()
             .map(|set| SetReport::of(set, &all.iter().copied().filter(|r| r.set == set).collect::<Vec<_>>(), limit))
             .collect();
         let seed = rows.first().map(|row| row.seed).filter(|seed| rows.iter().all(|row| row.seed == *seed));
-        // Merged rows are alike, and generated scenes come from one generator.
         let generated = rows.iter().find(|row| row.carrier.is_some());
         let usual = rows.iter().filter(|row| row.version.is_some()).min_by_key(|row| row.has_own_floor());
         let of_all = |column: Column| usual.map(|row| column.text(row));
-        Report {
+        EvaluationReport {
             count: sets.iter().flat_map(|s| &s.methods).map(|m| m.scenes).max().unwrap_or(0),
             seed,
             floor: of_all(Column::Floor),
@@ -169,7 +160,6 @@ impl Report {
 
     pub fn to_text(&self) -> String {
         let mut text = counted(self.count, "scene a set", "scenes a set");
-        // Writing to a string can't fail.
         if let Some(seed) = self.seed {
             let _ = write!(text, ", seed {seed}");
         }
@@ -266,7 +256,6 @@ impl SetReport {
 }
 
 impl SetReport {
-    /// P_D and P_FA by a detector of constant false-alarm rate, where one was tried.
     fn write_cfar(&self, width: usize, text: &mut String) {
         let Some(first) = self.methods.iter().find_map(|method| method.cfar.as_ref()) else { return };
         let _ = writeln!(text, "\n{:<width$} {:>20} {:>16}", format!("by {}", first.detector), "P_D %", "P_FA %");
@@ -323,7 +312,6 @@ impl MethodReport {
         }
     }
 
-    /// The name, the optimisers of its weights, its threshold, and how many scenes it has where others have more.
     fn label(&self, count: usize) -> String {
         let eta = match self.one_eta {
             true => format!("eta {}", self.eta),

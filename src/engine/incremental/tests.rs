@@ -1,4 +1,4 @@
-use super::super::Outcome;
+use super::super::StageOutcome;
 use super::*;
 use crate::maps::{Aperture, LogMaps, Normalisation, RangeAngleMap};
 use crate::radar::{DecibelMilliwatts, Decibels, End};
@@ -12,7 +12,7 @@ fn small() -> Radar {
     Radar { elements: 64, samples: 32, end_elements: 4, ..Radar::default() }
 }
 
-fn lambda(f: &Frame) -> Arc<RangeAngleMap> {
+fn lambda(f: &EngineFrame) -> Arc<RangeAngleMap> {
     f.full.as_ref().expect("the whole array's map was wanted").lambda.clone()
 }
 
@@ -20,27 +20,27 @@ fn lambda(f: &Frame) -> Arc<RangeAngleMap> {
 fn unchanged_results_are_the_same_arc() {
     let mut engine = Engine::new(small());
     let scene = Scene::of_points([(0.3, 1.0)]);
-    let a = engine.update(&scene, &Wanted::default()).unwrap();
-    let b = engine.update(&scene, &Wanted::default()).unwrap();
+    let a = engine.update(&scene, &MapRequest::default()).unwrap();
+    let b = engine.update(&scene, &MapRequest::default()).unwrap();
     assert!(Arc::ptr_eq(&lambda(&a), &lambda(&b)));
-    assert!(a.report.ran(Stage::Signal) && !b.report.ran(Stage::Signal));
-    let other = Wanted { normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..Wanted::default() };
+    assert!(a.report.ran(EngineStage::Signal) && !b.report.ran(EngineStage::Signal));
+    let other = MapRequest { normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..MapRequest::default() };
     let c = engine.update(&scene, &other).unwrap();
-    assert!(!c.report.ran(Stage::FullMap) && c.report.ran(Stage::Normalise));
+    assert!(!c.report.ran(EngineStage::FullMap) && c.report.ran(EngineStage::Normalise));
     assert!(!Arc::ptr_eq(&lambda(&a), &lambda(&c)));
 }
 
 #[test]
 fn what_is_forgotten_vouches_for_no_precision() {
     let scene = Scene::of_points([(0.3, 1.0), (-0.4, 1.7)]);
-    let precise = Wanted::default();
-    let coarse = Wanted { normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..precise };
+    let precise = MapRequest::default();
+    let coarse = MapRequest { normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..precise };
     let mut engine = Engine::new(small());
     let first = engine.update(&scene, &precise).unwrap();
     engine.forget();
     engine.update(&scene, &coarse).unwrap();
     let again = engine.update(&scene, &precise).unwrap();
-    assert!(again.report.ran(Stage::Signal), "the coarse maps are not good enough");
+    assert!(again.report.ran(EngineStage::Signal), "the coarse maps are not good enough");
     assert_eq!(lambda(&first), lambda(&again));
 }
 
@@ -48,32 +48,32 @@ fn what_is_forgotten_vouches_for_no_precision() {
 fn a_disturbed_scene_is_computed_as_commands_do() {
     let mut engine = Engine::new(small());
     let plain = Scene::of_points([(0.3, 1.0)]);
-    let before = lambda(&engine.update(&plain, &Wanted::default()).unwrap());
+    let before = lambda(&engine.update(&plain, &MapRequest::default()).unwrap());
     let mut scene = plain.clone();
     scene.disturbances.interferer = Some(crate::scene::Interferer::default());
-    let disturbed = engine.update(&scene, &Wanted::default()).unwrap();
+    let disturbed = engine.update(&scene, &MapRequest::default()).unwrap();
     let signal = signal::simulate(&small(), &scene, Floor::Thesis, 0).unwrap();
     assert_eq!(*lambda(&disturbed), LogMaps::of_signal(&small(), &signal).full.normalise(Normalisation::MinMax));
     assert!(disturbed.settled && *lambda(&disturbed) != *before);
     assert_eq!(*disturbed.ends.unwrap(), signal.two_ends(&small()));
-    let after = engine.update(&plain, &Wanted::default()).unwrap();
+    let after = engine.update(&plain, &MapRequest::default()).unwrap();
     assert!(!after.settled && lambda(&after) == before);
 }
 
 #[test]
 fn hidden_maps_are_not_computed() {
     let mut engine = Engine::new(small());
-    let wanted = Wanted { first: false, full: false, ends: false, ..Wanted::default() };
+    let wanted = MapRequest { first: false, full: false, ends: false, ..MapRequest::default() };
     let frame = engine.update(&Scene::of_points([(0.3, 1.0)]), &wanted).unwrap();
     assert!(frame.first.is_none() && frame.full.is_none() && frame.ends.is_none() && frame.last.is_some());
-    assert!(!frame.report.ran(Stage::FullMap));
+    assert!(!frame.report.ran(EngineStage::FullMap));
 }
 
 #[test]
 fn the_engine_survives_a_bad_scene() {
     let mut engine = Engine::new(small());
-    assert!(engine.update(&Scene::of_points([(f64::NAN, 1.0)]), &Wanted::default()).is_err());
-    assert!(engine.update(&Scene::default(), &Wanted::default()).is_ok());
+    assert!(engine.update(&Scene::of_points([(f64::NAN, 1.0)]), &MapRequest::default()).is_err());
+    assert!(engine.update(&Scene::default(), &MapRequest::default()).is_ok());
 }
 
 /// Frames agree with the plain path from samples to maps, floor included.
@@ -92,7 +92,7 @@ fn frames_agree_with_the_plain_path() {
         (Floor::Thesis, &weak),
         (level, &Scene::default()),
     ] {
-        let wanted = Wanted { floor, seed: 5, ..Wanted::default() };
+        let wanted = MapRequest { floor, seed: 5, ..MapRequest::default() };
         let frame = Engine::new(radar.clone()).update(scene, &wanted).unwrap();
         let signal = signal::simulate(&radar, scene, floor, 5).unwrap();
         let maps = LogMaps::of_signal(&radar, &signal);
@@ -114,12 +114,12 @@ fn frames_agree_with_the_plain_path() {
 }
 
 #[test]
-fn an_empty_scene_without_noise_is_dark_however_it_is_normalised() {
+fn an_empty_scene_without_noise_is_dark() {
     let radar = Radar::default();
     let point = Scene::of_points([(1.0, 6.0)]);
     for floor in [Floor::Thesis, Floor::Exact] {
         for normalisation in [Normalisation::MinMax, Normalisation::DynamicRange(Decibels(100.0))] {
-            let wanted = Wanted { floor, normalisation, ..Wanted::default() };
+            let wanted = MapRequest { floor, normalisation, ..MapRequest::default() };
             let mut engine = Engine::new(radar.clone());
             engine.update(&point, &wanted).unwrap();
             // The reflector was taken away.
@@ -136,14 +136,14 @@ fn an_empty_scene_without_noise_is_dark_however_it_is_normalised() {
 }
 
 /// What every command computes of a scene: ends, and Lambda of the first end, the last end and the whole array.
-fn by_command(radar: &Radar, scene: &Scene, wanted: &Wanted) -> (signal::TwoEnds, [RangeAngleMap; 3]) {
+fn by_command(radar: &Radar, scene: &Scene, wanted: &MapRequest) -> (signal::TwoEnds, [RangeAngleMap; 3]) {
     let signal = signal::simulate(radar, scene, wanted.floor, wanted.seed).unwrap();
     let maps = LogMaps::of_signal(radar, &signal);
     let maps = [&maps.first, &maps.last, &maps.full].map(|log| log.normalise(wanted.normalisation));
     (signal.two_ends(radar), maps)
 }
 
-/// Whatever came before, a scene at rest has the bits of the commands, and so have the samples of its ends at any time.
+/// After any scene, a scene at rest has the bits of the commands, and so have the samples of its ends at any time.
 #[test]
 fn a_scene_at_rest_does_not_depend_on_what_came_before() {
     let radar = small();
@@ -151,17 +151,17 @@ fn a_scene_at_rest_does_not_depend_on_what_came_before() {
     let mut moved = scene.clone();
     moved.objects[4].translate(0.05, 0.02);
     let other = Scene::of_points([(0.3, 1.0)]);
-    let thesis = Wanted { seed: 2, ..Wanted::default() };
-    let fixed = Wanted { normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..thesis };
-    let noisy = Wanted { floor: Floor::Snr(Decibels(10.0)), ..thesis };
-    let histories: [&[(&Scene, Wanted, bool)]; 5] = [
+    let thesis = MapRequest { seed: 2, ..MapRequest::default() };
+    let fixed = MapRequest { normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..thesis };
+    let noisy = MapRequest { floor: Floor::Snr(Decibels(10.0)), ..thesis };
+    let histories: [&[(&Scene, MapRequest, bool)]; 5] = [
         &[],
         &[(&other, thesis, true)],
         &[(&moved, thesis, false), (&scene, thesis, false), (&moved, thesis, false)],
         &[(&scene, fixed, true), (&scene, noisy, false), (&scene, thesis, false)],
         &[(&other, noisy, false), (&moved, fixed, true), (&scene, fixed, true), (&scene, fixed, false)],
     ];
-    for wanted in [thesis, fixed, noisy, Wanted { floor: Floor::Exact, ..thesis }] {
+    for wanted in [thesis, fixed, noisy, MapRequest { floor: Floor::Exact, ..thesis }] {
         let (ends, maps) = by_command(&radar, &scene, &wanted);
         for (i, history) in histories.iter().enumerate() {
             let mut engine = Engine::new(radar.clone());
@@ -189,17 +189,17 @@ fn a_scene_at_rest_does_not_depend_on_what_came_before() {
 fn a_scene_at_rest_is_computed_where_it_is_looked_at() {
     let (radar, scene) = (small(), Scene::of_points([(0.3, 1.0)]));
     let mut engine = Engine::new(radar);
-    let target = Wanted { first: false, last: false, ends: false, ..Wanted::default() };
+    let target = MapRequest { first: false, last: false, ends: false, ..MapRequest::default() };
     let frame = engine.settle(&scene, &target).unwrap();
     assert!(frame.first.is_none() && frame.last.is_none() && frame.ends.is_none() && frame.full.is_some());
-    assert!(!frame.report.ran(Stage::FirstMap) && frame.report.ran(Stage::FullMap));
-    assert!(!engine.update(&scene, &Wanted::default()).unwrap().settled, "the other maps are not at hand");
+    assert!(!frame.report.ran(EngineStage::FirstMap) && frame.report.ran(EngineStage::FullMap));
+    assert!(!engine.update(&scene, &MapRequest::default()).unwrap().settled, "the other maps are not at hand");
     assert!(engine.settle(&Scene::of_points([(f64::NAN, 1.0)]), &target).is_err());
     let held = engine.cache_bytes();
-    engine.settle(&scene, &Wanted::default()).unwrap();
+    engine.settle(&scene, &MapRequest::default()).unwrap();
     assert!(engine.cache_bytes() > held);
     engine.forget();
-    assert!(!engine.update(&scene, &Wanted::default()).unwrap().settled);
+    assert!(!engine.update(&scene, &MapRequest::default()).unwrap().settled);
 }
 
 #[test]
@@ -208,7 +208,7 @@ fn taking_away_a_giant_leaves_nothing_of_it() {
     let small_one = Object::Point(Point { reflectivity: 1e-20, ..Point::new(0.2, 1.0) });
     let giant = Object::Point(Point { reflectivity: 1e30, ..Point::new(0.1, 1.2) });
     let other = Object::Point(Point { reflectivity: 1e-20, ..Point::new(-0.4, 0.9) });
-    let wanted = Wanted::default();
+    let wanted = MapRequest::default();
     let with = Scene { objects: vec![small_one.clone(), giant, other.clone()], ..Scene::default() };
     engine.update(&with, &wanted).unwrap();
     let without = Scene { objects: vec![small_one, other], ..Scene::default() };
@@ -223,13 +223,13 @@ fn taking_away_a_giant_leaves_nothing_of_it() {
 fn dragging_evaluates_the_dragged_object_alone() {
     let mut engine = Engine::new(small());
     let mut scene = Scene::of_points((0..30).map(|i| (f64::from(i) * 0.05 - 0.7, 1.0)));
-    let wanted = Wanted::default();
+    let wanted = MapRequest::default();
     engine.update(&scene, &wanted).unwrap();
     for step in 0..3 {
         scene.objects[7].translate(0.01, 0.0);
         let frame = engine.update(&scene, &wanted).unwrap();
-        let signal = frame.report.stages.iter().find(|s| s.stage == Stage::Signal).unwrap();
-        let Outcome::Computed(what) = &signal.outcome else { panic!("the signal was not computed") };
+        let signal = frame.report.stages.iter().find(|s| s.stage == EngineStage::Signal).unwrap();
+        let StageOutcome::Computed(what) = &signal.outcome else { panic!("the signal was not computed") };
         let expected = if step == 0 { "2 of 30" } else { "1 of 30" };
         assert!(what.starts_with(expected), "step {step}: {what}");
     }
@@ -239,23 +239,23 @@ fn dragging_evaluates_the_dragged_object_alone() {
 #[test]
 fn dragging_one_of_three_leaves_two_as_they_were() {
     let normalisation = Normalisation::DynamicRange(Decibels(100.0));
-    let wanted = Wanted { floor: Floor::Exact, normalisation, ends: false, ..Wanted::default() };
+    let wanted = MapRequest { floor: Floor::Exact, normalisation, ends: false, ..MapRequest::default() };
     let mut engine = Engine::new(Radar { elements: 64, end_elements: 4, ..Radar::default() });
     let mut scene = Scene::of_points([(-30.0, 2.4), (7.0, 22.4), (-17.0, 9.4)]);
     engine.update(&scene, &wanted).unwrap();
     for step in 0..4 {
         scene.objects[0].translate(0.01, 0.0);
         let frame = engine.update(&scene, &wanted).unwrap();
-        let signal = frame.report.stages.iter().find(|s| s.stage == Stage::Signal).unwrap();
-        let Outcome::Computed(what) = &signal.outcome else { panic!("the signal was not computed") };
+        let signal = frame.report.stages.iter().find(|s| s.stage == EngineStage::Signal).unwrap();
+        let StageOutcome::Computed(what) = &signal.outcome else { panic!("the signal was not computed") };
         assert!(what.contains(" of 3 reflectors"), "step {step}: {what}");
     }
 }
 
 /// All three maps of two frames.
-fn worst_lambda(a: &Frame, b: &Frame) -> f32 {
+fn worst_lambda(a: &EngineFrame, b: &EngineFrame) -> f32 {
     let apertures = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
-    let maps = |f: &Frame| apertures.map(|aperture| f.map(aperture).unwrap().lambda.clone());
+    let maps = |f: &EngineFrame| apertures.map(|aperture| f.map(aperture).unwrap().lambda.clone());
     let pairs = maps(a).into_iter().zip(maps(b));
     pairs
         .flat_map(|(a, b)| a.lambda.iter().zip(&b.lambda).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>())
@@ -267,10 +267,10 @@ fn what_is_cancelled_leaves_nothing_half_made() {
     let (before, after) = (Scene::of_points([(0.3, 1.0), (-0.4, 1.7)]), Scene::of_points([(0.3, 1.0), (0.1, 1.2)]));
     let cancelled = Task::default();
     cancelled.cancel();
-    let is_cancelled = |frame: Result<Frame, Unfinished>| matches!(frame, Err(Unfinished::Cancelled(_)));
+    let is_cancelled = |frame: Result<EngineFrame, Unfinished>| matches!(frame, Err(Unfinished::Cancelled(_)));
     // Without the samples of the ends it is cancelled among the range profiles.
     for ends in [true, false] {
-        let wanted = Wanted { ends, ..Wanted::default() };
+        let wanted = MapRequest { ends, ..MapRequest::default() };
         let mut engine = Engine::new(small());
         let kept = engine.update(&before, &wanted).unwrap();
         assert!(is_cancelled(engine.settle_for(&cancelled, &before, &wanted)));
@@ -284,14 +284,14 @@ fn what_is_cancelled_leaves_nothing_half_made() {
     let mut built = before;
     built.disturbances.elements.elements =
         vec![crate::radar::ElementError { position_millimetres: 0.5, ..Default::default() }; 64];
-    assert!(is_cancelled(Engine::new(small()).update_for(&cancelled, &built, &Wanted::default())));
+    assert!(is_cancelled(Engine::new(small()).update_for(&cancelled, &built, &MapRequest::default())));
 }
 
-fn full_map_rows(frame: &Frame) -> String {
-    let stage = frame.report.stages.iter().find(|s| s.stage == Stage::FullMap).unwrap();
+fn full_map_rows(frame: &EngineFrame) -> String {
+    let stage = frame.report.stages.iter().find(|s| s.stage == EngineStage::FullMap).unwrap();
     match &stage.outcome {
-        Outcome::Computed(what) => what.clone(),
-        Outcome::Skipped(why) => (*why).to_owned(),
+        StageOutcome::Computed(what) => what.clone(),
+        StageOutcome::Skipped(why) => (*why).to_owned(),
     }
 }
 
@@ -300,7 +300,7 @@ fn full_map_rows(frame: &Frame) -> String {
 fn only_rows_that_changed_are_recomputed() {
     let radar = Radar { elements: 128, samples: 512, end_elements: 12, ..Radar::default() };
     let fixed = Normalisation::DynamicRange(Decibels(100.0));
-    let wanted = Wanted { floor: Floor::Exact, normalisation: fixed, ends: false, ..Wanted::default() };
+    let wanted = MapRequest { floor: Floor::Exact, normalisation: fixed, ends: false, ..MapRequest::default() };
     let mut engine = Engine::new(radar.clone());
     let mut scene = Scene::of_points((0..40).map(|i| (f64::from(i % 7) - 3.0, 4.0 + 0.7 * f64::from(i))));
     engine.update(&scene, &wanted).unwrap();
@@ -309,13 +309,13 @@ fn only_rows_that_changed_are_recomputed() {
         let frame = match step {
             // A hidden map misses a move, and catches up.
             2 => {
-                engine.update(&scene, &Wanted { full: false, ..wanted }).unwrap();
+                engine.update(&scene, &MapRequest { full: false, ..wanted }).unwrap();
                 scene.objects[20].translate(0.3, 0.0);
                 engine.update(&scene, &wanted).unwrap()
             }
             // Another floor, and back.
             4 => {
-                engine.update(&scene, &Wanted { floor: Floor::Thesis, ..wanted }).unwrap();
+                engine.update(&scene, &MapRequest { floor: Floor::Thesis, ..wanted }).unwrap();
                 engine.update(&scene, &wanted).unwrap()
             }
             _ => engine.update(&scene, &wanted).unwrap(),
@@ -330,20 +330,20 @@ fn only_rows_that_changed_are_recomputed() {
         let worst = worst_lambda(&frame, &fresh);
         assert!(worst < 0.01, "step {step}: {worst}");
     }
-    let frame = engine.update(&scene, &Wanted { floor: Floor::Thesis, ..wanted }).unwrap();
+    let frame = engine.update(&scene, &MapRequest { floor: Floor::Thesis, ..wanted }).unwrap();
     assert!(full_map_rows(&frame).contains("floor"), "{}", full_map_rows(&frame));
 }
 
-/// f32 with min-max and no floor would draw f32's rounding: nobody gets there, not even by force.
+/// f32 with min-max and no floor would draw f32's rounding: it is refused, even where it is forced.
 #[test]
-fn single_precision_is_refused_where_it_would_become_the_picture() {
+fn single_precision_is_refused_below_its_rounding() {
     let scene = Scene::of_points([(0.3, 1.0), (-0.2, 1.4)]);
     let forced = Forced { precision: Some(Precision::F32), tolerance: Some(1e-6), ..Forced::default() };
     let signal = |engine: &mut Engine, scene: &Scene, floor, normalisation| {
-        let frame = engine.update(scene, &Wanted { floor, normalisation, ..Wanted::default() }).unwrap();
-        match &frame.report.stages.iter().find(|s| s.stage == Stage::Signal).unwrap().outcome {
-            Outcome::Computed(what) => what.clone(),
-            Outcome::Skipped(why) => (*why).to_owned(),
+        let frame = engine.update(scene, &MapRequest { floor, normalisation, ..MapRequest::default() }).unwrap();
+        match &frame.report.stages.iter().find(|s| s.stage == EngineStage::Signal).unwrap().outcome {
+            StageOutcome::Computed(what) => what.clone(),
+            StageOutcome::Skipped(why) => (*why).to_owned(),
         }
     };
     let fixed = Normalisation::DynamicRange(Decibels(60.0));
@@ -372,7 +372,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
     let scene = Scene::of_points((0..50).map(|i| (f64::from(i) * 0.05 - 0.7, 1.0)));
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| lambda(&Engine::new(small()).update(&scene, &Wanted::default()).unwrap()))
+        pool.install(|| lambda(&Engine::new(small()).update(&scene, &MapRequest::default()).unwrap()))
     };
     assert_eq!(with(1).lambda, with(3).lambda);
 }
@@ -380,7 +380,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Whatever the scene, cells are in [0, 1] and none is NaN.
+    /// Of any scene, cells are in [0, 1] and none is NaN.
     #[test]
     fn cells_are_always_in_range(
         points in prop::collection::vec((-50.0..50.0f64, -50.0..50.0f64, -30.0..30.0f64), 0..8),
@@ -394,7 +394,7 @@ proptest! {
         let scene = Scene { objects, ..Scene::default() };
         let floor = [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(snr)), Floor::Thesis][which as usize];
         let normalisation = if which == 3 { Normalisation::DynamicRange(Decibels(80.0)) } else { Normalisation::MinMax };
-        let frame = Engine::new(small()).update(&scene, &Wanted { floor, normalisation, ..Wanted::default() }).unwrap();
+        let frame = Engine::new(small()).update(&scene, &MapRequest { floor, normalisation, ..MapRequest::default() }).unwrap();
         for aperture in [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full] {
             prop_assert!(frame.map(aperture).unwrap().lambda.lambda.iter().all(|v| (0.0..=1.0).contains(v)));
         }

@@ -36,7 +36,6 @@ impl Elements {
         }
     }
 
-    /// As rows name them.
     pub(super) fn text(&self) -> String {
         match self {
             Elements::OfScenes => String::new(),

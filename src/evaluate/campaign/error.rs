@@ -10,17 +10,11 @@ use crate::scene::generate::NoRoom;
 
 /// Why a campaign stopped.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum CampaignError {
     /// A scene can't be simulated.
     #[error("scene {index} of {set}: {source}")]
-    Scene {
-        /// The set.
-        set: String,
-        /// Number of the scene.
-        index: u32,
-        /// Why.
-        source: SceneError,
-    },
+    Scene { set: String, index: u32, source: SceneError },
     /// A scene can't be read.
     #[error(transparent)]
     File(#[from] SceneFileError),
@@ -38,30 +32,14 @@ pub enum CampaignError {
     GivenTwice(#[from] GivenTwice),
     /// The detector can't work on a scene's maps.
     #[error("the detector on scene {index} of {set}: {source}")]
-    Detector {
-        /// The set.
-        set: String,
-        /// Number of the scene.
-        index: u32,
-        /// Why.
-        source: CfarError,
-    },
+    Detector { set: String, index: u32, source: CfarError },
     /// A method failed.
     #[error("{method} on scene {index} of {set}: {source}")]
-    Method {
-        /// Name of the method.
-        method: &'static str,
-        /// The set.
-        set: String,
-        /// Number of the scene.
-        index: u32,
-        /// Why.
-        source: ReconstructError,
-    },
+    Method { method: &'static str, set: String, index: u32, source: ReconstructError },
 }
 
 impl CampaignError {
-    /// Whether somebody asked it to stop.
+    /// Whether it was cancelled.
     pub fn is_cancelled(&self) -> bool {
         matches!(self, CampaignError::Method { source: ReconstructError::Cancelled, .. })
     }
@@ -82,7 +60,6 @@ pub struct Unfit {
 
 impl Unfit {
     /// Takes in a method's failure on a scene.
-    ///
     /// # Errors
     /// Any other error, and a failure that is the cancellation of the campaign.
     pub(super) fn note(all: &mut Vec<Unfit>, error: CampaignError) -> Result<(), CampaignError> {
@@ -100,7 +77,6 @@ impl Unfit {
     }
 }
 
-/// What a message calls a set.
 pub(super) fn set_name(set: &SceneSet) -> String {
     match set {
         SceneSet::Generated(kind) if kind.test_set().is_some() => format!("set {kind}"),

@@ -3,15 +3,14 @@
 use super::error::{CampaignError, set_name};
 use crate::evaluate::rows::Row;
 use crate::evaluate::sets::SceneSet;
-use crate::evaluate::trial::{Answer, Trial};
+use crate::evaluate::trial::{TimedAnswer, Trial};
 use crate::maps::cfar::Cfar;
 use crate::reconstruct::{Reconstructor, Request};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-/// All methods on one scene.
-pub(super) struct Job<'a> {
+pub(super) struct SceneJob<'a> {
     /// The campaign's detector, if it has one.
     pub cfar: Option<Cfar>,
     pub set: &'a SceneSet,
@@ -22,9 +21,9 @@ pub(super) struct Job<'a> {
     pub empty: &'a [Row],
 }
 
-impl Job<'_> {
+impl SceneJob<'_> {
     /// What a method makes of the scene.
-    pub fn answer(&self, method: &dyn Reconstructor) -> Result<Answer, CampaignError> {
+    pub fn answer(&self, method: &dyn Reconstructor) -> Result<TimedAnswer, CampaignError> {
         self.trial.ask(method, self.request).map_err(|source| CampaignError::Method {
             method: method.name(),
             set: set_name(self.set),
@@ -33,8 +32,7 @@ impl Job<'_> {
         })
     }
 
-    /// The row of a method's answer.
-    fn row(&self, empty: &Row, answer: &Answer) -> Result<Row, CampaignError> {
+    fn row(&self, empty: &Row, answer: &TimedAnswer) -> Result<Row, CampaignError> {
         let empty = Row { index: self.index, ..empty.clone() };
         let row = self.trial.filled(empty, answer, self.set.false_alarm());
         let Some(cfar) = &self.cfar else { return Ok(row) };
@@ -51,7 +49,7 @@ impl Job<'_> {
         &self,
         methods: &[&dyn Reconstructor],
         mut order: Vec<usize>,
-        on_row: &mut impl FnMut(&Row, &Trial, &Answer),
+        on_row: &mut impl FnMut(&Row, &Trial, &TimedAnswer),
         on_failure: &mut impl FnMut(CampaignError) -> Result<(), CampaignError>,
     ) -> Result<Vec<Row>, CampaignError> {
         order.shuffle(&mut ChaCha8Rng::seed_from_u64(u64::from(self.index)));

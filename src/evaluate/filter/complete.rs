@@ -34,7 +34,6 @@ pub fn complete(text: &str, cursor: usize, methods: &[impl AsRef<str>]) -> Compl
     Completion { start, candidates }
 }
 
-/// Where the quote stands that is open at the end.
 fn open_quote(before: &[char]) -> Option<usize> {
     let mut open = None;
     for (i, c) in before.iter().enumerate() {

@@ -5,10 +5,10 @@ use std::collections::HashMap;
 
 /// What is true or false.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Truth {
-    Or(Box<[Truth; 2]>),
-    And(Box<[Truth; 2]>),
-    Not(Box<Truth>),
+pub enum Predicate {
+    Or(Box<[Predicate; 2]>),
+    And(Box<[Predicate; 2]>),
+    Not(Box<Predicate>),
     Compare(Box<Term>, Comparison, Box<Term>),
 }
 
@@ -19,7 +19,7 @@ pub enum Term {
     Text(String),
     /// Of the row itself, or of a method's row on the same scene.
     Column(Option<String>, Column),
-    Arithmetic(Box<Term>, Sign, Box<Term>),
+    Arithmetic(Box<Term>, Arithmetic, Box<Term>),
     Negative(Box<Term>),
 }
 
@@ -34,14 +34,13 @@ pub enum Comparison {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sign {
+pub enum Arithmetic {
     Plus,
     Minus,
     Times,
     Over,
 }
 
-/// A scene's key: set, seed, number.
 type Key<'a> = (&'a str, u64, u32);
 
 /// Every row by its scene and method.
@@ -66,13 +65,13 @@ impl<'a> Scenes<'a> {
     }
 }
 
-impl Truth {
+impl Predicate {
     pub fn holds<'a>(&'a self, row: &'a Row, scenes: &Scenes<'a>) -> bool {
         match self {
-            Truth::Or(both) => both.iter().any(|t| t.holds(row, scenes)),
-            Truth::And(both) => both.iter().all(|t| t.holds(row, scenes)),
-            Truth::Not(inner) => !inner.holds(row, scenes),
-            Truth::Compare(a, how, b) => how.holds(a.value(row, scenes), b.value(row, scenes)),
+            Predicate::Or(both) => both.iter().any(|t| t.holds(row, scenes)),
+            Predicate::And(both) => both.iter().all(|t| t.holds(row, scenes)),
+            Predicate::Not(inner) => !inner.holds(row, scenes),
+            Predicate::Compare(a, how, b) => how.holds(a.value(row, scenes), b.value(row, scenes)),
         }
     }
 }
@@ -106,10 +105,10 @@ impl Term {
             Term::Column(method, column) => return scenes.value(row, method.as_deref(), *column),
             Term::Negative(inner) => number(inner).map(|v| -v),
             Term::Arithmetic(a, sign, b) => number(a).zip(number(b)).map(|(a, b)| match sign {
-                Sign::Plus => a + b,
-                Sign::Minus => a - b,
-                Sign::Times => a * b,
-                Sign::Over => a / b,
+                Arithmetic::Plus => a + b,
+                Arithmetic::Minus => a - b,
+                Arithmetic::Times => a * b,
+                Arithmetic::Over => a / b,
             }),
         };
         found.map_or(Value::Missing, Value::Number)

@@ -22,17 +22,16 @@ pub use complete::{Completion, complete};
 pub use tokens::FilterError;
 
 use super::rows::Row;
-use expression::{Scenes, Truth};
+use expression::{Predicate, Scenes};
 
 /// An expression that is true or false of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filter {
-    root: Truth,
+    root: Predicate,
 }
 
 impl Filter {
     /// Reads an expression about rows of `methods`.
-    ///
     /// # Errors
     /// [`FilterError`] points at the mistake and says what was expected there.
     pub fn parse(text: &str, methods: &[impl AsRef<str>]) -> Result<Filter, FilterError> {

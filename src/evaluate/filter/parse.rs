@@ -1,17 +1,15 @@
 //! The parser of expressions.
 
-use super::expression::{Comparison, Sign, Term, Truth};
+use super::expression::{Arithmetic, Comparison, Predicate, Term};
 use super::tokens::{FilterError, OPERAND, SIGNS, Token, error, tokens};
 use crate::evaluate::rows::Column;
 use std::fmt::Write;
 
-/// Brackets and signs may be nested so deep.
 const DEEPEST_NESTING: usize = 50;
 /// Longest expression, characters.
 const LONGEST_EXPRESSION: usize = 2000;
 
-/// Reads a whole expression about rows of `methods`.
-pub(super) fn parse(text: &str, methods: &[&str]) -> Result<Truth, FilterError> {
+pub(super) fn parse(text: &str, methods: &[&str]) -> Result<Predicate, FilterError> {
     let characters: Vec<char> = text.chars().collect();
     if characters.len() > LONGEST_EXPRESSION {
         return error(LONGEST_EXPRESSION, format!("an expression may have {LONGEST_EXPRESSION} characters"));
@@ -27,15 +25,14 @@ pub(super) fn parse(text: &str, methods: &[&str]) -> Result<Truth, FilterError> 
     }
 }
 
-/// What brackets may hold.
 enum Part {
-    Truth(Truth),
+    Truth(Predicate),
     Term(Term),
 }
 
 impl Part {
     /// `start` is where it begins, `end` where something is missing if it is a value only.
-    fn truth(self, start: usize, end: usize) -> Result<Truth, FilterError> {
+    fn truth(self, start: usize, end: usize) -> Result<Predicate, FilterError> {
         match self {
             Part::Truth(truth) => Ok(truth),
             Part::Term(Term::Column(..)) => error(end, "expected a comparison after the column, as in objects >= 4"),
@@ -82,7 +79,7 @@ impl Parser<'_> {
             self.next += 1;
             let start = self.at();
             let right = self.both()?.truth(start, self.at())?;
-            found = Part::Truth(Truth::Or(Box::new([left, right])));
+            found = Part::Truth(Predicate::Or(Box::new([left, right])));
         }
         Ok(found)
     }
@@ -96,7 +93,7 @@ impl Parser<'_> {
             self.next += 1;
             let start = self.at();
             let right = self.not()?.truth(start, self.at())?;
-            found = Part::Truth(Truth::And(Box::new([left, right])));
+            found = Part::Truth(Predicate::And(Box::new([left, right])));
         }
         Ok(found)
     }
@@ -110,7 +107,7 @@ impl Parser<'_> {
         if self.take("!") {
             let start = self.at();
             let inner = self.deeper(Self::not)?.truth(start, self.at())?;
-            return Ok(Part::Truth(Truth::Not(Box::new(inner))));
+            return Ok(Part::Truth(Predicate::Not(Box::new(inner))));
         }
         self.comparison()
     }
@@ -137,23 +134,22 @@ impl Parser<'_> {
         if (text(&left) && number(&right)) || (number(&left) && text(&right)) {
             return error(start, "a name and a number are never equal; names of methods stand in quotes");
         }
-        Ok(Part::Truth(Truth::Compare(Box::new(left), how, Box::new(right))))
+        Ok(Part::Truth(Predicate::Compare(Box::new(left), how, Box::new(right))))
     }
 
-    /// `a + b`
     fn sum(&mut self) -> Result<Part, FilterError> {
-        self.arithmetic(Self::product, &[("+", Sign::Plus), ("-", Sign::Minus)])
+        self.arithmetic(Self::product, &[("+", Arithmetic::Plus), ("-", Arithmetic::Minus)])
     }
 
     /// `a * b`
     fn product(&mut self) -> Result<Part, FilterError> {
-        self.arithmetic(Self::operand, &[("*", Sign::Times), ("/", Sign::Over)])
+        self.arithmetic(Self::operand, &[("*", Arithmetic::Times), ("/", Arithmetic::Over)])
     }
 
     fn arithmetic(
         &mut self,
         part: fn(&mut Self) -> Result<Part, FilterError>,
-        signs: &[(&str, Sign)],
+        signs: &[(&str, Arithmetic)],
     ) -> Result<Part, FilterError> {
         let mut start = self.at();
         let mut found = part(self)?;

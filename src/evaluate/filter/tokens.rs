@@ -10,7 +10,6 @@ pub struct FilterError {
     pub message: String,
 }
 
-/// The smallest part of an expression that means something.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Token {
     Number(f64),
@@ -46,12 +45,10 @@ pub(super) const SIGNS: [(&str, &str); 18] = [
 /// What may stand where a value is wanted.
 pub(super) const OPERAND: &str = "expected a column, a number, a name in quotes or (";
 
-/// A mistake at a character, counted from 0.
 pub(super) fn error<T>(at: usize, message: impl Into<String>) -> Result<T, FilterError> {
     Err(FilterError { column: at + 1, message: message.into() })
 }
 
-/// Cuts a text into tokens, each with the character it starts at.
 pub(super) fn tokens(text: &[char]) -> Result<Vec<(usize, Token)>, FilterError> {
     let mut found = Vec::new();
     let mut at = 0;

@@ -64,7 +64,7 @@ impl fmt::Display for Text {
 
 /// What the cells of a column hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum CellKind {
     /// A text.
     Text,
     /// A whole number from 0.
@@ -104,10 +104,8 @@ impl fmt::Display for Value<'_> {
     }
 }
 
-/// A type of cells.
-pub(super) trait Cell {
-    const KIND: Kind;
-    /// Whether a row may be without it.
+pub(super) trait CellValue {
+    const KIND: CellKind;
     const IS_OPTIONAL: bool = false;
 
     fn value(&self) -> Value<'_>;
@@ -116,8 +114,8 @@ pub(super) trait Cell {
     fn share(&mut self, _texts: &mut HashSet<Text>) {}
 }
 
-impl Cell for Text {
-    const KIND: Kind = Kind::Text;
+impl CellValue for Text {
+    const KIND: CellKind = CellKind::Text;
 
     fn value(&self) -> Value<'_> {
         if self.is_empty() { Value::Missing } else { Value::Text(Cow::Borrowed(self)) }
@@ -131,8 +129,8 @@ impl Cell for Text {
     }
 }
 
-impl<T: Cell> Cell for Option<T> {
-    const KIND: Kind = T::KIND;
+impl<T: CellValue> CellValue for Option<T> {
+    const KIND: CellKind = T::KIND;
     const IS_OPTIONAL: bool = true;
 
     fn value(&self) -> Value<'_> {
@@ -140,10 +138,9 @@ impl<T: Cell> Cell for Option<T> {
     }
 }
 
-impl Cell for EchoCounts {
-    const KIND: Kind = Kind::Text;
+impl CellValue for EchoCounts {
+    const KIND: CellKind = CellKind::Text;
 
-    /// Those of all classes together.
     fn value(&self) -> Value<'_> {
         Value::Number(self.0.iter().sum::<usize>() as f64)
     }
@@ -151,8 +148,8 @@ impl Cell for EchoCounts {
 
 macro_rules! cells {
     ($($kind:ident: $($type:ty),+ => |$cell:ident| $value:expr;)+) => {
-        $($(impl Cell for $type {
-            const KIND: Kind = Kind::$kind;
+        $($(impl CellValue for $type {
+            const KIND: CellKind = CellKind::$kind;
 
             fn value(&self) -> Value<'_> {
                 let $cell = self;
@@ -172,7 +169,6 @@ cells! {
     Text: Purpose, Reading, Carrier => |v| Value::Text(serde_name(v).into());
 }
 
-/// The name that serde gives a value without fields, as scene files have it.
 fn serde_name(value: impl Serialize) -> String {
     serde_json::to_value(value).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }

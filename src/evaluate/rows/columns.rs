@@ -37,17 +37,17 @@ macro_rules! columns {
             }
 
             /// What its cells hold.
-            pub fn kind(self) -> Kind {
+            pub fn kind(self) -> CellKind {
                 match self {
-                    $(Column::$Figure => <$figure_type as Cell>::KIND,)+
-                    $(Column::$Origin => <$origin_type as Cell>::KIND,)+
+                    $(Column::$Figure => <$figure_type as CellValue>::KIND,)+
+                    $(Column::$Origin => <$origin_type as CellValue>::KIND,)+
                 }
             }
 
             /// Whether a table may lack it: older ones do.
             pub fn is_optional(self) -> bool {
                 match self {
-                    $(Column::$Figure => <$figure_type as Cell>::IS_OPTIONAL,)+
+                    $(Column::$Figure => <$figure_type as CellValue>::IS_OPTIONAL,)+
                     $(Column::$Origin)|+ => true,
                 }
             }
@@ -69,7 +69,6 @@ macro_rules! columns {
         }
 
         impl Row {
-            /// Lets its texts be those of `texts`, to which new ones are added.
             fn share(&mut self, texts: &mut std::collections::HashSet<Text>) {
                 $(self.$figure.share(texts);)+
                 $(self.$origin.share(texts);)+

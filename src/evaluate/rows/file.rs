@@ -1,7 +1,7 @@
 //! Rows written and read as CSV, with faults that name the line and the column.
 
 use super::lines::{LongLine, MAX_LINE_BYTES, MAX_ROWS, ShortLines};
-use super::{Column, FORMAT, Kind, Row};
+use super::{CellKind, Column, FORMAT, Row};
 use csv::StringRecord;
 use std::collections::HashSet;
 use std::io::{self, Read, Write};
@@ -13,7 +13,6 @@ pub fn header() -> String {
 
 /// Writes each row that is [serialised](csv::Writer::serialize) as a line; `begins` with the names of the columns, or goes on beneath other
 /// rows. [`csv::Writer::flush`] after a row hands on whole lines, so that a run that is stopped keeps what it has found.
-///
 /// # Errors
 /// What `out` says.
 pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<W>> {
@@ -24,7 +23,6 @@ pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<
 }
 
 /// Writes a whole table.
-///
 /// # Errors
 /// What `out` says.
 pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) -> io::Result<()> {
@@ -35,44 +33,23 @@ pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) 
 
 /// Why a file's rows can't be used.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum RowError {
     /// It can't be read.
     #[error("{0}")]
     Io(io::Error),
     /// Names are missing in its first line.
     #[error("line 1: there is no column \"{missing}\"; expected {}", header().trim_end())]
-    Header {
-        /// The first column that is missing.
-        missing: &'static str,
-    },
+    Header { missing: &'static str },
     /// A cell holds something else than it should.
     #[error("line {line}, column {column}: \"{found}\"; expected {expected}")]
-    Cell {
-        /// Line, from 1.
-        line: u64,
-        /// Name of the column.
-        column: &'static str,
-        /// What stands there.
-        found: String,
-        /// What should.
-        expected: String,
-    },
+    Cell { line: u64, column: &'static str, found: String, expected: String },
     /// Rows are of a later format.
     #[error("line {line}: the row is of format {found}; this program reads up to format {FORMAT}")]
-    Later {
-        /// Line, from 1.
-        line: u64,
-        /// The format.
-        found: u32,
-    },
+    Later { line: u64, found: u32 },
     /// A line is no row.
     #[error("line {line}: {message}")]
-    Line {
-        /// Line, from 1.
-        line: u64,
-        /// What is wrong, and what was expected.
-        message: String,
-    },
+    Line { line: u64, message: String },
     /// There are too many.
     #[error("there are more than {MAX_ROWS} rows; split the file")]
     TooMany,
@@ -80,7 +57,7 @@ pub enum RowError {
 
 /// Rows as a file has them.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Table {
+pub struct RowTable {
     /// The rows of whole lines.
     pub rows: Vec<Row>,
     /// Whether the file ends within a line: its writer was stopped, or the file was cut.
@@ -91,7 +68,6 @@ pub struct Table {
 
 /// Reads what [`write_rows`] wrote, also in format 1 and before. Columns may stand in any order, and others beside them; those that are
 /// [optional](Column::is_optional) may be missing.
-///
 /// # Errors
 /// [`RowError`] names the line and the column.
 pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
@@ -99,14 +75,13 @@ pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
 }
 
 /// [`read_rows`] without a last line that has no end, which may hold half a row.
-///
 /// # Errors
 /// As [`read_rows`].
-pub fn read_table(input: impl Read) -> Result<Table, RowError> {
+pub fn read_table(input: impl Read) -> Result<RowTable, RowError> {
     read(ShortLines::new(input, true))
 }
 
-fn read(mut lines: ShortLines<impl Read>) -> Result<Table, RowError> {
+fn read(mut lines: ShortLines<impl Read>) -> Result<RowTable, RowError> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&mut lines);
     let header = reader.headers().map_err(of_csv)?.clone();
     if let Some(missing) = Column::all().find(|column| !column.is_optional() && place(&header, *column).is_none()) {
@@ -126,7 +101,7 @@ fn read(mut lines: ShortLines<impl Read>) -> Result<Table, RowError> {
         rows.push(row);
     }
     drop(reader);
-    Ok(Table { rows, is_cut: lines.is_cut, whole_bytes: lines.whole_bytes })
+    Ok(RowTable { rows, is_cut: lines.is_cut, whole_bytes: lines.whole_bytes })
 }
 
 fn place(header: &StringRecord, column: Column) -> Option<usize> {
@@ -143,7 +118,6 @@ fn of_cell(header: &StringRecord, record: &StringRecord, column: Column, expecte
     RowError::Cell { line: line(record), column: column.name(), found, expected: expected.to_owned() }
 }
 
-/// The error of a line, by the first cell that can't be read alone.
 fn of_cells(header: &StringRecord, record: &StringRecord, error: csv::Error) -> RowError {
     for column in Column::all() {
         let Some(cell) = place(header, column).and_then(|place| record.get(place)) else { continue };
@@ -154,9 +128,9 @@ fn of_cells(header: &StringRecord, record: &StringRecord, error: csv::Error) -> 
             _ => error.to_string(),
         };
         let expected = match column.kind() {
-            Kind::Whole => "a whole number from 0",
-            Kind::Real => "a finite number",
-            Kind::Text => said.rsplit_once("expected ").map_or(said.as_str(), |(_, expected)| expected),
+            CellKind::Whole => "a whole number from 0",
+            CellKind::Real => "a finite number",
+            CellKind::Text => said.rsplit_once("expected ").map_or(said.as_str(), |(_, expected)| expected),
         };
         return of_cell(header, record, column, expected);
     }

@@ -1,7 +1,7 @@
 //! The file of rows that a run appends to and resumes from.
 
 use super::{
-    Column, MergeError, Row, Table, Text, WHY_NO_OTHER_FORMAT, header, merge, read_table, row_writer, write_rows,
+    Column, MergeError, Row, RowTable, Text, WHY_NO_OTHER_FORMAT, header, merge, read_table, row_writer, write_rows,
 };
 use crate::files::write_atomically;
 use std::collections::{HashMap, HashSet};
@@ -11,23 +11,14 @@ use std::path::{Path, PathBuf};
 
 /// Why a file of rows can't be read, or isn't written.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum KeptError {
     /// What the system says.
     #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
+    File { path: PathBuf, source: io::Error },
     /// It holds what would be lost. The caller says how to write over it.
     #[error("{}: {why}", path.display())]
-    Other {
-        /// The file.
-        path: PathBuf,
-        /// What it holds.
-        why: String,
-    },
+    Other { path: PathBuf, why: String },
     /// Another process writes it.
     #[error("{}: another run writes it; wait for that run, or name another file", _0.display())]
     Busy(PathBuf),
@@ -36,7 +27,6 @@ pub enum KeptError {
     Merge(#[from] MergeError),
 }
 
-/// The error of a file that can't be read or written.
 fn on_file(path: &Path) -> impl FnOnce(io::Error) -> KeptError {
     move |source| KeptError::File { path: path.to_owned(), source }
 }
@@ -50,19 +40,17 @@ pub fn key(row: &Row) -> Key {
 }
 
 /// The rows that a run makes.
-pub struct Wanted {
-    /// For each set and method, what makes its rows: one without figures.
+pub struct RunRows {
     empty: HashMap<(Text, Text), Row>,
 }
 
-impl Wanted {
+impl RunRows {
     /// The rows of a run whose [`Campaign::empty_rows`](crate::evaluate::campaign::Campaign::empty_rows) these are.
-    pub fn new(empty: &[Vec<Row>]) -> Wanted {
+    pub fn new(empty: &[Vec<Row>]) -> RunRows {
         let named = |row: &Row| ((row.set.clone(), row.method.clone()), row.clone());
-        Wanted { empty: empty.iter().flatten().map(named).collect() }
+        RunRows { empty: empty.iter().flatten().map(named).collect() }
     }
 
-    /// Why a row is not one of this run's.
     fn foreign(&self, row: &Row) -> Option<String> {
         if row.version.is_none() {
             return Some("its rows don't say what made them: an older program wrote them".to_owned());
@@ -99,11 +87,10 @@ pub struct RowFile {
 }
 
 impl RowFile {
-    /// Opens the file, or begins it. Rows of the same run stay and half a last line goes; `overwrite` begins anew whatever is there.
-    ///
+    /// Opens the file, or begins it. Rows of the same run stay and half a last line goes; `overwrite` begins anew over any content.
     /// # Errors
     /// [`KeptError`] for a file that holds anything else, and for one that another process writes.
-    pub fn open(path: &Path, wanted: &Wanted, overwrite: bool) -> Result<RowFile, KeptError> {
+    pub fn open(path: &Path, wanted: &RunRows, overwrite: bool) -> Result<RowFile, KeptError> {
         if path.exists() && !path.is_file() {
             let source = io::Error::new(io::ErrorKind::InvalidInput, "is no file; expected the name of a file");
             return Err(on_file(path)(source));
@@ -114,7 +101,7 @@ impl RowFile {
         if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
             return Err(KeptError::Busy(path.to_owned()));
         }
-        let table = if overwrite { Table::default() } else { present(path, &file, wanted)? };
+        let table = if overwrite { RowTable::default() } else { present(path, &file, wanted)? };
         file.set_len(table.whole_bytes).map_err(on_file(path))?;
         file.seek(SeekFrom::End(0)).map_err(on_file(path))?;
         let out = row_writer(file, table.whole_bytes == 0).map_err(on_file(path))?;
@@ -135,7 +122,6 @@ impl RowFile {
     }
 
     /// All rows, sorted as a run that was never stopped has them; so is the file then.
-    ///
     /// # Errors
     /// [`KeptError`] for a file that can't be written.
     pub fn finish(self) -> Result<Vec<Row>, KeptError> {
@@ -154,15 +140,13 @@ fn refused(path: &Path, why: &str) -> KeptError {
     KeptError::Other { path: path.to_owned(), why: why.to_owned() }
 }
 
-/// The rows of this run that a file holds.
-fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, KeptError> {
+fn present(path: &Path, mut file: &File, wanted: &RunRows) -> Result<RowTable, KeptError> {
     let header = header();
     let mut start = Vec::new();
     file.take(header.len() as u64).read_to_end(&mut start).map_err(on_file(path))?;
     file.rewind().map_err(on_file(path))?;
-    // A run that was stopped before its first line was whole.
     if start.len() < header.len() && header.as_bytes().starts_with(&start) {
-        return Ok(Table::default());
+        return Ok(RowTable::default());
     }
     let table = read_table(file).map_err(|e| refused(path, &e.to_string()))?;
     let mut seen = HashSet::new();
@@ -180,7 +164,6 @@ fn present(path: &Path, mut file: &File, wanted: &Wanted) -> Result<Table, KeptE
 }
 
 /// Writes merged rows, unless a file is there whose rows are not among them.
-///
 /// # Errors
 /// [`KeptError`] for a file that holds anything else, and for one that can't be written.
 pub fn write_merged(path: &Path, rows: &[Row], overwrite: bool) -> Result<(), KeptError> {

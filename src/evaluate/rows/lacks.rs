@@ -5,9 +5,7 @@ use crate::evaluate::shard::Shard;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-/// Most scenes that a message numbers.
 const MOST_NAMED: usize = 8;
-/// Most shards of a run that are told apart.
 const MOST_SHARDS: u32 = 1000;
 
 /// Scenes of a set that no row of a method is of.
@@ -21,9 +19,7 @@ pub struct Lack {
     pub missing: u32,
     /// How many the whole run has.
     pub of: u32,
-    /// Numbers of the first few.
     first: Vec<u32>,
-    /// The shard that they are, if they are one.
     shard: Option<String>,
 }
 
@@ -43,7 +39,7 @@ impl fmt::Display for Lack {
     }
 }
 
-/// What lacks of the runs that `rows` are of, whichever run a row is of. Of rows that don't say what their whole run was, gaps are found
+/// What lacks of the runs that `rows` are of. Of rows that don't say what their whole run was, gaps are found
 /// between the scenes that are there.
 pub fn lacks(rows: &[Row]) -> Vec<Lack> {
     let mut present: BTreeMap<(&str, &str), BTreeSet<u32>> = BTreeMap::new();

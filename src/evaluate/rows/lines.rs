@@ -4,10 +4,8 @@ use std::io::{self, BufRead, BufReader, Read};
 
 /// Most rows that a file may have: they take some 1 GB.
 pub const MAX_ROWS: usize = 2_000_000;
-/// Most bytes that a line of a file may have.
 pub(super) const MAX_LINE_BYTES: usize = 64 << 10;
 
-/// A line that is too long.
 #[derive(Debug, thiserror::Error)]
 #[error("line {line} is too long")]
 pub(super) struct LongLine {
@@ -18,7 +16,6 @@ pub(super) struct LongLine {
 /// Passes on what it reads line by line, as long as lines are short, so that no file can ask for more memory than a line may have.
 pub(super) struct ShortLines<R> {
     input: BufReader<R>,
-    /// Whether a last line without an end is left out.
     whole_only: bool,
     line: Vec<u8>,
     passed: usize,

@@ -8,14 +8,12 @@ use std::collections::BTreeMap;
 #[error("{0}")]
 pub struct MergeError(String);
 
-/// A row as messages name it.
 fn named(row: &Row) -> String {
     format!("scene {} of set {}, seed {}, by {}", row.index, row.set, row.seed, row.method)
 }
 
 /// Joins tables, each with its name, as if all had been made in one run: sorted by set, seed and scene, methods as their runs name them,
 /// or else in the order they come.
-///
 /// # Errors
 /// [`MergeError`] when a row stands in two tables or twice in one, and when two rows were not made alike.
 pub fn merge(tables: Vec<(String, Vec<Row>)>) -> Result<Vec<Row>, MergeError> {
@@ -83,7 +81,6 @@ fn check_alike(names: &[String], rows: &[(usize, Row)]) -> Result<(), MergeError
     Ok(())
 }
 
-/// The first column in which two rows of one table differ though they must not.
 fn difference(a: &Row, b: &Row) -> Option<Column> {
     use Column::{
         Carrier, Cfar, Floor, Normalisation, Program, Purpose, Radar, Reading, Scenes, Seed, Version, Weights,

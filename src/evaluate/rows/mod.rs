@@ -12,9 +12,9 @@ mod merge;
 mod order;
 mod whole;
 
-pub use cell::{Kind, Text, Value};
-pub use file::{RowError, Table, header, read_rows, read_table, row_writer, write_rows};
-pub use kept::{KeptError, Key, RowFile, Wanted, key, write_merged};
+pub use cell::{CellKind, Text, Value};
+pub use file::{RowError, RowTable, header, read_rows, read_table, row_writer, write_rows};
+pub use kept::{KeptError, Key, RowFile, RunRows, key, write_merged};
 pub use lacks::{Lack, lacks};
 pub use lines::MAX_ROWS;
 pub use merge::{MergeError, merge};
@@ -28,7 +28,7 @@ use crate::maps::cfar::Cfar;
 use crate::radar::Carrier;
 use crate::scene::generate::{self, Purpose, Reading};
 use crate::signal::Floor;
-use cell::{Cell, by_text, unless_file};
+use cell::{CellValue, by_text, unless_file};
 use columns::columns;
 
 /// Number of the format of rows, which stands in each. Before format 2 the floor "thesis" had another level ([`WHY_NO_OTHER_FORMAT`]). Tables
@@ -174,7 +174,7 @@ impl Column {
 }
 
 impl Row {
-    /// Whether its set lies over a floor of its own, whatever floor the others of a run have: scenes of noise alone do.
+    /// Whether its set lies over a floor of its own, not the run's: scenes of noise alone do.
     pub fn has_own_floor(&self) -> bool {
         self.set == "noise"
     }
@@ -198,7 +198,6 @@ impl Row {
     }
 
     /// Checks what the types of the cells leave open.
-    ///
     /// # Errors
     /// The column that can't be used, and what was expected there.
     fn check(&self) -> Result<(), (Column, &'static str)> {

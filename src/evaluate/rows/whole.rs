@@ -2,7 +2,6 @@
 
 use super::lines::MAX_ROWS;
 
-/// Most pairs of set and method that one run may have.
 const MAX_PAIRS: usize = 10_000;
 
 /// All that a run was to find, shards of other machines included.
@@ -24,7 +23,6 @@ pub struct GivenTwice {
 
 impl Whole {
     /// The run over these sets, each with its number of scenes, by these methods.
-    ///
     /// # Errors
     /// [`GivenTwice`] names the first set or method that is there already.
     pub fn new(sets: Vec<(String, u32)>, methods: Vec<String>) -> Result<Whole, GivenTwice> {

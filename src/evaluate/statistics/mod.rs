@@ -8,4 +8,4 @@ mod shared;
 
 pub use doubt::{DoubtArea, ONE_OF, RocArea};
 pub use paired::{MOST_RESAMPLED, Paired, RESAMPLES};
-pub use shared::{DISCOVERY_RATE, Rule, Shared, USUALLY_BAD, rules};
+pub use shared::{DISCOVERY_RATE, Rule, SharedTrait, USUALLY_BAD, rules};

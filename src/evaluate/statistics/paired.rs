@@ -87,7 +87,6 @@ impl Paired {
     }
 }
 
-/// A probability in two digits.
 pub(super) fn p_text(p: f64) -> String {
     match p {
         p if p < 1e-4 => "below 0.0001".to_owned(),
@@ -96,12 +95,10 @@ pub(super) fn p_text(p: f64) -> String {
     }
 }
 
-/// Whether no object of the scene is missed, merged or on a wrong tooth.
 fn finds_all(row: &Row) -> bool {
     row.missed == 0 && row.merged.unwrap_or(0) == 0 && row.wrong_tooth.unwrap_or(0) == 0
 }
 
-/// Interval of 95 % of the mean of `values`.
 fn interval(values: &[f64]) -> [f64; 2] {
     if values.len() > MOST_RESAMPLED {
         let Estimate { mean, standard_error, .. } = Estimate::of(values);

@@ -61,7 +61,7 @@ impl Rule {
 
 /// What was found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Shared {
+pub struct SharedTrait {
     /// Bad rows.
     pub bad: usize,
     /// All rows.
@@ -76,10 +76,9 @@ pub struct Shared {
 ///
 /// Scenes of even number suggest rules: of each column the cut, or the name, that separates best. Scenes of odd number test them. Of those
 /// that hold, at most [`DISCOVERY_RATE`] are expected to be chance (Benjamini and Hochberg, J. R. Statist. Soc. B 57, 1995).
-///
 /// # Errors
 /// [`FilterError`] where `bad` is no filter.
-pub fn rules(rows: &[Row], bad: &str) -> Result<Shared, FilterError> {
+pub fn rules(rows: &[Row], bad: &str) -> Result<SharedTrait, FilterError> {
     let names: BTreeSet<&str> = rows.iter().map(|row| &*row.method).collect();
     let names: Vec<&str> = names.into_iter().collect();
     let mut is_bad = vec![false; rows.len()];
@@ -89,7 +88,7 @@ pub fn rules(rows: &[Row], bad: &str) -> Result<Shared, FilterError> {
     let [suggesting, testing] = [half(false), half(true)];
     let suggested: Vec<Rule> = BEFOREHAND.into_iter().filter_map(|column| table.best(column, &suggesting)).collect();
     let tested: Vec<Rule> = suggested.iter().filter_map(|rule| table.judged(&rule.text, &names, &testing)).collect();
-    Ok(Shared {
+    Ok(SharedTrait {
         bad: is_bad.iter().filter(|b| **b).count(),
         rows: rows.len(),
         tried: suggested.len(),
@@ -124,7 +123,6 @@ impl Table<'_> {
         judged.flatten().min_by(|a, b| a.p_value.total_cmp(&b.p_value)).filter(|rule| rule.p_value < DISCOVERY_RATE)
     }
 
-    /// The rule on other rows, read from its own text, so that what is tested is what a click applies.
     fn judged(&self, text: &str, methods: &[&str], on: &[usize]) -> Option<Rule> {
         let matching = Filter::parse(text, methods).ok()?.matching(self.rows);
         let matching: std::collections::HashSet<usize> = matching.into_iter().collect();
@@ -143,7 +141,6 @@ impl Table<'_> {
     }
 }
 
-/// Whether a rule is true of a row.
 type Truth = Box<dyn Fn(&Row) -> bool>;
 
 /// Rules about a column: each as a filter, and as a function.

@@ -1,16 +1,15 @@
 //! The next scene to try: moved objects, turned bodies, changed echoes, new noise.
 
-use super::wanted::{Aim, Finding, Search};
+use super::wanted::{Aim, Finding, WorseningSearch};
 use crate::scene::{Object, Scene};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
 
-/// Candidates that don't know of each other.
 pub(super) const BATCH: u32 = 8;
 /// Part of the candidates that is drawn anywhere within reach.
-const ANYWHERE: f64 = 1.0 / 3.0;
+const ANYWHERE_PART: f64 = 1.0 / 3.0;
 /// First steps, as a part of the reach.
 pub(super) const FIRST_STEP: f64 = 0.25;
 /// Smallest steps, as a part of the reach.
@@ -20,21 +19,19 @@ const MOST_LOUDER_DB: f64 = 6.0;
 /// Bodies turn by at most this much, either way, degrees.
 const MOST_TURN_DEGREES: f64 = 45.0;
 /// A repair has reached its whole reach after half of so many tries, however many are left.
-const GROWS: u32 = 256;
+const GROWTH_STEPS: u32 = 256;
 /// How often other noise is drawn.
 const OTHER_NOISE: f64 = 0.25;
 
-/// Where a search stands.
-pub(super) struct State {
+pub(super) struct WorseningState {
     /// Scale of steps, as a part of the reach.
     pub step: f64,
     pub path: Vec<Finding>,
     pub tries: u32,
 }
 
-impl Search {
-    /// Candidate `n`, from the state before its batch.
-    pub(super) fn candidate(&self, start: &Scene, state: &State, n: u32) -> Scene {
+impl WorseningSearch {
+    pub(super) fn candidate(&self, start: &Scene, state: &WorseningState, n: u32) -> Scene {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(u64::from(n) + 1);
         match self.aim {
@@ -43,8 +40,8 @@ impl Search {
         }
     }
 
-    fn worse_candidate(&self, start: &Scene, state: &State, rng: &mut ChaCha8Rng) -> Scene {
-        let anywhere = rng.random::<f64>() < ANYWHERE || state.path.len() == 1;
+    fn worse_candidate(&self, start: &Scene, state: &WorseningState, rng: &mut ChaCha8Rng) -> Scene {
+        let anywhere = rng.random::<f64>() < ANYWHERE_PART || state.path.len() == 1;
         let (from, reach) = match state.path.last() {
             Some(worst) if !anywhere => (&worst.scene, state.step * self.within_metres),
             _ => (start, self.within_metres),
@@ -79,7 +76,7 @@ impl Search {
         scene
     }
 
-    fn repair_candidate(&self, start: &Scene, state: &State, rng: &mut ChaCha8Rng) -> Scene {
+    fn repair_candidate(&self, start: &Scene, state: &WorseningState, rng: &mut ChaCha8Rng) -> Scene {
         let best = state.path.get(1..).and_then(<[Finding]>::last);
         let mut scene = start.clone();
         if let Some(best) = best.filter(|_| rng.random::<f64>() < 0.5) {
@@ -92,7 +89,7 @@ impl Search {
             return scene;
         }
         // Small moves first; never farther than what is known to help.
-        let growing = f64::from(state.tries + BATCH) / f64::from(self.tries.clamp(1, GROWS)) * 2.0;
+        let growing = f64::from(state.tries + BATCH) / f64::from(self.tries.clamp(1, GROWTH_STEPS)) * 2.0;
         let reach = best.map_or(self.within_metres * growing.min(1.0), |b| b.moved_metres);
         let alone = (rng.random::<f64>() < 0.5).then(|| rng.random_range(0..scene.objects.len()));
         for (i, object) in scene.objects.iter_mut().enumerate() {
@@ -109,13 +106,11 @@ fn normal(rng: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(rng)
 }
 
-/// A place in a disc, all parts of it alike.
 fn in_disc(rng: &mut ChaCha8Rng, radius: f64) -> [f64; 2] {
     let (angle, part) = (TAU * rng.random::<f64>(), rng.random::<f64>().sqrt());
     [radius * part * angle.cos(), radius * part * angle.sin()]
 }
 
-/// How far two objects' centres lie apart, metres.
 pub(super) fn distance(a: &Object, b: &Object) -> f64 {
     let ([ax, ay], [bx, by]) = (a.centre_metres(), b.centre_metres());
     (bx - ax).hypot(by - ay)

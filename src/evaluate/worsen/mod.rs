@@ -8,23 +8,22 @@
 mod candidate;
 mod wanted;
 
-pub use wanted::{Aim, Finding, Measure, Outcome, Search, WorsenError, summary};
+pub use wanted::{Aim, Finding, WorsenError, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
 
 use super::failure::Failures;
 use super::trial::Trial;
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::{Scene, SceneError};
 use crate::task::Task;
-use candidate::{BATCH, FIRST_STEP, LEAST_STEP, State, distance};
+use candidate::{BATCH, FIRST_STEP, LEAST_STEP, WorseningState, distance};
 use rayon::prelude::*;
 
 /// A repaired squared error is at most this part of the one at the start.
-const REPAIRED: f64 = 0.2;
+const REPAIR_PART: f64 = 0.2;
 
-impl Search {
+impl WorseningSearch {
     /// Searches near `scene` for `method`. `on_try` is called after every batch with the tries made and the path so far; when it answers false,
     /// the search ends there.
-    ///
     /// # Errors
     /// [`WorsenError`] when the start itself can't be tried. Candidates that can't be simulated are passed over.
     pub fn run(
@@ -33,7 +32,7 @@ impl Search {
         method: &dyn Reconstructor,
         task: &Task,
         mut on_try: impl FnMut(u32, &[Finding]) -> bool,
-    ) -> Result<Outcome, WorsenError> {
+    ) -> Result<WorseningOutcome, WorsenError> {
         if scene.objects.is_empty() {
             return Err(WorsenError::Empty);
         }
@@ -48,7 +47,7 @@ impl Search {
         };
         let trial = self.trial(scene)?;
         let start = self.finding(scene, scene, &trial, method, &request, 0)?;
-        let mut state = State { step: FIRST_STEP, path: vec![start], tries: 0 };
+        let mut state = WorseningState { step: FIRST_STEP, path: vec![start], tries: 0 };
         while state.tries < self.tries && !self.is_reached(&state) && on_try(state.tries, &state.path) {
             let batch = state.tries..(state.tries + BATCH).min(self.tries);
             state.tries = batch.end;
@@ -69,7 +68,7 @@ impl Search {
                     }
                     Ok(_) => {}
                     // Stopped: what was found stays.
-                    Err(_) if task.is_cancelled() => return Ok(Outcome { path: state.path, tries: n }),
+                    Err(_) if task.is_cancelled() => return Ok(WorseningOutcome { path: state.path, tries: n }),
                     Err(error) => return Err(error),
                 }
             }
@@ -79,17 +78,16 @@ impl Search {
             state.step = if next < LEAST_STEP { FIRST_STEP } else { next.min(FIRST_STEP) };
         }
         on_try(state.tries, &state.path);
-        Ok(Outcome { path: state.path, tries: state.tries })
+        Ok(WorseningOutcome { path: state.path, tries: state.tries })
     }
 
-    /// Nothing is left to repair.
-    fn is_reached(&self, state: &State) -> bool {
+    fn is_reached(&self, state: &WorseningState) -> bool {
         self.aim == Aim::Repair && state.path.len() == 1 && self.is_right(&state.path[0], &state.path[0])
     }
 
     fn trial(&self, scene: &Scene) -> Result<Trial, SceneError> {
         let trial = Trial::new(&self.radar, scene, self.floor, self.normalisation)?;
-        if self.measure != Measure::SquaredError {
+        if self.measure != WorseningMeasure::SquaredError {
             trial.footprints();
         }
         Ok(trial)
@@ -107,7 +105,7 @@ impl Search {
         let failed = |source| WorsenError::Method { method: method.name(), source };
         let answer = trial.ask(method, request).map_err(failed)?;
         let failures = match self.measure {
-            Measure::SquaredError => Failures::default(),
+            WorseningMeasure::SquaredError => Failures::default(),
             _ => trial.failures(&answer),
         };
         let moves = start.objects.iter().zip(&scene.objects).map(|(a, b)| distance(a, b));
@@ -131,7 +129,7 @@ impl Search {
 
     fn is_right(&self, found: &Finding, start: &Finding) -> bool {
         match self.measure {
-            Measure::SquaredError => found.metrics.squared_error <= REPAIRED * start.metrics.squared_error,
+            WorseningMeasure::SquaredError => found.metrics.squared_error <= REPAIR_PART * start.metrics.squared_error,
             _ => self.measure.of(found).0 == 0,
         }
     }

@@ -37,11 +37,11 @@ impl Reconstructor for ShortSighted {
     }
 }
 
-fn search(aim: Aim, measure: Measure) -> Search {
-    Search { radar: radar(), aim, measure, tries: 80, seed: 4, ..Search::default() }
+fn search(aim: Aim, measure: WorseningMeasure) -> WorseningSearch {
+    WorseningSearch { radar: radar(), aim, measure, tries: 80, seed: 4, ..WorseningSearch::default() }
 }
 
-fn run(search: &Search, y_metres: f64) -> Outcome {
+fn run(search: &WorseningSearch, y_metres: f64) -> WorseningOutcome {
     let scene = Scene::of_points([(0.0, y_metres)]);
     search.run(&scene, &ShortSighted, &Task::default(), |_, _| true).unwrap()
 }
@@ -49,7 +49,7 @@ fn run(search: &Search, y_metres: f64) -> Outcome {
 /// Half the range is at 2.4 m.
 #[test]
 fn a_search_finds_where_the_method_stops_seeing() {
-    for measure in Measure::ALL.into_iter().take(2) {
+    for measure in WorseningMeasure::ALL.into_iter().take(2) {
         let search = search(Aim::Worsen, measure);
         let found = run(&search, 1.7);
         let (start, worst) = found.ends().unwrap();
@@ -63,28 +63,29 @@ fn a_search_finds_where_the_method_stops_seeing() {
 
 #[test]
 fn a_repair_is_the_smallest_move_that_helps() {
-    let found = run(&search(Aim::Repair, Measure::Missed), 3.0);
+    let found = run(&search(Aim::Repair, WorseningMeasure::Missed), 3.0);
     let (start, end) = found.ends().unwrap();
     let end = end.unwrap();
     assert_eq!((start.failures.missed(), end.failures.missed()), (1, 0));
     // From 3.0 m to where the bin's middle is nearer than that of half the range, 2.44 m.
     assert!((0.5..0.75).contains(&end.moved_metres), "{}", end.moved_metres);
     assert!(found.path[1..].is_sorted_by(|a, b| a.moved_metres > b.moved_metres));
-    assert_eq!(run(&search(Aim::Repair, Measure::Missed), 1.7).tries, 0, "nothing to repair");
+    assert_eq!(run(&search(Aim::Repair, WorseningMeasure::Missed), 1.7).tries, 0, "nothing to repair");
 }
 
 #[test]
 fn a_stopped_search_keeps_what_it_has() {
-    let refuse =
-        |search: &Search, scene: &Scene| search.run(scene, &ShortSighted, &Task::default(), |_, _| true).unwrap_err();
-    let worsen = search(Aim::Worsen, Measure::SquaredError);
+    let refuse = |search: &WorseningSearch, scene: &Scene| {
+        search.run(scene, &ShortSighted, &Task::default(), |_, _| true).unwrap_err()
+    };
+    let worsen = search(Aim::Worsen, WorseningMeasure::SquaredError);
     assert_eq!(refuse(&worsen, &Scene::default()), WorsenError::Empty);
-    let far = Search { within_metres: f64::NAN, ..worsen.clone() };
+    let far = WorseningSearch { within_metres: f64::NAN, ..worsen.clone() };
     assert!(matches!(refuse(&far, &Scene::of_points([(0.0, 2.0)])), WorsenError::Reach(_)));
     let scene = Scene::of_points([(0.0, 1.7)]);
     let stopped = worsen.run(&scene, &ShortSighted, &Task::default(), |tries, _| tries < 16).unwrap();
     assert_eq!(stopped.tries, 16);
-    assert_eq!(stopped.path, run(&Search { tries: 16, ..worsen }, 1.7).path);
+    assert_eq!(stopped.path, run(&WorseningSearch { tries: 16, ..worsen }, 1.7).path);
 }
 
 /// Sees nothing, and everything bright while the last end hears a glint.
@@ -107,14 +108,14 @@ impl Reconstructor for Dazzled {
 fn a_wall_is_turned_until_it_shines() {
     let wall = crate::scene::Wall::new(0.0, 1.6, 0.6, 25.0);
     let scene = Scene { objects: vec![crate::scene::Object::Wall(wall)], ..Scene::default() };
-    let search = Search { within_metres: 1e-3, ..search(Aim::Worsen, Measure::SquaredError) };
+    let search = WorseningSearch { within_metres: 1e-3, ..search(Aim::Worsen, WorseningMeasure::SquaredError) };
     let found = search.run(&scene, &Dazzled, &Task::default(), |_, _| true).unwrap();
     let (start, worst) = found.ends().unwrap();
     let worst = worst.unwrap();
     assert!(worst.metrics.squared_error > start.metrics.squared_error);
     let turned = worst.scene.objects[0].turned_degrees(&scene.objects[0]);
     assert!((-45.0..-10.0).contains(&turned), "it faces the array: {turned}");
-    let repair = Search { aim: Aim::Repair, ..search };
+    let repair = WorseningSearch { aim: Aim::Repair, ..search };
     let path = repair.run(&worst.scene, &Dazzled, &Task::default(), |_, _| true).unwrap().path;
     assert!(
         path.iter().all(|f| f.scene.objects[0].turned_degrees(&worst.scene.objects[0]) == 0.0),

@@ -12,7 +12,7 @@ use std::str::FromStr;
 
 /// What "worse" means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Measure {
+pub enum WorseningMeasure {
     /// A larger SE.
     #[default]
     SquaredError,
@@ -22,26 +22,27 @@ pub enum Measure {
     Ghosts,
 }
 
-impl Measure {
+impl WorseningMeasure {
     /// Every measure.
-    pub const ALL: [Measure; 3] = [Measure::SquaredError, Measure::Missed, Measure::Ghosts];
+    pub const ALL: [WorseningMeasure; 3] =
+        [WorseningMeasure::SquaredError, WorseningMeasure::Missed, WorseningMeasure::Ghosts];
 }
 
-impl fmt::Display for Measure {
+impl fmt::Display for WorseningMeasure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
-            Measure::SquaredError => "squared-error",
-            Measure::Missed => "missed",
-            Measure::Ghosts => "ghosts",
+            WorseningMeasure::SquaredError => "squared-error",
+            WorseningMeasure::Missed => "missed",
+            WorseningMeasure::Ghosts => "ghosts",
         })
     }
 }
 
-impl FromStr for Measure {
+impl FromStr for WorseningMeasure {
     type Err = String;
 
     fn from_str(s: &str) -> Result<Self, String> {
-        Measure::ALL
+        WorseningMeasure::ALL
             .into_iter()
             .find(|m| m.to_string() == s)
             .ok_or_else(|| format!("unknown measure \"{s}\"; expected squared-error, missed or ghosts"))
@@ -60,7 +61,7 @@ pub enum Aim {
 
 /// How a search goes.
 #[derive(Debug, Clone)]
-pub struct Search {
+pub struct WorseningSearch {
     /// The radar.
     pub radar: Radar,
     /// Noise of the scene.
@@ -70,7 +71,7 @@ pub struct Search {
     /// What is looked for.
     pub aim: Aim,
     /// What it is judged by.
-    pub measure: Measure,
+    pub measure: WorseningMeasure,
     /// How far any object may move, metres.
     pub within_metres: f64,
     /// Scenes to try.
@@ -79,15 +80,14 @@ pub struct Search {
     pub seed: u64,
 }
 
-impl Default for Search {
-    /// 256 scenes in the tables' conventions, objects moved by up to 2 m.
+impl Default for WorseningSearch {
     fn default() -> Self {
-        Search {
+        WorseningSearch {
             radar: Radar::default(),
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
             aim: Aim::default(),
-            measure: Measure::default(),
+            measure: WorseningMeasure::default(),
             within_metres: 2.0,
             tries: 256,
             seed: 0,
@@ -112,14 +112,14 @@ pub struct Finding {
 
 /// What came of a search.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
+pub struct WorseningOutcome {
     /// The start, and every scene that was better for the aim than all before it.
     pub path: Vec<Finding>,
     /// Scenes tried.
     pub tries: u32,
 }
 
-impl Outcome {
+impl WorseningOutcome {
     /// The start, and the last of the path where there is one after it.
     pub fn ends(&self) -> Option<(&Finding, Option<&Finding>)> {
         let (start, rest) = self.path.split_first()?;
@@ -129,18 +129,14 @@ impl Outcome {
 
 /// Why a search ended with nothing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum WorsenError {
     /// The start can't be simulated.
     #[error("{0}")]
     Scene(#[from] SceneError),
     /// The method failed.
     #[error("{method}: {source}")]
-    Method {
-        /// Its name.
-        method: &'static str,
-        /// Why.
-        source: ReconstructError,
-    },
+    Method { method: &'static str, source: ReconstructError },
     /// Nothing to move.
     #[error("the scene is empty; expected an object to move")]
     Empty,
@@ -149,13 +145,13 @@ pub enum WorsenError {
     Reach(f64),
 }
 
-impl Measure {
+impl WorseningMeasure {
     /// What is to be as large, or for a repair as small, as can be.
     pub(super) fn of(self, finding: &Finding) -> (usize, f64) {
         let count = match self {
-            Measure::SquaredError => 0,
-            Measure::Missed => finding.failures.objects.iter().filter(|f| !f.is_right()).count(),
-            Measure::Ghosts => finding.failures.ghosts.len(),
+            WorseningMeasure::SquaredError => 0,
+            WorseningMeasure::Missed => finding.failures.objects.iter().filter(|f| !f.is_right()).count(),
+            WorseningMeasure::Ghosts => finding.failures.ghosts.len(),
         };
         (count, finding.metrics.squared_error)
     }

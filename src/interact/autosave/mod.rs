@@ -19,28 +19,25 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
-use store::{Plan, Store};
+use store::{AutosaveStore, StartPlan};
 
 /// Shortest time between two copies: no hand makes two edits in it.
-const EVERY: Duration = Duration::from_millis(250);
+const MIN_COPY_INTERVAL: Duration = Duration::from_millis(250);
 
 /// Most windows that keep copies at once.
 const SLOTS: u32 = 64;
 
-/// Whether a copy was written, or why not.
 type Answer = Result<(), String>;
 
 /// The copies of one window.
 pub struct Autosave {
-    store: Store,
+    store: AutosaveStore,
     /// Where files are written on a thread of their own.
-    jobs: Option<Sender<Plan>>,
+    jobs: Option<Sender<StartPlan>>,
     answers: (Sender<Answer>, Receiver<Answer>),
-    /// Jobs whose answers are out.
     pending: usize,
     thread: Option<JoinHandle<()>>,
-    /// What the thread was asked for last, and when.
-    last: Option<(Plan, Instant)>,
+    last: Option<(StartPlan, Instant)>,
     /// Held while the window lives; the system lets go of it however the process ends. Last, so that the thread ends before.
     _lock: Option<fs::Lock>,
 }
@@ -49,14 +46,13 @@ impl Autosave {
     /// Takes the first slot in `folder` that no other window holds: one with copies that a dead window left comes first.
     ///
     /// Where the file system has no locks, the first slot is shared.
-    ///
     /// # Errors
     /// When the system can't start a thread.
     pub fn claim(folder: &Path) -> std::io::Result<Autosave> {
         // Without a folder there is no lock; writing a copy will say why.
         let _reported_later = fs::create_dir_all(folder);
         let (stem, lock) = claim_slot(folder);
-        let store = Store::new(folder, stem);
+        let store = AutosaveStore::new(folder, stem);
         let answers = channel();
         let (jobs, thread) = match platform::WRITES_WAIT {
             true => writer(store.clone(), answers.0.clone()).map(|(jobs, thread)| (Some(jobs), Some(thread)))?,
@@ -75,12 +71,13 @@ impl Autosave {
     ///
     /// To be called after every change, and never during a drag.
     pub fn keep(&mut self, editor: &Editor) -> Option<Duration> {
-        let plan = Plan::of(editor);
+        let plan = StartPlan::of(editor);
         if let Some((last, when)) = &self.last {
             if last.is_same(&plan) {
                 return None;
             }
-            if let Some(wait) = EVERY.checked_sub(when.elapsed()).filter(|_| last.has_same_documents(&plan)) {
+            if let Some(wait) = MIN_COPY_INTERVAL.checked_sub(when.elapsed()).filter(|_| last.has_same_documents(&plan))
+            {
                 return Some(wait);
             }
         }
@@ -89,11 +86,10 @@ impl Autosave {
     }
 
     /// Keeps copies at once and waits until they are on disk: the window is closing.
-    ///
     /// # Errors
     /// Which file could not be written, and why.
     pub fn keep_now(&mut self, editor: &Editor) -> Result<(), String> {
-        self.ask(Plan::of(editor));
+        self.ask(StartPlan::of(editor));
         let mut result = Ok(());
         while self.pending > 0 {
             self.pending -= 1;
@@ -104,7 +100,7 @@ impl Autosave {
 
     /// Whether `editor` is on disk as it is, as far as it is unsaved.
     pub fn holds(&self, editor: &Editor) -> bool {
-        !self.is_busy() && self.last.as_ref().is_some_and(|(last, _)| last.is_same(&Plan::of(editor)))
+        !self.is_busy() && self.last.as_ref().is_some_and(|(last, _)| last.is_same(&StartPlan::of(editor)))
     }
 
     /// What went wrong since the last call.
@@ -122,7 +118,7 @@ impl Autosave {
         self.pending > 0
     }
 
-    fn ask(&mut self, plan: Plan) {
+    fn ask(&mut self, plan: StartPlan) {
         self.last = Some((plan.clone(), Instant::now()));
         let sent = match &self.jobs {
             Some(jobs) => jobs.send(plan).is_ok(),
@@ -143,11 +139,14 @@ impl Drop for Autosave {
 }
 
 /// Starts the thread that writes files. Only the latest plan of those that wait matters; each has an answer.
-fn writer(mut store: Store, answer: Sender<Result<(), String>>) -> std::io::Result<(Sender<Plan>, JoinHandle<()>)> {
-    let (jobs, asked) = channel::<Plan>();
+fn writer(
+    mut store: AutosaveStore,
+    answer: Sender<Result<(), String>>,
+) -> std::io::Result<(Sender<StartPlan>, JoinHandle<()>)> {
+    let (jobs, asked) = channel::<StartPlan>();
     let work = move || {
         while let Ok(plan) = asked.recv() {
-            let plans: Vec<Plan> = std::iter::once(plan).chain(asked.try_iter()).collect();
+            let plans: Vec<StartPlan> = std::iter::once(plan).chain(asked.try_iter()).collect();
             let count = plans.len();
             let result = plans.into_iter().next_back().map_or(Ok(()), |p| store.carry_out(&p));
             for answered in 1..=count {
@@ -161,14 +160,15 @@ fn writer(mut store: Store, answer: Sender<Result<(), String>>) -> std::io::Resu
     std::thread::Builder::new().name("autosave".to_owned()).spawn(work).map(|thread| (jobs, thread))
 }
 
-/// The name of the slot's files, and the lock on it where there are locks.
 fn claim_slot(folder: &Path) -> (String, Option<fs::Lock>) {
     let name = |slot: u32| if slot == 1 { "autosave".to_owned() } else { format!("autosave-{slot}") };
     let lock_path = |slot: u32| -> PathBuf { folder.join(format!("{}.lock", name(slot))) };
     let mut free = None;
     for slot in 1..=SLOTS {
         match fs::claim(&lock_path(slot)) {
-            Claim::Ours(lock) if Store::new(folder, name(slot)).has_copies() => return (name(slot), Some(lock)),
+            Claim::Ours(lock) if AutosaveStore::new(folder, name(slot)).has_copies() => {
+                return (name(slot), Some(lock));
+            }
             Claim::Ours(lock) => _ = free.get_or_insert((name(slot), lock)),
             Claim::Theirs => {}
             Claim::Unavailable => break,

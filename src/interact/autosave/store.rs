@@ -10,7 +10,6 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Name of the table in each file that is the autosave's own.
 const TABLE: &str = "document";
 
 /// Where a document belongs.
@@ -20,44 +19,38 @@ struct Kept {
     /// Its own file. A path that is not Unicode is not kept: the document comes back untitled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     path: Option<String>,
-    /// The recording that it is laid over.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     recording: Option<String>,
 }
 
-/// The documents that copies are wanted of.
 #[derive(Debug, Clone)]
-pub(super) struct Plan {
-    /// The one on screen, if it is unsaved.
+pub(super) struct StartPlan {
     on_screen: Option<Document>,
     /// Those that another took the place of, the latest last.
     left: Vec<Document>,
 }
 
-impl Plan {
-    pub(super) fn of(editor: &Editor) -> Plan {
+impl StartPlan {
+    pub(super) fn of(editor: &Editor) -> StartPlan {
         let on_screen = editor.is_modified().then(|| editor.document().clone());
-        Plan { on_screen, left: editor.left().to_vec() }
+        StartPlan { on_screen, left: editor.left().to_vec() }
     }
 
     fn documents(&self) -> impl Iterator<Item = &Document> {
         self.left.iter().chain(&self.on_screen)
     }
 
-    /// Whether the files would be the same ones with the same content.
-    pub(super) fn is_same(&self, other: &Plan) -> bool {
+    pub(super) fn is_same(&self, other: &StartPlan) -> bool {
         self.has_same_documents(other) && self.documents().zip(other.documents()).all(|(a, b)| a.untouched_since(b))
     }
 
-    /// Whether the files would be the same ones.
-    pub(super) fn has_same_documents(&self, other: &Plan) -> bool {
+    pub(super) fn has_same_documents(&self, other: &StartPlan) -> bool {
         self.left.len() == other.left.len()
             && self.on_screen.is_some() == other.on_screen.is_some()
             && self.documents().zip(other.documents()).all(|(a, b)| a.id() == b.id())
     }
 }
 
-/// A copy on disk of a document that another took the place of.
 #[derive(Debug)]
 struct Behind {
     path: PathBuf,
@@ -67,16 +60,15 @@ struct Behind {
 
 /// The files of one slot. Copies of this value speak of the same files.
 #[derive(Debug, Clone)]
-pub(super) struct Store {
+pub(super) struct AutosaveStore {
     folder: PathBuf,
     stem: String,
-    /// Copies of left documents that are on disk.
     behind: Arc<Mutex<Vec<Behind>>>,
 }
 
-impl Store {
-    pub(super) fn new(folder: &Path, stem: String) -> Store {
-        Store { folder: folder.to_owned(), stem, behind: Arc::default() }
+impl AutosaveStore {
+    pub(super) fn new(folder: &Path, stem: String) -> AutosaveStore {
+        AutosaveStore { folder: folder.to_owned(), stem, behind: Arc::default() }
     }
 
     fn on_screen_path(&self) -> PathBuf {
@@ -87,7 +79,6 @@ impl Store {
         self.folder.join(format!("{}.behind-{number}.toml", self.stem))
     }
 
-    /// Numbers of the copies of left documents, rising.
     fn behind_numbers(&self) -> Vec<u64> {
         let prefix = format!("{}.behind-", self.stem);
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
@@ -98,7 +89,6 @@ impl Store {
         numbers
     }
 
-    /// Whether a window left copies here.
     pub(super) fn has_copies(&self) -> bool {
         fs::exists(&self.on_screen_path()) || !self.behind_numbers().is_empty()
     }
@@ -129,7 +119,7 @@ impl Store {
     }
 
     /// Makes the files what `plan` says: writes first, deletes then, so that at no moment a document is in no file.
-    pub(super) fn carry_out(&mut self, plan: &Plan) -> Result<(), String> {
+    pub(super) fn carry_out(&mut self, plan: &StartPlan) -> Result<(), String> {
         if plan.documents().next().is_some() {
             fs::create_dir_all(&self.folder).map_err(|e| format!("{}: {e}", self.folder.display()))?;
         }
@@ -180,7 +170,6 @@ fn read(path: &Path) -> Result<Document, SceneFileError> {
     Ok(document)
 }
 
-/// Deletes a file; not there is as good as deleted.
 fn remove(path: &Path) -> Result<(), String> {
     match fs::remove_file(path) {
         Err(error) if ![ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => {
@@ -190,7 +179,6 @@ fn remove(path: &Path) -> Result<(), String> {
     }
 }
 
-/// Renames what can't be read, so that it is neither read again nor overwritten.
 fn set_aside(path: &Path, error: &SceneFileError) -> String {
     let free = (1u32..).map(|n| path.with_extension(format!("broken-{n}.txt"))).find(|p| !fs::exists(p));
     match free.filter(|aside| fs::rename(path, aside).is_ok()) {

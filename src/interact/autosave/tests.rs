@@ -45,7 +45,7 @@ fn two_windows_keep_two_copies() {
 }
 
 #[test]
-fn copies_wait_for_each_other_but_not_when_the_window_closes_or_another_document_comes() {
+fn copies_wait_but_not_for_a_close_or_another_document() {
     let folder = tempfile::tempdir().unwrap();
     let mut autosave = Autosave::claim(folder.path()).unwrap();
     let mut editor = edited(street());
@@ -91,7 +91,7 @@ fn a_saved_document_leaves_no_copy() {
 }
 
 #[test]
-fn a_start_with_a_file_loses_neither_the_file_nor_the_unsaved_scene() {
+fn a_start_with_a_file_keeps_the_unsaved_scene() {
     let folder = tempfile::tempdir().unwrap();
     let (data, path) = (folder.path().join("data"), folder.path().join("asked.toml"));
     file::save(&path, &SceneFile { scene: Scene::of_points([(5.0, 5.0)]), ..SceneFile::default() }).unwrap();
@@ -121,7 +121,7 @@ fn a_start_with_a_file_loses_neither_the_file_nor_the_unsaved_scene() {
 }
 
 #[test]
-fn the_first_start_with_a_file_keeps_the_unsaved_scene_one_step_behind() {
+fn the_first_start_with_a_file_is_one_undo_from_the_scene() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("asked.toml");
     file::save(&path, &SceneFile::default()).unwrap();

@@ -1,7 +1,7 @@
 //! Numbers of all selected objects at once.
 
 use super::Editor;
-use crate::interact::field::{self, Change, Coordinates, Field, Shared};
+use crate::interact::field::{self, Coordinates, Field, FieldChange, SharedField};
 use crate::scene::{Object, Scene, SceneError};
 
 impl Editor {
@@ -11,7 +11,7 @@ impl Editor {
     }
 
     /// The numbers that all selected objects have.
-    pub fn shared_fields(&self, coordinates: Coordinates) -> Vec<Shared> {
+    pub fn shared_fields(&self, coordinates: Coordinates) -> Vec<SharedField> {
         field::shared(self.selected(), coordinates)
     }
 
@@ -21,10 +21,9 @@ impl Editor {
     }
 
     /// Changes a number of every selected object that has it. Changes of one number in a row are one step until [`Editor::seal`].
-    ///
     /// # Errors
     /// [`SceneError::TooMany`] where the scene would hold more than can be simulated; nothing changes then.
-    pub fn set_field(&mut self, field: Field, change: Change) -> Result<(), SceneError> {
+    pub fn set_field(&mut self, field: Field, change: FieldChange) -> Result<(), SceneError> {
         let mut changed = Scene::clone(self.scene());
         for index in self.selection.iter() {
             let Some(object) = changed.objects.get_mut(index) else { continue };
@@ -56,16 +55,16 @@ mod tests {
     }
 
     #[test]
-    fn a_number_of_several_objects_is_set_in_all_of_them_as_one_step() {
+    fn a_number_of_several_objects_is_set_in_one_step() {
         let mut e = editor();
         for x in [1.0, 1.5] {
-            e.set_field(Field::X, Change::To(x)).unwrap();
+            e.set_field(Field::X, FieldChange::To(x)).unwrap();
         }
         assert_eq!(all(&e, Field::X), [1.5, 1.5, 5.0, 1.5]);
-        e.set_field(Field::Y, Change::By(-1.0)).unwrap();
+        e.set_field(Field::Y, FieldChange::By(-1.0)).unwrap();
         assert_eq!(all(&e, Field::Y), [9.0, 11.0, 6.0, 7.0], "what differs stays different");
         assert_eq!(e.history().depth(), 2, "x typed twice is one step");
-        e.set_field(Field::Y, Change::To(f64::NAN)).unwrap();
+        e.set_field(Field::Y, FieldChange::To(f64::NAN)).unwrap();
         assert_eq!(e.history().depth(), 2, "what is no number changes nothing");
         e.undo();
         e.undo();
@@ -76,9 +75,9 @@ mod tests {
     fn the_same_number_of_another_object_is_another_step() {
         let mut e = editor();
         e.select([0], SelectionMode::Replace);
-        e.set_field(Field::X, Change::To(1.0)).unwrap();
+        e.set_field(Field::X, FieldChange::To(1.0)).unwrap();
         e.select_neighbour(true);
-        e.set_field(Field::X, Change::To(2.0)).unwrap();
+        e.set_field(Field::X, FieldChange::To(2.0)).unwrap();
         e.undo();
         assert_eq!(all(&e, Field::X), [1.0, 3.0, 5.0, 2.0]);
     }
@@ -86,7 +85,7 @@ mod tests {
     #[test]
     fn more_reflectors_than_can_be_simulated_are_refused() {
         let mut e = editor();
-        assert!(e.set_field(Field::Count, Change::To(1e7)).is_err());
+        assert!(e.set_field(Field::Count, FieldChange::To(1e7)).is_err());
         assert_eq!((all(&e, Field::Count), e.history().depth()), (vec![10.0], 0));
     }
 }

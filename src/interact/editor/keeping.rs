@@ -3,7 +3,7 @@
 use super::Editor;
 use crate::interact::Selection;
 use crate::interact::document::{self, Document, Restored};
-use crate::scene::file::{Format, Loss, SceneFileError};
+use crate::scene::file::{FileLoss, SceneFileError, SceneFormat};
 use std::path::Path;
 
 /// Unsaved documents that are kept after another took their place; the oldest make room.
@@ -15,7 +15,7 @@ pub enum Saved {
     /// The file holds all of it and is its own from now on.
     Whole,
     /// The file holds a copy without these; the document stays where it was, as unsaved as it was.
-    Copy(Vec<Loss>),
+    Copy(Vec<FileLoss>),
 }
 
 impl Editor {
@@ -46,11 +46,10 @@ impl Editor {
     }
 
     /// What writing the document to `path` would lose; empty where it loses nothing.
-    ///
     /// # Errors
     /// [`SceneFileError::Extension`] for a name that says no format.
-    pub fn losses(&self, path: &Path) -> Result<Vec<Loss>, SceneFileError> {
-        Ok(self.document.losses(Format::of_path(path)?))
+    pub fn losses(&self, path: &Path) -> Result<Vec<FileLoss>, SceneFileError> {
+        Ok(self.document.losses(SceneFormat::of_path(path)?))
     }
 
     /// Whether `path` is the document's own file and holds something else by now than what was read from it or written to it here: another
@@ -63,7 +62,6 @@ impl Editor {
     /// laid over a recording is a scene of its own: the recording stays as it is.
     ///
     /// Not a step of the history: undo changes the document, not where it is kept.
-    ///
     /// # Errors
     /// [`SceneFileError`]; the file is then as it was, and the document too.
     pub fn save(&mut self, path: &Path) -> Result<Saved, SceneFileError> {
@@ -78,7 +76,6 @@ impl Editor {
         Ok(Saved::Whole)
     }
 
-    /// Tells every document that may come back that `path` now holds what `kept` does.
     fn note_kept(&mut self, kept: &Document, path: &Path) {
         let behind = self.history.documents_mut().chain(&mut self.left);
         behind.chain([&mut self.document]).for_each(|d| d.note_kept(kept, path));
@@ -94,7 +91,6 @@ impl Editor {
         self.history.push(label, None, before);
         self.history.seal();
         if let Some(path) = self.document.path().filter(|_| !self.is_modified()).map(Path::to_owned) {
-            // It was read just now: documents of that path learn what their file holds.
             self.note_kept(&self.document.clone(), &path);
         }
     }

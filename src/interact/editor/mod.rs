@@ -18,11 +18,9 @@ use std::sync::Arc;
 /// How far pasted and duplicated objects land from their originals, metres.
 const COPY_OFFSET_METRES: f64 = 1.0;
 
-/// A drag under way.
 #[derive(Debug, Clone)]
 struct Drag {
     hit: Hit,
-    /// Grip minus pointer when the drag began.
     offset: Place,
     before: Snapshot,
 }
@@ -111,7 +109,6 @@ impl Editor {
     }
 
     /// Changes the radar, as [`Editor::edit`] does the scene.
-    ///
     /// # Errors
     /// [`RadarError`] for a radar that makes no sense or asks for too much memory; nothing changes then.
     pub fn edit_radar(
@@ -174,7 +171,6 @@ impl Editor {
     }
 
     /// Copies the selected objects a little aside and selects the copies.
-    ///
     /// # Errors
     /// [`SceneError::TooMany`] where the scene has no room for them; nothing changes then.
     pub fn duplicate_selected(&mut self) -> Result<(), SceneError> {
@@ -187,7 +183,6 @@ impl Editor {
     }
 
     /// Adds the objects in `text` and selects them; returns how many.
-    ///
     /// # Errors
     /// [`clipboard::PasteError`] says what is wrong with the text; nothing changes then.
     pub fn paste(&mut self, text: &str) -> Result<usize, clipboard::PasteError> {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::radar::{Carrier, WindowFunction};
-use crate::scene::file::Loss;
+use crate::scene::file::FileLoss;
 use crate::scene::{Line, MAX_REFLECTORS, Point};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -194,7 +194,7 @@ fn a_copy_that_loses_something_saves_nothing() {
     let line = Line { reflectivity: 0.05, ..Line::vertical(0.0, 9.0, 0.1, 40) };
     e.add(Object::Line(line));
     let npz = folder.path().join("s.npz");
-    let losses = vec![Loss::Reflectivity { objects: 1 }, Loss::Structure { objects: 1, points: 40 }];
+    let losses = vec![FileLoss::Reflectivity { objects: 1 }, FileLoss::Structure { objects: 1, points: 40 }];
     assert_eq!(e.losses(&npz).unwrap(), losses);
     assert_eq!(e.save(&npz).unwrap(), Saved::Copy(losses));
     assert_eq!((count(&npz), e.document().title()), (42, "untitled •".to_owned()));
@@ -220,7 +220,7 @@ fn a_failed_save_changes_nothing() {
 }
 
 #[test]
-fn an_unsaved_document_is_left_until_it_is_saved_discarded_or_back() {
+fn an_unsaved_document_stays_until_saved_or_discarded() {
     let (_folder, a, b) = two_files();
     let mut e = Editor::of(Document::read(&a).unwrap());
     e.add(Object::Point(Point::new(5.0, 5.0)));

@@ -11,7 +11,6 @@ pub fn averaging_factor(training: usize, false_alarm: f64) -> f64 {
 pub fn ordered_factor(training: usize, rank: usize, false_alarm: f64) -> f64 {
     let wanted = -false_alarm.ln();
     let terms = || (0..rank).map(|i| (training - i) as f64);
-    // -ln P grows with T ever more slowly, so that Newton's steps from 0 approach the solution from below.
     let mut factor = 0.0f64;
     for _ in 0..200 {
         let value: f64 = terms().map(|n| (factor / n).ln_1p()).sum();

@@ -25,7 +25,6 @@ use std::collections::BTreeMap;
 /// Most guard or training cells a side.
 pub const MOST_CELLS: usize = 1000;
 
-/// Rank of the ordered statistic, as a part of the number of training cells (Rohling 1983 recommends 3/4).
 const RANK: f64 = 0.75;
 
 /// What the training cells are summed up by.
@@ -65,8 +64,6 @@ pub struct Cfar {
 }
 
 impl Default for Cfar {
-    /// Cell averaging along range, behind the main lobe of a usual window function, at one false alarm in ten thousand cells: before a long array an
-    /// echo is a streak over many columns and few range bins.
     fn default() -> Self {
         Cfar { statistic: Statistic::CellAveraging, guard: [4, 0], training: [16, 0], false_alarm: 1e-4 }
     }
@@ -74,6 +71,7 @@ impl Default for Cfar {
 
 /// Why a detector can't work.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum CfarError {
     /// The rate is none.
     #[error("the wanted false-alarm rate is {0}; expected a number between 0 and 1, without these")]
@@ -83,33 +81,16 @@ pub enum CfarError {
     NoTraining,
     /// The window is larger than any map.
     #[error("{what} are {cells} cells a side; expected at most {MOST_CELLS}")]
-    Large {
-        /// Guard or training cells.
-        what: &'static str,
-        /// How many.
-        cells: usize,
-    },
+    Large { what: &'static str, cells: usize },
     /// Columns would be counted twice.
     #[error("guard and training cells span {span} columns and the map has {columns}; expected fewer cells in angle")]
-    Wide {
-        /// Columns of the window.
-        span: usize,
-        /// Columns of the map.
-        columns: usize,
-    },
+    Wide { span: usize, columns: usize },
     /// The guard cells cover all that there is.
     #[error(
         "the guard of {guard} range bins a side leaves no training cell around range bin {bin} of {bins}; expected \
          fewer guard cells or more training cells"
     )]
-    Covered {
-        /// Guard cells in range.
-        guard: usize,
-        /// A range bin without a training cell.
-        bin: usize,
-        /// Range bins of the map.
-        bins: usize,
-    },
+    Covered { guard: usize, bin: usize, bins: usize },
     /// A text is no detector.
     #[error("\"{0}\" is no detector; expected ca or os, as in ca:guard=4x0:training=16x0:rate=0.0001")]
     Text(String),
@@ -144,7 +125,6 @@ pub fn relative_power(map: &RangeAngleMap, scale: LambdaScale) -> Array2<f64> {
 
 impl Cfar {
     /// Whether it can work on some map.
-    ///
     /// # Errors
     /// [`CfarError`] says what is wrong and what was expected.
     pub fn check(&self) -> Result<(), CfarError> {
@@ -163,7 +143,6 @@ impl Cfar {
     }
 
     /// Whether it can work on a map of `[range bins, columns]`.
-    ///
     /// # Errors
     /// [`CfarError`] says what is wrong and what was expected.
     pub fn check_map(&self, [bins, columns]: [usize; 2]) -> Result<(), CfarError> {
@@ -183,7 +162,6 @@ impl Cfar {
         window::Window::new(self.guard, self.training).cells(bin, bins)
     }
 
-    /// The factor over the noise that `training` cells measure.
     fn factor(&self, training: usize) -> f64 {
         match self.statistic {
             Statistic::CellAveraging => averaging_factor(training, self.false_alarm),
@@ -194,7 +172,6 @@ impl Cfar {
     /// The cells that are detections. `power` is linear, `[range bins, columns]`; its unit doesn't matter.
     ///
     /// Takes time in proportion to the cells and to the window's sides for cell averaging, to the training cells for ordered statistics.
-    ///
     /// # Errors
     /// [`Cfar::check_map`].
     pub fn detect(&self, power: ArrayView2<'_, f64>) -> Result<Mask, CfarError> {
@@ -207,7 +184,6 @@ impl Cfar {
             .map(|n| (n, *known.entry(n).or_insert_with(|| self.factor(n))))
             .collect();
         let cells = match self.statistic {
-            // The sum of n cells times factor / n: their mean times the factor.
             Statistic::CellAveraging => window.above_sum(power, |bin| of_bin[bin].1 / of_bin[bin].0 as f64),
             Statistic::OrderedStatistics => window.above_rank(power, |bin| (rank(of_bin[bin].0), of_bin[bin].1)),
         };
@@ -215,7 +191,6 @@ impl Cfar {
     }
 
     /// [`Cfar::detect`] of a map that is Lambda under `scale`.
-    ///
     /// # Errors
     /// [`Cfar::check_map`].
     pub fn detect_lambda(&self, map: &RangeAngleMap, scale: LambdaScale) -> Result<Mask, CfarError> {
@@ -223,10 +198,8 @@ impl Cfar {
     }
 
     /// What it makes of the cell `[bin, column]` alone.
-    ///
     /// # Errors
     /// [`Cfar::check_map`].
-    ///
     /// # Panics
     /// Where the map has no such cell.
     pub fn level(
@@ -247,7 +220,6 @@ impl Cfar {
     }
 }
 
-/// Rank of the ordered statistic among `training` cells, from 1.
 fn rank(training: usize) -> usize {
     ((RANK * training as f64).round() as usize).clamp(1, training.max(1))
 }

@@ -7,7 +7,6 @@ use std::str::FromStr;
 impl FromStr for Cfar {
     type Err = CfarError;
 
-    /// Reads what [`Cfar`] is shown as; what is left out is as by default.
     fn from_str(text: &str) -> Result<Cfar, CfarError> {
         let wrong = || CfarError::Text(text.chars().take(80).collect());
         let mut parts = text.split(':');

@@ -66,7 +66,6 @@ fn log10<const FMA: bool>(v: f32) -> f32 {
     fused(exponent as f32, std::f32::consts::LOG10_2, x * fused(sum, x, first))
 }
 
-/// Smallest and largest value seen by each lane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extremes<const W: usize> {
     min: Lanes<f32, W>,
@@ -121,7 +120,6 @@ pub(super) fn log_rolled<T: Real, const W: usize, const FMA: bool>(
     *extremes = seen;
 }
 
-/// Real and imaginary parts, each in lanes.
 #[inline(always)]
 fn parts<T: Real, const W: usize>(cells: &[Complex<T>; W]) -> ComplexLanes<T, W> {
     let mut v = ComplexLanes::zero();

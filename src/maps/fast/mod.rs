@@ -42,7 +42,6 @@ pub struct FastLogMap {
     pub min: f32,
     /// Largest cell.
     pub max: f32,
-    /// Smallest and largest cell of every row.
     rows: Vec<(f32, f32)>,
 }
 
@@ -69,7 +68,7 @@ impl FastLogMap {
 
 /// The floor's noise: range profiles of unit noise, and by how much each element's are multiplied.
 #[derive(Debug, Clone, Copy)]
-pub struct Noise<'a, T, const W: usize> {
+pub struct MapNoise<'a, T, const W: usize> {
     /// Profiles of noise of unit variance.
     pub unit: &'a BlockProfiles<T, W>,
     /// Standard deviation of every element's samples, in blocks.
@@ -78,11 +77,11 @@ pub struct Noise<'a, T, const W: usize> {
 
 /// What maps are made of: the sum of several profiles and a floor.
 #[derive(Debug, Clone, Copy)]
-pub struct Sources<'a, T, const W: usize> {
+pub struct MapSources<'a, T, const W: usize> {
     /// Profiles to be added up.
     pub profiles: &'a [&'a BlockProfiles<T, W>],
     /// The floor, if any.
-    pub noise: Option<Noise<'a, T, W>>,
+    pub noise: Option<MapNoise<'a, T, W>>,
     /// No cell of a map is larger than this; it only sets the scale at which magnitudes are squared.
     pub bound: f64,
 }
@@ -111,7 +110,7 @@ impl<T: Real, const W: usize> MapMaker<T, W> {
     }
 
     /// Fills `rows` of the maps that are given: first end, last end, whole array.
-    pub fn fill(&self, sources: Sources<'_, T, W>, maps: [Option<&mut FastLogMap>; 3], rows: &Rows) {
+    pub fn fill(&self, sources: MapSources<'_, T, W>, maps: [Option<&mut FastLogMap>; 3], rows: &Rows) {
         let columns = self.radar.elements;
         let groups = self.radar.samples.div_ceil(ROWS);
         let mut parts: Vec<[Option<Part<'_>>; 3]> = (0..groups).map(|_| [None, None, None]).collect();
@@ -146,10 +145,8 @@ impl<T: Real, const W: usize> MapMaker<T, W> {
     }
 }
 
-/// A few rows of one map.
 struct Part<'a> {
     cells: &'a mut [f32],
-    /// Smallest and largest cell of each row.
     extremes: &'a mut [(f32, f32)],
 }
 
@@ -160,7 +157,7 @@ struct Scratch<T> {
 
 struct Group<'a, 'b, T: Real, const W: usize> {
     maker: &'a MapMaker<T, W>,
-    sources: Sources<'a, T, W>,
+    sources: MapSources<'a, T, W>,
     rows: &'a Rows,
     group: usize,
     maps: [Option<Part<'b>>; 3],
@@ -168,7 +165,6 @@ struct Group<'a, 'b, T: Real, const W: usize> {
 }
 
 impl<T: Real, const W: usize> Kernel for Group<'_, '_, T, W> {
-    /// Smallest and largest cell of each map.
     type Output = [(f32, f32); 3];
 
     #[inline(always)]
@@ -179,7 +175,7 @@ impl<T: Real, const W: usize> Kernel for Group<'_, '_, T, W> {
         let here = first..bins.min(first + ROWS);
         let touches = |p: &BlockProfiles<T, W>| here.clone().any(|bin| p.touched.contains(bin));
         let profiles: Vec<&BlockProfiles<T, W>> = sources.profiles.iter().copied().filter(|p| touches(p)).collect();
-        let sources = Sources { profiles: &profiles, ..sources };
+        let sources = MapSources { profiles: &profiles, ..sources };
         let heard = |bin: usize| sources.noise.is_some() || profiles.iter().any(|p| p.touched.contains(bin));
         let sounding = std::array::from_fn(|i| rows.contains(first + i) && heard(first + i));
         gather::<T, W, FMA>(&sources, bins, first, &sounding, columns, &mut scratch.rows);
@@ -225,7 +221,7 @@ impl<T: Real, const W: usize> Kernel for Group<'_, '_, T, W> {
 /// Adds up the sources of those rows from `first` on that are `wanted` into `out`, `[rows, elements]`.
 #[inline(always)]
 fn gather<T: Real, const W: usize, const FMA: bool>(
-    sources: &Sources<'_, T, W>,
+    sources: &MapSources<'_, T, W>,
     bins: usize,
     first: usize,
     wanted: &[bool; ROWS],
@@ -281,7 +277,7 @@ mod tests {
                 let mut maps = [(); 3].map(|()| FastLogMap::silence(radar));
                 let [a, b, c] = &mut maps;
                 MapMaker::<$t, $lanes>::new(radar, simd).fill(
-                    Sources { profiles: &[&profiles], noise: None, bound: 1e4 },
+                    MapSources { profiles: &[&profiles], noise: None, bound: 1e4 },
                     [Some(a), Some(b), Some(c)],
                     &Rows::all(radar.samples),
                 );
@@ -310,7 +306,7 @@ mod tests {
         let touched = profiles.touched.clone();
         assert!(!touched.is_empty() && touched.count() < 128);
         let maker = MapMaker::new(&radar, Simd::best());
-        let sources = Sources { profiles: &[&profiles], noise: None, bound: 1e4 };
+        let sources = MapSources { profiles: &[&profiles], noise: None, bound: 1e4 };
         let mut map = FastLogMap::silence(&radar);
         map.cells.fill(7.0);
         let mut half = Rows::none(128);

@@ -5,7 +5,6 @@ use crate::maps::lambda::{Normalisation, RangeAngleMap};
 use crate::signal::simd::{Kernel, Simd};
 use rayon::prelude::*;
 
-/// Cells that a thread takes at a time.
 const CELLS_AT_ONCE: usize = 1 << 15;
 
 /// Writes Lambda of every cell of each map to the map beside it, which has the same shape.

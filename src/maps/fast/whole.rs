@@ -39,7 +39,6 @@ pub fn whole_map(radar: &Radar, profiles: &RangeProfiles) -> Array2<f32> {
     map
 }
 
-/// A transformed row, to be rolled and taken to decades.
 struct Row<'a> {
     row: &'a [Complex64],
     log: &'a LogScale,

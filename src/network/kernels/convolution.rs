@@ -19,7 +19,6 @@ pub const fn padded(channels: usize) -> usize {
 /// kernel column, input channel.
 #[derive(Debug, Clone)]
 pub struct Packed {
-    /// Rows and columns of the kernel.
     kernel: [usize; 2],
     stride: usize,
     input: usize,
@@ -125,12 +124,10 @@ fn convolve_with(simd: Simd, weights: &Packed, input: &[f32], row_cells: usize, 
     });
 }
 
-/// Output channels in blocks of two vectors and, at the end, one.
 fn blocks(lanes: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..lanes).step_by(2 * LANES).map(move |start| (start, (lanes - start).min(2 * LANES)))
 }
 
-/// One line of output cells.
 #[derive(Clone, Copy)]
 struct Job<'a> {
     input: &'a [f32],
@@ -154,13 +151,10 @@ struct Run {
 struct Block<'a> {
     weights: &'a [f32],
     bias: &'a [f32],
-    /// First channel of the block.
     start: usize,
-    /// Channels of an output cell.
     lanes: usize,
 }
 
-/// Computes one line for one block of output channels with these instructions, or the best there are if this machine lacks them.
 #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "there is no choice of instructions"))]
 fn dispatch(simd: Simd, job: &Job, block: Block, out: &mut [f32]) {
     job.check(&block, out);
@@ -205,7 +199,6 @@ unsafe fn line_avx2(job: &Job, block: Block, out: &mut [f32]) {
 }
 
 /// A line in tiles of `CELLS` cells times `VECTORS` vectors: as many sums as the registers hold beside the weights and one value.
-///
 /// # Safety
 /// [`Job::check`] must have passed, and the CPU must have the vector's features.
 #[inline(always)]
@@ -234,7 +227,6 @@ unsafe fn line<V: Vector, const CELLS: usize, const VECTORS: usize>(job: &Job, b
 }
 
 /// `CELLS` neighbouring cells times `VECTORS` vectors of output channels from vector `first` of the block, all held in registers.
-///
 /// # Safety
 /// [`Job::check`] must have passed, `x + CELLS` be at most the line's width and `first + VECTORS` at most the block's vectors.
 #[inline(always)]

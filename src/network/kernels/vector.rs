@@ -14,7 +14,6 @@ pub trait Vector: Copy {
     /// `to` must have room for 16 values, and the CPU must have the features.
     unsafe fn store(self, to: *mut f32);
     /// `self + value * weight`.
-    ///
     /// # Safety
     /// The CPU must have the features.
     unsafe fn add_product(self, value: f32, weight: Self) -> Self;
@@ -25,7 +24,6 @@ pub trait Vector: Copy {
     /// The CPU must have the features.
     unsafe fn minus(self, other: Self) -> Self;
     /// The larger of each two; `other` where one is no number.
-    ///
     /// # Safety
     /// The CPU must have the features.
     #[cfg(feature = "network")]
@@ -35,7 +33,6 @@ pub trait Vector: Copy {
 /// A loop over vectors, compiled for each of them.
 pub trait Loop {
     /// Must be inlined.
-    ///
     /// # Safety
     /// The CPU must have the features.
     unsafe fn run<V: Vector>(self);

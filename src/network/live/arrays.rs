@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_share_of_the_scenes_has_elements_that_are_off_within_the_tolerances() {
+    fn drawn_elements_are_off_within_their_tolerances() {
         let radar = Radar::default();
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 20.0, position_millimetres: 0.1 };
         let arrays = Arrays { share: 0.3, tolerances };

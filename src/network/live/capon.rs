@@ -15,7 +15,6 @@ const SUBARRAYS: [usize; 5] = [16, 8, 4, 2, 1];
 /// Diagonal loading of the covariance, relative to its mean diagonal.
 const LOADING: f64 = 1e-5;
 
-/// The phases of the spectrum's columns.
 #[derive(Debug)]
 pub(super) struct Capon {
     /// `[subarray][256]` cosines and sines of the lag phases.
@@ -28,7 +27,6 @@ type Numbers = Lanes<f64, ROWS_AT_ONCE>;
 type Complexes = ComplexLanes<f64, ROWS_AT_ONCE>;
 
 impl Capon {
-    /// For ends of so many elements.
     pub(super) fn new(elements: usize) -> Self {
         let subarray = SUBARRAYS.into_iter().find(|n| 3 * n <= 2 * elements).unwrap_or(1);
         let phases = |lag: usize| (0..FINE).map(move |k| PI * lag as f64 * cosine(k, FINE));
@@ -63,7 +61,6 @@ impl Capon {
     }
 }
 
-/// The spectra of [`ROWS_AT_ONCE`] rows, by subarrays of `N` elements.
 struct Spectra<'a, const N: usize> {
     lags: &'a [[Vec<f32>; 2]],
     elements: &'a [Complexes],

@@ -10,10 +10,8 @@ use num_complex::{Complex32, Complex64};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Tables that depend on the radar alone.
 #[derive(Debug)]
 pub(super) struct Coarse {
-    /// Range rows.
     rows: usize,
     /// The centre's grid from either end.
     centre: [Registration<COARSE>; 2],
@@ -40,7 +38,6 @@ impl Coarse {
         Coarse { rows: radar.samples, centre, even: even_phases(radar), beams: beams(radar) }
     }
 
-    /// `[10, rows, 64]`, see [`LiveInput::coarse`](super::features::LiveInput::coarse), of both ends' range profiles `[rows, elements]`.
     pub(super) fn features(&self, profiles: &[Array2<Complex64>; 2]) -> Vec<f32> {
         let [first, last] = profiles;
         let (first, last) = rayon::join(|| self.seen(first), || self.seen(last));
@@ -72,7 +69,6 @@ impl Coarse {
         coarse
     }
 
-    /// Beams of an end's range profiles `[rows, elements]`.
     fn seen(&self, profiles: &Array2<Complex64>) -> Seen {
         let beams = profiles.dot(&self.beams).into_raw_vec_and_offset().0;
         let strongest = beams.iter().map(|v| v.norm_sqr()).fold(1e-300, f64::max).sqrt().recip();
@@ -100,12 +96,10 @@ impl Coarse {
     }
 }
 
-/// The rows of a plane, shared out among processors.
 fn rows_of(plane: &mut [f32]) -> impl IndexedParallelIterator<Item = (usize, &mut [f32])> {
     plane.par_chunks_mut(COARSE).with_min_len(LEAST_ROWS).enumerate()
 }
 
-/// From an end's beams to what is said of them.
 struct Look<'a> {
     beams: &'a [Complex64],
     even: &'a [Complex64],

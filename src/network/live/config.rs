@@ -5,12 +5,10 @@ use super::grid::{COARSE, COARSE_CHANNELS, CONSTANTS, FINE, FINE_CHANNELS, ROW_C
 /// Channels of the network's first convolution: fine features folded by 4, coarse, rows, scalars, four of the grid itself, and the
 /// radar's constants.
 pub const INPUT_CHANNELS: usize = FINE_CHANNELS * FOLD + COARSE_CHANNELS + ROW_CHANNELS + SCALARS + 4 + CONSTANTS;
-/// Fine columns in a coarse one.
 pub(super) const FOLD: usize = FINE / COARSE;
 /// Columns of the coarse head's side-lobe sources.
 pub(super) const WIDE: usize = 128;
-/// Channels between the coarse and the fine half of the decoder.
-pub(super) const WIDENED: usize = 8;
+pub(super) const DECODER_CHANNELS: usize = 8;
 
 /// Channels and residual blocks of each level.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -24,7 +22,6 @@ pub struct LiveConfig {
 }
 
 impl Default for LiveConfig {
-    /// The shipped network.
     fn default() -> Self {
         LiveConfig { channels: [16, 32, 64, 96], blocks: [1, 2, 2, 3], fine: 16 }
     }

@@ -16,7 +16,6 @@ const PATTERN_COS: f64 = 0.5;
 /// Where the spacing stands among the constants, and the windows beside Hann's.
 pub(super) const SPACING_AT: usize = 1;
 pub(super) const WINDOWS_AT: usize = 2;
-/// How many windows there are.
 pub(super) const WINDOWS: usize = WindowFunction::ALL.len();
 
 /// Migration and spacing relative to table 3.1's, which of the other windows, and the pattern: all 0 for the radar of table 3.1.

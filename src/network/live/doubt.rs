@@ -2,7 +2,7 @@
 
 use super::grid::{COARSE, COLUMNS, FINE, ROWS};
 use super::planes::{Plane, rectified};
-use super::reading::Layers;
+use super::reading::LiveLayers;
 use super::winograd::{Conv3x3, Results};
 use crate::maps::RangeAngleMap;
 use crate::network::kernels::convolution::{Packed, padded};
@@ -12,12 +12,10 @@ use crate::signal::simd::powers::{each, power_of_ten};
 use ndarray::Array2;
 use rayon::prelude::*;
 
-/// What the head's tensors begin with.
 const PREFIX: &str = "doubt.";
 /// Numbers that the head says of a coarse cell.
-const SAID: usize = FINE / COARSE;
-/// Columns of the map that one of them is for.
-const EACH: usize = COLUMNS / FINE;
+const DOUBTS_PER_CELL: usize = FINE / COARSE;
+const COLUMNS_PER_DOUBT: usize = COLUMNS / FINE;
 
 /// Decades between which what is said of a cell counts.
 const CELL_DECADES: [f32; 2] = [-4.0, 0.0];
@@ -34,14 +32,13 @@ pub struct DoubtHead {
 
 impl DoubtHead {
     /// The head of `file` on a picture of `channels` channels; `None` where the file has none.
-    ///
     /// # Errors
     /// [`WeightsError`] names the tensor that is missing or of another shape.
     pub fn new(file: &WeightFile, channels: usize) -> Result<Option<Self>, WeightsError> {
         let name = format!("{PREFIX}conv1.conv");
         let Some([hidden, ..]) = file.shape(&format!("{name}.weight")) else { return Ok(None) };
-        let (hidden, layers) = (*hidden, Layers { file });
-        let [mut weights, mut bias] = layers.tensors(&format!("{PREFIX}conv2"), &[SAID, hidden, 1, 1])?;
+        let (hidden, layers) = (*hidden, LiveLayers { file });
+        let [mut weights, mut bias] = layers.tensors(&format!("{PREFIX}conv2"), &[DOUBTS_PER_CELL, hidden, 1, 1])?;
         // What is linear in the mean over the cells is the mean of what is linear in each.
         let [of_scene, constant] = layers.tensors(&format!("{PREFIX}scene"), &[1, hidden])?;
         weights.extend(of_scene);
@@ -52,8 +49,6 @@ impl DoubtHead {
         }))
     }
 
-    /// The error of Lambda, `[512, 1024]`, that nine of ten cells of scenes like the training scenes stay below, from the picture that the
-    /// network's heads read.
     pub(super) fn read(&self, picture: &Plane) -> RangeAngleMap {
         let lanes = self.conv2.output();
         let mut said = vec![0.0; ROWS * COARSE * lanes];
@@ -65,18 +60,18 @@ impl DoubtHead {
             self.conv2.line(simd, sums, COARSE, COARSE, out);
         };
         self.conv1.run([ROWS, COARSE], read, &mut said, heads);
-        let of_scene =
-            mean(said.chunks_exact(lanes).map(|cell| cell[SAID])).clamp(-SCENE_DECADES, SCENE_DECADES) as f32;
+        let of_scene = mean(said.chunks_exact(lanes).map(|cell| cell[DOUBTS_PER_CELL]))
+            .clamp(-SCENE_DECADES, SCENE_DECADES) as f32;
         let [least, most] = CELL_DECADES;
         let mut error = Array2::zeros((ROWS, COLUMNS));
         let lines = error.as_slice_mut().unwrap_or_default().par_chunks_mut(COLUMNS);
         lines.zip(said.par_chunks(COARSE * lanes)).for_each(|(line, said)| {
             let mut fine = [0.0; FINE];
-            for (to, cell) in fine.chunks_exact_mut(SAID).zip(said.chunks_exact(lanes)) {
-                to.copy_from_slice(&cell[..SAID]);
+            for (to, cell) in fine.chunks_exact_mut(DOUBTS_PER_CELL).zip(said.chunks_exact(lanes)) {
+                to.copy_from_slice(&cell[..DOUBTS_PER_CELL]);
             }
             each(&mut fine, |v| power_of_ten(v.clamp(least, most) + of_scene).min(1.0));
-            for (to, v) in line.chunks_exact_mut(EACH).zip(fine) {
+            for (to, v) in line.chunks_exact_mut(COLUMNS_PER_DOUBT).zip(fine) {
                 to.fill(v);
             }
         });
@@ -84,7 +79,6 @@ impl DoubtHead {
     }
 }
 
-/// Mean of the numbers, summed in a fixed order: the number of threads doesn't change it.
 fn mean(numbers: impl ExactSizeIterator<Item = f32>) -> f64 {
     let count = numbers.len() as f64;
     numbers.map(f64::from).sum::<f64>() / count
@@ -94,7 +88,7 @@ fn mean(numbers: impl ExactSizeIterator<Item = f32>) -> f64 {
 mod tests {
     use super::*;
     use crate::network::live::LiveConfig;
-    use crate::network::live::engine::{LiveEngine, Scratch};
+    use crate::network::live::engine::{LiveEngine, LiveScratch};
     use crate::network::live::features::FeatureExtractor;
     use crate::radar::Radar;
     use crate::scene::Reflector;
@@ -119,7 +113,7 @@ mod tests {
             .collect();
         let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
         let input = FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap();
-        let mut scratch = Scratch::default();
+        let mut scratch = LiveScratch::default();
         engine.forward(&input, &mut scratch);
         engine.doubt(&scratch)
     }
@@ -130,9 +124,12 @@ mod tests {
         let found = doubt_of(WEIGHTS, &reference).unwrap().lambda;
         let expected = reference.tensor("doubt", &[ROWS / 16, FINE / 4]).unwrap();
         for (i, expected) in expected.iter().enumerate() {
-            let [row, column] = [i / (FINE / 4) * 16, i % (FINE / 4) * 4 * EACH];
+            let [row, column] = [i / (FINE / 4) * 16, i % (FINE / 4) * 4 * COLUMNS_PER_DOUBT];
             let gap = (found[[row, column]] - expected).abs();
-            assert!(gap < 1e-4 && found[[row, column]] == found[[row, column + EACH - 1]], "{row}, {column}: {gap}");
+            assert!(
+                gap < 1e-4 && found[[row, column]] == found[[row, column + COLUMNS_PER_DOUBT - 1]],
+                "{row}, {column}: {gap}"
+            );
         }
         let spread = expected.iter().fold(0.0f32, |a, v| a.max(*v)) - expected.iter().fold(1.0f32, |a, v| a.min(*v));
         assert!(spread > 0.01, "the reference says the same everywhere");

@@ -1,16 +1,16 @@
 //! The live network's forward pass without a framework: channels-last, buffers kept, the same weights as [`super::module`].
 //!
-//! [`super::module`] is what trains and what this is tested against; this is what runs while somebody drags a reflector.
+//! [`super::module`] is what trains and what this is tested against; this is what runs during a drag.
 
-use super::config::{INPUT_CHANNELS, LiveConfig, WIDE, WIDENED};
+use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, LiveConfig, WIDE};
 use super::constants::{SPACING_AT, window_of};
 use super::doubt::DoubtHead;
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
-use super::lobes::Lobes;
-use super::planes::{Block, Plane, rectified};
+use super::lobes::WindowLobes;
+use super::planes::{Plane, PlaneBlock, rectified};
 use super::range_lobes::UNSEEN;
-use super::reading::{CELLS, Layers};
+use super::reading::{CELLS, LiveLayers};
 use super::winograd::{Conv3x3, Results};
 use crate::maps::RangeAngleMap;
 use crate::network::kernels::convolution::{PRODUCT_COLUMNS, Packed, convolve, product};
@@ -20,10 +20,9 @@ use crate::signal::simd::powers::{each, logarithm, power_of_ten};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Fine columns in a coarse one, and map columns in a fine one.
 const FOLD: usize = FINE / COARSE;
-const _: () = assert!(FOLD == CELLS && SPREAD == CELLS, "layers that spread a cell do so over four");
-const SPREAD: usize = COLUMNS / FINE;
+const _: () = assert!(FOLD == CELLS && COLUMNS_PER_FINE == CELLS, "layers that spread a cell do so over four");
+const COLUMNS_PER_FINE: usize = COLUMNS / FINE;
 
 /// What the network says about one scene, in decades above the samples' gain.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,16 +39,15 @@ pub struct Decades {
 #[derive(Debug)]
 pub struct LiveEngine {
     stem: Conv3x3,
-    encoder: [Vec<Block>; 4],
+    encoder: [Vec<PlaneBlock>; 4],
     down: [Packed; 3],
     up: [Packed; 3],
-    decoder: [Vec<Block>; 3],
+    decoder: [Vec<PlaneBlock>; 3],
     widen: Conv3x3,
     fine1: Conv3x3,
     fine2: Packed,
     row_sources: Packed,
-    /// Side lobes under the window of Hann, and under each other one where the file has them.
-    lobes: Vec<Lobes>,
+    lobes: Vec<WindowLobes>,
     scalar1: Packed,
     scalar2: Packed,
     doubt: Option<DoubtHead>,
@@ -58,7 +56,7 @@ pub struct LiveEngine {
 
 /// Buffers of one forward pass; keep them between calls.
 #[derive(Debug, Default)]
-pub struct Scratch {
+pub struct LiveScratch {
     hidden: Plane,
     level: [Plane; 4],
     upward: Plane,
@@ -71,13 +69,12 @@ pub struct Scratch {
 
 impl LiveEngine {
     /// Packs the weights of `file`, which must fit `config`.
-    ///
     /// # Errors
     /// [`WeightsError`] names the tensor that is missing or of another shape.
     pub fn new(file: &WeightFile, config: &LiveConfig) -> Result<Self, WeightsError> {
         let [c0, c1, c2, c3] = config.channels;
         let [b0, b1, b2, b3] = config.blocks;
-        let layers = Layers { file };
+        let layers = LiveLayers { file };
         Ok(LiveEngine {
             stem: layers.stem("stem.conv", INPUT_CHANNELS, c0)?,
             encoder: [
@@ -97,11 +94,11 @@ impl LiveEngine {
                 layers.blocks("dec1", b1, c1, false)?,
                 layers.blocks("dec2", b2, c2, true)?,
             ],
-            widen: layers.widened("widen.conv", c0, WIDENED)?,
-            fine1: layers.conv("fine1.conv", [WIDENED + FINE_CHANNELS; 2], config.fine)?,
-            fine2: layers.small("fine2", config.fine, 2 * SPREAD, 1)?,
+            widen: layers.widened("widen.conv", c0, DECODER_CHANNELS)?,
+            fine1: layers.conv("fine1.conv", [DECODER_CHANNELS + FINE_CHANNELS; 2], config.fine)?,
+            fine2: layers.small("fine2", config.fine, 2 * COLUMNS_PER_FINE, 1)?,
             row_sources: layers.small("row_sources", c0, WIDE / COARSE, 1)?,
-            lobes: Lobes::all(file)?,
+            lobes: WindowLobes::all(file)?,
             scalar1: layers.linear("scalar1", [2 * c3 + SCALARS + CONSTANTS, CONSTANTS], 64)?,
             scalar2: layers.linear("scalar2", [64, 0], 2)?,
             doubt: DoubtHead::new(file, c0)?,
@@ -110,24 +107,24 @@ impl LiveEngine {
     }
 
     /// Estimates the map of one scene; what doesn't show in it is left out.
-    pub fn forward(&self, input: &LiveInput, s: &mut Scratch) -> Decades {
+    pub fn forward(&self, input: &LiveInput, s: &mut LiveScratch) -> Decades {
         self.forward_over(input, UNSEEN, s)
     }
 
     /// The same with nothing left out, to measure what that costs.
-    pub fn forward_whole(&self, input: &LiveInput, s: &mut Scratch) -> Decades {
+    pub fn forward_whole(&self, input: &LiveInput, s: &mut LiveScratch) -> Decades {
         self.forward_over(input, 0.0, s)
     }
 
     /// How far off the network expects Lambda to be, `[512, 1024]`: nine of ten cells have a smaller error, on scenes and over noise like those
     /// it was trained on. Call it after [`LiveEngine::forward`] with the same buffers. `None` where the weights have no head for it.
-    pub fn doubt(&self, s: &Scratch) -> Option<RangeAngleMap> {
+    pub fn doubt(&self, s: &LiveScratch) -> Option<RangeAngleMap> {
         Some(self.doubt.as_ref()?.read(&s.level[0]))
     }
 
-    fn forward_over(&self, input: &LiveInput, unseen: f32, s: &mut Scratch) -> Decades {
+    fn forward_over(&self, input: &LiveInput, unseen: f32, s: &mut LiveScratch) -> Decades {
         let scalars = input.scalars.map(|v| (v + 8.0) / 3.0);
-        let Scratch { hidden, level, upward, .. } = s;
+        let LiveScratch { hidden, level, upward, .. } = s;
         level[0].reset(ROWS, COARSE, self.stem.output());
         let read = |row: usize, line: &mut [f32]| read_input(input, &scalars, row, line);
         self.stem.run([ROWS, COARSE], read, &mut level[0].data, |results, out| results.put(out));
@@ -199,9 +196,8 @@ impl LiveEngine {
     }
 }
 
-/// Heads and side-lobe sources to decades, with the part of the side lobes in range that was computed.
 fn decode(
-    kernels: &Lobes,
+    kernels: &WindowLobes,
     heads: &Plane,
     sources: &Plane,
     floor: f32,
@@ -211,8 +207,9 @@ fn decode(
     let floor = 10f32.powf(floor);
     let read = |block: usize, sources: &mut [f32]| {
         for (row, out) in sources.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {
-            let cells = heads.data[(row * FINE + block * PRODUCT_COLUMNS / SPREAD) * heads.c..].chunks_exact(heads.c);
-            spread_out(cells, SPREAD..2 * SPREAD, out);
+            let cells =
+                heads.data[(row * FINE + block * PRODUCT_COLUMNS / COLUMNS_PER_FINE) * heads.c..].chunks_exact(heads.c);
+            spread_out(cells, COLUMNS_PER_FINE..2 * COLUMNS_PER_FINE, out);
         }
     };
     let computed = kernels.columns.add_up(floor, unseen, read, lobes);
@@ -224,9 +221,9 @@ fn decode(
             fill_line(heads, lobes, row, line);
             let cells = sources.data[row * COARSE * sources.c..].chunks_exact(sources.c);
             spread_out(cells, 0..WIDE / COARSE, wide);
-            for (w, [a, b, c, d, e, f, g, h]) in wide.iter_mut().zip(line.as_chunks::<EACH>().0) {
+            for (w, [a, b, c, d, e, f, g, h]) in wide.iter_mut().zip(line.as_chunks::<COLUMNS_PER_SOURCE>().0) {
                 // Pair by pair, which a processor does side by side.
-                *w += (((a + b) + (c + d)) + ((e + f) + (g + h))) / EACH as f32;
+                *w += (((a + b) + (c + d)) + ((e + f) + (g + h))) / COLUMNS_PER_SOURCE as f32;
             }
         }
         add_lobes_in_angle(&kernels.rows, floor, &wide, lines);
@@ -242,7 +239,7 @@ fn add_lobes_in_angle(rows: &[f32], floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE
         let mut lobes = [0.0; ROWS_AT_ONCE * PRODUCT_COLUMNS];
         product(simd, wide, kernel, std::iter::once(0..WIDE), &mut lobes);
         for (line, lobes) in lines.chunks_exact_mut(COLUMNS).zip(lobes.chunks_exact(PRODUCT_COLUMNS)) {
-            let cells = line[block * PRODUCT_COLUMNS * EACH..].chunks_exact_mut(EACH);
+            let cells = line[block * PRODUCT_COLUMNS * COLUMNS_PER_SOURCE..].chunks_exact_mut(COLUMNS_PER_SOURCE);
             for (cells, lobe) in cells.zip(lobes) {
                 cells.iter_mut().for_each(|v| *v += lobe + floor);
             }
@@ -250,11 +247,9 @@ fn add_lobes_in_angle(rows: &[f32], floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE
     }
 }
 
-/// Rows of the map that one processor does at once.
 const ROWS_AT_ONCE: usize = 8;
 
-/// Cells of the map in one of the wide sources.
-const EACH: usize = COLUMNS / WIDE;
+const COLUMNS_PER_SOURCE: usize = COLUMNS / WIDE;
 
 /// Amplitudes that these channels of neighbouring cells say, side by side.
 fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>, out: &mut [f32]) {
@@ -266,7 +261,7 @@ fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>
 
 /// What the cells of a row show by themselves, and the side lobes in range.
 fn fill_line(heads: &Plane, lobes: &[f32], row: usize, line: &mut [f32]) {
-    spread_out(heads.data[row * FINE * heads.c..].chunks_exact(heads.c), 0..SPREAD, line);
+    spread_out(heads.data[row * FINE * heads.c..].chunks_exact(heads.c), 0..COLUMNS_PER_FINE, line);
     for (block, line) in line.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {
         let lobes = &lobes[(block * ROWS + row) * PRODUCT_COLUMNS..][..PRODUCT_COLUMNS];
         line.iter_mut().zip(lobes).for_each(|(sum, lobe)| *sum += lobe);
@@ -287,7 +282,7 @@ fn fine_in(fine: &[f32], row: usize) -> [[f32; FINE]; FINE_CHANNELS] {
     })
 }
 
-/// A line of the first convolution's input; channels in the order of [`super::module::Live::forward`].
+/// A line of the first convolution's input; channels in the order of [`super::module::LiveNetwork::forward`].
 fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mut [f32]) {
     const COARSE_AT: usize = FINE_CHANNELS * FOLD;
     const ROWS_AT: usize = COARSE_AT + COARSE_CHANNELS;
@@ -323,11 +318,12 @@ fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mu
 /// A line of the fine convolution's input: the widened picture spread over four times the columns, beside the fine features.
 fn read_fine(fine: &[f32], widened: &Plane, row: usize, line: &mut [f32]) {
     let fine = fine_in(fine, row);
-    let cells =
-        widened.data[row * COARSE * widened.c..].chunks_exact(widened.c).flat_map(|cell| cell.chunks_exact(WIDENED));
-    for (k, (cell, from)) in line.chunks_exact_mut(WIDENED + FINE_CHANNELS).zip(cells).enumerate() {
-        cell[..WIDENED].copy_from_slice(from);
-        cell[WIDENED..].iter_mut().zip(&fine).for_each(|(to, plane)| *to = plane[k]);
+    let cells = widened.data[row * COARSE * widened.c..]
+        .chunks_exact(widened.c)
+        .flat_map(|cell| cell.chunks_exact(DECODER_CHANNELS));
+    for (k, (cell, from)) in line.chunks_exact_mut(DECODER_CHANNELS + FINE_CHANNELS).zip(cells).enumerate() {
+        cell[..DECODER_CHANNELS].copy_from_slice(from);
+        cell[DECODER_CHANNELS..].iter_mut().zip(&fine).for_each(|(to, plane)| *to = plane[k]);
     }
 }
 

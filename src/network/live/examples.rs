@@ -1,4 +1,4 @@
-//! Examples to train on: example `i` is a function of the request and `i` alone, whoever asks, in whatever order.
+//! Examples to train on: example `i` is a function of the request and `i` alone, in any order of asking.
 
 use super::arrays::Arrays;
 use super::constants::turn_rows;
@@ -56,7 +56,6 @@ pub enum Features {
 }
 
 impl Default for ExamplesRequest {
-    /// What the live network learns from the thesis' set 3: the calibrated target of training scenes over the thesis' floor.
     fn default() -> Self {
         ExamplesRequest {
             mixture: Mixture::of(Kind::Set3),
@@ -82,7 +81,7 @@ pub struct Examples {
 
 /// What the sparse array hears.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Heard {
+pub enum EndSamples {
     /// The two ends.
     Ends(TwoEnds),
     /// The elements of a layout, `[elements, samples]`.
@@ -92,14 +91,14 @@ pub enum Heard {
 /// What is learned from one scene.
 #[derive(Debug, Clone)]
 pub struct Example {
-    /// Kind of the scene; none where somebody else made it.
+    /// Kind of the scene; none where the caller made it.
     pub kind: Option<Kind>,
     /// Its floor.
     pub floor: Floor,
     /// Its radar.
     pub radar: Radar,
     /// What the sparse array hears, by elements that may be off.
-    pub heard: Heard,
+    pub heard: EndSamples,
     /// The live network's input, where it is made.
     pub input: Option<LiveInput>,
     /// Half the log10 of the mean power of what is heard.
@@ -113,8 +112,8 @@ impl Example {
     /// The samples of the two ends; `None` where a layout was asked for.
     pub fn ends(&self) -> Option<&TwoEnds> {
         match &self.heard {
-            Heard::Ends(ends) => Some(ends),
-            Heard::Elements(_) => None,
+            EndSamples::Ends(ends) => Some(ends),
+            EndSamples::Elements(_) => None,
         }
     }
 
@@ -143,34 +142,21 @@ pub enum ExamplesError {
 
 /// Why there is no example.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum ExampleError {
     /// The scene can't be simulated, or the task was cancelled.
     #[error("example {index}: {source}")]
-    Scene {
-        /// Number of the example.
-        index: u32,
-        /// Why.
-        source: Unfinished,
-    },
+    Scene { index: u32, source: Unfinished },
     /// The network can't use its samples.
     #[error("example {index}: {source}")]
-    Input {
-        /// Number of the example.
-        index: u32,
-        /// Why.
-        source: ReconstructError,
-    },
+    Input { index: u32, source: ReconstructError },
     /// Nothing is heard.
     #[error("example {index}: the samples are silent; put a reflector into the scene")]
-    Silent {
-        /// Number of the example.
-        index: u32,
-    },
+    Silent { index: u32 },
 }
 
 impl Examples {
     /// Examples as they are asked for.
-    ///
     /// # Errors
     /// [`ExamplesError`] names the kind, the radar or the element that can't be.
     pub fn new(mut request: ExamplesRequest) -> Result<Self, ExamplesError> {
@@ -218,7 +204,6 @@ impl Examples {
     }
 
     /// Example `index`.
-    ///
     /// # Errors
     /// [`ExampleError`], also soon after `task` was cancelled.
     pub fn example(&self, index: u32, task: &Task) -> Result<Example, ExampleError> {
@@ -228,8 +213,7 @@ impl Examples {
         self.made(Some(kind), radar, scene, index, task)
     }
 
-    /// Example `index` of a scene that somebody else made. Its noise is picked by seed, purpose and `index`.
-    ///
+    /// Example `index` of a scene that the caller made. Its noise is picked by seed, purpose and `index`.
     /// # Errors
     /// As [`Examples::example`].
     pub fn example_of(&self, scene: Scene, index: u32, task: &Task) -> Result<Example, ExampleError> {
@@ -237,7 +221,7 @@ impl Examples {
         self.made(None, self.radar(index), Scene { noise_seed, ..scene }, index, task)
     }
 
-    /// Seed of the noise of a scene that somebody else made.
+    /// Seed of the noise of a scene that the caller made.
     fn noise_seed(&self, index: u32) -> u64 {
         let mut key = [0u8; 32];
         key[..8].copy_from_slice(&self.request.seed.to_le_bytes());
@@ -269,8 +253,8 @@ impl Examples {
         }
         let measured = simulated(&scene, floor)?;
         let heard = match layout {
-            None => Heard::Ends(measured.two_ends(&radar)),
-            Some(layout) => Heard::Elements(measured.samples.select(Axis(0), layout)),
+            None => EndSamples::Ends(measured.two_ends(&radar)),
+            Some(layout) => EndSamples::Elements(measured.samples.select(Axis(0), layout)),
         };
         let gain = heard.gain().ok_or(ExampleError::Silent { index })?;
         let input = self.input(&radar, &heard).map_err(|source| ExampleError::Input { index, source })?;
@@ -292,8 +276,8 @@ impl Examples {
         Ok(Example { kind, floor, heard, input, gain, targets: maps, radar })
     }
 
-    fn input(&self, radar: &Radar, heard: &Heard) -> Result<Option<LiveInput>, ReconstructError> {
-        let Heard::Ends(ends) = heard else { return Ok(None) };
+    fn input(&self, radar: &Radar, heard: &EndSamples) -> Result<Option<LiveInput>, ReconstructError> {
+        let EndSamples::Ends(ends) = heard else { return Ok(None) };
         match &self.extractor {
             _ if !self.has_features() => Ok(None),
             Some(extractor) => extractor.extract(ends).map(Some),
@@ -302,17 +286,17 @@ impl Examples {
     }
 }
 
-impl Heard {
+impl EndSamples {
     /// Half the log10 of the mean power; `None` of silence.
     fn gain(&self) -> Option<f64> {
         let mean = |power: f64, samples: usize| (power > 0.0).then(|| 0.5 * (power / samples as f64).log10());
         match self {
             // The sum of the live network's features, to the bit.
-            Heard::Ends(ends) => {
+            EndSamples::Ends(ends) => {
                 let power = ends.first.iter().chain(&ends.last).map(|v| v.norm_sqr()).sum::<f64>();
                 mean(power, ends.first.len() + ends.last.len())
             }
-            Heard::Elements(samples) => mean(samples.iter().map(|v| v.norm_sqr()).sum::<f64>(), samples.len()),
+            EndSamples::Elements(samples) => mean(samples.iter().map(|v| v.norm_sqr()).sum::<f64>(), samples.len()),
         }
     }
 }

@@ -6,7 +6,7 @@
 //! apart reflectors that the end's own beam cannot.
 //!
 //! In columns and range bins the beams of an end are the same for every radar; where the same reflector lies in the other end's picture is not, and
-//! follows from the radar's constants. All pictures are made under a window of Hann, whatever the radar's maps are made under.
+//! follows from the radar's constants. All pictures are made under a window of Hann, independent of the radar's own.
 //!
 //! Everything is measured relative to the mean power of the samples (the *gain*): a louder receiver gives the same tensors.
 
@@ -63,7 +63,6 @@ pub struct FeatureExtractor {
 
 impl FeatureExtractor {
     /// Tables for `radar`.
-    ///
     /// # Errors
     /// [`ReconstructError::Unusable`] for ends of a single element or fewer than [`LEAST_SAMPLES`] samples.
     pub fn new(radar: &Radar) -> Result<Self, ReconstructError> {
@@ -93,7 +92,6 @@ impl FeatureExtractor {
     }
 
     /// The tensors of the samples of two ends.
-    ///
     /// # Errors
     /// [`ReconstructError`] on samples of the wrong shape or not finite, and on silence.
     pub fn extract(&self, ends: &TwoEnds) -> Result<LiveInput, ReconstructError> {

@@ -19,9 +19,7 @@ pub const SCALARS: usize = 2;
 /// Constants of the radar beside the pictures.
 pub const CONSTANTS: usize = 6;
 
-/// Elements of an end.
 pub(super) const ELEMENTS: usize = 12;
-/// Fewest rows that one processor takes at a time.
 pub(super) const LEAST_ROWS: usize = 32;
 
 /// cos(theta) of column `k` of a grid of `columns`.

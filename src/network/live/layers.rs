@@ -78,12 +78,10 @@ impl Block {
     }
 }
 
-/// Fresh residual blocks.
 pub(super) fn blocks(count: usize, channels: usize, context: bool, device: &Device) -> Vec<Block> {
     (0..count).map(|_| Block::new(channels, context, device)).collect()
 }
 
-/// Applies one block after the other.
 pub(super) fn through(blocks: &[Block], x: Tensor<4>) -> Tensor<4> {
     blocks.iter().fold(x, |x, block| block.forward(x))
 }

@@ -8,31 +8,31 @@ use super::reading::circulant;
 use crate::network::kernels::convolution::PRODUCT_COLUMNS;
 use crate::network::weights::{WeightFile, WeightsError};
 
-/// Side lobes under one window.
 #[derive(Debug)]
-pub(super) struct Lobes {
-    /// In range.
+pub(super) struct WindowLobes {
     pub(super) columns: RangeLobes,
     /// `[128 / 32, 128, 32]`: in angle.
     pub(super) rows: Vec<f32>,
 }
 
-impl Lobes {
+impl WindowLobes {
     /// Of kernels' decades over the distance in rows `[512 / 2 + 1]` and in wide columns `[128 / 2 + 1]`.
     fn new(column: &[f32], row: &[f32]) -> Self {
-        Lobes { columns: RangeLobes::new(column), rows: in_blocks(&circulant(row, WIDE), WIDE) }
+        WindowLobes { columns: RangeLobes::new(column), rows: in_blocks(&circulant(row, WIDE), WIDE) }
     }
 
     /// Those of `file`: of the window of Hann, and of each other one where it has them.
     pub(super) fn all(file: &WeightFile) -> Result<Vec<Self>, WeightsError> {
         let lengths = [ROWS / 2 + 1, WIDE / 2 + 1];
-        let mut all =
-            vec![Lobes::new(&file.tensor("col_kernel", &lengths[..1])?, &file.tensor("row_kernel", &lengths[1..])?)];
+        let mut all = vec![WindowLobes::new(
+            &file.tensor("col_kernel", &lengths[..1])?,
+            &file.tensor("row_kernel", &lengths[1..])?,
+        )];
         if file.shape("col_kernels").is_some() {
             let others = |name: &str, length: usize| file.tensor(name, &[WINDOWS - 1, length]);
             let (columns, rows) = (others("col_kernels", lengths[0])?, others("row_kernels", lengths[1])?);
             let pairs = columns.chunks_exact(lengths[0]).zip(rows.chunks_exact(lengths[1]));
-            all.extend(pairs.map(|(column, row)| Lobes::new(column, row)));
+            all.extend(pairs.map(|(column, row)| WindowLobes::new(column, row)));
         }
         Ok(all)
     }

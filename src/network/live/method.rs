@@ -2,7 +2,7 @@
 
 use super::config::LiveConfig;
 use super::constants::turn_columns;
-use super::engine::{Decades, LiveEngine, Scratch};
+use super::engine::{Decades, LiveEngine, LiveScratch};
 use super::features::{FeatureExtractor, LiveInput};
 use super::grid::{COLUMNS, ROWS};
 use crate::maps::{LambdaScale, RangeAngleMap};
@@ -20,9 +20,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Name of the network, on the command line and in weight files.
 pub const NAME: &str = "live";
 
-/// What the method with the shipped weights says of itself.
 const DESCRIPTION: &str = "a small network that draws the whole array's map from matched filters of both ends";
-const TOLD: &str = "scenes drawn as the generators of all kinds draw them, with the radar of table 3.1, a third of them over thermal noise \
+const TRAINED_ON: &str = "scenes drawn as the generators of all kinds draw them, with the radar of table 3.1, a third of them over thermal noise \
     at signal-to-noise ratios of 10 to 60 dB, the others over the rounding of the thesis' program";
 
 /// Buffers kept for later passes; each takes some 30 MB.
@@ -31,14 +30,12 @@ const MOST_IDLE: usize = 2;
 /// The live network with its weights.
 #[derive(Debug)]
 pub struct LiveMethod {
-    /// [`NAME`], or that of other weights.
     name: &'static str,
     engine: LiveEngine,
-    /// Of the radar that was last asked for.
     extractor: Mutex<Option<Arc<FeatureExtractor>>>,
-    /// Buffers that nobody uses. They are taken out for a pass and not locked while it runs: other threads, and the thread itself
+    /// Idle buffers. They are taken out for a pass and not locked while it runs: other threads, and the thread itself
     /// where rayon hands it another caller's work, take others.
-    idle: Mutex<Vec<Scratch>>,
+    idle: Mutex<Vec<LiveScratch>>,
     eta: f32,
     weights: Weights,
     trained: Domain,
@@ -48,7 +45,6 @@ pub struct LiveMethod {
 
 impl LiveMethod {
     /// The shipped architecture with the weights of `file`.
-    ///
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile) -> Result<Self, WeightsError> {
@@ -56,7 +52,6 @@ impl LiveMethod {
     }
 
     /// The same under a name of its own, beside which the shipped weights are another method. The name lives as long as the program.
-    ///
     /// # Errors
     /// As [`LiveMethod::new`].
     pub fn named(file: WeightFile, name: &str) -> Result<Self, WeightsError> {
@@ -81,7 +76,6 @@ impl LiveMethod {
     }
 
     /// The map in decades relative to the samples' own scale, before it is normalised.
-    ///
     /// # Errors
     /// [`ReconstructError`] on a radar the network wasn't trained for and on unusable samples.
     pub fn decades(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
@@ -89,14 +83,12 @@ impl LiveMethod {
     }
 
     /// The same with nothing left out.
-    ///
     /// # Errors
     /// As [`LiveMethod::decades`].
     pub fn decades_whole(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
         self.decades_by(LiveEngine::forward_whole, radar, ends).map(|(decades, _)| decades)
     }
 
-    /// Tables for `radar`: those of the last call where they will do.
     fn extractor(&self, radar: &Radar) -> Result<Arc<FeatureExtractor>, ReconstructError> {
         // A panic elsewhere leaves whole tables or none.
         let kept = || self.extractor.lock().unwrap_or_else(PoisonError::into_inner);
@@ -112,7 +104,7 @@ impl LiveMethod {
     /// The map in decades, and how far off the network expects Lambda to be.
     fn decades_by(
         &self,
-        forward: fn(&LiveEngine, &LiveInput, &mut Scratch) -> Decades,
+        forward: fn(&LiveEngine, &LiveInput, &mut LiveScratch) -> Decades,
         radar: &Radar,
         ends: &TwoEnds,
     ) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
@@ -176,7 +168,7 @@ impl Reconstructor for LiveMethod {
         About {
             name: self.name,
             description: if is_shipped { DESCRIPTION } else { "the live network with weights from a file" },
-            told: if is_shipped { TOLD } else { "what its weights were trained on, which their file says" },
+            told: if is_shipped { TRAINED_ON } else { "what its weights were trained on, which their file says" },
             eta: self.eta,
         }
     }

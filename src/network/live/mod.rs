@@ -17,7 +17,7 @@
 //! | [`dataset`] | the same as files |
 //! | `config` | how large the network is |
 //! | `module`, `layers` | the network as a burn module: what trains (feature `network`) |
-//! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `lobes`, `range_lobes` | the same without a framework, over [`kernels`](super::kernels): what runs while somebody drags a reflector |
+//! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `lobes`, `range_lobes` | the same without a framework, over [`kernels`](super::kernels): what runs during a drag |
 //! | [`doubt`] | how far off the network expects to be |
 //! | [`method`] | the network as a reconstruction method |
 
@@ -50,4 +50,4 @@ mod winograd;
 pub use config::LiveConfig;
 pub use method::LiveMethod;
 #[cfg(feature = "network")]
-pub use module::{Live, LiveBatch};
+pub use module::{LiveBatch, LiveNetwork};

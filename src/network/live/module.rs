@@ -1,7 +1,7 @@
 //! The live network as a burn module.
 
 pub use super::config::INPUT_CHANNELS;
-use super::config::{FOLD, LiveConfig, WIDE, WIDENED};
+use super::config::{DECODER_CHANNELS, FOLD, LiveConfig, WIDE};
 use super::constants::{SPACING_AT, WINDOWS, WINDOWS_AT};
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
@@ -16,7 +16,7 @@ use std::f64::consts::LN_10;
 
 /// The live network. See the [room](super) for what it is made of.
 #[derive(Module, Debug)]
-pub struct Live {
+pub struct LiveNetwork {
     stem: WrapConv,
     enc0: Vec<Block>,
     down1: Conv2d,
@@ -78,7 +78,7 @@ impl LiveBatch {
     }
 }
 
-impl Live {
+impl LiveNetwork {
     /// Whether the tensors of `file` are a live network's, by the name of one that no other network has.
     pub fn is_in(file: &WeightFile) -> bool {
         file.shape("row_kernel").is_some()
@@ -90,7 +90,7 @@ impl Live {
         let [b0, b1, b2, b3] = config.blocks;
         let halve = |a, b| Conv2dConfig::new([a, b], [2, 2]).with_stride([2, 2]).init(device);
         let mix = |a, b| Conv2dConfig::new([a, b], [1, 1]).init(device);
-        Live {
+        LiveNetwork {
             stem: WrapConv::new(INPUT_CHANNELS, c0, device),
             enc0: blocks(b0, c0, false, device),
             down1: halve(c0, c1),
@@ -105,8 +105,8 @@ impl Live {
             dec1: blocks(b1, c1, false, device),
             up0: mix(c1, 4 * c0),
             dec0: blocks(b0, c0, false, device),
-            widen: WrapConv::new(c0, WIDENED * FOLD, device),
-            fine1: WrapConv::new(WIDENED + FINE_CHANNELS, config.fine, device),
+            widen: WrapConv::new(c0, DECODER_CHANNELS * FOLD, device),
+            fine1: WrapConv::new(DECODER_CHANNELS + FINE_CHANNELS, config.fine, device),
             fine2: small(mix(config.fine, 2 * COLUMNS / FINE)),
             row_sources: small(mix(c0, WIDE / COARSE)),
             col_kernel: Param::from_tensor(hann_tail(ROWS, -0.5, device)),
@@ -185,7 +185,6 @@ fn decades_in<const D: usize>(x: Tensor<D>) -> Tensor<D> {
     ((x + 3.0) / 3.0).clamp(-4.0, 2.0)
 }
 
-/// A head's output as amplitudes.
 fn amplitudes(x: Tensor<3>) -> Tensor<3> {
     ((x * 3.0 - 3.0).clamp(-18.0, 4.0) * LN_10).exp()
 }
@@ -210,7 +209,6 @@ fn fold_columns(x: Tensor<4>, r: usize) -> Tensor<4> {
     x.reshape([n, c, h, w / r, r]).permute([0, 1, 4, 2, 3]).reshape([n, c * r, h, w / r])
 }
 
-/// The inverse of [`fold_columns`].
 fn spread_columns(x: Tensor<4>, r: usize) -> Tensor<4> {
     let [n, c, h, w] = x.dims();
     x.reshape([n, c / r, r, h, w]).permute([0, 1, 3, 4, 2]).reshape([n, c / r, h, w * r])
@@ -246,7 +244,7 @@ fn circulants(kernels: Tensor<2>, n: usize) -> Tensor<3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::live::engine::{LiveEngine, Scratch};
+    use crate::network::live::engine::{LiveEngine, LiveScratch};
     use crate::network::live::features::FeatureExtractor;
     use crate::network::weights::WeightFile;
     use crate::radar::Radar;
@@ -316,7 +314,7 @@ mod tests {
         let reference = include_bytes!("../../../tests/data/program-0.1.0/live_reference.safetensors");
         let reference = WeightFile::parse("reference", reference).unwrap();
         let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &tiny()).unwrap();
-        let found = engine.forward(&input(&reference, 1.0), &mut Scratch::default());
+        let found = engine.forward(&input(&reference, 1.0), &mut LiveScratch::default());
         let (mean, largest) = distance(&found.map, &reference.tensor("log", &[16, 64]).unwrap(), ROWS, COLUMNS, 32, 16);
         assert!(mean < 1e-4 && largest < 1e-2, "mean {mean}, largest {largest}");
     }
@@ -327,7 +325,7 @@ mod tests {
         let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
         let input = input(&reference, 1.0);
         let engine = LiveEngine::new(&weights, &tiny()).unwrap();
-        let fast = engine.forward(&input, &mut Scratch::default());
+        let fast = engine.forward(&input, &mut LiveScratch::default());
         let expected = reference.tensor("log", &[16, 64]).unwrap();
         let (mean, largest) = distance(&fast.map, &expected, ROWS, COLUMNS, 32, 16);
         assert!(mean < 1e-4 && largest < 1e-2, "engine against twin: mean {mean}, largest {largest}");
@@ -337,14 +335,14 @@ mod tests {
         // The same scene as another radar's, with another window.
         let constants = reference.tensor("constants", &[CONSTANTS]).unwrap().try_into().unwrap();
         let other = LiveInput { constants, ..input.clone() };
-        let fast_other = engine.forward(&other, &mut Scratch::default());
+        let fast_other = engine.forward(&other, &mut LiveScratch::default());
         let expected = reference.tensor("other_log", &[16, 64]).unwrap();
         let (mean, largest) = distance(&fast_other.map, &expected, ROWS, COLUMNS, 32, 16);
         assert!(mean < 1e-4 && largest < 1e-2, "engine against twin: mean {mean}, largest {largest}");
         assert!(distance(&fast_other.map, &fast.map, ROWS, COLUMNS, 1, 1).0 > 0.05, "the constants say nothing");
 
         let device = Device::flex();
-        let mut module = Live::new(&tiny(), &device);
+        let mut module = LiveNetwork::new(&tiny(), &device);
         weights.load_into(&mut module, |_| false).unwrap();
         let slow = module.forward(LiveBatch::new(&[input, other], &device));
         let slow_map = slow.decades.into_data().try_into_vec::<f32>().unwrap();
@@ -360,7 +358,7 @@ mod tests {
         let engine = LiveEngine::new(&weights, &tiny()).unwrap();
         let (soft, loud) = (input(&reference, 1.0), input(&reference, 1e6));
         assert!((loud.gain - soft.gain - 6.0).abs() < 1e-9);
-        let mut scratch = Scratch::default();
+        let mut scratch = LiveScratch::default();
         let (a, b) = (engine.forward(&soft, &mut scratch), engine.forward(&loud, &mut scratch));
         let (_, largest) = distance(&a.map, &b.map, ROWS, COLUMNS, 1, 1);
         assert!(largest < 1e-2, "{largest}");
@@ -372,7 +370,7 @@ mod tests {
         let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
         let engine = LiveEngine::new(&weights, &tiny()).unwrap();
         let input = input(&reference, 1.0);
-        let mut scratch = Scratch::default();
+        let mut scratch = LiveScratch::default();
         assert_eq!(engine.forward(&input, &mut scratch), engine.forward(&input, &mut scratch));
     }
 }

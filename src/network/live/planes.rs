@@ -6,7 +6,6 @@ use crate::network::kernels::vector::LANES;
 use crate::signal::simd::{Kernel, Lanes, Simd};
 use rayon::prelude::*;
 
-/// Channels-last picture: `[h, w, c]`.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Plane {
     pub(super) h: usize,
@@ -21,13 +20,11 @@ impl Plane {
         self.data.resize(h * w * c, 0.0);
     }
 
-    /// Copies line `y` through ReLU.
     pub(super) fn read_rectified(&self, y: usize, line: &mut [f32]) {
         let size = self.w * self.c;
         line.iter_mut().zip(&self.data[y * size..]).for_each(|(to, v)| *to = rectified(*v));
     }
 
-    /// Puts everything through ReLU.
     pub(super) fn rectify(&mut self) {
         self.data.par_chunks_mut(1 << 15).for_each(|part| part.iter_mut().for_each(|v| *v = rectified(*v)));
     }
@@ -39,19 +36,19 @@ pub(super) fn rectified(v: f32) -> f32 {
 }
 
 #[derive(Debug)]
-pub(super) struct Context {
+pub(super) struct PlaneContext {
     pub(super) row: Packed,
     pub(super) col: Packed,
 }
 
 #[derive(Debug)]
-pub(super) struct Block {
+pub(super) struct PlaneBlock {
     pub(super) conv1: Conv3x3,
     pub(super) conv2: Conv3x3,
-    pub(super) context: Option<Context>,
+    pub(super) context: Option<PlaneContext>,
 }
 
-impl Block {
+impl PlaneBlock {
     pub(super) fn forward(&self, x: &mut Plane, hidden: &mut Plane, pool: &mut Vec<f32>, mixed: &mut Vec<f32>) {
         hidden.reset(x.h, x.w, self.conv1.output());
         self.conv1.run(
@@ -68,7 +65,7 @@ impl Block {
     }
 }
 
-impl Context {
+impl PlaneContext {
     pub(super) fn forward(&self, x: &mut Plane, pool: &mut Vec<f32>, mixed: &mut Vec<f32>) {
         let (h, w, c) = (x.h, x.w, x.c);
         pool.resize((h + w) * 2 * c, 0.0);

@@ -1,7 +1,7 @@
 //! Radars of training scenes: one, or one drawn for each scene.
 
 use super::grid::{COLUMNS, ELEMENTS, ROWS};
-use crate::network::domain::{Domain, Limits, migration_bins};
+use crate::network::domain::{Domain, RadarLimits, migration_bins};
 use crate::radar::{Convention, LinkBudget, Radar, WindowFunction};
 use crate::scene::generate::Purpose;
 use rand::{RngExt, SeedableRng};
@@ -17,7 +17,7 @@ pub enum Radars {
 }
 
 /// Radars that the live network can be trained for.
-pub const DRAWN: Limits = Limits {
+pub const DRAWN: RadarLimits = RadarLimits {
     elements: COLUMNS,
     end_elements: ELEMENTS,
     samples: ROWS,
@@ -29,7 +29,6 @@ pub const DRAWN: Limits = Limits {
     half_power_width_degrees: [40.0, 150.0],
 };
 
-/// Part of the scenes that table 3.1's radar sees.
 const THESIS_SHARE: f64 = 0.25;
 /// Parts of the other radars that have the filled spacing, a window of Hann, and a pattern.
 const FILLED_SHARE: f64 = 0.5;
@@ -90,7 +89,6 @@ impl Radars {
     }
 }
 
-/// A radar within [`DRAWN`].
 fn drawn(rng: &mut ChaCha8Rng) -> Radar {
     loop {
         let carrier_hz = log_uniform(DRAWN.carrier_hz, rng);

@@ -27,7 +27,6 @@ pub(super) struct RangeLobes {
     reach: Vec<[f32; 2]>,
 }
 
-/// What one processor keeps from block to block.
 #[derive(Default)]
 struct Kept {
     /// `[512, BLOCK]`
@@ -37,7 +36,7 @@ struct Kept {
 }
 
 thread_local! {
-    static KEPT: RefCell<Kept> = RefCell::default();
+    static KEPT_LOBES: RefCell<Kept> = RefCell::default();
 }
 
 impl RangeLobes {
@@ -67,7 +66,7 @@ impl RangeLobes {
         let simd = Simd::chosen();
         out.resize(ROWS * COLUMNS, 0.0);
         let of_block = |(block, out): (usize, &mut [f32])| {
-            KEPT.with_borrow_mut(|kept| {
+            KEPT_LOBES.with_borrow_mut(|kept| {
                 kept.sources.resize(ROWS * BLOCK, 0.0);
                 read(block, &mut kept.sources);
                 simd.run(Sums { sources: &kept.sources, sums: &mut kept.sums });

@@ -1,7 +1,7 @@
 //! The layers of a weight file, packed for the engine.
 
 use super::grid::CONSTANTS;
-use super::planes::{Block, Context};
+use super::planes::{PlaneBlock, PlaneContext};
 use super::winograd::Conv3x3;
 use crate::network::kernels::convolution::{Packed, padded};
 use crate::network::weights::{WeightFile, WeightsError};
@@ -9,14 +9,12 @@ use crate::network::weights::{WeightFile, WeightsError};
 /// Cells that one becomes in the layers that spread it.
 pub(super) const CELLS: usize = 4;
 
-/// Where layers come from. Their errors name the tensor that is missing or of another shape.
 #[derive(Clone, Copy)]
-pub(super) struct Layers<'a> {
+pub(super) struct LiveLayers<'a> {
     pub(super) file: &'a WeightFile<'a>,
 }
 
-impl Layers<'_> {
-    /// Weights and bias.
+impl LiveLayers<'_> {
     pub(super) fn tensors(&self, name: &str, shape: &[usize]) -> Result<[Vec<f32>; 2], WeightsError> {
         let tensor = |part: &str, shape: &[usize]| self.file.tensor(&format!("{name}.{part}"), shape);
         Ok([tensor("weight", shape)?, tensor("bias", &shape[..1])?])
@@ -64,7 +62,6 @@ impl Layers<'_> {
         Ok(Packed::new(&weights, &bias, [input, padded(input)], [kernel; 2], kernel))
     }
 
-    /// A 1x1 convolution whose output is `channels` of each of the cells that one becomes.
     pub(super) fn up(&self, name: &str, input: usize, channels: usize) -> Result<Packed, WeightsError> {
         let [weights, bias] = self.tensors(name, &[CELLS * channels, input, 1, 1])?.map(|v| cell_by_cell(&v, channels));
         Ok(Packed::new(&weights, &bias, [input, padded(input)], [1, 1], 1))
@@ -76,18 +73,24 @@ impl Layers<'_> {
         Ok(Packed::new(&weights, &bias, [input; 2], [1, 1], 1))
     }
 
-    /// Residual blocks of `c` channels.
-    pub(super) fn blocks(&self, name: &str, count: usize, c: usize, context: bool) -> Result<Vec<Block>, WeightsError> {
+    pub(super) fn blocks(
+        &self,
+        name: &str,
+        count: usize,
+        c: usize,
+        context: bool,
+    ) -> Result<Vec<PlaneBlock>, WeightsError> {
         let block = |i: usize| {
             let part = |p: &str| format!("{name}.{i}.{p}");
             let context = match context {
-                true => {
-                    Some(Context { row: self.mix(&part("context.row"), c)?, col: self.mix(&part("context.col"), c)? })
-                }
+                true => Some(PlaneContext {
+                    row: self.mix(&part("context.row"), c)?,
+                    col: self.mix(&part("context.col"), c)?,
+                }),
                 false => None,
             };
             let conv = |p: &str| self.conv(&part(p), [c, padded(c)], c);
-            Ok(Block { conv1: conv("conv1.conv")?, conv2: conv("conv2.conv")?, context })
+            Ok(PlaneBlock { conv1: conv("conv1.conv")?, conv2: conv("conv2.conv")?, context })
         };
         (0..count).map(block).collect()
     }
@@ -130,7 +133,8 @@ mod tests {
         let numbers = [1.0f32, 2.0, 3.0, 4.0, 5.0, 6.0].map(f32::to_le_bytes).concat();
         let bytes = [&(header.len() as u64).to_le_bytes(), header.as_bytes(), &numbers].concat();
         let file = WeightFile::parse("older", &bytes).unwrap();
-        let read = |input: usize, more: usize| Layers { file: &file }.tensors_or_older("a", &[2, input, 1, 2], more);
+        let read =
+            |input: usize, more: usize| LiveLayers { file: &file }.tensors_or_older("a", &[2, input, 1, 2], more);
         assert_eq!(read(1, 0).unwrap(), [vec![1.0, 2.0, 3.0, 4.0], vec![5.0, 6.0]]);
         let widened = vec![1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(read(3, 2).unwrap(), [widened, vec![5.0, 6.0]]);

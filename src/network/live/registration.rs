@@ -11,7 +11,6 @@ pub(super) struct Registration<const COLUMNS: usize> {
     taps: Vec<Tap>,
 }
 
-/// A place between four cells, in eight bytes, as many of them are read as there are cells to look up.
 #[derive(Debug, Clone, Copy)]
 struct Tap {
     /// The first of the four; the others are beside it, where angles wrap around, and below.

@@ -28,7 +28,6 @@ pub(super) struct Conv3x3 {
     output: usize,
 }
 
-/// What one processor keeps while it works on a band, and for the next.
 #[derive(Default)]
 struct Band {
     line: Vec<f32>,
@@ -64,7 +63,6 @@ impl Conv3x3 {
         Conv3x3 { kernels, input: stride, output: padded(bias.len()) }
     }
 
-    /// Channels of an output cell.
     pub(super) fn output(&self) -> usize {
         self.output
     }
@@ -135,7 +133,6 @@ impl Band {
         }
     }
 
-    /// The pictures, each through its kernel.
     fn multiply(&mut self, simd: Simd, kernels: &Pictures<Packed>, cells: usize) {
         let products = self.products.iter_mut().flatten();
         for ((kernel, picture), out) in kernels.iter().flatten().zip(self.pictures.iter().flatten()).zip(products) {
@@ -155,7 +152,6 @@ impl Band {
     }
 }
 
-/// A line of results `[width, output]`.
 pub(super) struct Results<'a> {
     simd: Simd,
     channels: usize,
@@ -166,7 +162,6 @@ pub(super) struct Results<'a> {
 }
 
 impl<'a> Results<'a> {
-    /// Writes them to `to`.
     pub(super) fn put(self, to: &mut [f32]) {
         put(self.simd, [self.channels, self.groups, self.line], &self.band.gathered, to);
     }

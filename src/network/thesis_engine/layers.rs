@@ -8,11 +8,11 @@ const EPSILON: f32 = 1e-5;
 /// Where layers come from, under the names of [`Thesis`](super::super::thesis::Thesis). Their errors name the tensor that is missing or of another
 /// shape.
 #[derive(Clone, Copy)]
-pub(super) struct Layers<'a> {
+pub(super) struct ThesisLayers<'a> {
     pub(super) file: &'a WeightFile<'a>,
 }
 
-impl Layers<'_> {
+impl ThesisLayers<'_> {
     /// Weights `[output, input, size, size]` and bias `[output]` of stage `name`, a convolution.
     pub(super) fn conv(&self, name: &str, shape: [usize; 4]) -> Result<[Vec<f32>; 2], WeightsError> {
         let mut weights = self.file.tensor(&format!("{name}.conv.weight"), &shape)?;
@@ -34,7 +34,6 @@ impl Layers<'_> {
         Ok([weights, shift])
     }
 
-    /// What the batch norm of stage `name` does at inference: `x * scale + shift` for each channel.
     fn scale_and_shift(&self, name: &str, channels: usize) -> Result<[Vec<f32>; 2], WeightsError> {
         let tensor = |part: &str| self.file.tensor(&format!("{name}.norm.{part}"), &[channels]);
         let (gamma, beta, mean, variance) =

@@ -16,18 +16,17 @@ mod upward;
 use super::kernels::convolution::padded;
 use super::thesis::{Thesis, ThesisConfig};
 use super::weights::{WeightFile, WeightsError};
-use layers::Layers;
+use layers::ThesisLayers;
 use pictures::{Bordered, Parted};
 use towers::CHANNELS;
 
-/// Names of the towers with the sizes of their kernels.
 const TOWERS: [(&str, usize); 2] = [("layer3x3", 3), ("layer5x5", 5)];
 
 /// The thesis' network, packed for [`super::kernels`].
 #[derive(Debug)]
 pub struct ThesisEngine {
-    towers: [Vec<towers::Stage>; 2],
-    upward: Vec<upward::Stage>,
+    towers: [Vec<towers::TowerLevel>; 2],
+    upward: Vec<upward::UpwardLevel>,
     last: upward::Last,
     config: ThesisConfig,
 }
@@ -45,17 +44,17 @@ pub struct Buffers {
 
 impl ThesisEngine {
     /// Packs the weights of `file`, ours or the author's `MultiFilter.state_dict()`, which must fit `config`.
-    ///
     /// # Errors
     /// [`WeightsError`] names the first tensor that is missing, unknown, of another shape or type, or not finite.
     pub fn new(file: &WeightFile, config: &ThesisConfig) -> Result<Self, WeightsError> {
         let renamed = Thesis::in_our_names(file)?;
         let file = &WeightFile::parse(file.name(), &renamed)?;
-        let layers = Layers { file };
+        let layers = ThesisLayers { file };
         let ThesisConfig { filters, levels, .. } = *config;
-        let [first, second] = TOWERS.map(|(name, size)| towers::Stage::tower(layers, name, size, [filters, levels]));
+        let [first, second] =
+            TOWERS.map(|(name, size)| towers::TowerLevel::tower(layers, name, size, [filters, levels]));
         let end = levels.saturating_sub(1);
-        let upward = (0..end).map(|level| upward::Stage::new(layers, level, [2 * filters; 2]));
+        let upward = (0..end).map(|level| upward::UpwardLevel::new(layers, level, [2 * filters; 2]));
         let engine = ThesisEngine {
             towers: [first?, second?],
             upward: upward.collect::<Result<_, _>>()?,
@@ -66,7 +65,6 @@ impl ThesisEngine {
         Ok(engine)
     }
 
-    /// Whether a tensor of this name is part of the network.
     fn knows(&self, name: &str) -> bool {
         let levels = || 0..self.config.levels;
         let mut stages = levels().flat_map(|level| {
@@ -78,7 +76,6 @@ impl ThesisEngine {
 
     /// Estimates Lambda of one scene, `[rows, columns]` row-major, from `input` `[4, rows, columns]`. Both must be multiples of 2 to the power of
     /// the levels.
-    ///
     /// # Panics
     /// On an input of another shape.
     pub fn forward(&self, input: &[f32], [rows, columns]: [usize; 2], buffers: &mut Buffers) -> Vec<f32> {

@@ -20,7 +20,6 @@ pub(super) struct Parted {
 }
 
 impl Parted {
-    /// Makes room for a picture of `h` rows, `w` cells a row and `c` channels. What it held is left to be overwritten.
     pub(super) fn reset(&mut self, h: usize, w: usize, c: usize) {
         (self.h, self.w, self.c) = (h, w, c);
         self.data.resize((h + 2 * Self::MARGIN_ROWS) * self.line(), 0.0);
@@ -29,17 +28,14 @@ impl Parted {
     /// Rows above and below the picture: half of them belong to each part.
     const MARGIN_ROWS: usize = 2 * MARGIN;
 
-    /// Cells of a row in each part.
     fn part(&self) -> usize {
         self.w / 2 + 2 * MARGIN
     }
 
-    /// Values of a line.
     fn line(&self) -> usize {
         2 * self.part() * self.c
     }
 
-    /// Cells from a row of a part to its next one.
     pub(super) fn row_cells(&self) -> usize {
         4 * self.part()
     }
@@ -51,12 +47,12 @@ impl Parted {
         &self.data[row * self.line() + (odd * self.part() + MARGIN - before) * self.c..]
     }
 
-    /// Fills the picture and its margin: `write` gets the number of each row and a [`Line`] to put it into, and a buffer of its thread.
-    pub(super) fn fill(&mut self, write: impl Fn(usize, &mut Line<'_>, &mut Vec<f32>) + Sync) {
+    /// Fills the picture and its margin: `write` gets the number of each row and a [`PictureLine`] to put it into, and a buffer of its thread.
+    pub(super) fn fill(&mut self, write: impl Fn(usize, &mut PictureLine<'_>, &mut Vec<f32>) + Sync) {
         let (size, part, c) = (self.line(), self.part(), self.c);
         let inside = Self::MARGIN_ROWS * size..(Self::MARGIN_ROWS + self.h) * size;
         self.data[inside].par_chunks_mut(size).enumerate().for_each_init(Vec::new, |buffer, (y, cells)| {
-            let mut line = Line { cells, part, c };
+            let mut line = PictureLine { cells, part, c };
             write(y, &mut line, buffer);
             line.close();
         });
@@ -73,20 +69,17 @@ fn beyond(at: usize, margin: usize, size: usize) -> usize {
     (at + margin * (size - 1)) % size
 }
 
-/// A line of a [`Parted`] picture.
-pub(super) struct Line<'a> {
+pub(super) struct PictureLine<'a> {
     cells: &'a mut [f32],
     part: usize,
     c: usize,
 }
 
-impl Line<'_> {
-    /// The channels of cell `x`.
+impl PictureLine<'_> {
     pub(super) fn cell(&mut self, x: usize) -> &mut [f32] {
         &mut self.cells[(x % 2 * self.part + MARGIN + x / 2) * self.c..][..self.c]
     }
 
-    /// Fills the margin at both ends of both parts.
     fn close(&mut self) {
         let (c, inside) = (self.c, self.part - 2 * MARGIN);
         for cells in self.cells.chunks_exact_mut(self.part * c) {
@@ -117,27 +110,22 @@ impl Bordered {
         }
     }
 
-    /// Values of a line.
     fn line(&self) -> usize {
         (self.w + 2) * self.c
     }
 
-    /// Cells from one row to the next.
     pub(super) fn row_cells(&self) -> usize {
         self.w + 2
     }
 
-    /// Everything from cell `x` of row `y` on, both counted from the border.
     pub(super) fn seen(&self, y: usize, x: usize) -> &[f32] {
         &self.data[y * self.line() + x * self.c..]
     }
 
-    /// Row `y`, without its border.
     pub(super) fn row(&self, y: usize) -> &[f32] {
         &self.seen(y + 1, 1)[..self.w * self.c]
     }
 
-    /// Fills the picture: `write` gets the number of each row and its cells, and a buffer of its thread.
     pub(super) fn fill(&mut self, write: impl Fn(usize, &mut [f32], &mut Vec<f32>) + Sync) {
         let (size, c) = (self.line(), self.c);
         let inside: Range<usize> = size..(1 + self.h) * size;

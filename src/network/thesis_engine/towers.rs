@@ -1,6 +1,6 @@
 //! The way down: dilated circular convolutions, each with ReLU and a 2x2 max-pool.
 
-use super::layers::Layers;
+use super::layers::ThesisLayers;
 use super::pictures::{Bordered, Parted};
 use crate::network::kernels::convolution::Packed;
 use crate::network::kernels::vector::{LANES, Loop, Vector, run};
@@ -13,32 +13,30 @@ pub const CHANNELS: usize = 4;
 /// Outputs that a max-pool takes the largest of: one of each part of a [`Parted`] picture.
 const POOLED: usize = 4;
 
-/// One level of a tower.
 #[derive(Debug)]
-pub(super) struct Stage {
+pub(super) struct TowerLevel {
     kernel: Packed,
     /// Rows and columns of the kernel.
     size: usize,
     output: usize,
 }
 
-impl Stage {
+impl TowerLevel {
     /// A tower called `name` of `levels` stages with kernels of `size` by `size` cells and `filters` outputs each. Its input has four channels.
     pub(super) fn tower(
-        layers: Layers<'_>,
+        layers: ThesisLayers<'_>,
         name: &str,
         size: usize,
         [filters, levels]: [usize; 2],
-    ) -> Result<Vec<Stage>, WeightsError> {
+    ) -> Result<Vec<TowerLevel>, WeightsError> {
         let stage = |level: usize| {
             let input = if level == 0 { CHANNELS } else { filters };
             let [weights, bias] = layers.conv(&format!("down.{name}.{level}"), [filters, input, size, size])?;
-            Ok(Stage { kernel: Packed::new(&weights, &bias, [input; 2], [size; 2], 1), size, output: filters })
+            Ok(TowerLevel { kernel: Packed::new(&weights, &bias, [input; 2], [size; 2], 1), size, output: filters })
         };
         (0..levels).map(stage).collect()
     }
 
-    /// Half of `from` in both directions, as the next stage reads it.
     pub(super) fn forward(&self, from: &Parted, to: &mut Parted) {
         to.reset(from.h / 2, from.w / 2, self.output);
         let simd = Simd::chosen();
@@ -50,7 +48,6 @@ impl Stage {
         });
     }
 
-    /// The same as the channels of `to` from channel `first` on.
     pub(super) fn join(&self, from: &Parted, to: &mut Bordered, first: usize) {
         let (simd, channels) = (Simd::chosen(), to.c);
         to.fill(|y, line, buffer| {
@@ -61,7 +58,6 @@ impl Stage {
         });
     }
 
-    /// Row `y` of the output, `[w / 2, kernel's outputs]`. `buffer` is where it lies.
     fn pooled<'a>(&self, simd: Simd, from: &Parted, y: usize, buffer: &'a mut Vec<f32>) -> &'a [f32] {
         let width = from.w / 2;
         let size = width * self.kernel.output();
@@ -76,7 +72,6 @@ impl Stage {
     }
 }
 
-/// Puts into `first` the largest of itself, of what stands at the same place of each part of `others`, and of 0.
 struct Largest<'a> {
     first: &'a mut [f32],
     others: &'a [f32],

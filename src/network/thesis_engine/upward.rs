@@ -3,7 +3,7 @@
 //! The output's cell `Y` sees the input's cells `i` with `Y = 2 i - 1 + k` for the kernel's rows `k` from 0 to 3. So an even one sees two
 //! rows of the input, through the kernel's rows 3 and 1, and an odd one two rows through 2 and 0; likewise for columns.
 
-use super::layers::Layers;
+use super::layers::ThesisLayers;
 use super::pictures::Bordered;
 use crate::network::kernels::convolution::{Packed, padded};
 use crate::network::kernels::vector::{LANES, Loop, Vector, run};
@@ -11,21 +11,23 @@ use crate::network::weights::WeightsError;
 use crate::signal::simd::Simd;
 use rayon::prelude::*;
 
-/// Rows and columns of the kernels.
 const SIZE: usize = 4;
 /// Rows of the kernel that meet the two rows of the input that an even row of the output sees, and an odd one.
 const ROWS: [[usize; 2]; 2] = [[3, 1], [2, 0]];
 const _: () = assert!(SIZE * SIZE == LANES, "the last kernel's products of a cell are one vector");
 
-/// One level: a 2x2 convolution for even and odd rows and, within those, columns.
 #[derive(Debug)]
-pub(super) struct Stage {
+pub(super) struct UpwardLevel {
     parts: [[Packed; 2]; 2],
 }
 
-impl Stage {
+impl UpwardLevel {
     /// Stage `level` with so many input and output channels.
-    pub(super) fn new(layers: Layers<'_>, level: usize, [input, output]: [usize; 2]) -> Result<Stage, WeightsError> {
+    pub(super) fn new(
+        layers: ThesisLayers<'_>,
+        level: usize,
+        [input, output]: [usize; 2],
+    ) -> Result<UpwardLevel, WeightsError> {
         let [weights, bias] = layers.transposed(&format!("up.upconv.{level}"), [input, output, SIZE, SIZE])?;
         let part = |rows: [usize; 2], columns: [usize; 2]| {
             let weight = |o: usize, i: usize| {
@@ -35,15 +37,13 @@ impl Stage {
             let taps: Vec<f32> = (0..output).flat_map(|o| (0..input).flat_map(move |i| weight(o, i))).collect();
             Packed::new(&taps, &bias, [input, padded(input)], [2, 2], 1)
         };
-        Ok(Stage { parts: ROWS.map(|rows| ROWS.map(|columns| part(rows, columns))) })
+        Ok(UpwardLevel { parts: ROWS.map(|rows| ROWS.map(|columns| part(rows, columns))) })
     }
 
-    /// Channels of an output cell.
     pub(super) fn output(&self) -> usize {
         self.parts[0][0].output()
     }
 
-    /// Twice `from` in both directions.
     pub(super) fn forward(&self, from: &Bordered, to: &mut Bordered) {
         to.reset(2 * from.h, 2 * from.w, self.output());
         let simd = Simd::chosen();
@@ -62,7 +62,6 @@ impl Stage {
     }
 }
 
-/// Puts everything through ReLU.
 struct Rectify<'a>(&'a mut [f32]);
 
 impl Loop for Rectify<'_> {
@@ -88,15 +87,14 @@ pub(super) struct Last {
 
 impl Last {
     /// Stage `level` with so many input channels.
-    pub(super) fn new(layers: Layers<'_>, level: usize, input: usize) -> Result<Last, WeightsError> {
+    pub(super) fn new(layers: ThesisLayers<'_>, level: usize, input: usize) -> Result<Last, WeightsError> {
         let [weights, bias] = layers.transposed(&format!("up.upconv.{level}"), [input, 1, SIZE, SIZE])?;
         let taps: Vec<f32> = (0..LANES).flat_map(|tap| weights.iter().skip(tap).step_by(LANES)).copied().collect();
         let products = Packed::new(&taps, &[0.0; LANES], [input, padded(input)], [1, 1], 1);
         Ok(Last { products, bias: bias.iter().sum() })
     }
 
-    /// The products of what `before` makes of `from`, or of `from` itself where there is no level before the last.
-    pub(super) fn multiply(&self, before: Option<&Stage>, from: &Bordered, products: &mut Bordered) {
+    pub(super) fn multiply(&self, before: Option<&UpwardLevel>, from: &Bordered, products: &mut Bordered) {
         let simd = Simd::chosen();
         let twice = if before.is_some() { 2 } else { 1 };
         products.reset(twice * from.h, twice * from.w, LANES);
@@ -111,7 +109,6 @@ impl Last {
         });
     }
 
-    /// The map, twice as large as `products`, row-major.
     pub(super) fn add_up(&self, products: &Bordered) -> Vec<f32> {
         let mut map = vec![0.0; 4 * products.h * products.w];
         map.par_chunks_mut(2 * products.w).enumerate().for_each(|(y, line)| {

@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 
 impl WeightFile<'_> {
     /// Loads the weights, under PyTorch's names, into `module`. Buffers that `ignored` accepts may lie in the file unused.
-    ///
     /// # Errors
     /// [`WeightsError`] names the first tensor that is missing, unknown, of another shape or type, or not finite.
     pub fn load_into<M: Module>(&self, module: &mut M, ignored: fn(&str) -> bool) -> Result<(), WeightsError> {

@@ -3,14 +3,12 @@
 use super::{TensorHeader, WeightFile, WeightsError};
 use half::f16;
 
-/// safetensors' name of 32-bit floats.
 const SINGLE: &str = "F32";
 /// safetensors' name of 16-bit floats. The shipped weights of `live` are of this type, so that a page loads faster.
 const HALF: &str = "F16";
 
 impl WeightFile<'_> {
     /// The values of one tensor.
-    ///
     /// # Errors
     /// [`WeightsError::Tensor`] when it is missing, of another shape or type, or not finite.
     pub fn tensor(&self, name: &str, shape: &[usize]) -> Result<Vec<f32>, WeightsError> {
@@ -46,7 +44,6 @@ impl WeightFile<'_> {
     }
 
     /// The same file with 32-bit floats in place of 16-bit ones, for readers that want them; other types stay.
-    ///
     /// # Errors
     /// [`WeightsError::Tensor`] for a tensor that lies outside the file, [`WeightsError::NotSafetensors`] if the header can't be written.
     #[cfg(feature = "network")]

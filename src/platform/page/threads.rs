@@ -37,10 +37,8 @@ const MOST_IN_A_POOL: usize = 8;
 
 static HAS_THREADS: AtomicBool = AtomicBool::new(false);
 
-/// The pool of rayon that everybody shares who has none of his own.
 static POOL: Once = Once::new();
 
-/// What went wrong and is not told yet.
 static PROBLEMS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 thread_local! {
@@ -49,7 +47,6 @@ thread_local! {
     static ON_PANIC: RefCell<Option<Box<dyn FnOnce(String)>>> = const { RefCell::new(None) };
 }
 
-/// What a thread begins with.
 struct Work {
     /// Whether it is one of a pool's.
     of_a_pool: bool,
@@ -128,7 +125,6 @@ pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// Runs `work` on a thread called `name`, or in a later turn where there are none.
-///
 /// # Errors
 /// None here: a thread that the browser doesn't start is told as a problem.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
@@ -170,7 +166,6 @@ pub fn enter_thread(work: usize) {
     (work.run)();
 }
 
-/// Threads of a pool.
 fn pool_threads() -> usize {
     cores().clamp(1, MOST_IN_A_POOL)
 }

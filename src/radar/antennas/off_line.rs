@@ -7,7 +7,6 @@ use crate::radar::Radar;
 
 impl Antennas {
     /// The same antennas, off the line by these distances towards the scene, metres.
-    ///
     /// # Errors
     /// [`AntennasError`] where a list has not a number for each antenna, or one that is not finite or beyond 1 m.
     pub fn off_line(self, transmitter_y_metres: &[f64], receiver_y_metres: &[f64]) -> Result<Self, AntennasError> {

@@ -3,7 +3,7 @@
 use super::sensor::{NEAREST_METRES, Sensor, W, kept_apart};
 use crate::radar::Pair;
 use crate::scene::Reflector;
-use crate::signal::path::Pairs;
+use crate::signal::path::PairBlocks;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, phasor};
 
 /// A reflector as some neighbouring channels of one end hear it, a lane a channel. Lanes beyond the end are silent.
@@ -74,7 +74,7 @@ fn part<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usiz
     let channel = |lane: usize| end * sensor.end_elements + (first + lane).min(sensor.end_elements - 1);
     let is_heard = |lane: usize| first + lane < sensor.end_elements && sensor.hears[channel(lane)];
     let heard = Lanes(std::array::from_fn(|lane| f64::from(u8::from(is_heard(lane)))));
-    let pairs = Pairs::new(|lane| sensor.pairs[channel(lane)]);
+    let pairs = PairBlocks::new(|lane| sensor.pairs[channel(lane)]);
     let echo = sensor.model.echo_lanes::<W, FMA>(pairs, r);
     let turns = echo.carrier_turns + echo.beat_turns_at::<FMA>((samples - 1.0) / 2.0);
     let Slopes { by_x, by_half_square, decay } = if sensor.is_monostatic {

@@ -2,7 +2,7 @@
 
 use super::sensor::{Sensor, W, kept_apart};
 use crate::scene::Reflector;
-use crate::signal::path::Pairs;
+use crate::signal::path::PairBlocks;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Simd};
 use crate::signal::split::{Product, STRIDE, add_products, fill_factors, rows_of};
 use num_complex::Complex64;
@@ -199,7 +199,7 @@ impl Kernel for Sum<'_> {
         let Sum { sensor, reflectors, keep, .. } = self;
         let last = sensor.element_x.len() - 1;
         let channel = |lane: usize| (self.first_channel + lane).min(last);
-        let pairs = Pairs::new(|lane| sensor.pairs[channel(lane)]);
+        let pairs = PairBlocks::new(|lane| sensor.pairs[channel(lane)]);
         let many = rows_of(sensor.samples);
         let mut echoes = Phasors::room(if keep { reflectors.len() } else { reflectors.len().min(TOGETHER) }, many);
         let mut scaled = vec![ComplexLanes::zero(); TOGETHER * many];

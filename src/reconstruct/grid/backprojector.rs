@@ -5,7 +5,7 @@
 //! its range and angle at each block, and the phase that its distance gives. That is the near-field matched filter of Cafforio, Prati and Rocca ("SAR data focusing using seismic
 //! migration techniques", 1991) with an interpolator instead of a sum over samples.
 
-use super::cells::Cells;
+use super::cells::GridCells;
 use crate::maps::centred_spectrum;
 use crate::radar::{End, Radar, hann};
 use crate::reconstruct::seen::seen_by;
@@ -22,13 +22,11 @@ const ROWS_PER_BIN: usize = 4;
 /// Least spectrum columns for each element.
 const COLUMNS_PER_ELEMENT: usize = 20;
 
-/// Most elements of a block.
 const BLOCK: usize = 16;
 
 /// A block's far field begins at most at this part of the maximum range.
 const NEAR_PART: f64 = 1.0 / 64.0;
 
-/// Most bytes that the tables of places may fill.
 const MOST_TABLE_BYTES: usize = 1 << 30;
 
 /// Where one cell of the centre's grid lies in one block's spectrum.
@@ -40,14 +38,11 @@ struct Place {
     phase: Complex64,
 }
 
-/// Neighbouring elements of one end, and where they see every cell, `[range bins, directions]`.
 struct Block {
-    /// Within the end.
     elements: Range<usize>,
     places: Array2<Place>,
 }
 
-/// Looks up both ends for every cell of the centre's grid, `[range bins, directions]`.
 pub(super) struct Backprojector {
     blocks: [Vec<Block>; 2],
     rows: usize,
@@ -83,7 +78,7 @@ fn blocks(radar: &Radar) -> Vec<Range<usize>> {
 }
 
 /// Why the tables can't be made for `radar`, where they would fill too much memory.
-pub(super) fn too_large(radar: &Radar, cells: &Cells<'_>) -> Option<String> {
+pub(super) fn too_large(radar: &Radar, cells: &GridCells<'_>) -> Option<String> {
     let (bins, directions) = cells.dim();
     let bytes = 2 * blocks(radar).len() * bins * directions * size_of::<Place>();
     (bytes > MOST_TABLE_BYTES).then(|| {
@@ -92,7 +87,7 @@ pub(super) fn too_large(radar: &Radar, cells: &Cells<'_>) -> Option<String> {
 }
 
 impl Backprojector {
-    pub fn new(radar: &Radar, cells: &Cells<'_>, window: RangeWindow) -> Self {
+    pub fn new(radar: &Radar, cells: &GridCells<'_>, window: RangeWindow) -> Self {
         let rows = ROWS_PER_BIN * radar.samples;
         let blocks = blocks(radar);
         let longest = blocks.iter().map(Range::len).max().unwrap_or(1);
@@ -127,7 +122,6 @@ impl Backprojector {
         })
     }
 
-    /// Adds what `block` heard from every cell.
     fn add(&self, block: &Block, spectrum: &Array2<Complex64>, sum: &mut Array2<Complex64>) {
         let scale = 1.0 / self.weight;
         Zip::from(sum).and(&block.places).par_for_each(|sum, place| {
@@ -142,8 +136,7 @@ impl Backprojector {
     }
 }
 
-/// Where a block around element `origin` sees every cell.
-fn places(radar: &Radar, cells: &Cells<'_>, origin: usize, rows: usize, columns: usize) -> Array2<Place> {
+fn places(radar: &Radar, cells: &GridCells<'_>, origin: usize, rows: usize, columns: usize) -> Array2<Place> {
     let turns_per_metre = radar.turns_per_metre((radar.samples / 2) as f64);
     // Turns from one element to the next for cos(theta) = 1.
     let per_element = -radar.carrier_turns_per_metre() * radar.element_spacing_metres;

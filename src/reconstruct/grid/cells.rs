@@ -6,10 +6,8 @@ use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::Array2;
 
-/// Ranges and directions of the cells.
-pub(super) struct Cells<'a> {
+pub(super) struct GridCells<'a> {
     radar: &'a Radar,
-    /// Whether each element of both ends heard something.
     hears: Vec<bool>,
     /// Range of each row, metres.
     pub range_metres: Vec<f64>,
@@ -17,25 +15,24 @@ pub(super) struct Cells<'a> {
     pub directions: Vec<Direction>,
 }
 
-/// One cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Cell {
+pub(super) struct GridCell {
     /// Range bin.
     pub bin: usize,
     /// Index of the direction.
     pub direction: usize,
 }
 
-impl<'a> Cells<'a> {
+impl<'a> GridCells<'a> {
     /// The cells of `radar`'s map; all its elements hear.
     pub fn new(radar: &'a Radar) -> Self {
         let hears = vec![true; 2 * radar.end_elements];
-        Cells { radar, hears, range_metres: row_ranges_metres(radar), directions: directions(radar) }
+        GridCells { radar, hears, range_metres: row_ranges_metres(radar), directions: directions(radar) }
     }
 
     /// The same where the elements hear that measured something of `ends`.
     pub fn heard_by(radar: &'a Radar, ends: &TwoEnds) -> Self {
-        Cells { hears: ends.hears(), ..Cells::new(radar) }
+        GridCells { hears: ends.hears(), ..GridCells::new(radar) }
     }
 
     /// The radar whose cells they are.
@@ -49,7 +46,7 @@ impl<'a> Cells<'a> {
     }
 
     /// Whether `cell` is in the grid and holds a place where something may stand: not at the array's centre, nor on an element.
-    fn reflector(&self, cell: Cell) -> Option<Reflector> {
+    fn reflector(&self, cell: GridCell) -> Option<Reflector> {
         let (range, cos) = (*self.range_metres.get(cell.bin)?, self.directions.get(cell.direction)?.cos_theta);
         let place =
             Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).max(0.0).sqrt(), reflectivity: 1.0 };
@@ -70,12 +67,12 @@ impl<'a> Cells<'a> {
     }
 
     /// Whether something may stand in `cell`.
-    pub fn may_hold(&self, cell: Cell) -> bool {
+    pub fn may_hold(&self, cell: GridCell) -> bool {
         self.reflector(cell).is_some()
     }
 
     /// The echo of a unit reflector in `cell`, where something may stand there.
-    pub fn echo(&self, cell: Cell) -> Option<ArrayEcho> {
+    pub fn echo(&self, cell: GridCell) -> Option<ArrayEcho> {
         self.reflector(cell)?;
         self.echo_at(self.range_metres[cell.bin], self.directions[cell.direction].cos_theta)
     }

@@ -1,16 +1,16 @@
 //! Sparse reconstruction with an l1 penalty, by FISTA.
 
 use super::backprojector::{Backprojector, RangeWindow, too_large};
-use super::cells::{Cell, Cells};
+use super::cells::{GridCell, GridCells};
 use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::ends_noise_variance;
-use crate::reconstruct::noise_test::decades_above_cells;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::too_many_folds;
+use crate::reconstruct::significance::decades_above_cells;
 use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::{Array2, Zip};
 use num_complex::Complex64;
@@ -54,7 +54,6 @@ const WRONGLY_ZERO: f64 = 1.1;
 /// Most reflectors that are drawn; the strongest of what the penalty left.
 const MOST_REFLECTORS_DRAWN: usize = 200;
 
-/// The problem in the coordinates that iterations need: Gram matrix and correlations.
 #[derive(Clone)]
 struct Problem {
     atoms: Vec<ArrayEcho>,
@@ -69,21 +68,21 @@ struct Problem {
 /// `least` is heard, as the correlation with a unit echo.
 fn candidates(
     radar: &Radar,
-    cells: &Cells<'_>,
+    cells: &GridCells<'_>,
     heard_of: [Array2<Complex64>; 2],
     count: usize,
-    known: &[Cell],
+    known: &[GridCell],
     least: f64,
-) -> Vec<Cell> {
+) -> Vec<GridCell> {
     let [first, last] = heard_of;
     // Weighted as unit atoms: a far reflector's echo is weak, its atom is not.
     let scale = 0.5 * (radar.samples * radar.end_elements) as f64;
     let power = Zip::from(&first).and(&last).par_map_collect(|a, b| scale * (a + b).norm_sqr());
     let known: HashSet<(usize, usize)> = known.iter().map(|cell| (cell.bin, cell.direction)).collect();
-    let mut heard: Vec<(usize, Cell, f64)> = power
+    let mut heard: Vec<(usize, GridCell, f64)> = power
         .indexed_iter()
         .enumerate()
-        .map(|(i, ((bin, direction), power))| (i, Cell { bin, direction }, *power))
+        .map(|(i, ((bin, direction), power))| (i, GridCell { bin, direction }, *power))
         .filter(|(_, cell, power)| *power > least * least && cells.may_hold(*cell))
         .filter(|(_, cell, _)| !known.contains(&(cell.bin, cell.direction)))
         .collect();
@@ -97,7 +96,6 @@ fn candidates(
     heard.into_iter().map(|(_, cell, _)| cell).collect()
 }
 
-/// What a gain costs.
 #[derive(Debug, Clone, Copy)]
 enum Penalty {
     /// This part of the one that would leave no reflector at all, and no less than `least`.
@@ -107,10 +105,9 @@ enum Penalty {
 }
 
 impl Problem {
-    /// Of the echoes of the cells `chosen`.
     fn new(
-        cells: &Cells<'_>,
-        chosen: &[Cell],
+        cells: &GridCells<'_>,
+        chosen: &[GridCell],
         ends: &TwoEnds,
         penalty: Penalty,
         request: &Request,
@@ -137,7 +134,6 @@ impl Problem {
         Ok(Problem { atoms, gram, heard, penalty })
     }
 
-    /// What `x` leaves of `ends`.
     fn left(&self, radar: &Radar, ends: &TwoEnds, x: &[Complex64]) -> TwoEnds {
         let mut left = ends.flat();
         for (atom, gain) in self.atoms.iter().zip(x).filter(|(_, gain)| gain.norm_sqr() > 0.0) {
@@ -148,13 +144,11 @@ impl Problem {
 
     fn gram_times(&self, x: &[Complex64]) -> Vec<Complex64> {
         let n = self.atoms.len();
-        // Most gains are zero: skip their columns.
         let support: Vec<(usize, Complex64)> =
             x.iter().copied().enumerate().filter(|(_, v)| v.norm_sqr() > 0.0).collect();
         self.gram.par_chunks(n.max(1)).map(|row| support.iter().map(|(j, v)| row[*j] * v).sum()).collect()
     }
 
-    /// The objective less the constant `1/2 ||y||^2`.
     fn objective(&self, x: &[Complex64], gram_x: &[Complex64]) -> f64 {
         x.iter()
             .zip(gram_x)
@@ -163,7 +157,6 @@ impl Problem {
             .sum()
     }
 
-    /// Largest eigenvalue of the Gram matrix, from above: power iteration with some room.
     fn lipschitz(&self) -> f64 {
         let mut v = self.heard.clone();
         let mut largest = 1.0;
@@ -249,12 +242,12 @@ impl Reconstructor for Fista {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        let why = too_many_folds(radar).or_else(|| too_large(radar, &Cells::new(radar)));
+        let why = too_many_folds(radar).or_else(|| too_large(radar, &GridCells::new(radar)));
         why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let cells = Cells::heard_by(radar, ends);
+        let cells = GridCells::heard_by(radar, ends);
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
         let count = self.candidates.min(MOST_CANDIDATES);
         let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
@@ -303,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_that_were_not_chosen_at_first_are_added_where_they_are_needed() {
+    fn cells_that_are_needed_are_added_later() {
         let radar = Radar::default();
         // The near one fills all of the first few cells.
         let scene = Scene::of_points([(3.0, 7.0), (-5.0, 16.0)]);
@@ -320,7 +313,7 @@ mod tests {
         let scene = Scene::of_points([(3.0, 12.0), (-5.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let request = Request::default();
-        let cells = Cells::heard_by(&radar, &ends);
+        let cells = GridCells::heard_by(&radar, &ends);
         let heard = Backprojector::new(&radar, &cells, RangeWindow::None).amplitudes(&ends);
         let chosen = candidates(&radar, &cells, heard, 300, &[], 0.0);
         let problem = Problem::new(&cells, &chosen, &ends, Penalty::Part { part: 0.02, least: 0.0 }, &request).unwrap();

@@ -1,6 +1,6 @@
 //! The near-field matched filter for elements that stand anywhere: what other layouts of a few elements make of a scene.
 
-use super::cells::Cells;
+use super::cells::GridCells;
 use crate::maps::RangeAngleMap;
 use crate::radar::{Layout, Pair, Radar};
 use crate::reconstruct::answer::Request;
@@ -22,7 +22,6 @@ const LAYOUT_ROWS_PER_BIN: usize = 8;
 /// `samples` is `[elements of layout, samples]`, in the layout's order. Back-projection, as in [`MatchedFilter`](crate::reconstruct::MatchedFilter), which is
 /// this for the two ends with whole-end beams. Random elements keep the main lobe of the whole aperture and pay with side lobes
 /// everywhere (thesis figures 1-2 and 1-3).
-///
 /// # Errors
 /// [`ReconstructError::Shape`] where `samples` don't fit, [`ReconstructError::Cancelled`].
 pub fn layout_matched_filter(
@@ -48,7 +47,7 @@ pub fn layout_matched_filter(
     let profiles = Profiles::new(radar, &channels, LAYOUT_ROWS_PER_BIN);
     request.task.check()?;
     let scale = focused_gain(radar) / layout.len() as f64;
-    let (cells, pairs) = (Cells::new(radar), layout.pairs());
+    let (cells, pairs) = (GridCells::new(radar), layout.pairs());
     let mut power = Array2::zeros(cells.dim());
     power.axis_iter_mut(Axis(0)).into_par_iter().zip(&cells.range_metres).try_for_each(|(mut row, range_metres)| {
         request.task.check()?;

@@ -1,7 +1,7 @@
 //! The near-field matched filter of both ends.
 
 use super::backprojector::{Backprojector, RangeWindow, too_large};
-use super::cells::Cells;
+use super::cells::GridCells;
 use super::layout_filter::layout_matched_filter;
 use crate::radar::{Layout, Radar};
 use crate::reconstruct::answer::{Reconstruction, Request};
@@ -49,7 +49,7 @@ impl Reconstructor for MatchedFilter {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        let why = too_many_folds(radar).or_else(|| too_large(radar, &Cells::new(radar)));
+        let why = too_many_folds(radar).or_else(|| too_large(radar, &GridCells::new(radar)));
         why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
@@ -63,7 +63,7 @@ impl Reconstructor for MatchedFilter {
             let lambda = layout_matched_filter(radar, &layout, heard.samples.view(), request)?;
             return Ok(Reconstruction { lambda, ..Reconstruction::silence(radar) });
         }
-        let cells = Cells::new(radar);
+        let cells = GridCells::new(radar);
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::Hann);
         request.task.check()?;
         let [first, last] = backprojector.amplitudes(ends);
@@ -92,7 +92,7 @@ mod tests {
         let (range, cos) = (radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64));
         let scene = Scene::of_points([(range * cos, range * (1.0 - cos * cos).sqrt())]);
         let ends = simulate(&radar, &scene, Floor::Exact, 0).unwrap().two_ends(&radar);
-        let [a, b] = Backprojector::new(&radar, &Cells::new(&radar), RangeWindow::None).amplitudes(&ends);
+        let [a, b] = Backprojector::new(&radar, &GridCells::new(&radar), RangeWindow::None).amplitudes(&ends);
         let expected = radar.transmit_power_watts / (range * range);
         let sum = &a + &b;
         let (at, peak) = sum.indexed_iter().max_by(|a, b| a.1.norm().total_cmp(&b.1.norm())).unwrap();

@@ -1,7 +1,7 @@
 //! Orthogonal matching pursuit on the near-field polar grid.
 
 use super::backprojector::{Backprojector, RangeWindow, too_large};
-use super::cells::Cells;
+use super::cells::GridCells;
 use super::pursuit::{MOST_RELAXED, Pick, Pursuit, energy, unit_gains};
 use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
@@ -9,9 +9,9 @@ use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::ends_noise_variance;
-use crate::reconstruct::noise_test::decades_above_cells;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::too_many_folds;
+use crate::reconstruct::significance::decades_above_cells;
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Zip, s};
 use num_complex::Complex64;
@@ -52,7 +52,6 @@ const ROUNDING_ENERGY: f64 = 1e-22;
 const LEAST_OF_ALL: f64 = 1e-10;
 
 impl Omp {
-    /// Picks atoms of `ends` until only noise is left, and fits their gains.
     fn pursue(
         &self,
         radar: &Radar,
@@ -64,7 +63,7 @@ impl Omp {
         let noise = noise_variance * samples.len() as f64 * 1.1;
         let all = energy(&samples);
         let enough = noise.max(all * ROUNDING_ENERGY);
-        let mut cells = Cells::heard_by(radar, ends);
+        let mut cells = GridCells::heard_by(radar, ends);
         // Nothing stands at the centre: what is heard in bin 0 stands one range period beyond.
         if radar.samples > 1 {
             cells.range_metres[0] = radar.max_range_metres();
@@ -130,7 +129,6 @@ impl Omp {
     }
 }
 
-/// Gains of the picked atoms by least squares.
 fn fit(picks: &[Pick], samples: &[Complex64]) -> Vec<Gained> {
     let gains = unit_gains(picks, samples);
     let gained = picks.iter().zip(gains);
@@ -156,7 +154,7 @@ impl Reconstructor for Omp {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        let why = too_many_folds(radar).or_else(|| too_large(radar, &Cells::new(radar)));
+        let why = too_many_folds(radar).or_else(|| too_large(radar, &GridCells::new(radar)));
         why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
@@ -169,7 +167,7 @@ impl Reconstructor for Omp {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cells::Cell;
+    use super::super::cells::GridCell;
     use super::super::pursuit::subtract;
     use super::*;
     use crate::radar::Carrier;
@@ -179,9 +177,9 @@ mod tests {
     #[test]
     fn reflectors_on_the_grid_are_recovered() {
         let radar = Radar::default();
-        let grid = Cells::new(&radar);
+        let grid = GridCells::new(&radar);
         let cells = [(150usize, 700usize), (230, 512), (231, 300), (390, 620)];
-        let atoms = cells.map(|(bin, direction)| grid.echo(Cell { bin, direction }).unwrap());
+        let atoms = cells.map(|(bin, direction)| grid.echo(GridCell { bin, direction }).unwrap());
         let scene = Scene::of_points(atoms.iter().map(|a| (a.reflector.x_metres, a.reflector.y_metres)));
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let mut found = Omp::default().reconstruct(&radar, &ends, &Request::default()).unwrap().reflectors;
@@ -198,11 +196,11 @@ mod tests {
     /// Part of the energy of `ends` that `found` leaves.
     fn left(radar: &Radar, ends: &TwoEnds, found: &[Reflector]) -> f64 {
         let samples = ends.flat();
-        let cells = Cells::heard_by(radar, ends);
+        let cells = GridCells::heard_by(radar, ends);
         let pick = |r: &Reflector| {
             let place = radar.polar_of(r.x_metres, r.y_metres);
             Pick {
-                cell: Cell { bin: 0, direction: 0 },
+                cell: GridCell { bin: 0, direction: 0 },
                 atom: cells.echo_at(place.range_metres, place.cos_theta).unwrap(),
             }
         };

@@ -1,6 +1,6 @@
 //! Echoes that were picked, moved off the grid to where they explain most, and what they leave of the samples.
 
-use super::cells::{Cell, Cells};
+use super::cells::{GridCell, GridCells};
 use crate::radar::Radar;
 use crate::reconstruct::answer::Request;
 use crate::reconstruct::error::ReconstructError;
@@ -40,16 +40,14 @@ const LEAST_NEW: f64 = 1e-7;
 /// Part of the residual's energy that a pick must at least explain.
 const LEAST_GAIN: f64 = 1e-3;
 
-/// A cell's echo, picked.
 pub(super) struct Pick {
-    pub cell: Cell,
+    pub cell: GridCell,
     pub atom: ArrayEcho,
 }
 
-/// What has been picked, and what is left of the samples.
 pub(super) struct Pursuit<'a> {
     radar: &'a Radar,
-    cells: Cells<'a>,
+    cells: GridCells<'a>,
     pub picks: Vec<Pick>,
     /// Orthonormal basis of the picked atoms.
     basis: Vec<Vec<Complex64>>,
@@ -58,12 +56,12 @@ pub(super) struct Pursuit<'a> {
 
 impl<'a> Pursuit<'a> {
     /// Nothing is picked, and all of `samples` is left.
-    pub fn new(radar: &'a Radar, cells: Cells<'a>, samples: &[Complex64]) -> Self {
+    pub fn new(radar: &'a Radar, cells: GridCells<'a>, samples: &[Complex64]) -> Self {
         let (picks, basis) = (Vec::new(), Vec::new());
         Pursuit { radar, cells, picks, basis, residual: samples.to_vec() }
     }
 
-    fn is_taken(&self, cell: Cell) -> bool {
+    fn is_taken(&self, cell: GridCell) -> bool {
         self.picks.iter().any(|p| p.cell == cell)
     }
 
@@ -71,7 +69,7 @@ impl<'a> Pursuit<'a> {
     pub fn strongest(&self, heard: &Array2<f64>) -> Option<Pick> {
         let (cell, _) = heard
             .indexed_iter()
-            .map(|((bin, direction), power)| (Cell { bin, direction }, power))
+            .map(|((bin, direction), power)| (GridCell { bin, direction }, power))
             .filter(|(cell, _)| !self.is_taken(*cell) && self.cells.may_hold(*cell))
             .max_by(|a, b| a.1.total_cmp(b.1))?;
         Some(Pick { cell, atom: self.cells.echo(cell)? })
@@ -167,7 +165,7 @@ impl<'a> Pursuit<'a> {
 
 /// `atom` moved to the nearest place where it explains most of `samples`, and its share there; in at most `steps` steps, which get
 /// shorter once none helps.
-fn climbed(cells: &Cells<'_>, mut atom: ArrayEcho, samples: &[Complex64], steps: usize) -> (f64, ArrayEcho) {
+fn climbed(cells: &GridCells<'_>, mut atom: ArrayEcho, samples: &[Complex64], steps: usize) -> (f64, ArrayEcho) {
     let radar = cells.radar();
     let place = radar.polar_of(atom.reflector.x_metres, atom.reflector.y_metres);
     let (mut range, mut cos) = (place.range_metres, place.cos_theta);
@@ -191,7 +189,6 @@ fn climbed(cells: &Cells<'_>, mut atom: ArrayEcho, samples: &[Complex64], steps:
     (heard, atom)
 }
 
-/// Gains of the picked atoms' unit samples.
 pub(super) fn unit_gains(picks: &[Pick], samples: &[Complex64]) -> Vec<Complex64> {
     if picks.is_empty() {
         return Vec::new();

@@ -1,6 +1,6 @@
 //! Bartlett beamforming of each end.
 
-use super::method::{Render, RowMethod, TOLD};
+use super::method::{ASSUMPTIONS, Render, RowMethod};
 use crate::reconstruct::reconstructor::About;
 
 /// Each end's beams without an angle window, laid over each other on the centre's grid.
@@ -10,7 +10,7 @@ pub const BARTLETT: RowMethod = RowMethod {
     about: About {
         name: "bartlett",
         description: "both ends' plain beams, laid over each other where they see the same place",
-        told: TOLD,
+        told: ASSUMPTIONS,
         eta: 0.952, // by examples/choose_eta.rs
     },
     estimate: |row| Some(row.bartlett()),

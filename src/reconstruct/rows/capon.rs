@@ -1,8 +1,8 @@
 //! Capon's minimum-variance beamformer.
 
 use super::covariance::{quadratic_form, smoothed, subarray_len};
-use super::method::{Render, RowMethod, TOLD, TOLD_PEAKS};
-use super::row::Row;
+use super::method::{ASSUMPTIONS, Render, RowMethod, TOLD_PEAKS};
+use super::row::RowSnapshot;
 use crate::reconstruct::reconstructor::About;
 use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::{Mat, Side};
@@ -16,7 +16,7 @@ pub const CAPON: RowMethod = RowMethod {
     about: About {
         name: "capon",
         description: "minimum-variance beams of each end and range row, with spatial smoothing",
-        told: TOLD,
+        told: ASSUMPTIONS,
         eta: 0.851, // by examples/choose_eta.rs
     },
     estimate: spectrum,
@@ -38,8 +38,7 @@ pub const CAPON_PEAKS: RowMethod = RowMethod {
 /// Added to the covariance's diagonal beside the noise, as a part of its mean: what the elements' small departures from a plane wave need.
 const LOADING: f64 = 1e-6;
 
-/// Capon's power over angle for one row.
-fn spectrum(row: &Row) -> Option<Vec<f64>> {
+fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {
     let n = subarray_len(row.own().len());
     let covariance = smoothed(&row.snapshots, n);
     let mean = (0..n).map(|i| covariance[(i, i)].re).sum::<f64>() / n as f64;

@@ -4,7 +4,7 @@ use faer::linalg::solvers::SelfAdjointEigen;
 use faer::{Mat, Side};
 use num_complex::Complex64;
 
-use super::row::Row;
+use super::row::RowSnapshot;
 use crate::maps::Spectrum;
 
 /// Longest sub-array: work grows with the cube of its elements.
@@ -51,8 +51,8 @@ pub(super) struct Subspaces {
 const OVER_NOISE: f64 = 10.0;
 
 /// Splits `covariance` of `row` by its eigenvalues: signals are those above the noise that was measured, and above what one echo puts
-/// beside its own direction ([`Row::not_plane`]). `None` where the decomposition fails.
-pub(super) fn subspaces(covariance: &Mat<Complex64>, row: &Row<'_>) -> Option<Subspaces> {
+/// beside its own direction ([`RowSnapshot::not_plane`]). `None` where the decomposition fails.
+pub(super) fn subspaces(covariance: &Mat<Complex64>, row: &RowSnapshot<'_>) -> Option<Subspaces> {
     let n = covariance.nrows();
     let eigen = SelfAdjointEigen::new(covariance.as_ref(), Side::Lower).ok()?;
     let values: Vec<f64> = eigen.S().column_vector().iter().map(|v| v.re).collect();
@@ -108,7 +108,7 @@ mod tests {
         let snapshot: Vec<Complex64> =
             wave(12, 0.1).into_iter().zip(wave(12, 0.16)).map(|(a, b)| a + 0.5 * b).collect();
         let plan = Spectrum::new(16);
-        let row = Row { snapshots: [&snapshot; 3], noise_variance: 1e-12, not_plane: 0.0, spectrum: &plan };
+        let row = RowSnapshot { snapshots: [&snapshot; 3], noise_variance: 1e-12, not_plane: 0.0, spectrum: &plan };
         let subspaces = subspaces(&smoothed(&[&snapshot], 8), &row).unwrap();
         assert_eq!(subspaces.signals.ncols(), 2);
         for turns in [0.1, 0.16] {

@@ -2,7 +2,7 @@
 
 use super::covariance::{smoothed, subarray_len, subspaces};
 use super::method::{Render, RowMethod, TOLD_PEAKS};
-use super::row::Row;
+use super::row::RowSnapshot;
 use crate::reconstruct::reconstructor::About;
 use faer::linalg::solvers::{SelfAdjointEigen, Solve};
 use faer::{Mat, Side};
@@ -26,7 +26,7 @@ pub const ESPRIT: RowMethod = RowMethod {
 };
 
 /// Turns an element of each wave.
-fn directions(row: &Row) -> Option<Vec<f64>> {
+fn directions(row: &RowSnapshot) -> Option<Vec<f64>> {
     let subspaces = subspaces(&smoothed(&row.snapshots, subarray_len(row.own().len())), row)?;
     let signals = subspaces.signals;
     let (n, count) = (signals.nrows(), signals.ncols());
@@ -61,7 +61,12 @@ mod tests {
         let own: Vec<Complex64> = (0..12).map(|n| wave(turns[0], n) + 0.7 * wave(turns[1], n)).collect();
         let silent = vec![Complex64::default(); 12];
         let plan = Spectrum::new(1024);
-        let row = Row { snapshots: [&silent, &own, &silent], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
+        let row = RowSnapshot {
+            snapshots: [&silent, &own, &silent],
+            noise_variance: 1e-20,
+            not_plane: 1e-10,
+            spectrum: &plan,
+        };
         let mut found = directions(&row).unwrap();
         found.sort_by(f64::total_cmp);
         assert_eq!(found.len(), 2);

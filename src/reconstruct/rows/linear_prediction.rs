@@ -1,8 +1,8 @@
 //! Linear prediction: each element as a combination of its neighbours.
 
 use super::covariance::subarray_len;
-use super::method::{Render, RowMethod, TOLD, TOLD_PEAKS};
-use super::row::Row;
+use super::method::{ASSUMPTIONS, Render, RowMethod, TOLD_PEAKS};
+use super::row::RowSnapshot;
 use crate::reconstruct::reconstructor::About;
 use faer::Mat;
 use num_complex::Complex64;
@@ -16,7 +16,7 @@ pub const LINEAR_PREDICTION: RowMethod = RowMethod {
     about: About {
         name: "linear-prediction",
         description: "nulls of the prediction error over angle, for each end and range row",
-        told: TOLD,
+        told: ASSUMPTIONS,
         eta: 0.863, // by examples/choose_eta.rs
     },
     estimate: spectrum,
@@ -36,7 +36,7 @@ pub const LINEAR_PREDICTION_PEAKS: RowMethod = RowMethod {
 };
 
 /// Coefficients `a` of `x[n] = sum_k a[k] x[n - 1 - k]`, and backward with their conjugates.
-fn predictor(row: &Row) -> Option<Vec<Complex64>> {
+fn predictor(row: &RowSnapshot) -> Option<Vec<Complex64>> {
     let (samples, noise_variance) = (row.own(), row.noise_variance);
     let order = subarray_len(samples.len());
     let equations = samples.len() - order;
@@ -64,8 +64,7 @@ fn predictor(row: &Row) -> Option<Vec<Complex64>> {
     Some(solution)
 }
 
-/// The linear-prediction spectrum for one row, as power.
-fn spectrum(row: &Row) -> Option<Vec<f64>> {
+fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {
     let predictor = predictor(row)?;
     let error_filter = std::iter::once(Complex64::from(1.0)).chain(predictor.into_iter().map(|a| -a));
     let nulls: Vec<f64> = row.spectrum.of(error_filter).into_iter().map(|v| v.norm_sqr()).collect();
@@ -88,7 +87,8 @@ mod tests {
     fn waves_are_predicted() {
         let own = two_waves();
         let plan = Spectrum::new(1024);
-        let row = Row { snapshots: [&own, &own, &own], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
+        let row =
+            RowSnapshot { snapshots: [&own, &own, &own], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
         let a = predictor(&row).unwrap();
         let predicted: Complex64 = a.iter().enumerate().map(|(k, a)| a * own[10 - k]).sum();
         assert!((predicted - own[11]).norm() < 1e-9);
@@ -98,7 +98,8 @@ mod tests {
     fn waves_stand_out() {
         let own = two_waves();
         let plan = Spectrum::new(1024);
-        let row = Row { snapshots: [&own, &own, &own], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
+        let row =
+            RowSnapshot { snapshots: [&own, &own, &own], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
         let power = spectrum(&row).unwrap();
         let largest = power.iter().copied().fold(0.0, f64::max);
         for column in [300, 340] {

@@ -2,7 +2,7 @@
 
 use super::covariance::subarray_len;
 use super::registered::joined;
-use super::row::Row;
+use super::row::RowSnapshot;
 use crate::maps::peaks::{Peak as MapPeak, peaks as map_peaks};
 use crate::maps::{Spectrum, range_transform};
 use crate::radar::{End, Radar};
@@ -24,10 +24,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const ACTIVE_ROW: f64 = 1e-12;
 
 /// What every row method is told.
-pub(super) const TOLD: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
+pub(super) const ASSUMPTIONS: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
     It does not use the phase between the ends";
 
-/// What every row method whose peaks are rendered is told.
 pub(super) const TOLD_PEAKS: &str = "that what an end hears is plane waves, and that a scene is single reflectors; nothing else about the \
     scene or the floor, it measures the noise itself. Its peaks do not use the phase between the ends; their places and amplitudes \
     are then fitted to both ends together, as those of iaa and sbl are";
@@ -58,7 +57,7 @@ const LEAST_PEAK_OVER_NOISE: f64 = 10.0;
 pub struct RowMethod {
     pub(super) about: About,
     /// Power over angle, one value a column in the order of the transform, or `None` to leave the row to plain beamforming.
-    pub(super) estimate: fn(&Row<'_>) -> Option<Vec<f64>>,
+    pub(super) estimate: fn(&RowSnapshot<'_>) -> Option<Vec<f64>>,
     pub(super) render: Render,
 }
 
@@ -93,7 +92,7 @@ impl Reconstructor for RowMethod {
     }
 }
 
-/// [`Row::not_plane`] of the sub-arrays of `radar`'s ends. Over half a sub-array the range changes by up to `b` bins, and the amplitude in a row
+/// [`RowSnapshot::not_plane`] of the sub-arrays of `radar`'s ends. Over half a sub-array the range changes by up to `b` bins, and the amplitude in a row
 /// in proportion; twice the direction takes up what is linear in that, and leaves its square.
 fn not_plane(radar: &Radar) -> f64 {
     let half_metres = 0.5 * (subarray_len(radar.end_elements) - 1) as f64 * radar.element_spacing_metres;
@@ -102,7 +101,6 @@ fn not_plane(radar: &Radar) -> f64 {
 }
 
 impl RowMethod {
-    /// Power over range and angle on the grid of the array's centre, in the scale of the whole array's map.
     fn power(
         &self,
         radar: &Radar,
@@ -142,7 +140,6 @@ impl RowMethod {
         found.flat_map(place).collect()
     }
 
-    /// Power over range and angle of one end on its own grid, in the scale of the whole array's map.
     fn end_power(
         &self,
         radar: &Radar,
@@ -152,7 +149,6 @@ impl RowMethod {
         request: &Request,
     ) -> Result<Array2<f64>, ReconstructError> {
         let signal = BeatSignal { samples: ends.end(end).clone() };
-        // One row a range bin, so that a snapshot is a slice.
         let snapshots = range_transform(radar, &signal).profiles.t().as_standard_layout().into_owned();
         let (bins, columns, elements) = (radar.samples, radar.elements, radar.end_elements);
         let values = snapshots.as_slice().unwrap_or_default();
@@ -169,7 +165,7 @@ impl RowMethod {
         let mut power = Array2::zeros((bins, columns));
         power.axis_iter_mut(Axis(0)).into_par_iter().enumerate().try_for_each(|(bin, mut out)| {
             request.task.check()?;
-            let row = Row {
+            let row = RowSnapshot {
                 snapshots: [snapshot((bin + bins - 1) % bins), snapshot(bin), snapshot((bin + 1) % bins)],
                 noise_variance,
                 not_plane,

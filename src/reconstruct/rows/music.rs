@@ -1,8 +1,8 @@
 //! MUSIC: directions orthogonal to the noise subspace.
 
 use super::covariance::{quadratic_form, smoothed, subarray_len, subspaces};
-use super::method::{Render, RowMethod, TOLD, TOLD_PEAKS};
-use super::row::Row;
+use super::method::{ASSUMPTIONS, Render, RowMethod, TOLD_PEAKS};
+use super::row::RowSnapshot;
 use crate::reconstruct::reconstructor::About;
 
 /// The pseudo-spectrum of each end and range row, with spatial smoothing.
@@ -12,7 +12,7 @@ pub const MUSIC: RowMethod = RowMethod {
     about: About {
         name: "music",
         description: "subspace pseudo-spectrum of each end and range row, with spatial smoothing",
-        told: TOLD,
+        told: ASSUMPTIONS,
         eta: 0.842, // by examples/choose_eta.rs
     },
     estimate: spectrum,
@@ -31,8 +31,7 @@ pub const MUSIC_PEAKS: RowMethod = RowMethod {
     render: Render::Peaks,
 };
 
-/// MUSIC's pseudo-spectrum for one row, as power.
-fn spectrum(row: &Row) -> Option<Vec<f64>> {
+fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {
     let covariance = smoothed(&row.snapshots, subarray_len(row.own().len()));
     let subspaces = subspaces(&covariance, row)?;
     Some(row.power_of_nulls(&quadratic_form(&subspaces.noise, row.spectrum)))
@@ -57,13 +56,18 @@ mod tests {
     }
 
     #[test]
-    fn resolves_two_reflectors_within_a_beamwidth_that_plain_beams_merge() {
+    fn resolves_two_reflectors_within_a_beamwidth() {
         // Twelve elements have a beam of 1024/12 = 85 columns; these two are 30 apart.
         let wave = |column: f64, n: usize| Complex64::cis(TAU * column * n as f64 / 1024.0);
         let own: Vec<Complex64> = (0..12).map(|n| wave(100.0, n) + wave(130.0, n)).collect();
         let silent = vec![Complex64::default(); 12];
         let plan = Spectrum::new(1024);
-        let row = Row { snapshots: [&silent, &own, &silent], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
+        let row = RowSnapshot {
+            snapshots: [&silent, &own, &silent],
+            noise_variance: 1e-20,
+            not_plane: 1e-10,
+            spectrum: &plan,
+        };
         assert_eq!(peaks(&row.bartlett()).len(), 1, "plain beams see one");
         assert_eq!(peaks(&spectrum(&row).unwrap()), [100, 130]);
     }
@@ -72,7 +76,7 @@ mod tests {
     fn a_plain_beam_is_as_wide_as_twelve_elements_make_it() {
         let own: Vec<Complex64> = (0..12).map(|n| Complex64::cis(TAU * 0.25 * n as f64)).collect();
         let plan = Spectrum::new(1024);
-        let row = Row { snapshots: [&own, &own, &own], noise_variance: 0.0, not_plane: 1e-10, spectrum: &plan };
+        let row = RowSnapshot { snapshots: [&own, &own, &own], noise_variance: 0.0, not_plane: 1e-10, spectrum: &plan };
         let power = row.bartlett();
         assert!((power[256] - 1.0).abs() < 1e-12, "amplitude 1 at its column");
         // Half-power width of a uniform line: 0.886 / (N d / lambda) in cos, here 0.886 * 1024 / 12 columns.

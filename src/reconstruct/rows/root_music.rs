@@ -1,8 +1,8 @@
 //! root-MUSIC: the directions as roots of a polynomial, then the array continued from them.
 
 use super::covariance::{diagonal_sums, smoothed, subarray_len, subspaces};
-use super::method::{Render, RowMethod, TOLD, TOLD_PEAKS};
-use super::row::Row;
+use super::method::{ASSUMPTIONS, Render, RowMethod, TOLD_PEAKS};
+use super::row::RowSnapshot;
 use crate::reconstruct::reconstructor::About;
 use faer::Mat;
 use num_complex::Complex64;
@@ -15,7 +15,7 @@ pub const ROOT_MUSIC: RowMethod = RowMethod {
     about: About {
         name: "root-music",
         description: "directions of each end and range row as polynomial roots, and the array continued from them",
-        told: TOLD,
+        told: ASSUMPTIONS,
         eta: 0.665, // by examples/choose_eta.rs
     },
     estimate: continued,
@@ -35,7 +35,7 @@ pub const ROOT_MUSIC_PEAKS: RowMethod = RowMethod {
 };
 
 /// Turns an element of each wave: the roots inside the unit circle that are nearest to it.
-fn directions(row: &Row) -> Option<Vec<f64>> {
+fn directions(row: &RowSnapshot) -> Option<Vec<f64>> {
     let covariance = smoothed(&row.snapshots, subarray_len(row.own().len()));
     let subspaces = subspaces(&covariance, row)?;
     let sums = diagonal_sums(&subspaces.noise);
@@ -62,8 +62,7 @@ fn roots(coefficients: &[Complex64]) -> Option<Vec<Complex64>> {
     companion.eigenvalues().ok()
 }
 
-/// Power over angle of the whole array continued from one end's waves, in the order of the transform.
-fn continued(row: &Row) -> Option<Vec<f64>> {
+fn continued(row: &RowSnapshot) -> Option<Vec<f64>> {
     row.continued(&directions(row)?)
 }
 
@@ -89,7 +88,12 @@ mod tests {
         let own: Vec<Complex64> = (0..12).map(|n| wave(turns[0], n) + 0.7 * wave(turns[1], n)).collect();
         let silent = vec![Complex64::default(); 12];
         let plan = Spectrum::new(1024);
-        let row = Row { snapshots: [&silent, &own, &silent], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
+        let row = RowSnapshot {
+            snapshots: [&silent, &own, &silent],
+            noise_variance: 1e-20,
+            not_plane: 1e-10,
+            spectrum: &plan,
+        };
         let mut found = directions(&row).unwrap();
         found.sort_by(f64::total_cmp);
         assert_eq!(found.len(), 2);

@@ -7,7 +7,7 @@ use faer::linalg::solvers::SolveLstsq;
 use num_complex::Complex64;
 
 /// One end's snapshot at one range row, and its surroundings.
-pub struct Row<'a> {
+pub struct RowSnapshot<'a> {
     /// Range profiles of the elements at the rows before, at and after this one; the middle is the row itself.
     pub snapshots: [&'a [Complex64]; 3],
     /// Variance of the noise of each value.
@@ -18,7 +18,7 @@ pub struct Row<'a> {
     pub spectrum: &'a Spectrum,
 }
 
-impl Row<'_> {
+impl RowSnapshot<'_> {
     /// The row's own snapshot, one value an element.
     pub fn own(&self) -> &[Complex64] {
         self.snapshots[1]

@@ -4,12 +4,12 @@
 //! twice the variance that a draw and its mean do.
 
 use super::over_noise::{EULER, OverNoise};
-use crate::maps::fast::{FastLogMap, MapMaker, Sources};
+use crate::maps::fast::{FastLogMap, MapMaker, MapSources};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{End, Radar};
 use crate::reconstruct::Request;
 use crate::reconstruct::fit::Atom;
-use crate::reconstruct::noise_test::decades_above_cells;
+use crate::reconstruct::significance::decades_above_cells;
 use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use crate::signal::floor::{snr_over, thesis_noise_variance};
 use crate::signal::plan::amplitude_bound;
@@ -90,7 +90,7 @@ fn log_map<T: Real, const W: usize>(radar: &Radar, reflectors: &[Reflector], pla
     Synthesis::<T, W>::new(radar, plan).range_profiles(reflectors, &mut profiles, task);
     let gain = (radar.samples as f64 * radar.elements as f64).sqrt();
     let bound = gain * amplitude_bound(radar, reflectors);
-    let sources = Sources { profiles: &[&profiles], noise: None, bound };
+    let sources = MapSources { profiles: &[&profiles], noise: None, bound };
     let mut map = FastLogMap::silence(radar);
     MapMaker::new(radar, plan.simd).fill(sources, [None, None, Some(&mut map)], &Rows::all(radar.samples));
     map

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 fn an_obstacle_that_comes_from_the_side_begins_with_no_effect() {
     let radar = Radar::default();
     let kappa = Wave::of(&radar).radians_per_metre;
-    let antennas = Antennas::at([0.0, 0.0]);
+    let antennas = AntennaPlaces::at([0.0, 0.0]);
     let wall = Object::Wall(Wall::new(0.0, 20.0, 30.0, 0.0));
     let at = |x: f64| {
         let scene = [wall.clone(), Object::Box(Block::new([x, 10.0], [1.0, 0.2], 0.0))];
@@ -54,7 +54,7 @@ fn only_what_a_body_may_hide_depends_on_it() {
             Object::Wall(Wall::new(0.0, 20.0, 3.0, 0.0)),
             Object::Point(Point::new(15.0, 10.0)),
         ];
-        Seen::all(&radar, &Scene { objects, ..Scene::default() })
+        SeenObject::all(&radar, &Scene { objects, ..Scene::default() })
     };
     let (before, after) = (seen(0.0), seen(0.3));
     assert!(before[1] != after[1] && before[2] == after[2] && before[2].hidden_by.is_empty());
@@ -77,9 +77,9 @@ proptest! {
             _ => Object::Point(Point::new(*x, *y)),
         }).collect();
         let scene = Scene { objects: objects.clone(), ..Scene::default() };
-        let seen = Seen::all(&radar, &scene);
+        let seen = SeenObject::all(&radar, &scene);
         for n in [0, 300, 511, 1023] {
-            let antennas = Antennas::from(radar.pair(n));
+            let antennas = AntennaPlaces::from(radar.pair(n));
             for (at, one) in seen.iter().enumerate() {
                 let others = objects.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, object)| object);
                 let (mut few, mut all) = (Vec::new(), Vec::new());

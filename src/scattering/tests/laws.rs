@@ -1,10 +1,9 @@
-//! What must hold of echoes whatever the scene: reciprocity, continuity, closed forms, energy.
+//! What must hold of echoes of any scene: reciprocity, continuity, closed forms, energy.
 
 use super::super::face::Face;
 use super::*;
 use crate::scene::{Block, Point, Polygon, Post, Wall};
 
-/// A scene of every kind, rough and smooth, some hidden.
 fn all_kinds() -> Vec<Object> {
     vec![
         Object::Wall(Wall { roughness_millimetres: 0.5, ..Wall::new(-4.0, 18.0, 6.0, 20.0) }),
@@ -26,7 +25,7 @@ fn all_kinds() -> Vec<Object> {
 fn swapping_transmitter_and_receiver_changes_nothing() {
     let radar = Radar::default();
     for (t, r) in [([-0.6, 0.0], [0.9, 0.1]), ([0.2, 0.0], [0.25, 0.0])] {
-        let of = |t, r| heard(&radar, &all_kinds(), &Antennas { transmitter_metres: t, receiver_metres: r });
+        let of = |t, r| heard(&radar, &all_kinds(), &AntennaPlaces { transmitter_metres: t, receiver_metres: r });
         let (there, back) = (of(t, r), of(r, t));
         let strongest = there.iter().map(|e| e.amplitude.norm()).fold(0.0, f64::max);
         assert_eq!(there.len(), back.len());
@@ -43,7 +42,7 @@ fn swapping_transmitter_and_receiver_changes_nothing() {
 #[test]
 fn antennas_at_one_place_have_the_monostatic_closed_forms() {
     let radar = Radar::default();
-    let at = |object: Object| heard(&radar, &[object], &Antennas::at([0.0, 0.0]));
+    let at = |object: Object| heard(&radar, &[object], &AntennaPlaces::at([0.0, 0.0]));
     let glint = at(Object::Wall(Wall::new(0.0, 9.0, 200.0, 0.0)))[0];
     assert!((glint.range_metres - 9.0).abs() < 1e-12 && (glint.amplitude - 100.0 / 27.0).norm() < 1e-12);
     let post = at(Object::Post(Post::new(0.0, 9.0, 0.5)))[0];
@@ -54,9 +53,9 @@ fn antennas_at_one_place_have_the_monostatic_closed_forms() {
 #[test]
 fn a_post_of_one_metre_is_a_point_from_afar() {
     let radar = Radar::default();
-    let post = heard(&radar, &[Object::Post(Post::new(0.0, 1000.0, 1.0))], &Antennas::at([0.0, 0.0]))[0];
+    let post = heard(&radar, &[Object::Post(Post::new(0.0, 1000.0, 1.0))], &AntennaPlaces::at([0.0, 0.0]))[0];
     assert!((post.amplitude.norm() * post.range_metres.powi(2) / 100.0 - 1.0).abs() < 1e-3);
-    let flat = heard(&radar, &[Object::Post(Post::new(0.0, 10.0 + 9e3, 9e3))], &Antennas::at([0.0, 0.0]))[0];
+    let flat = heard(&radar, &[Object::Post(Post::new(0.0, 10.0 + 9e3, 9e3))], &AntennaPlaces::at([0.0, 0.0]))[0];
     assert!((flat.amplitude.norm() / (100.0 / 10f64.powf(1.5)) - 1.0).abs() < 1e-3, "a huge post is a wall");
 }
 
@@ -66,14 +65,14 @@ fn nothing_jumps_where_the_foot_runs_off_a_face() {
     let kappa = Wave::of(&radar).radians_per_metre;
     let wall = Object::Wall(Wall::new(-1.0, 20.0, 2.0, 0.0));
     let step = largest_step(
-        |x| at_range(&heard(&radar, std::slice::from_ref(&wall), &Antennas::at([x, 0.0])), kappa, 20.0),
+        |x| at_range(&heard(&radar, std::slice::from_ref(&wall), &AntennaPlaces::at([x, 0.0])), kappa, 20.0),
         -0.05,
         1000,
     );
     assert!(step < 0.002, "{step}");
     let car = Object::Box(Block::new([-2.0, 8.0], [4.0, 2.0], 0.0));
     let step = largest_step(
-        |x| at_range(&heard(&radar, std::slice::from_ref(&car), &Antennas::at([x, 0.0])), kappa, 7.0),
+        |x| at_range(&heard(&radar, std::slice::from_ref(&car), &AntennaPlaces::at([x, 0.0])), kappa, 7.0),
         -0.05,
         1000,
     );
@@ -87,9 +86,10 @@ fn a_face_that_is_cut_in_two_gives_the_same_samples() {
     // A part of a slanted face has its foot elsewhere by the last bit: 2e-15 m are 3e-12 of a radian.
     for (slant, bound) in [(0.0, 1e-12), (0.3, 1e-10)] {
         for cut in [-1.9, -0.3, 0.2, 1.234] {
-            for antennas in
-                [Antennas::at([0.2, 0.0]), Antennas { transmitter_metres: [-0.4, 0.0], receiver_metres: [0.8, 0.1] }]
-            {
+            for antennas in [
+                AntennaPlaces::at([0.2, 0.0]),
+                AntennaPlaces { transmitter_metres: [-0.4, 0.0], receiver_metres: [0.8, 0.1] },
+            ] {
                 let of = |from, to| {
                     let ends = [from, to].map(|x| [x, 8.0 + slant * x]);
                     Face::new(ends, true, 1.0).echoes(&wave, &antennas)
@@ -118,7 +118,7 @@ fn no_place_of_an_antenna_gives_a_number_that_is_none() {
     for object in &objects {
         for t in places {
             for r in places {
-                let antennas = Antennas { transmitter_metres: t, receiver_metres: r };
+                let antennas = AntennaPlaces { transmitter_metres: t, receiver_metres: r };
                 let mut found = Vec::new();
                 let screen = Object::Wall(Wall::new(0.0, 1.0, 2.0, 0.0));
                 Scatterer::new(&radar, object, &[screen]).echoes(&antennas, &mut found);
@@ -136,7 +136,7 @@ fn no_place_of_an_antenna_gives_a_number_that_is_none() {
 #[test]
 fn a_rough_wall_scatters_what_its_glint_loses() {
     let radar = Radar::default();
-    let antennas = Antennas::at([0.0, 0.0]);
+    let antennas = AntennaPlaces::at([0.0, 0.0]);
     let wave = Wave::of(&radar);
     let seeds = 200;
     let power = |seed: u64| -> f64 {
@@ -174,7 +174,7 @@ fn roughness_takes_from_a_glint_what_rayleighs_factor_says() {
     let radar = Radar::default();
     let glint = |roughness_millimetres| {
         let wall = Wall { roughness_millimetres, ..Wall::new(0.0, 10.0, 4.0, 0.0) };
-        heard(&radar, &[Object::Wall(wall)], &Antennas::at([0.0, 0.0]))[0].amplitude.norm()
+        heard(&radar, &[Object::Wall(wall)], &AntennaPlaces::at([0.0, 0.0]))[0].amplitude.norm()
     };
     for (roughness, decibels) in [(0.5, -2.7), (1.0, -10.7), (2.0, -43.0)] {
         let found = 20.0 * (glint(roughness) / glint(0.0)).log10();
@@ -188,7 +188,7 @@ fn a_right_inner_corner_is_one_echo_at_its_apex() {
     // An L whose inner corner faces the array.
     let ell = vec![[-1.0, 7.0], [0.0, 8.0], [1.0, 7.0], [1.5, 7.5], [0.0, 9.0], [-1.5, 7.5]];
     for x in [-0.9, 0.0, 0.5] {
-        let found = heard(&radar, &[Object::Polygon(Polygon::new(ell.clone()))], &Antennas::at([x, 0.0]));
+        let found = heard(&radar, &[Object::Polygon(Polygon::new(ell.clone()))], &AntennaPlaces::at([x, 0.0]));
         let range = x.hypot(8.0);
         let at_apex: Complex64 = found
             .iter()

@@ -1,4 +1,4 @@
-//! The formulas against vectors, quadrature and series, and what must hold of them whatever the scene.
+//! The formulas against vectors, quadrature and series, and what must hold of them for any scene.
 
 mod hiding;
 mod laws;
@@ -8,7 +8,6 @@ use super::*;
 use crate::radar::Radar;
 use crate::scene::{Object, Scene};
 
-/// Samples over the chirp at which echoes are compared.
 const SAMPLES: [usize; 5] = [0, 100, 255, 400, 511];
 
 /// Samples of echoes, with or without their tilt.
@@ -30,16 +29,15 @@ fn worst(found: &[Complex64], expected: &[Complex64]) -> f64 {
 }
 
 /// What a pair of antennas hears of objects that hide each other.
-fn heard(radar: &Radar, objects: &[Object], antennas: &Antennas) -> Vec<PathEcho> {
+fn heard(radar: &Radar, objects: &[Object], antennas: &AntennaPlaces) -> Vec<PathEcho> {
     let scene = Scene { objects: objects.to_vec(), ..Scene::default() };
     let mut out = Vec::new();
-    for one in Seen::all(radar, &scene) {
+    for one in SeenObject::all(radar, &scene) {
         one.scatterer(radar).echoes(antennas, &mut out);
     }
     out
 }
 
-/// Largest step of a sample over its largest value, as something moves in steps of 0.1 mm.
 fn largest_step(of: impl Fn(f64) -> Vec<Complex64>, from: f64, steps: u32) -> f64 {
     let (mut worst, mut peak) = (0.0f64, 0.0f64);
     let mut before: Option<Vec<Complex64>> = None;

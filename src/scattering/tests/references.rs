@@ -62,8 +62,7 @@ fn object(of: &VectorObject) -> Object {
     }
 }
 
-/// Echoes of a scene at a pair that it hears.
-fn echoes(radar: &Radar, of: &VectorScene, antennas: &Antennas) -> Vec<PathEcho> {
+fn echoes(radar: &Radar, of: &VectorScene, antennas: &AntennaPlaces) -> Vec<PathEcho> {
     let mut out = Vec::new();
     if let [VectorObject { kind, corners, r, .. }] = of.objects.as_slice()
         && kind == "corner"
@@ -75,7 +74,7 @@ fn echoes(radar: &Radar, of: &VectorScene, antennas: &Antennas) -> Vec<PathEcho>
         out.extend(corner::echoes(&wave, antennas, &first, &second));
     } else {
         let scene = Scene { objects: of.objects.iter().map(object).collect(), ..Scene::default() };
-        let seen = Seen::all(radar, &scene);
+        let seen = SeenObject::all(radar, &scene);
         for one in seen.iter().take(if of.only_first { 1 } else { seen.len() }) {
             let scatterer = one.scatterer(radar);
             let scatterer = if of.refined { scatterer } else { scatterer.unrefined() };
@@ -86,9 +85,9 @@ fn echoes(radar: &Radar, of: &VectorScene, antennas: &Antennas) -> Vec<PathEcho>
     out
 }
 
-fn pairs(of: &VectorScene) -> Vec<Antennas> {
+fn pairs(of: &VectorScene) -> Vec<AntennaPlaces> {
     let both = of.transmitters.iter().zip(&of.receivers);
-    both.map(|(t, r)| Antennas { transmitter_metres: *t, receiver_metres: *r }).collect()
+    both.map(|(t, r)| AntennaPlaces { transmitter_metres: *t, receiver_metres: *r }).collect()
 }
 
 #[test]
@@ -167,7 +166,7 @@ fn faces_are_their_quadrature() {
 fn the_two_way_carrier_is_held_to_quadrature() {
     let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
     for ends in [[[-2.0, 10.0], [2.0, 10.0]], [[3.0, 5.0], [9.0, 5.0]]] {
-        let antennas = Antennas::at([0.3, 0.0]);
+        let antennas = AntennaPlaces::at([0.3, 0.0]);
         let mut found = Vec::new();
         Scatterer::new(&radar, &Object::Wall(wall(ends, 1.0)), &[]).echoes(&antennas, &mut found);
         let expected = reference::face(&radar, ends, 1.0, &antennas, &SAMPLES, 4.0);
@@ -183,7 +182,7 @@ fn posts_are_their_exact_series() {
         [([1.0, 5.0], 0.05, 5e-4), ([-3.0, 20.0], 0.5, 5e-5), ([0.2, 2.0], 0.02, 1.5e-3), ([0.0, 10.0], 1.0, 1e-4)]
     {
         for x in [-0.9, 0.0, 0.4] {
-            let antennas = Antennas::at([x, 0.0]);
+            let antennas = AntennaPlaces::at([x, 0.0]);
             let mut found = Vec::new();
             let post = Object::Post(Post::new(centre[0], centre[1], radius));
             Scatterer::new(&radar, &post, &[]).echoes(&antennas, &mut found);

@@ -20,88 +20,52 @@ pub struct SceneFile {
 
 /// Why a scene file could not be read or written.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum SceneFileError {
     /// The system could not read or write the file.
     #[error("{}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
+    Io { path: PathBuf, source: io::Error },
     /// The TOML is not a scene.
     #[error("{}: {source}", path.display())]
-    Text {
-        /// The file.
-        path: PathBuf,
-        /// What and where.
-        source: SceneTextError,
-    },
+    Text { path: PathBuf, source: SceneTextError },
     /// The archive is not a scene.
     #[error("{}: {source}", path.display())]
-    Archive {
-        /// The file.
-        path: PathBuf,
-        /// Which key, and what was expected.
-        source: NpzError,
-    },
+    Archive { path: PathBuf, source: NpzError },
     /// The archive's reflectors can't be simulated.
     #[error("{}: {source}", path.display())]
-    Scene {
-        /// The file.
-        path: PathBuf,
-        /// Which reflector, and why.
-        source: SceneError,
-    },
+    Scene { path: PathBuf, source: SceneError },
     /// The scene can't be written as TOML.
     #[error("{}: {source}", path.display())]
-    Unwritable {
-        /// The file.
-        path: PathBuf,
-        /// The value that TOML can't hold.
-        source: toml::ser::Error,
-    },
+    Unwritable { path: PathBuf, source: toml::ser::Error },
     /// A recording, or what one keeps its samples in, where a scene was to be written.
     #[error("{}: holds a recording, which a scene must not replace; choose another name", path.display())]
-    Recording {
-        /// The file.
-        path: PathBuf,
-    },
+    Recording { path: PathBuf },
     /// The recording that the scene is laid over can't be had.
     #[error("{}: is laid over a recording: {message}; without its table [over] the scene opens alone", path.display())]
-    Over {
-        /// The file.
-        path: PathBuf,
-        /// Why not.
-        message: String,
-    },
+    Over { path: PathBuf, message: String },
     /// Neither kind of scene file.
     #[error("{}: not a scene file by its name; expected one ending in .toml or .npz", path.display())]
-    Extension {
-        /// The file.
-        path: PathBuf,
-    },
+    Extension { path: PathBuf },
 }
 
 /// The two kinds of scene file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum SceneFormat {
     /// Everything, readable.
     Toml,
     /// Positions only, as the thesis author's program reads and writes them.
     Npz,
 }
 
-impl Format {
+impl SceneFormat {
     /// The format that a file's name asks for.
-    ///
     /// # Errors
     /// [`SceneFileError::Extension`] for any ending but `.toml` and `.npz`.
-    pub fn of_path(path: &Path) -> Result<Format, SceneFileError> {
+    pub fn of_path(path: &Path) -> Result<SceneFormat, SceneFileError> {
         let extension = path.extension().map(|e| e.to_ascii_lowercase());
         match extension.as_deref().and_then(|e| e.to_str()) {
-            Some("toml") => Ok(Format::Toml),
-            Some("npz") => Ok(Format::Npz),
+            Some("toml") => Ok(SceneFormat::Toml),
+            Some("npz") => Ok(SceneFormat::Npz),
             _ => Err(SceneFileError::Extension { path: path.to_owned() }),
         }
     }
@@ -120,7 +84,6 @@ pub struct SceneTextError {
 }
 
 impl SceneTextError {
-    /// A fault at byte `offset` of `text`.
     pub(crate) fn at(text: &str, offset: usize, message: String) -> Self {
         let before = text.get(..offset).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |i| i + 1);
@@ -132,7 +95,6 @@ impl SceneTextError {
     }
 }
 
-/// A message of the TOML reader as one line, with straight quotes.
 pub(super) fn one_line(message: &str) -> String {
     message.lines().collect::<Vec<_>>().join(", ").replace('`', "\"")
 }

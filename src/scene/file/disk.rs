@@ -1,6 +1,6 @@
 //! Scene files on disk.
 
-use super::content::{Format, MAX_FILE_BYTES, SceneFile, SceneFileError};
+use super::content::{MAX_FILE_BYTES, SceneFile, SceneFileError, SceneFormat};
 use super::read::from_bytes;
 use super::write::{to_toml, to_toml_beside};
 use crate::files::{read_bounded, write_bytes};
@@ -11,7 +11,6 @@ use serde::de::{DeserializeOwned, IgnoredAny};
 use std::path::Path;
 
 /// Reads a scene file and checks that it can be simulated.
-///
 /// # Errors
 /// [`SceneFileError`] names the file, the line or key, and what was expected.
 pub fn load(path: &Path) -> Result<SceneFile, SceneFileError> {
@@ -19,7 +18,6 @@ pub fn load(path: &Path) -> Result<SceneFile, SceneFileError> {
 }
 
 /// [`load`], and the table called `key` that [`save_beside`] wrote; `None` where there is none.
-///
 /// # Errors
 /// As [`load`].
 pub fn load_beside<T: DeserializeOwned>(path: &Path, key: &str) -> Result<(SceneFile, Option<T>), SceneFileError> {
@@ -28,13 +26,13 @@ pub fn load_beside<T: DeserializeOwned>(path: &Path, key: &str) -> Result<(Scene
 
 fn read<T: DeserializeOwned>(path: &Path, beside: Option<&str>) -> Result<(SceneFile, Option<T>), SceneFileError> {
     let owned = || path.to_owned();
-    match Format::of_path(path)? {
-        Format::Toml => {
+    match SceneFormat::of_path(path)? {
+        SceneFormat::Toml => {
             let bytes =
                 read_bounded(path, MAX_FILE_BYTES).map_err(|source| SceneFileError::Io { path: owned(), source })?;
             from_bytes(&bytes, beside).map_err(|source| SceneFileError::Text { path: owned(), source })
         }
-        Format::Npz => {
+        SceneFormat::Npz => {
             let scene = npz::read(path).map_err(|source| SceneFileError::Archive { path: owned(), source })?;
             let radar = Radar::default();
             scene.validate(&radar).map_err(|source| SceneFileError::Scene { path: owned(), source })?;
@@ -44,21 +42,19 @@ fn read<T: DeserializeOwned>(path: &Path, beside: Option<&str>) -> Result<(Scene
 }
 
 /// Writes a scene file in one step. An `.npz` keeps the reflectors' positions only.
-///
 /// # Errors
 /// [`SceneFileError`] when the ending is neither `.toml` nor `.npz`, or the file can't be written.
 pub fn save(path: &Path, file: &SceneFile) -> Result<(), SceneFileError> {
     let owned = || path.to_owned();
-    match Format::of_path(path)? {
-        Format::Toml => write(path, to_toml(file)),
-        Format::Npz => {
+    match SceneFormat::of_path(path)? {
+        SceneFormat::Toml => write(path, to_toml(file)),
+        SceneFormat::Npz => {
             npz::write(path, &file.scene).map_err(|source| SceneFileError::Archive { path: owned(), source })
         }
     }
 }
 
 /// Writes a scene as TOML in one step, with a further table, called `key`, after it.
-///
 /// # Errors
 /// [`SceneFileError`] when the file can't be written.
 pub fn save_beside(path: &Path, file: &SceneFile, key: &str, value: &impl Serialize) -> Result<(), SceneFileError> {

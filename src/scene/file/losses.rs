@@ -1,13 +1,13 @@
 //! What a file format cannot store: reported before a scene is written.
 
-use super::content::{Format, SceneFile};
+use super::content::{SceneFile, SceneFormat};
 use crate::radar::Radar;
 use crate::scene::{Object, Scene};
 use std::fmt;
 
 /// Something of a scene that a file would not give back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Loss {
+pub enum FileLoss {
     /// The scene's name.
     Name,
     /// The scene's notes.
@@ -48,57 +48,61 @@ pub enum Loss {
     },
 }
 
-impl fmt::Display for Loss {
+impl fmt::Display for FileLoss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Loss::Name => f.write_str("the scene's name"),
-            Loss::Notes => f.write_str("its notes"),
-            Loss::NoiseSeed => f.write_str("its noise seed"),
-            Loss::Radar => f.write_str("its radar"),
-            Loss::Shadows => f.write_str("that its bodies hide nothing"),
-            Loss::Bodies { objects: 1, points } => write!(f, "one body, which becomes {points} points where it echoes"),
-            Loss::Bodies { objects, points } => {
+            FileLoss::Name => f.write_str("the scene's name"),
+            FileLoss::Notes => f.write_str("its notes"),
+            FileLoss::NoiseSeed => f.write_str("its noise seed"),
+            FileLoss::Radar => f.write_str("its radar"),
+            FileLoss::Shadows => f.write_str("that its bodies hide nothing"),
+            FileLoss::Bodies { objects: 1, points } => {
+                write!(f, "one body, which becomes {points} points where it echoes")
+            }
+            FileLoss::Bodies { objects, points } => {
                 write!(f, "{objects} bodies, which become {points} points where they echo")
             }
-            Loss::Disturbances => f.write_str("what disturbs it"),
-            Loss::Recording => f.write_str("the recording that it is laid over"),
-            Loss::Reflectivity { objects: 1 } => f.write_str("the reflectivity of one object"),
-            Loss::Reflectivity { objects } => write!(f, "the reflectivity of {objects} objects"),
-            Loss::Velocity { objects: 1 } => f.write_str("the velocity of one object"),
-            Loss::Velocity { objects } => write!(f, "the velocity of {objects} objects"),
-            Loss::Structure { objects: 1, points } => write!(f, "one line or cluster, which becomes {points} points"),
-            Loss::Structure { objects, points } => {
+            FileLoss::Disturbances => f.write_str("what disturbs it"),
+            FileLoss::Recording => f.write_str("the recording that it is laid over"),
+            FileLoss::Reflectivity { objects: 1 } => f.write_str("the reflectivity of one object"),
+            FileLoss::Reflectivity { objects } => write!(f, "the reflectivity of {objects} objects"),
+            FileLoss::Velocity { objects: 1 } => f.write_str("the velocity of one object"),
+            FileLoss::Velocity { objects } => write!(f, "the velocity of {objects} objects"),
+            FileLoss::Structure { objects: 1, points } => {
+                write!(f, "one line or cluster, which becomes {points} points")
+            }
+            FileLoss::Structure { objects, points } => {
                 write!(f, "{objects} lines and clusters, which become {points} points")
             }
         }
     }
 }
 
-impl Format {
+impl SceneFormat {
     /// What a file of this format would not give back of `file`; empty where it gives back everything.
-    pub fn losses(self, file: &SceneFile) -> Vec<Loss> {
+    pub fn losses(self, file: &SceneFile) -> Vec<FileLoss> {
         let SceneFile { scene, radar } = file;
         let Scene { name, notes, noise_seed, shadows, disturbances, objects } = scene;
-        if self == Format::Toml {
+        if self == SceneFormat::Toml {
             return Vec::new();
         }
         let mut losses = Vec::new();
-        losses.extend((!name.is_empty()).then_some(Loss::Name));
-        losses.extend((!notes.is_empty()).then_some(Loss::Notes));
-        losses.extend((*noise_seed != 0).then_some(Loss::NoiseSeed));
-        losses.extend((*radar != Radar::default()).then_some(Loss::Radar));
-        losses.extend((!disturbances.is_none()).then_some(Loss::Disturbances));
+        losses.extend((!name.is_empty()).then_some(FileLoss::Name));
+        losses.extend((!notes.is_empty()).then_some(FileLoss::Notes));
+        losses.extend((*noise_seed != 0).then_some(FileLoss::NoiseSeed));
+        losses.extend((*radar != Radar::default()).then_some(FileLoss::Radar));
+        losses.extend((!disturbances.is_none()).then_some(FileLoss::Disturbances));
         let reflective = objects.iter().filter(|o| o.reflectivity() != 1.0).count();
-        losses.extend((reflective > 0).then_some(Loss::Reflectivity { objects: reflective }));
+        losses.extend((reflective > 0).then_some(FileLoss::Reflectivity { objects: reflective }));
         let moving = objects.iter().filter(|o| o.is_moving()).count();
-        losses.extend((moving > 0).then_some(Loss::Velocity { objects: moving }));
-        losses.extend((!shadows).then_some(Loss::Shadows));
+        losses.extend((moving > 0).then_some(FileLoss::Velocity { objects: moving }));
+        losses.extend((!shadows).then_some(FileLoss::Shadows));
         let bodies: Vec<_> = objects.iter().filter_map(Object::body).collect();
         let points = bodies.iter().map(|b| b.echo_places_metres([0.0, 0.0]).len()).sum();
-        losses.extend((!bodies.is_empty()).then_some(Loss::Bodies { objects: bodies.len(), points }));
+        losses.extend((!bodies.is_empty()).then_some(FileLoss::Bodies { objects: bodies.len(), points }));
         let structured = || objects.iter().filter(|o| o.body().is_none() && !matches!(o, Object::Point(_)));
         let (structures, points) = (structured().count(), structured().map(Object::reflector_count).sum());
-        losses.extend((structures > 0).then_some(Loss::Structure { objects: structures, points }));
+        losses.extend((structures > 0).then_some(FileLoss::Structure { objects: structures, points }));
         losses
     }
 }
@@ -161,7 +165,7 @@ mod tests {
         #[test]
         fn what_is_not_told_comes_back(file in file()) {
             let folder = tempfile::tempdir().unwrap();
-            for (name, format) in [("a.toml", Format::Toml), ("a.npz", Format::Npz)] {
+            for (name, format) in [("a.toml", SceneFormat::Toml), ("a.npz", SceneFormat::Npz)] {
                 let path = folder.path().join(name);
                 save(&path, &file).unwrap();
                 prop_assert_eq!(format.losses(&file).is_empty(), load(&path).unwrap() == file, "{}", name);
@@ -175,7 +179,7 @@ mod tests {
         let objects = vec![Object::Line(line), Object::Wall(Wall::new(0.0, 20.0, 5.0, 0.0))];
         let scene = Scene { notes: "n".to_owned(), shadows: false, objects, ..Scene::default() };
         let file = SceneFile { scene, radar: Radar { elements: 64, ..Radar::default() } };
-        let told: Vec<String> = Format::Npz.losses(&file).iter().map(Loss::to_string).collect();
+        let told: Vec<String> = SceneFormat::Npz.losses(&file).iter().map(FileLoss::to_string).collect();
         assert_eq!(
             told,
             [

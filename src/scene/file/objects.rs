@@ -8,7 +8,6 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-/// Reads the list of `[[object]]` tables.
 pub(super) fn objects(text: &str, entries: Spanned<DeValue<'_>>) -> Result<Vec<Object>, SceneTextError> {
     let span = entries.span();
     let DeValue::Array(entries) = entries.into_inner() else {

@@ -4,7 +4,6 @@ use crate::radar::Radar;
 use serde::Deserialize;
 
 /// The table [radar] of a TOML text, whose missing keys are table 3.1's, and where a recording's text tells it the range of its snapshot in metres.
-///
 /// # Errors
 /// What is wrong and in which line, and what was expected.
 pub fn radar_of(text: &str) -> Result<(Radar, Option<f64>), String> {

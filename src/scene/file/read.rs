@@ -1,6 +1,6 @@
 //! Scenes read from TOML, with errors that name the line.
 //!
-//! A text may begin with `format = 1`. It is not written: whatever needs more than that format has is written with a higher number, which
+//! A text may begin with `format = 1`. It is not written: a scene that needs more than that format has is written with a higher number, which
 //! older programs name in their message.
 
 use super::content::{SceneFile, SceneTextError, one_line};
@@ -20,14 +20,12 @@ const FORMAT: i64 = 1;
 const MAX_MARKS: usize = 4_000_000;
 
 /// Reads a scene from text and checks that it can be simulated.
-///
 /// # Errors
 /// [`SceneTextError`] names the line, the key or object, and what was expected.
 pub fn from_toml(text: &str) -> Result<SceneFile, SceneTextError> {
     Ok(checked::<IgnoredAny>(text, None)?.0)
 }
 
-/// A scene that can be simulated, and the further table if the text has it.
 fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(SceneFile, Option<T>), SceneTextError> {
     let (file, other) = parse(text, beside)?;
     file.scene.validate(&file.radar).map_err(|error| {
@@ -48,7 +46,6 @@ fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Sce
 /// Reads what [`to_toml_beside`](super::to_toml_beside) wrote; the second is `None` where the text has no `key`.
 ///
 /// The scene need not be one that can be simulated: a user may have left a point on an element of the array.
-///
 /// # Errors
 /// As [`from_toml`].
 pub fn from_toml_beside<T: DeserializeOwned>(text: &str, key: &str) -> Result<(SceneFile, Option<T>), SceneTextError> {
@@ -57,7 +54,6 @@ pub fn from_toml_beside<T: DeserializeOwned>(text: &str, key: &str) -> Result<(S
     Ok((file, other))
 }
 
-/// [`from_toml`] of a file's bytes, and the table called `beside`.
 pub(super) fn from_bytes<T: DeserializeOwned>(
     bytes: &[u8],
     beside: Option<&str>,
@@ -65,7 +61,6 @@ pub(super) fn from_bytes<T: DeserializeOwned>(
     checked(utf8(bytes)?, beside)
 }
 
-/// Text that is TOML and not too much of it, and its top-level table.
 fn table(text: &str) -> Result<Spanned<DeTable<'_>>, SceneTextError> {
     let marks = text.bytes().filter(|b| b"=,.[{".contains(b)).count();
     if marks > MAX_MARKS {
@@ -162,7 +157,6 @@ fn disturbances_span(text: &str) -> Range<usize> {
     table(text).ok().and_then(|d| d.get_ref().get("disturbances").map(Spanned::span)).unwrap_or(0..0)
 }
 
-/// Where a table and its keys stand in the text.
 struct Spans {
     whole: Range<usize>,
     fields: Vec<(String, Range<usize>)>,
@@ -177,7 +171,6 @@ impl Spans {
         Spans { whole: value.span(), fields }
     }
 
-    /// The value of `name`, or the whole table where it is not written out.
     fn field(&self, name: &str) -> Range<usize> {
         self.fields.iter().find(|(n, _)| n == name).map_or_else(|| self.whole.clone(), |(_, s)| s.clone())
     }

@@ -6,7 +6,6 @@ use crate::scene::{Disturbances, Object, Scene};
 use serde::Serialize;
 
 /// The scene as text; only what differs from table 3.1 is said of the radar.
-///
 /// # Errors
 /// When a number is one that TOML can't hold (an integer above 2^63).
 pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
@@ -53,7 +52,6 @@ fn radar_table(radar: &Radar) -> Result<toml::Table, toml::ser::Error> {
 }
 
 /// [`to_toml`] with a further table, called `key`, after it.
-///
 /// # Errors
 /// As [`to_toml`].
 pub fn to_toml_beside(file: &SceneFile, key: &str, value: &impl Serialize) -> Result<String, toml::ser::Error> {

@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-/// x and y in metres.
 type Place = [f64; 2];
 
 /// A kind of scene that nothing is trained on or chosen by.
@@ -67,7 +66,7 @@ const STEP_BINS: Range<f64> = 0.4..4.0;
 const CROWD_POINTS: Range<f64> = 10.0..301.0;
 /// Nearest and farthest range of a place, metres and part of the maximum range.
 const NEAREST_METRES: f64 = 2.0;
-const FARTHEST: f64 = 0.93;
+const MAX_RANGE_PART: f64 = 0.93;
 /// Least sine of the angle to the array's axis.
 const LEAST_SINE: f64 = 0.1;
 /// Most that a step of a jittered wall is off, and most turn of a bent wall from its one end to the other.
@@ -76,7 +75,6 @@ const MAX_TURN_RADIANS: f64 = 1.2;
 /// Places that are tried for a wall or a cluster before one that leaves the field in part is taken.
 const TRIES: usize = 40;
 
-/// Where the radar's objects may stand.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BeyondField {
     pub max_range_metres: f64,
@@ -107,7 +105,6 @@ impl BeyondField {
         points.into_iter().map(Object::Point).collect()
     }
 
-    /// One to three groups of points that lie in the field.
     fn groups(&self, rng: &mut ChaCha8Rng, draw: fn(&Self, &mut ChaCha8Rng) -> Vec<Point>) -> Vec<Point> {
         let of_field = |rng: &mut ChaCha8Rng| {
             let mut points = Vec::new();
@@ -148,7 +145,6 @@ impl BeyondField {
         points
     }
 
-    /// Two rows of equal steps through one place.
     fn crossing(&self, rng: &mut ChaCha8Rng) -> Vec<Point> {
         let [x, y] = self.place(rng);
         let first = rng.random_range(0.0..PI);
@@ -194,7 +190,7 @@ impl BeyondField {
     }
 
     fn ring(&self, rng: &mut ChaCha8Rng) -> Vec<Point> {
-        let range = rng.random_range(NEAREST_METRES..FARTHEST * self.max_range_metres);
+        let range = rng.random_range(NEAREST_METRES..MAX_RANGE_PART * self.max_range_metres);
         let most = (1.0 - LEAST_SINE * LEAST_SINE).sqrt();
         let at = |rng: &mut ChaCha8Rng| {
             let range = range + self.bin_metres * rng.random_range(-0.5..0.5);
@@ -207,7 +203,7 @@ impl BeyondField {
     }
 
     fn place(&self, rng: &mut ChaCha8Rng) -> Place {
-        let range = rng.random_range(NEAREST_METRES..FARTHEST * self.max_range_metres);
+        let range = rng.random_range(NEAREST_METRES..MAX_RANGE_PART * self.max_range_metres);
         let margin = LEAST_SINE.asin();
         let angle = rng.random_range(margin..PI - margin);
         [range * angle.cos(), range * angle.sin()]
@@ -215,7 +211,7 @@ impl BeyondField {
 
     fn holds(&self, [x, y]: Place) -> bool {
         let range = x.hypot(y);
-        (NEAREST_METRES..=FARTHEST * self.max_range_metres).contains(&range) && y >= LEAST_SINE * range
+        (NEAREST_METRES..=MAX_RANGE_PART * self.max_range_metres).contains(&range) && y >= LEAST_SINE * range
     }
 }
 

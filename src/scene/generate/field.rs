@@ -7,23 +7,19 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-/// Nearest place of an ordinary object.
 const NEAREST_METRES: f64 = 2.0;
-/// Farthest place, as a part of the maximum range.
-const FARTHEST: f64 = 0.95;
-/// Angle from the array's axis that places keep.
+const MAX_RANGE_PART: f64 = 0.95;
 const AXIS_MARGIN_DEGREES: f64 = 5.0;
 /// Points that two rows have at least.
 const LEAST_OF_FENCES: usize = 40;
 
-/// The radar's field, in which objects are placed.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Field {
+pub(super) struct PlacementField {
     pub max_range_metres: f64,
     pub bin_metres: f64,
 }
 
-impl Field {
+impl PlacementField {
     /// The objects of a scene of `kind`, one of [`Kind::VARIED`] or [`Kind::IRREGULAR`]; none for the others.
     pub fn objects(&self, kind: Kind, rng: &mut ChaCha8Rng) -> Vec<Object> {
         match kind {
@@ -78,7 +74,7 @@ impl Field {
     }
 
     fn place(&self, rng: &mut ChaCha8Rng) -> [f64; 2] {
-        polar(rng.random_range(NEAREST_METRES..FARTHEST * self.max_range_metres), AXIS_MARGIN_DEGREES, rng)
+        polar(rng.random_range(NEAREST_METRES..MAX_RANGE_PART * self.max_range_metres), AXIS_MARGIN_DEGREES, rng)
     }
 
     fn point(&self, reflectivity: f64, rng: &mut ChaCha8Rng) -> Object {
@@ -97,7 +93,8 @@ impl Field {
             let direction = (90.0 + rng.random_range(-20.0..20.0f64)).to_radians();
             let [along, across] = [[direction.cos(), direction.sin()], [direction.sin(), -direction.cos()]];
             let (left, width) = (-rng.random_range(1.5..12.0), rng.random_range(3.0..16.0));
-            let (start, end) = (rng.random_range(2.0..12.0), rng.random_range(18.0..FARTHEST * self.max_range_metres));
+            let (start, end) =
+                (rng.random_range(2.0..12.0), rng.random_range(18.0..MAX_RANGE_PART * self.max_range_metres));
             let step = rng.random_range(0.1..0.6);
             let row = |side: f64, rng: &mut ChaCha8Rng| {
                 let (mut at, mut places) = (start, Vec::new());
@@ -143,7 +140,7 @@ impl Field {
 
     fn holds(&self, [x, y]: [f64; 2]) -> bool {
         y >= NEAREST_METRES * AXIS_MARGIN_DEGREES.to_radians().sin()
-            && (NEAREST_METRES..=FARTHEST * self.max_range_metres).contains(&x.hypot(y))
+            && (NEAREST_METRES..=MAX_RANGE_PART * self.max_range_metres).contains(&x.hypot(y))
     }
 
     /// A line whose two ends lie in the field. Where 100 starts in a row leave its end outside, it gets shorter.
@@ -169,7 +166,6 @@ impl Field {
         }
     }
 
-    /// Two lines from one place, at right angles.
     fn corner(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
         loop {
             let first = self.line(rng.random_range(0.0..360.0), self.spacing(rng, 2.0), 20..=80, rng);

@@ -90,7 +90,6 @@ impl Kind {
     }
 
     /// The kind called `name`, where test scenes are not wanted: [`Kind::World`] is one of them, [`Kind::Beyond`] is not.
-    ///
     /// # Errors
     /// As `name.parse::<Kind>()`.
     pub fn for_training(name: &str) -> Result<Kind, String> {
@@ -162,7 +161,6 @@ impl Kind {
         format!("{kind}, seed {seed}, scene {number}")
     }
 
-    /// Number of the kind's random streams.
     pub(super) fn stream(self) -> u64 {
         match self {
             Kind::Set1 => 1,
@@ -191,10 +189,8 @@ impl Kind {
     }
 }
 
-/// The name of [`Kind::World`].
 const WORLD: &str = "world";
 
-/// The name that the command line takes: `1` to `3` for the test sets, a word for the others.
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = match self {

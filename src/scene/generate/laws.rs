@@ -9,14 +9,12 @@ use std::ops::Range;
 /// How far below the strongest point of a scene the weakest lies at most.
 pub(super) const MAX_DYNAMIC_DECIBELS: f64 = 60.0;
 
-/// (x, y) in metres.
-pub(super) type Place = [f64; 2];
+pub(super) type GroundPlace = [f64; 2];
 
 /// How strong the points of a group are beside each other.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Strengths {
     Equal,
-    /// Rayleigh amplitudes: each point is the sum of many echoes.
     Rayleigh,
     LogNormal {
         deviation_decibels: f64,
@@ -45,7 +43,6 @@ impl Strengths {
         }
     }
 
-    /// Decibels of echo power of one point.
     pub(super) fn decibels(self, rng: &mut ChaCha8Rng) -> f64 {
         let normal = |rng: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(rng) };
         match self {
@@ -62,11 +59,9 @@ impl Strengths {
     }
 }
 
-/// How the steps from one point of a curve to the next differ.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Steps {
     Equal,
-    /// Each is off by up to this part.
     Jittered(f64),
     /// Exponential: the points are a Poisson process.
     Poisson,
@@ -81,7 +76,6 @@ impl Steps {
         }
     }
 
-    /// One step, relative to the mean.
     pub(super) fn next(self, rng: &mut ChaCha8Rng) -> f64 {
         match self {
             Steps::Equal => 1.0,
@@ -93,16 +87,16 @@ impl Steps {
 
 /// A way through the field: straight, an arc, or with a bend.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Way {
-    start: Place,
+pub(super) struct Track {
+    start: GroundPlace,
     heading_degrees: f64,
     degrees_per_metre: f64,
     /// After how many metres it turns, and by how much.
     bend: Option<[f64; 2]>,
 }
 
-impl Way {
-    pub(super) fn random(start: Place, length_metres: f64, rng: &mut ChaCha8Rng) -> Self {
+impl Track {
+    pub(super) fn random(start: GroundPlace, length_metres: f64, rng: &mut ChaCha8Rng) -> Self {
         // Much along a road leads straight ahead, or nearly so.
         let heading_degrees = match rng.random_range(0..10) {
             0..=2 => 90.0,
@@ -115,11 +109,11 @@ impl Way {
             5..=7 => degrees_per_metre = rng.random_range(-270.0..270.0) / length_metres,
             _ => bend = Some([length_metres * rng.random_range(0.2..0.8), rng.random_range(-120.0..120.0)]),
         }
-        Way { start, heading_degrees, degrees_per_metre, bend }
+        Track { start, heading_degrees, degrees_per_metre, bend }
     }
 
     /// Points after these steps, `side_metres` to the left of the way.
-    pub(super) fn points(&self, steps_metres: impl IntoIterator<Item = f64>, side_metres: f64) -> Vec<Place> {
+    pub(super) fn points(&self, steps_metres: impl IntoIterator<Item = f64>, side_metres: f64) -> Vec<GroundPlace> {
         let ([mut x, mut y], mut gone) = (self.start, 0.0);
         let step = |length: f64| {
             let turned = self.bend.filter(|[after, _]| gone > *after).map_or(0.0, |[_, degrees]| degrees);
@@ -132,7 +126,6 @@ impl Way {
     }
 }
 
-/// A number whose logarithm is uniform.
 pub(super) fn log_uniform(range: Range<f64>, rng: &mut ChaCha8Rng) -> f64 {
     range.start * (range.end / range.start).powf(rng.random())
 }

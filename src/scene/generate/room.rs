@@ -17,7 +17,6 @@ pub struct NoRoom {
 
 impl Kind {
     /// Whether the objects of its scenes find room before `radar`.
-    ///
     /// # Errors
     /// [`NoRoom`] names the kind and both ranges.
     pub fn check_room(self, radar: &Radar) -> Result<(), NoRoom> {
@@ -25,7 +24,6 @@ impl Kind {
     }
 
     /// [`Kind::check_room`] before every radar that sees this far.
-    ///
     /// # Errors
     /// As [`Kind::check_room`].
     pub fn check_room_within(self, found_metres: f64) -> Result<(), NoRoom> {

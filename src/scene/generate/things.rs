@@ -5,20 +5,16 @@ use crate::scene::{Block, Object, Point, Polygon, Post, Shape, Wall};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// A car's length and width, metres.
 const CAR_METRES: [f64; 2] = [4.5, 1.8];
-/// Nearest range of a body's middle, metres.
 const NEAREST_METRES: f64 = 5.0;
-/// Farthest range, as a part of the maximum range.
-const FARTHEST: f64 = 0.85;
+const MAX_RANGE_PART: f64 = 0.85;
 /// How far bodies keep from each other and from the array's axis, metres.
 const APART_METRES: f64 = 0.5;
-/// Places that are tried for a body before it is left out.
 const TRIES: usize = 100;
 
 /// The objects of a scene of `kind`, one of [`Kind::THINGS`], before a radar of this maximum range; none for the others.
 pub(super) fn objects(kind: Kind, max_range_metres: f64, rng: &mut ChaCha8Rng) -> Vec<Object> {
-    let mut things = Things { far: FARTHEST * max_range_metres, objects: Vec::new() };
+    let mut things = Things { far: MAX_RANGE_PART * max_range_metres, objects: Vec::new() };
     match kind {
         Kind::Bodies => {
             for _ in 0..rng.random_range(1..=3) {
@@ -60,7 +56,6 @@ fn post([x, y]: [f64; 2], rng: &mut ChaCha8Rng) -> Object {
     Object::Post(Post::new(x, y, rng.random_range(0.05..0.5)))
 }
 
-/// An L, turned anyhow.
 pub(super) fn ell([x, y]: [f64; 2], rng: &mut ChaCha8Rng) -> Object {
     let (long, thick): (f64, f64) = (rng.random_range(1.0..3.0), rng.random_range(0.2..0.6));
     let [cos, sin] = crate::scene::shape::direction(rng.random_range(0.0..360.0));
@@ -80,9 +75,7 @@ fn any_body(at: [f64; 2], rng: &mut ChaCha8Rng) -> Object {
     }
 }
 
-/// Bodies that stand apart from each other.
 struct Things {
-    /// Farthest range, metres.
     far: f64,
     objects: Vec<Object>,
 }
@@ -119,10 +112,9 @@ pub(super) fn has_room(object: &Object, others: &[Object], far_metres: f64) -> b
 
 impl Things {
     fn has_room(&self, object: &Object) -> bool {
-        has_room(object, &self.objects, self.far / FARTHEST)
+        has_room(object, &self.objects, self.far / MAX_RANGE_PART)
     }
 
-    /// Adds what `make` makes at a random place where it has room.
     fn add(&mut self, rng: &mut ChaCha8Rng, make: impl Fn([f64; 2], &mut ChaCha8Rng) -> Object) {
         for _ in 0..TRIES {
             let range = rng.random_range(NEAREST_METRES..self.far);
@@ -134,14 +126,12 @@ impl Things {
         }
     }
 
-    /// Adds an object where it has room.
     fn put(&mut self, object: Object) {
         if self.has_room(&object) {
             self.objects.push(object);
         }
     }
 
-    /// Two cars along the road, two or three walls, two to four posts.
     fn street(&mut self, rng: &mut ChaCha8Rng) {
         for x in [-1.8, 1.8] {
             let y = rng.random_range(7.0..0.6 * self.far);
@@ -164,7 +154,6 @@ impl Things {
         }
     }
 
-    /// Guard rails left and right of the road, posts beside them, and a car between.
     fn rails(&mut self, rng: &mut ChaCha8Rng) {
         let tilt = rng.random_range(-3.0..3.0);
         for side in [-1.0, 1.0] {
@@ -180,7 +169,6 @@ impl Things {
         }
     }
 
-    /// A car or a wide post near the array, and behind it a body and a point, each partly hidden from some elements.
     fn occlusion(&mut self, rng: &mut ChaCha8Rng) {
         let [cos, sin] = crate::scene::shape::direction(rng.random_range(60.0..120.0));
         let near = rng.random_range(5.0..0.4 * self.far);

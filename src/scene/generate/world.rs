@@ -2,7 +2,7 @@
 //!
 //! It covers what the named kinds hold and much between them, and draws none of them: they stay tests.
 
-use super::laws::{MAX_DYNAMIC_DECIBELS, Place, Steps, Strengths, Way, log_uniform};
+use super::laws::{GroundPlace, MAX_DYNAMIC_DECIBELS, Steps, Strengths, Track, log_uniform};
 use super::things::{self, has_room};
 use crate::radar::Radar;
 use crate::scene::shape::direction;
@@ -13,29 +13,21 @@ use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-/// Most points of a scene.
 const MAX_POINTS: usize = 600;
-/// Most points of a curve, a cloud or a scatter.
 const MAX_GROUP_POINTS: usize = 300;
-/// Most bodies of a scene, and most rough ones.
 const MAX_BODIES: usize = 8;
 const MAX_ROUGH_BODIES: usize = 2;
-/// Most groups of points or bodies of a scene.
 const MAX_GROUPS: usize = 8;
-/// Steps along a curve, in range bins and in metres.
 const STEP_BINS: Range<f64> = 0.2..4.0;
 const STEP_METRES: Range<f64> = 0.2..1.0;
-/// Nearest range of a place.
 const NEAREST_METRES: f64 = 0.3;
 /// How far points keep from the array.
 const CLEAR_METRES: f64 = 0.08;
 /// Farthest place, and farthest point of a curve or a cloud, as parts of the maximum range: what lies beyond wraps around.
 const FARTHEST_PLACE: f64 = 0.95;
 const FARTHEST_POINT: f64 = 1.25;
-/// Places that are tried for a curve, a cloud or a body.
 const TRIES: usize = 20;
 
-/// What a radar says of its scenes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct World {
     max_range_metres: f64,
@@ -52,7 +44,6 @@ impl World {
         }
     }
 
-    /// The objects of a scene, at least one.
     pub(super) fn objects(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
         loop {
             let (mut bodies, mut points) = (Vec::new(), Vec::new());
@@ -95,8 +86,8 @@ impl World {
         &self,
         rng: &mut ChaCha8Rng,
         count: usize,
-        draw: fn(&World, usize, &mut ChaCha8Rng) -> Vec<Place>,
-    ) -> Vec<Place> {
+        draw: fn(&World, usize, &mut ChaCha8Rng) -> Vec<GroundPlace>,
+    ) -> Vec<GroundPlace> {
         let mut places = Vec::new();
         for _ in 0..TRIES {
             places = draw(self, count, rng);
@@ -108,14 +99,13 @@ impl World {
         places
     }
 
-    /// Points along a way; one time in four half of them along another beside it.
-    fn curve(&self, count: usize, rng: &mut ChaCha8Rng) -> Vec<Place> {
+    fn curve(&self, count: usize, rng: &mut ChaCha8Rng) -> Vec<GroundPlace> {
         let step = match rng.random::<bool>() {
             true => self.bin_metres * log_uniform(STEP_BINS, rng),
             false => log_uniform(STEP_METRES, rng),
         };
         let steps = Steps::random(rng);
-        let way = Way::random(self.place(rng.random_range(0..5), rng), count as f64 * step, rng);
+        let way = Track::random(self.place(rng.random_range(0..5), rng), count as f64 * step, rng);
         let row = |count: usize, side: f64, rng: &mut ChaCha8Rng| {
             let lengths: Vec<f64> = (0..count).map(|_| step * steps.next(rng)).collect();
             way.points(lengths, side)
@@ -130,13 +120,13 @@ impl World {
     }
 
     /// Points around a place: a normal or an even distribution, or an outline, longer than wide and turned anyhow.
-    fn cloud(&self, count: usize, rng: &mut ChaCha8Rng) -> Vec<Place> {
+    fn cloud(&self, count: usize, rng: &mut ChaCha8Rng) -> Vec<GroundPlace> {
         let [x, y] = self.place(rng.random_range(0..5), rng);
         let long = log_uniform(0.05..6.0f64.min(self.max_range_metres / 4.0), rng);
         let wide = long * log_uniform(0.1..1.0, rng);
         let [cos, sin] = direction(rng.random_range(0.0..360.0));
         let shape = rng.random_range(0..5);
-        let offset = |rng: &mut ChaCha8Rng| -> Place {
+        let offset = |rng: &mut ChaCha8Rng| -> GroundPlace {
             let even = |rng: &mut ChaCha8Rng| rng.random_range(-1.0..1.0);
             let turn = TAU * rng.random::<f64>();
             let radius = rng.random::<f64>().sqrt();
@@ -150,7 +140,7 @@ impl World {
                 _ => [if rng.random() { 1.0 } else { -1.0 }, even(rng)],
             }
         };
-        let place = |[u, v]: Place| {
+        let place = |[u, v]: GroundPlace| {
             let [u, v] = [u * long, v * wide];
             [x + u * cos - v * sin, y + u * sin + v * cos]
         };
@@ -193,12 +183,11 @@ impl World {
     }
 
     /// A place in the field, whose range follows one of five laws.
-    fn place(&self, law: u32, rng: &mut ChaCha8Rng) -> Place {
+    fn place(&self, law: u32, rng: &mut ChaCha8Rng) -> GroundPlace {
         let far = FARTHEST_PLACE * self.max_range_metres;
         loop {
             let range = match law {
                 0 => log_uniform(NEAREST_METRES..far, rng),
-                // As many on each square metre.
                 1 => far * rng.random::<f64>().sqrt(),
                 _ => rng.random_range(NEAREST_METRES..far),
             };
@@ -210,14 +199,13 @@ impl World {
         }
     }
 
-    fn holds(&self, [x, y]: Place) -> bool {
+    fn holds(&self, [x, y]: GroundPlace) -> bool {
         let beside = (x.abs() - self.half_aperture_metres).max(0.0);
         y >= 0.0 && beside.hypot(y) >= CLEAR_METRES && x.hypot(y) <= FARTHEST_POINT * self.max_range_metres
     }
 }
 
-/// A polygon of 3 to 8 corners around a place.
-fn star([x, y]: Place, radius_metres: f64, rng: &mut ChaCha8Rng) -> Object {
+fn star([x, y]: GroundPlace, radius_metres: f64, rng: &mut ChaCha8Rng) -> Object {
     let count = rng.random_range(3..=8);
     let corner = |i: usize| {
         let turn = TAU * (i as f64 + rng.random_range(-0.2..0.2)) / count as f64;

@@ -1,4 +1,4 @@
-//! Which instructions kernels run with: the best that the processor has, or those that somebody asked for.
+//! Which instructions kernels run with: the best that the processor has, or those that were asked for.
 
 use rustfft::{Fft, FftNum, FftPlanner, FftPlannerScalar};
 use std::fmt;
@@ -86,7 +86,6 @@ impl Simd {
     }
 
     /// The set that [`SIMD_VARIABLE`] names; `None` where it is not set or empty.
-    ///
     /// # Errors
     /// [`SimdError`] when it names no set, or one that this processor lacks.
     pub fn requested() -> Result<Option<Simd>, SimdError> {
@@ -101,7 +100,7 @@ impl Simd {
         if has.contains(&asked) { Ok(asked) } else { Err(SimdError::Missing { asked, has }) }
     }
 
-    /// The best that this processor has, whatever was asked for.
+    /// The best that this processor has; [`Simd::chosen`] may choose less.
     pub fn best() -> Simd {
         static BEST: OnceLock<Simd> = OnceLock::new();
         *BEST.get_or_init(|| Simd::available().pop().unwrap_or(Simd::Portable))

@@ -2,7 +2,7 @@
 //!
 //! A [`Kernel`] is written once over [`Lanes`] and compiled for baseline x86-64 (or any other machine), for AVX2 with fused
 //! multiply-add and for AVX-512. Its body must be `#[inline(always)]`, as must everything it calls, or it keeps the baseline's instructions.
-//! A vector is 64 bytes whatever the machine, 16 f32 or 8 f64, so that data look the same everywhere; narrower machines use
+//! A vector is 64 bytes on any machine, 16 f32 or 8 f64, so that data look the same everywhere; narrower machines use
 //! several registers for one.
 
 mod instructions;
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn phasors_agree_with_the_standard_library_on_every_instruction_set() {
+    fn phasors_are_exact_on_every_instruction_set() {
         for simd in Simd::available() {
             let [wide, narrow] = simd.run(Worst);
             assert!(wide < 2e-15, "{simd:?}: {wide:e}"); // the reference itself rounds 2 pi t

@@ -2,7 +2,6 @@
 
 use super::{Kernel, Simd};
 
-/// A function of one value, applied to every value of a slice.
 struct Each<'a, F>(&'a mut [f32], F);
 
 impl<F: Fn(f32) -> f32> Kernel for Each<'_, F> {
@@ -26,9 +25,9 @@ pub fn each(values: &mut [f32], f: impl Fn(f32) -> f32) {
 pub fn power_of_ten(v: f32) -> f32 {
     let x = (v * std::f32::consts::LOG2_10).clamp(-125.0, 126.0);
     // Adding 1.5 * 2^23 rounds to the nearest integer.
-    const ROUND: f32 = 12_582_912.0;
-    let rounded = x + ROUND;
-    let whole = rounded - ROUND;
+    const ROUNDING_SUMMAND: f32 = 12_582_912.0;
+    let rounded = x + ROUNDING_SUMMAND;
+    let whole = rounded - ROUNDING_SUMMAND;
     let f = (x - whole) * std::f32::consts::LN_2;
     let series =
         1.0 + f * (1.0 + f * (1.0 / 2.0 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f * (1.0 / 720.0))))));

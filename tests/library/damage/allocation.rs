@@ -6,28 +6,29 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 thread_local! {
-    static HELD: Cell<isize> = const { Cell::new(0) };
-    static MOST: Cell<isize> = const { Cell::new(0) };
+    static HELD_BYTES: Cell<isize> = const { Cell::new(0) };
+    static PEAK_BYTES: Cell<isize> = const { Cell::new(0) };
     /// What the thread is at, told where it asks for more than can be had.
-    static AT: Cell<(&'static str, u64)> = const { Cell::new(("", 0)) };
+    static PEAK_PLACE: Cell<(&'static str, u64)> = const { Cell::new(("", 0)) };
 }
 
 /// Requests larger than this are told before the system refuses them and the process ends.
-const ABSURD: usize = 1 << 32;
+const ABSURD_BYTES: usize = 1 << 32;
 
 pub struct Counting;
 
 fn add(bytes: isize) {
     // A thread that ends has no counters any more.
-    let _ending = HELD.try_with(|held| {
+    let _ending = HELD_BYTES.try_with(|held| {
         held.set(held.get() + bytes);
-        let _ending = MOST.try_with(|most| most.set(most.get().max(held.get())));
+        let _ending = PEAK_BYTES.try_with(|most| most.set(most.get().max(held.get())));
     });
 }
 
 fn tell_absurd(size: usize) {
-    if size > ABSURD {
-        let _ending = AT.try_with(|at| eprintln!("{size} bytes asked for at input {} of {}", at.get().1, at.get().0));
+    if size > ABSURD_BYTES {
+        let _ending =
+            PEAK_PLACE.try_with(|at| eprintln!("{size} bytes asked for at input {} of {}", at.get().1, at.get().0));
     }
 }
 
@@ -61,11 +62,11 @@ unsafe impl GlobalAlloc for Counting {
 
 /// Runs `work` on input `number` of `what`; the most bytes it held at once beside what the thread held before.
 pub fn most_held<T>(what: &'static str, number: u64, work: impl FnOnce() -> T) -> (T, usize) {
-    AT.set((what, number));
-    let before = HELD.get();
-    MOST.set(before);
+    PEAK_PLACE.set((what, number));
+    let before = HELD_BYTES.get();
+    PEAK_BYTES.set(before);
     let result = work();
-    (result, (MOST.get() - before).max(0) as usize)
+    (result, (PEAK_BYTES.get() - before).max(0) as usize)
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Damaged files: whatever is done to a valid one, readers answer with a file or an error, in bounded memory and time.
+//! Damaged files: after any damage to a valid one, readers answer with a file or an error, in bounded memory and time.
 //!
 //! `cargo test --release --test library damage -- --ignored --nocapture` tries hundreds of thousands; `fuzz/` goes on from there.
 
@@ -13,7 +13,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Longest that any input may take.
-const LIMIT: Duration = Duration::from_secs(1);
+const MAX_READ_TIME: Duration = Duration::from_secs(1);
 
 /// Reads `bytes` and says what is wrong with how it went.
 fn trial(reader: &Reader, scratch: &Path, number: u64, bytes: &[u8]) -> Result<(bool, usize), String> {
@@ -29,7 +29,7 @@ fn trial(reader: &Reader, scratch: &Path, number: u64, bytes: &[u8]) -> Result<(
         if most > bound {
             return Err(format!("held {most} bytes where {bound} are the bound"));
         }
-        if fastest <= LIMIT {
+        if fastest <= MAX_READ_TIME {
             return Ok((accepted, most));
         }
     }

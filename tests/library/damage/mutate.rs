@@ -3,7 +3,7 @@
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_chacha::ChaCha8Rng;
 
-/// Text that readers are likely to stumble over, written over whatever is there.
+/// Text that readers are likely to stumble over, written over its content.
 const TOKENS: [&[u8]; 22] = [
     b"-1",
     b"0",

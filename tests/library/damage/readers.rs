@@ -84,14 +84,14 @@ fn autosaves() -> Reader {
 }
 
 fn shared() -> Reader {
-    use apertura::share::{Part, Shared, View};
-    let view = View {
+    use apertura::share::{SharedScene, SharedView, VisiblePart};
+    let view = SharedView {
         floor: apertura::signal::Floor::Thesis,
         normalisation: apertura::maps::Normalisation::MinMax,
         colours: apertura::picture::ColourMap::Grey,
         cartesian: false,
-        range_angle_part: Part::default(),
-        cartesian_part: Part::default(),
+        range_angle_part: VisiblePart::default(),
+        cartesian_part: VisiblePart::default(),
         target_eta: 0.9,
         cfar: None,
         eta: None,
@@ -100,13 +100,13 @@ fn shared() -> Reader {
         theory: true,
         lesson: None,
     };
-    let write = |file| Shared { file, view: view.clone() }.to_text().unwrap().into_bytes();
+    let write = |file| SharedScene { file, view: view.clone() }.to_text().unwrap().into_bytes();
     Reader {
         name: "shared",
         files: vec![write(scene()), write(SceneFile::default())],
         read: |_, bytes| {
             let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
-            Shared::from_text(text).map(|_| ()).map_err(|e| e.to_string())
+            SharedScene::from_text(text).map(|_| ()).map_err(|e| e.to_string())
         },
         // What a text may unpack to.
         bound: |length| (12 << 20) + 1024 * length,

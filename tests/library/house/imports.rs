@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 type Module = Vec<String>;
 
 /// Names are followed through so many others; `use a::a` would lead round for ever.
-const DEEPEST: usize = 8;
+const MAX_IMPORT_DEPTH: usize = 8;
 
 /// One file of `src`.
 struct File {
@@ -27,8 +27,8 @@ pub struct House {
 impl House {
     /// Reads `src`.
     ///
-    /// Imports of tests count where `with_tests`. A file that passes on what its children define (`pub use`) doesn't import it: whoever
-    /// imports by that name imports the child.
+    /// Imports of tests count where `with_tests`. A file that passes on what its children define (`pub use`) doesn't import it:
+    /// its importers import the child.
     pub fn read(src: &Path, with_tests: bool) -> House {
         let mut files = BTreeMap::new();
         for path in rust_files(src) {
@@ -114,7 +114,7 @@ impl House {
 
     /// Where a path starts: the module, and what is left of the path.
     fn start<'a>(&self, module: &[String], path: &'a [String], depth: usize) -> Option<(Module, &'a [String])> {
-        let (first, mut rest) = path.split_first().filter(|_| depth <= DEEPEST)?;
+        let (first, mut rest) = path.split_first().filter(|_| depth <= MAX_IMPORT_DEPTH)?;
         let mut at = module.to_vec();
         match first.as_str() {
             "crate" => at.clear(),
@@ -129,7 +129,7 @@ impl House {
             _ => {
                 at.push(first.clone());
                 if !self.modules.contains_key(&at) {
-                    // A name that was imported: whoever defines it.
+                    // A name that was imported: its definition.
                     let file = self.files.get(self.modules.get(module)?)?;
                     let import = file.source.uses.iter().find(|u| u.name == *first && u.path.len() > 1)?;
                     let imported = self.start(module, &import.path, depth + 1)?;

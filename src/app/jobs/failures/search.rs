@@ -2,7 +2,7 @@
 
 use crate::app::jobs::rows::{RowJob, Stopped, Teller};
 use crate::app::state::{SearchChoice, State};
-use crate::evaluate::worsen::{Aim, Finding, Measure, Search as Job};
+use crate::evaluate::worsen::{Aim, Finding, WorseningMeasure, WorseningSearch as Job};
 use crate::radar::counted;
 use crate::reconstruct::Reconstructor;
 use crate::scene::Scene;
@@ -129,9 +129,9 @@ impl Search {
                 .then(|| format!("No scene {nothing} for {method} within {} m.", choice.within_metres));
         };
         let told = |finding: &Finding| match choice.measure {
-            Measure::SquaredError => format!("SE {:.1}", finding.metrics.squared_error),
-            Measure::Missed => format!("{} missed", finding.failures.missed()),
-            Measure::Ghosts => counted(finding.failures.ghosts.len(), "ghost", "ghosts"),
+            WorseningMeasure::SquaredError => format!("SE {:.1}", finding.metrics.squared_error),
+            WorseningMeasure::Missed => format!("{} missed", finding.failures.missed()),
+            WorseningMeasure::Ghosts => counted(finding.failures.ghosts.len(), "ghost", "ghosts"),
         };
         Some(format!("{method}: {} here, {} after {:.2} m", told(start), told(end), end.moved_metres))
     }

@@ -4,7 +4,7 @@ use super::table::RowKey;
 use crate::app::jobs::rows::{RowJob, Stopped, Teller};
 use crate::app::state::Conditions;
 use crate::evaluate::rows::Row;
-use crate::evaluate::trial::{Answer, Trial};
+use crate::evaluate::trial::{TimedAnswer, Trial};
 use crate::maps::RangeAngleMap;
 use crate::platform;
 use crate::radar::Radar;
@@ -35,7 +35,7 @@ pub struct Thumbnail {
 
 impl Thumbnail {
     /// Of what a row was made of.
-    pub fn of(trial: &Trial, answer: &Answer) -> Thumbnail {
+    pub fn of(trial: &Trial, answer: &TimedAnswer) -> Thumbnail {
         Thumbnail { target: shrunk(&trial.radar, &trial.target), output: shrunk(&trial.radar, &answer.found.lambda) }
     }
 }

@@ -7,12 +7,12 @@ use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
-use crate::evaluate::worsen::{Aim, Measure, Search};
+use crate::evaluate::worsen::{Aim, WorseningMeasure, WorseningSearch};
 use eframe::egui::{Button, ComboBox, Grid, TextEdit, Ui};
 
 /// What is chosen, and what was written.
 pub struct Memory {
-    measure: Measure,
+    measure: WorseningMeasure,
     within_metres: f64,
     tries: u32,
     note: String,
@@ -20,7 +20,7 @@ pub struct Memory {
 
 impl Default for Memory {
     fn default() -> Self {
-        let Search { measure, within_metres, tries, .. } = Search::default();
+        let WorseningSearch { measure, within_metres, tries, .. } = WorseningSearch::default();
         Memory { measure, within_metres, tries, note: String::new() }
     }
 }
@@ -97,7 +97,7 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut Memory, asked: &mut
     } else {
         let label = ui.label("Look by");
         let combo = ComboBox::from_id_salt("measure").selected_text(name(memory.measure)).show_ui(ui, |ui| {
-            for measure in Measure::ALL {
+            for measure in WorseningMeasure::ALL {
                 ui.selectable_value(&mut memory.measure, measure, name(measure));
             }
         });
@@ -133,10 +133,10 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut Memory, asked: &mut
     }
 }
 
-fn name(measure: Measure) -> &'static str {
+fn name(measure: WorseningMeasure) -> &'static str {
     match measure {
-        Measure::SquaredError => "squared error",
-        Measure::Missed => "missed objects",
-        Measure::Ghosts => "ghosts",
+        WorseningMeasure::SquaredError => "squared error",
+        WorseningMeasure::Missed => "missed objects",
+        WorseningMeasure::Ghosts => "ghosts",
     }
 }

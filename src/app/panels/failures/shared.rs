@@ -2,7 +2,7 @@
 
 use crate::app::jobs::RowTable;
 use crate::evaluate::rows::Row;
-use crate::evaluate::statistics::{Rule, Shared, USUALLY_BAD, rules};
+use crate::evaluate::statistics::{Rule, SharedTrait, USUALLY_BAD, rules};
 use crate::platform::Instant;
 use crate::radar::counted;
 use eframe::egui::{Label, RichText, ScrollArea, TextEdit, Ui};
@@ -19,7 +19,7 @@ pub struct Memory {
     bad: String,
     of: Option<(u64, String)>,
     when: Option<Instant>,
-    found: Option<Result<Shared, String>>,
+    found: Option<Result<SharedTrait, String>>,
 }
 
 impl Default for Memory {
@@ -84,8 +84,8 @@ pub fn show(ui: &mut Ui, table: &RowTable, memory: &mut Memory) -> Option<String
 }
 
 /// In words, what was looked for and how.
-fn found(shared: &Shared) -> String {
-    let Shared { bad, rows, rules, tried } = shared;
+fn found(shared: &SharedTrait) -> String {
+    let SharedTrait { bad, rows, rules, tried } = shared;
     let of = format!("{bad} of {} are bad.", counted(*rows, "row", "rows"));
     let how = "Scenes of even number suggest a rule, those of odd number test it.";
     match (rules.as_slice(), tried) {

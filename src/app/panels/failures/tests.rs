@@ -4,7 +4,7 @@ use crate::app::state::{Conditions, FailureChoice, SearchChoice};
 use crate::app::widgets::method_menu::Offered;
 use crate::app::widgets::seen;
 use crate::evaluate::rows::{Column, Row};
-use crate::evaluate::worsen::{Aim, Measure};
+use crate::evaluate::worsen::{Aim, WorseningMeasure};
 use crate::picture::ColourMap;
 use crate::platform::Instant;
 use crate::reconstruct::{Baseline, CAPON, Reconstructor};
@@ -75,7 +75,8 @@ fn every_button_is_one_command() {
         click(&mut panel, label);
     }
     let choice = FailureChoice { methods: vec!["capon"], kinds: vec![Kind::Set2], own: false, count: 20, seed: 0 };
-    let search = SearchChoice { aim: Aim::Worsen, measure: Measure::SquaredError, within_metres: 2.0, tries: 256 };
+    let search =
+        SearchChoice { aim: Aim::Worsen, measure: WorseningMeasure::SquaredError, within_metres: 2.0, tries: 256 };
     let asked = [
         Command::Rows(RowsCommand::Try(choice)),
         Command::Rows(RowsCommand::Search(search)),

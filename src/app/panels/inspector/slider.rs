@@ -1,6 +1,6 @@
 //! Sliders beside the numbers of a body whose effect on the maps is seen best while they change.
 
-use crate::interact::{Change, Field, Shared};
+use crate::interact::{Field, FieldChange, SharedField};
 use eframe::egui::{Slider, SliderClamping, Ui, WidgetInfo};
 
 /// Largest radius on the slider, metres; larger ones are typed.
@@ -10,7 +10,7 @@ const MOST_RADIUS_METRES: f64 = 5.0;
 const MOST_ROUGHNESS_MILLIMETRES: f64 = 2.0;
 
 /// Draws the slider of a number that has one; what becomes of the number.
-pub fn show(ui: &mut Ui, shared: &Shared) -> Option<Change> {
+pub fn show(ui: &mut Ui, shared: &SharedField) -> Option<FieldChange> {
     let (name, range, is_logarithmic) = match shared.field {
         Field::Radius => ("radius slider", 0.01..=MOST_RADIUS_METRES, true),
         Field::Roughness => ("roughness slider", 0.0..=MOST_ROUGHNESS_MILLIMETRES, false),
@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, shared: &Shared) -> Option<Change> {
     let response = ui.add(slider.clamping(SliderClamping::Edits));
     response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), value, name));
     let response = response.on_hover_text("The maps follow while it is dragged");
-    response.changed().then_some(Change::To(value))
+    response.changed().then_some(FieldChange::To(value))
 }
 
 #[cfg(test)]
@@ -35,8 +35,8 @@ mod tests {
     #[test]
     fn a_slider_asks_for_the_number_it_is_moved_to() {
         let of = |field, first| {
-            let draw = move |ui: &mut Ui, asked: &mut Option<Change>| {
-                *asked = show(ui, &Shared { field, first, is_same: true }).or(*asked);
+            let draw = move |ui: &mut Ui, asked: &mut Option<FieldChange>| {
+                *asked = show(ui, &SharedField { field, first, is_same: true }).or(*asked);
             };
             Harness::new_ui_state(draw, None)
         };
@@ -47,7 +47,7 @@ mod tests {
             slider.step();
             slider.key_press(Key::ArrowRight);
             slider.step();
-            let Some(Change::To(asked)) = *slider.state() else { panic!("{name}: {:?}", slider.state()) };
+            let Some(FieldChange::To(asked)) = *slider.state() else { panic!("{name}: {:?}", slider.state()) };
             assert!(asked > first && asked < 2.0 * first, "{name}: {asked}");
         }
         let slider = of(Field::Length, 4.0);
@@ -56,8 +56,8 @@ mod tests {
 
     #[test]
     fn a_number_beyond_the_slider_stays() {
-        let draw = |ui: &mut Ui, asked: &mut Option<Change>| {
-            *asked = show(ui, &Shared { field: Field::Radius, first: 50.0, is_same: true });
+        let draw = |ui: &mut Ui, asked: &mut Option<FieldChange>| {
+            *asked = show(ui, &SharedField { field: Field::Radius, first: 50.0, is_same: true });
         };
         let mut slider = Harness::new_ui_state(draw, None);
         slider.run();

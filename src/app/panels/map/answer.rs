@@ -32,7 +32,7 @@ const REACH: f32 = 16.0;
 pub fn draw(painter: &Painter, frame: Frame<'_>, places: &Places) {
     let Places { guess, truth, distance } = places;
     let (guess, truth) = (*guess, *truth);
-    let [guess, truth] = [guess, truth].map(|cell| frame.cell(theory::Cell { bin: cell.bin, column: cell.column }));
+    let [guess, truth] = [guess, truth].map(|cell| frame.cell(theory::MapPlace { bin: cell.bin, column: cell.column }));
     let apart = guess.distance(truth);
     if apart > 2.0 * REACH {
         let along = REACH * (truth - guess) / apart;
@@ -95,7 +95,7 @@ mod tests {
         for column in [500.0, 512.0, 200.0] {
             let places = places(column);
             let drawn = Harness::builder().with_size(rect.size()).build_ui(|ui| draw(ui.painter(), frame, &places));
-            let truth = frame.cell(theory::Cell { bin: 266.0, column: 512.0 });
+            let truth = frame.cell(theory::MapPlace { bin: 266.0, column: 512.0 });
             for text in seen::texts(drawn.output()) {
                 assert!(text.rect.distance_to_pos(truth) > FREE, "{} lies over the blob", text.text);
             }

@@ -6,7 +6,7 @@ use crate::app::widgets::numbers::signed;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{Polar, Radar};
 use crate::scene::Reflector;
-use crate::theory::Cell;
+use crate::theory::MapPlace;
 use eframe::egui::{Pos2, Rect, pos2};
 
 /// Where on screen a map is, and which part of it.
@@ -66,7 +66,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Where a place between the map's cells is.
-    pub fn cell(&self, cell: Cell) -> Pos2 {
+    pub fn cell(&self, cell: MapPlace) -> Pos2 {
         let range_metres = self.radar.range_of_bin_metres(cell.bin.rem_euclid(self.radar.samples as f64));
         self.at(Polar { range_metres, cos_theta: self.radar.cos_of_column(cell.column) })
     }

@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use crate::maps::RangeAngleMap;
-use crate::picture::Detection;
+use crate::picture::CellVerdict;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
 /// The least height of a cell that hatches are drawn in, points.
@@ -27,17 +27,17 @@ pub struct ToldApart<'a> {
 
 impl ToldApart<'_> {
     /// What the cell at a place on screen is.
-    fn at(&self, frame: Frame<'_>, pos: Pos2) -> Detection {
+    fn at(&self, frame: Frame<'_>, pos: Pos2) -> CellVerdict {
         let (radar, polar) = (frame.radar, frame.polar(pos));
         let bin = radar.bin_of_range(polar.range_metres).round();
         let column = (radar.column_of_cos(polar.cos_theta).round() as usize) % radar.elements.max(1);
         if !(bin >= 0.0 && bin < radar.samples as f64) {
-            return Detection::Nothing;
+            return CellVerdict::Nothing;
         }
         let cell = (bin as usize, column);
         let above = |map: &RangeAngleMap, eta: f32| map.lambda.get(cell).is_some_and(|v| *v > eta);
-        match Detection::of(above(self.target, self.etas[1]), above(self.output, self.etas[0])) {
-            Detection::FalseAlarm if self.is_near_target(cell) => Detection::Rim,
+        match CellVerdict::of(above(self.target, self.etas[1]), above(self.output, self.etas[0])) {
+            CellVerdict::FalseAlarm if self.is_near_target(cell) => CellVerdict::Rim,
             kind => kind,
         }
     }
@@ -63,9 +63,9 @@ impl ToldApart<'_> {
             let square = Rect::from_min_size(rect.min + STEP * vec2(column as f32, row as f32), vec2(STEP, STEP));
             let kind = self.at(frame, square.center());
             let ends = match kind {
-                Detection::Miss => [square.left_bottom(), square.right_top()],
-                Detection::FalseAlarm => [square.left_top(), pos2(square.right(), square.bottom())],
-                Detection::Hit | Detection::Rim | Detection::Nothing => return None,
+                CellVerdict::Miss => [square.left_bottom(), square.right_top()],
+                CellVerdict::FalseAlarm => [square.left_top(), pos2(square.right(), square.bottom())],
+                CellVerdict::Hit | CellVerdict::Rim | CellVerdict::Nothing => return None,
             };
             let [r, g, b] = kind.outline(dark);
             Some(Shape::line_segment(ends, Stroke::new(1.2, Color32::from_rgb(r, g, b))))

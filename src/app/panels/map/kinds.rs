@@ -9,7 +9,7 @@ use crate::evaluate::failure::Fate;
 use crate::maps::Aperture;
 use crate::radar::{Radar, counted};
 use crate::scene::Reflector;
-use crate::theory::{Cell, blob_cell};
+use crate::theory::{MapPlace, blob_cell};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 
 /// How near the pointer must be to a mark to be told of it, points.
@@ -174,7 +174,9 @@ impl Kinds<'_> {
     fn place(&self, frame: Frame<'_>, verdict: &Verdict) -> Option<Pos2> {
         match verdict.object {
             Some(object) => self.centre(object).map(|centre| frame.blob(&centre)),
-            None => verdict.brightest.map(|[bin, column]| frame.cell(Cell { bin: bin as f64, column: column as f64 })),
+            None => {
+                verdict.brightest.map(|[bin, column]| frame.cell(MapPlace { bin: bin as f64, column: column as f64 }))
+            }
         }
     }
 
@@ -182,7 +184,7 @@ impl Kinds<'_> {
     fn shifted(&self, frame: Frame<'_>, verdict: &Verdict, columns: i32) -> Option<Pos2> {
         let centre = self.centre(verdict.object?)?;
         let cell = blob_cell(frame.radar, centre.x_metres, centre.y_metres, Aperture::Full);
-        Some(frame.cell(Cell { column: cell.column + f64::from(columns), ..cell }))
+        Some(frame.cell(MapPlace { column: cell.column + f64::from(columns), ..cell }))
     }
 
     /// Which object it is, what became of it, and why that is said.

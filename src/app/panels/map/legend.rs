@@ -3,7 +3,7 @@
 use super::kinds::{Kinds, Sign};
 use crate::app::widgets::axes;
 use crate::app::widgets::theme;
-use crate::picture::Detection;
+use crate::picture::CellVerdict;
 use eframe::egui::{self, Align2, Color32, Painter, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 /// Height of a row, points.
@@ -40,12 +40,12 @@ impl Fill {
     /// Hits, false alarms and misses.
     pub fn detections(dark: bool) -> Vec<Fill> {
         let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
-        let fill = |kind: Detection| Fill {
+        let fill = |kind: CellVerdict| Fill {
             inside: colour(kind.fill(dark)),
             around: colour(kind.outline(dark)),
             name: kind.name(),
         };
-        Detection::SEEN.map(fill).to_vec()
+        CellVerdict::SEEN.map(fill).to_vec()
     }
 
     /// Cells above a threshold and below it.

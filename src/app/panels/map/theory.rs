@@ -7,7 +7,7 @@ use crate::app::widgets::theme::MARK_EDGE;
 use crate::radar::Decibels;
 use crate::scene::Reflector;
 use crate::theory::overlay::STREAK;
-use crate::theory::{Cell, Ellipse, Overlay, blob_cell, fold_period_cos};
+use crate::theory::{Ellipse, MapPlace, Overlay, blob_cell, fold_period_cos};
 use eframe::egui::{Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
 /// What is drawn.
@@ -53,8 +53,9 @@ impl Theory<'_> {
     /// Draws it.
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>) {
         let Overlay { blob, streak, teeth, .. } = self.overlay;
-        let at =
-            |bin: f64, column: f64| frame.cell(Cell { bin: blob.peak.bin + bin, column: blob.peak.column + column });
+        let at = |bin: f64, column: f64| {
+            frame.cell(MapPlace { bin: blob.peak.bin + bin, column: blob.peak.column + column })
+        };
         let path: Vec<Pos2> = streak.path.iter().map(|cell| frame.cell(*cell)).collect();
         line(painter, &path, frame.rect, DRAWN_OUT);
         let [low, high] = streak.columns.map(|columns| columns as f64);
@@ -88,7 +89,7 @@ impl Theory<'_> {
         let blob = &self.overlay.blob;
         let ([left, right], [near, far]) = (blob.columns, blob.bins);
         let corners = [(-near, -left), (-near, right), (far, right), (far, -left), (-near, -left)];
-        let cell = |(bin, column): (f64, f64)| Cell { bin: blob.peak.bin + bin, column: blob.peak.column + column };
+        let cell = |(bin, column): (f64, f64)| MapPlace { bin: blob.peak.bin + bin, column: blob.peak.column + column };
         corners.map(|corner| frame.cell(cell(corner))).to_vec()
     }
 

@@ -90,7 +90,7 @@ mod tests {
     use crate::app::widgets::seen;
     use crate::maps::{LambdaScale, RangeAngleMap};
     use crate::radar::{Convention, Radar};
-    use crate::theory::Cell;
+    use crate::theory::MapPlace;
     use eframe::egui::Rect;
     use egui_kittest::Harness;
 
@@ -101,7 +101,7 @@ mod tests {
             let rect = Rect::from_min_size(Pos2::ZERO, vec2(640.0, 640.0));
             let frame = Frame::of(rect, MapView::default(), &radar, Projection::RangeAngle, 0.0);
             let outline = Rect::from_points(&outlines(frame, [20, 10], [2, 3])[0]);
-            let cell = frame.cell(Cell { bin: 20.0, column: 10.0 });
+            let cell = frame.cell(MapPlace { bin: 20.0, column: 10.0 });
             let off = outline.center().distance(cell);
             assert!(off < 0.1 && (outline.width() - 70.0).abs() < 0.1, "{convention:?}: {off} points beside {cell}");
         }

@@ -2,7 +2,7 @@
 
 use super::NewObject;
 use crate::interact::blob::BlobHit;
-use crate::interact::{Alignment, Along, Change, Coordinates, Field, Place, SelectionMode, Snap};
+use crate::interact::{Alignment, Along, Coordinates, Field, FieldChange, Place, SelectionMode, Snap};
 
 /// Commands that select objects and change the scene on screen.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +34,7 @@ pub enum EditCommand {
     /// Select the one before it.
     SelectPrevious,
     /// Change a number of every selected object.
-    SetField(Field, Change),
+    SetField(Field, FieldChange),
     /// Align the selected objects.
     Align(Alignment),
     /// Put the selected objects the same distance apart.

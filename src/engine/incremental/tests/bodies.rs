@@ -3,7 +3,6 @@
 use super::*;
 use crate::scene::{Block, Post, Wall};
 
-/// A car, a wall behind it, a post beside both and a point.
 fn street(x: f64) -> Scene {
     let objects = vec![
         Object::Box(Block::new([x, 0.8], [0.3, 0.15], 20.0)),
@@ -18,7 +17,7 @@ fn street(x: f64) -> Scene {
 fn a_body_that_moves_leaves_what_a_fresh_start_computes() {
     for normalisation in [Normalisation::DynamicRange(Decibels(60.0)), Normalisation::MinMax] {
         for floor in [Floor::Exact, Floor::Thesis] {
-            let wanted = Wanted { normalisation, floor, ..Wanted::default() };
+            let wanted = MapRequest { normalisation, floor, ..MapRequest::default() };
             let mut engine = Engine::new(small());
             for step in 0..8 {
                 let scene = street(-0.4 + 0.1 * f64::from(step));
@@ -33,9 +32,12 @@ fn a_body_that_moves_leaves_what_a_fresh_start_computes() {
 }
 
 #[test]
-fn a_body_that_moves_has_only_itself_computed_again_with_what_it_hides() {
-    let wanted =
-        Wanted { floor: Floor::Exact, normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..Wanted::default() };
+fn a_moved_body_is_computed_again_with_what_it_hides() {
+    let wanted = MapRequest {
+        floor: Floor::Exact,
+        normalisation: Normalisation::DynamicRange(Decibels(60.0)),
+        ..MapRequest::default()
+    };
     let mut engine = Engine::new(Radar { elements: 64, end_elements: 4, ..Radar::default() });
     let scene = |x: f64, post: f64| {
         let objects = vec![
@@ -48,8 +50,8 @@ fn a_body_that_moves_has_only_itself_computed_again_with_what_it_hides() {
     };
     let said = |engine: &mut Engine, scene: &Scene| {
         let frame = engine.update(scene, &wanted).unwrap();
-        let signal = frame.report.stages.into_iter().find(|s| s.stage == Stage::Signal).unwrap();
-        let Outcome::Computed(what) = signal.outcome else { panic!() };
+        let signal = frame.report.stages.into_iter().find(|s| s.stage == EngineStage::Signal).unwrap();
+        let StageOutcome::Computed(what) = signal.outcome else { panic!() };
         what
     };
     assert!(said(&mut engine, &scene(0.0, 15.0)).starts_with("15 echoes from scratch"));
@@ -59,14 +61,17 @@ fn a_body_that_moves_has_only_itself_computed_again_with_what_it_hides() {
     let what = said(&mut engine, &scene(0.2, 15.1));
     assert!(what.starts_with("11 of 15 echoes"), "the box and the wall behind it: {what}");
     let off = engine.update(&Scene { shadows: false, ..scene(0.2, 15.1) }, &wanted).unwrap();
-    assert!(off.report.ran(Stage::Signal), "without shadows the wall is another");
+    assert!(off.report.ran(EngineStage::Signal), "without shadows the wall is another");
 }
 
 #[test]
-fn a_car_dragged_along_a_street_of_things_has_half_of_the_echoes_computed_again() {
+fn a_dragged_car_has_half_of_a_streets_echoes_computed_again() {
     let street = crate::scene::presets::Preset::by_id("street-of-things").unwrap().load().unwrap().scene;
-    let wanted =
-        Wanted { floor: Floor::Exact, normalisation: Normalisation::DynamicRange(Decibels(60.0)), ..Wanted::default() };
+    let wanted = MapRequest {
+        floor: Floor::Exact,
+        normalisation: Normalisation::DynamicRange(Decibels(60.0)),
+        ..MapRequest::default()
+    };
     let mut engine = Engine::new(Radar { samples: 64, bandwidth_hz: 2.5e8, ..Radar::default() });
     engine.update(&street, &wanted).unwrap();
     let mut evaluated = Vec::new();
@@ -75,8 +80,8 @@ fn a_car_dragged_along_a_street_of_things_has_half_of_the_echoes_computed_again(
         let Object::Box(car) = &mut scene.objects[0] else { panic!() };
         car.x_metres += 0.05 * f64::from(step);
         let frame = engine.update(&scene, &wanted).unwrap();
-        let signal = frame.report.stages.into_iter().find(|s| s.stage == Stage::Signal).unwrap();
-        let Outcome::Computed(what) = signal.outcome else { panic!() };
+        let signal = frame.report.stages.into_iter().find(|s| s.stage == EngineStage::Signal).unwrap();
+        let StageOutcome::Computed(what) = signal.outcome else { panic!() };
         evaluated.push(what);
     }
     // The first move takes the car out of the sum at rest. The car has 8 echoes, the two walls behind it 3 each, the post there one.
@@ -86,7 +91,7 @@ fn a_car_dragged_along_a_street_of_things_has_half_of_the_echoes_computed_again(
 #[test]
 fn what_a_loud_body_drowned_is_there_when_it_is_gone() {
     let normalisation = Normalisation::DynamicRange(Decibels(100.0));
-    let wanted = Wanted { floor: Floor::Exact, normalisation, ends: false, ..Wanted::default() };
+    let wanted = MapRequest { floor: Floor::Exact, normalisation, ends: false, ..MapRequest::default() };
     let radar = Radar { elements: 64, end_elements: 4, ..Radar::default() };
     let quiet = |i: u32| {
         Object::Point(Point { reflectivity: 1e-3, ..Point::new(f64::from(i) - 3.0, 12.0 + 3.0 * f64::from(i)) })

@@ -1,11 +1,10 @@
 //! Half-precision floats (IEEE 754 binary16) as bits.
 
-/// Largest finite half, 2^15 (2 - 2^-10).
-const LARGEST: f32 = 65504.0;
+const MAX_HALF: f32 = 65504.0;
 
 /// The half nearest to `value`, ties to even; what is larger than any becomes the largest.
 pub fn half_bits(value: f32) -> u16 {
-    let value = if value.is_nan() { return 0x7e00 } else { value.clamp(-LARGEST, LARGEST) };
+    let value = if value.is_nan() { return 0x7e00 } else { value.clamp(-MAX_HALF, MAX_HALF) };
     let sign = ((value.to_bits() >> 16) & 0x8000) as u16;
     let magnitude = value.abs();
     // Below 2^-14 halves stand 2^-24 apart; above, a half keeps 10 bits behind the point.

@@ -36,7 +36,7 @@ use std::str::FromStr;
 
 /// Precision of features and target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Precision {
+pub enum DatasetPrecision {
     /// float16: 11 bits, half the space.
     #[default]
     Half,
@@ -44,13 +44,13 @@ pub enum Precision {
     Single,
 }
 
-impl FromStr for Precision {
+impl FromStr for DatasetPrecision {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
         match name {
-            "f16" | "float16" => Ok(Precision::Half),
-            "f32" | "float32" => Ok(Precision::Single),
+            "f16" | "float16" => Ok(DatasetPrecision::Half),
+            "f32" | "float32" => Ok(DatasetPrecision::Single),
             _ => Err(format!("unknown precision \"{name}\"; expected f16 or f32")),
         }
     }
@@ -58,7 +58,7 @@ impl FromStr for Precision {
 
 /// What of an example is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum ExamplePart {
     /// What is heard: samples of both ends, or of the elements of a layout.
     Ends,
     /// The live network's input.
@@ -67,49 +67,49 @@ pub enum Part {
     Target(Target),
 }
 
-impl Part {
+impl ExamplePart {
     /// What is written of examples before `radars` where nothing else is asked for: without the live network's input where that needs another radar,
     /// or hears no two ends.
-    pub fn usual(radars: &Radars, layout: Option<&[usize]>) -> Vec<Part> {
+    pub fn usual(radars: &Radars, layout: Option<&[usize]>) -> Vec<ExamplePart> {
         let fits = layout.is_none()
             && match radars {
                 Radars::Fixed(radar) => DRAWN.has_shape(radar),
                 Radars::Random => true,
             };
-        let features = fits.then_some(Part::Features);
-        [Part::Ends].into_iter().chain(features).chain(Target::USUAL.map(Part::Target)).collect()
+        let features = fits.then_some(ExamplePart::Features);
+        [ExamplePart::Ends].into_iter().chain(features).chain(Target::USUAL.map(ExamplePart::Target)).collect()
     }
 
     fn arrays(self, layout: Option<usize>) -> Vec<ArrayKind> {
         match self {
-            Part::Ends => vec![layout.map_or(ArrayKind::Ends, ArrayKind::Layout)],
-            Part::Features => {
+            ExamplePart::Ends => vec![layout.map_or(ArrayKind::Ends, ArrayKind::Layout)],
+            ExamplePart::Features => {
                 vec![ArrayKind::Fine, ArrayKind::Coarse, ArrayKind::Rows, ArrayKind::Scalars, ArrayKind::Constants]
             }
-            Part::Target(target) => vec![ArrayKind::Target(target)],
+            ExamplePart::Target(target) => vec![ArrayKind::Target(target)],
         }
     }
 }
 
 /// As [`FromStr`] reads it.
-impl fmt::Display for Part {
+impl fmt::Display for ExamplePart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Part::Ends => "ends",
-            Part::Features => "features",
-            Part::Target(target) => target.array(),
+            ExamplePart::Ends => "ends",
+            ExamplePart::Features => "features",
+            ExamplePart::Target(target) => target.array(),
         })
     }
 }
 
-impl FromStr for Part {
+impl FromStr for ExamplePart {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
         match name {
-            "ends" => Ok(Part::Ends),
-            "features" => Ok(Part::Features),
-            _ if name.starts_with("target") => name.parse().map(Part::Target),
+            "ends" => Ok(ExamplePart::Ends),
+            "features" => Ok(ExamplePart::Features),
+            _ if name.starts_with("target") => name.parse().map(ExamplePart::Target),
             _ => Err(format!(
                 "unknown array \"{name}\"; expected ends, features, target_ideal, target_measured or target_calibrated"
             )),
@@ -117,11 +117,9 @@ impl FromStr for Part {
     }
 }
 
-/// An array of a shard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ArrayKind {
     Ends,
-    /// Of so many elements.
     Layout(usize),
     Fine,
     Coarse,
@@ -129,11 +127,9 @@ enum ArrayKind {
     Scalars,
     Constants,
     Target(Target),
-    /// Decades by which everything of an example is scaled down.
     Gain,
 }
 
-/// The splits: a name, the streams of their scenes.
 const SPLITS: [(&str, Purpose); 3] =
     [("train", Purpose::Training), ("validation", Purpose::Validation), ("test", Purpose::Test)];
 
@@ -155,9 +151,9 @@ pub struct DatasetRequest {
     /// The elements that are heard, in the place of the two ends.
     pub layout: Option<Vec<usize>>,
     /// Of features and targets.
-    pub precision: Precision,
+    pub precision: DatasetPrecision,
     /// What of an example is written.
-    pub parts: Vec<Part>,
+    pub parts: Vec<ExamplePart>,
     /// Examples of a shard; as many are in memory at once, some 6 MB each.
     pub shard: u32,
 }
@@ -174,31 +170,26 @@ impl DatasetRequest {
 
 /// Why there is no dataset.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum DatasetError {
     /// What is asked for can't be.
     #[error("{0}")]
     Request(String),
     /// A file or folder can't be written.
     #[error("{path}: {source}")]
-    File {
-        /// Which.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    File { path: PathBuf, source: io::Error },
     /// A scene can't be made.
     #[error(transparent)]
     Example(#[from] ExampleError),
     /// There are no examples of this kind or radar.
     #[error(transparent)]
     Examples(#[from] ExamplesError),
-    /// Somebody asked to stop.
+    /// Cancelled.
     #[error("cancelled")]
     Cancelled(#[from] Cancelled),
 }
 
 /// Writes a dataset into `folder`, which is made where it is missing and must be empty, and last its manifest.
-///
 /// # Errors
 /// [`DatasetError`]; a folder without a manifest is no whole dataset.
 pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Manifest, DatasetError> {
@@ -256,7 +247,6 @@ pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Man
     Ok(manifest)
 }
 
-/// Examples of all splits.
 fn examples_of(request: &DatasetRequest) -> u64 {
     request.counts.iter().map(|count| u64::from(*count)).sum::<u64>() * request.kinds.len() as u64
 }
@@ -284,11 +274,12 @@ fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
     Ok(())
 }
 
-/// One maker of examples for each kind.
 fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, DatasetError> {
-    let targets =
-        request.parts.iter().filter_map(|part| if let Part::Target(target) = part { Some(*target) } else { None });
-    let features = if request.parts.contains(&Part::Features) { Features::Needed } else { Features::No };
+    let targets = request
+        .parts
+        .iter()
+        .filter_map(|part| if let ExamplePart::Target(target) = part { Some(*target) } else { None });
+    let features = if request.parts.contains(&ExamplePart::Features) { Features::Needed } else { Features::No };
     let of_all = ExamplesRequest {
         purpose,
         seed: request.seed,
@@ -310,7 +301,7 @@ fn write_shard(
     number: usize,
     examples: &[Example],
     (arrays, radar): (&[ArrayKind], &Radar),
-    precision: Precision,
+    precision: DatasetPrecision,
 ) -> Result<BTreeMap<String, FileEntry>, DatasetError> {
     let name_of = |array: &ArrayKind| format!("{split}/{number:05}.{}.npy", array.name());
     let write = |array: &ArrayKind| {
@@ -323,7 +314,6 @@ fn write_shard(
     };
     let written: Result<_, DatasetError> = arrays.par_iter().map(write).collect();
     if written.is_err() {
-        // The arrays of a shard are of use together only. Where one can't be removed, the error above says why.
         arrays.iter().for_each(|array| _ = fs::remove_file(folder.join(name_of(array))));
     }
     written

@@ -1,8 +1,8 @@
 //! The arrays of some examples, as NumPy files.
 
 use super::half::half_bits;
-use super::{ArrayKind, Precision};
-use crate::network::live::examples::{Example, Heard};
+use super::{ArrayKind, DatasetPrecision};
+use crate::network::live::examples::{EndSamples, Example};
 use crate::network::live::features::LiveInput;
 use crate::network::live::grid::{COARSE, COARSE_CHANNELS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
 use crate::radar::Radar;
@@ -54,17 +54,17 @@ impl ArrayKind {
     }
 
     /// NumPy's name of its numbers. What is small keeps its bits: the thesis' floor lies 230 dB below its echoes.
-    pub fn dtype(self, precision: Precision) -> &'static str {
+    pub fn dtype(self, precision: DatasetPrecision) -> &'static str {
         match (self, precision) {
             (ArrayKind::Ends | ArrayKind::Layout(_), _) => "<c16",
             (ArrayKind::Gain, _) => "<f8",
-            (ArrayKind::Scalars | ArrayKind::Constants, _) | (_, Precision::Single) => "<f4",
-            (_, Precision::Half) => "<f2",
+            (ArrayKind::Scalars | ArrayKind::Constants, _) | (_, DatasetPrecision::Single) => "<f4",
+            (_, DatasetPrecision::Half) => "<f2",
         }
     }
 
     /// The whole file of these examples.
-    pub fn file(self, examples: &[Example], radar: &Radar, precision: Precision) -> Vec<u8> {
+    pub fn file(self, examples: &[Example], radar: &Radar, precision: DatasetPrecision) -> Vec<u8> {
         let shape: Vec<usize> = [examples.len()].into_iter().chain(self.shape(radar)).collect();
         let mut bytes = header(self.dtype(precision), &shape);
         for example in examples {
@@ -79,7 +79,6 @@ impl ArrayKind {
     }
 }
 
-/// Samples relative to their mean power, as the network's input is.
 fn put_heard(bytes: &mut Vec<u8>, example: &Example) {
     let scale = 10f64.powf(-example.gain);
     let mut put = |sample: &Complex64| {
@@ -87,36 +86,34 @@ fn put_heard(bytes: &mut Vec<u8>, example: &Example) {
         bytes.extend((sample.im * scale).to_le_bytes());
     };
     match &example.heard {
-        Heard::Ends(ends) => ends.first.iter().chain(&ends.last).for_each(&mut put),
-        Heard::Elements(samples) => samples.iter().for_each(&mut put),
+        EndSamples::Ends(ends) => ends.first.iter().chain(&ends.last).for_each(&mut put),
+        EndSamples::Elements(samples) => samples.iter().for_each(&mut put),
     }
 }
 
-/// One array of the live network's input.
-fn put_feature(bytes: &mut Vec<u8>, feature: ArrayKind, input: &LiveInput, precision: Precision) {
+fn put_feature(bytes: &mut Vec<u8>, feature: ArrayKind, input: &LiveInput, precision: DatasetPrecision) {
     match feature {
         ArrayKind::Fine => put(bytes, &input.fine, precision),
         ArrayKind::Coarse => put(bytes, &input.coarse, precision),
         ArrayKind::Rows => put(bytes, &input.rows, precision),
-        ArrayKind::Scalars => put(bytes, &input.scalars, Precision::Single),
-        ArrayKind::Constants => put(bytes, &input.constants, Precision::Single),
+        ArrayKind::Scalars => put(bytes, &input.scalars, DatasetPrecision::Single),
+        ArrayKind::Constants => put(bytes, &input.constants, DatasetPrecision::Single),
         ArrayKind::Ends | ArrayKind::Layout(_) | ArrayKind::Target(_) | ArrayKind::Gain => {}
     }
 }
 
-fn put<'a>(bytes: &mut Vec<u8>, values: impl IntoIterator<Item = &'a f32>, precision: Precision) {
+fn put<'a>(bytes: &mut Vec<u8>, values: impl IntoIterator<Item = &'a f32>, precision: DatasetPrecision) {
     match precision {
-        Precision::Single => values.into_iter().for_each(|v| bytes.extend(v.to_le_bytes())),
-        Precision::Half => values.into_iter().for_each(|v| bytes.extend(half_bits(*v).to_le_bytes())),
+        DatasetPrecision::Single => values.into_iter().for_each(|v| bytes.extend(v.to_le_bytes())),
+        DatasetPrecision::Half => values.into_iter().for_each(|v| bytes.extend(half_bits(*v).to_le_bytes())),
     }
 }
 
-/// Magic number, version and dictionary of a NumPy file, padded so that the numbers begin at a multiple of 64 bytes.
 fn header(dtype: &str, shape: &[usize]) -> Vec<u8> {
     let shape: String = shape.iter().map(|n| format!("{n}, ")).collect();
     let mut text = format!("{{'descr': '{dtype}', 'fortran_order': False, 'shape': ({}), }}", shape.trim_end());
-    const BEFORE: usize = 10;
-    let padding = (64 - (BEFORE + text.len() + 1) % 64) % 64;
+    const PREFIX_BYTES: usize = 10;
+    let padding = (64 - (PREFIX_BYTES + text.len() + 1) % 64) % 64;
     text.extend(std::iter::repeat_n(' ', padding));
     text.push('\n');
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();

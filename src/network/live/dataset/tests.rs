@@ -10,11 +10,11 @@ fn request() -> DatasetRequest {
         counts: [2, 1, 1],
         seed: 5,
         floors: Floors::Fixed(Floor::Thesis),
-        precision: Precision::Single,
+        precision: DatasetPrecision::Single,
         arrays: Arrays::IDEAL,
         radars: Radars::default(),
         layout: None,
-        parts: Part::usual(&Radars::default(), None),
+        parts: ExamplePart::usual(&Radars::default(), None),
         shard: 3,
     }
 }
@@ -53,7 +53,7 @@ fn an_example_on_disk_is_the_example() {
 #[test]
 fn the_manifest_knows_every_file() {
     let folder = tempfile::tempdir().unwrap();
-    let request = DatasetRequest { parts: vec![Part::Ends], precision: Precision::Half, ..request() };
+    let request = DatasetRequest { parts: vec![ExamplePart::Ends], precision: DatasetPrecision::Half, ..request() };
     let manifest = write(folder.path(), &request, &Task::default()).unwrap();
     let text = std::fs::read_to_string(folder.path().join(FILE_NAME)).unwrap();
     let read: Manifest = serde_json::from_str(&text).unwrap();
@@ -72,7 +72,7 @@ fn the_manifest_knows_every_file() {
 fn a_longer_dataset_begins_with_a_shorter_one() {
     let folders = [2, 3].map(|count| {
         let folder = tempfile::tempdir().unwrap();
-        let request = DatasetRequest { counts: [count, 0, 0], parts: vec![Part::Ends], shard: 4, ..request() };
+        let request = DatasetRequest { counts: [count, 0, 0], parts: vec![ExamplePart::Ends], shard: 4, ..request() };
         write(folder.path(), &request, &Task::default()).unwrap();
         folder
     });
@@ -86,8 +86,8 @@ fn halves_are_off_by_a_two_thousandth_at_most() {
     let request = DatasetRequest {
         counts: [1, 0, 0],
         kinds: vec!["2".parse().unwrap()],
-        precision: Precision::Half,
-        parts: vec![Part::Target(Target::Measured)],
+        precision: DatasetPrecision::Half,
+        parts: vec![ExamplePart::Target(Target::Measured)],
         ..request()
     };
     write(folder.path(), &request, &Task::default()).unwrap();
@@ -129,15 +129,18 @@ fn a_dataset_of_another_radar_and_layout_has_its_shape() {
     let folder = tempfile::tempdir().unwrap();
     let radars = Radars::Fixed(Box::new(Radar { elements: 86, end_elements: 8, samples: 128, ..Radar::default() }));
     let layout = vec![0, 1, 4, 9, 85];
-    let parts = Part::usual(&radars, Some(&layout));
-    assert!(!parts.contains(&Part::Features) && Part::usual(&Radars::Random, None).contains(&Part::Features));
+    let parts = ExamplePart::usual(&radars, Some(&layout));
+    assert!(
+        !parts.contains(&ExamplePart::Features)
+            && ExamplePart::usual(&Radars::Random, None).contains(&ExamplePart::Features)
+    );
     let request = DatasetRequest { counts: [1, 0, 0], layout: Some(layout.clone()), radars, parts, ..request() };
     let manifest = write(folder.path(), &request, &Task::default()).unwrap();
     assert_eq!((manifest.layout, manifest.radar.unwrap().elements), (Some(layout), 86));
     let heard: Array3<Complex64> = read_npy(folder.path().join("train/00000.heard.npy")).unwrap();
     let ideal: Array3<f32> = read_npy(folder.path().join("train/00000.target_ideal.npy")).unwrap();
     assert_eq!((heard.dim(), ideal.dim()), ((2, 5, 128), (2, 128, 86)));
-    let features = DatasetRequest { parts: vec![Part::Features], ..request };
+    let features = DatasetRequest { parts: vec![ExamplePart::Features], ..request };
     let other = tempfile::tempdir().unwrap();
     let told = write(&other.path().join("new"), &features, &Task::default()).unwrap_err().to_string();
     assert!(told.contains("hears two ends") && !other.path().join("new").exists(), "{told}");

@@ -56,7 +56,6 @@ pub(crate) fn least_eta(radar: &Radar, noise_variance: f64, scale: LambdaScale) 
     scale.lambda(noise_decades(radar, noise_variance)) as f32
 }
 
-/// Whether some cell of either end's range-angle map is stronger than noise of this variance a sample makes it.
 fn holds_echo(radar: &Radar, ends: &TwoEnds, noise_variance: f64) -> bool {
     // Twice as many columns as elements: between two columns an echo loses little.
     let columns = 2 * radar.end_elements.next_power_of_two();
