@@ -2,7 +2,12 @@
 
 use super::application::App;
 use super::apply;
-use super::state::{Arrangement, Command, MapKind, MapViews, MethodSlot, SceneView, Settings};
+use super::jobs::Derived;
+use super::panels::bounds::BoundsPanel;
+use super::panels::chirp::ChirpPanel;
+use super::panels::doppler::DopplerPanel;
+use super::panels::phasors::PhasorsPanel;
+use super::state::{Arrangement, Command, MapKind, MapViews, MethodSlot, Panel, SceneView, Settings};
 use crate::bounds::PositionBound;
 use crate::engine::Report;
 use crate::evaluate::Metrics;
@@ -56,7 +61,7 @@ impl App {
 
     /// Whether a worker has something to do.
     pub fn is_busy(&self) -> bool {
-        self.jobs.is_busy()
+        self.jobs.is_busy() || self.panels.is_busy()
     }
 
     /// Whether everything that is unsaved is on disk as it is.
@@ -81,7 +86,7 @@ impl App {
 
     /// Where the method found something, as far as that is marked on the maps.
     pub fn marked_found(&self) -> &[Reflector] {
-        super::contents::shown_found(&self.state, &self.jobs.pipeline)
+        self.jobs.pipeline.shown_found(&self.state)
     }
 
     /// What the method found, where it is listed.
@@ -109,42 +114,44 @@ impl App {
 
     /// What is drawn as fresh and yet of something else than what is on screen: for a moment after a change, and never for longer.
     pub fn drawn_as_fresh_but_old(&self) -> Vec<String> {
-        self.jobs.drawn_as_fresh_but_old(&self.state)
+        let mut old = self.jobs.drawn_as_fresh_but_old(&self.state);
+        old.extend(self.panels.drawn_as_fresh_but_old(&self.state, &self.jobs));
+        old
     }
 
     /// Bounds asked for since the start.
     pub fn bounds_asked(&self) -> u64 {
-        self.jobs.bounds.requests()
+        self.panels.derived::<BoundsPanel>(Panel::Bounds).map_or(0, Derived::requests)
     }
 
     /// The bound on screen, if there is one.
     pub fn position_bound(&self) -> Option<PositionBound> {
-        self.jobs.bounds.value()?.ok()?.bound.ok()
+        self.panels.derived::<BoundsPanel>(Panel::Bounds)?.value()?.ok()?.bound.ok()
     }
 
     /// Chains of phasors asked for since the start.
     pub fn phasors_asked(&self) -> u64 {
-        self.jobs.phasors.requests()
+        self.panels.derived::<PhasorsPanel>(Panel::Phasors).map_or(0, Derived::requests)
     }
 
     /// Range bin and column of the chain of phasors on screen, and the end of the chain, if there is one.
     pub fn phasor_sum(&self) -> Option<([usize; 2], Complex64)> {
-        self.jobs.phasors.value()?.ok().map(|r| (r.cell, r.measured.sum()))
+        self.panels.derived::<PhasorsPanel>(Panel::Phasors)?.value()?.ok().map(|r| (r.cell, r.measured.sum()))
     }
 
     /// Beats asked for since the start.
     pub fn chirps_asked(&self) -> u64 {
-        self.jobs.chirps.requests()
+        self.panels.derived::<ChirpPanel>(Panel::Chirp).map_or(0, Derived::requests)
     }
 
     /// Range-Doppler maps asked for since the start.
     pub fn dopplers_asked(&self) -> u64 {
-        self.jobs.dopplers.requests()
+        self.panels.derived::<DopplerPanel>(Panel::RangeDoppler).map_or(0, Derived::requests)
     }
 
     /// Range bin and column of the strongest cell of the range-Doppler map on screen.
     pub fn doppler_peak(&self) -> Option<(usize, usize)> {
-        let decades = self.jobs.dopplers.value()?.ok()?.decades.decades();
+        let decades = self.panels.derived::<DopplerPanel>(Panel::RangeDoppler)?.value()?.ok()?.decades.decades();
         decades.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(cell, _)| cell)
     }
 
@@ -160,7 +167,7 @@ impl App {
 
     /// The range bin in which the beat on screen is strongest, and the element it is of.
     pub fn beat_peak(&self) -> Option<(usize, usize)> {
-        let result = self.jobs.chirps.value()?.ok()?;
+        let result = self.panels.derived::<ChirpPanel>(Panel::Chirp)?.value()?.ok()?;
         let peak = (0..result.spectrum.len()).max_by(|a, b| result.spectrum[*a].total_cmp(&result.spectrum[*b]))?;
         Some((peak, result.element))
     }

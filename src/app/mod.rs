@@ -12,9 +12,13 @@
 //! downward: application, contents, panels and chrome, jobs, widgets, state. Nothing shown is ever taken away before its successor is
 //! there. Editing itself is in [`crate::interact`], without egui.
 
+#[macro_use]
+mod registry;
+
 mod application;
 mod apply;
 mod chrome;
+mod content;
 mod contents;
 mod input;
 mod inspect;
