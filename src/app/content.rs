@@ -170,3 +170,72 @@ pub fn offered<'a>(state: &'a State, jobs: &Jobs) -> Offered<'a> {
     let times = state.method_times.on(state.radar());
     Offered { all: &state.methods.all, times, timing: jobs.method_times.progress() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::shared::Shared;
+    use crate::app::state::EditCommand;
+    use crate::app::{App, Options};
+    use crate::scene::Scene;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// The scene whose reflectors are counted.
+    #[derive(Clone, PartialEq)]
+    struct Counted(Shared<Scene>);
+
+    impl Query for Counted {
+        type Value = usize;
+        type State = ();
+        const THREAD: &'static str = "count";
+        const WHAT: &'static str = "Counting";
+        const ADVICE: &'static str = "Change the scene to try again.";
+
+        fn compute(&self, (): &mut (), _: &Task) -> Result<usize, Failure> {
+            Ok(self.0.reflector_count())
+        }
+    }
+
+    /// The panel that ARCHITECTURE shows: it counts reflectors, and has a button.
+    struct CountPanel;
+
+    impl Content for CountPanel {
+        type Asks = Counted;
+        type Memory = ();
+
+        fn asks(state: &State, _: &Jobs) -> Option<Counted> {
+            Some(Counted(state.scene().into()))
+        }
+
+        fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+            if let Some(Ok(count)) = cx.value {
+                ui.label(format!("{count} reflectors"));
+            }
+            let is_clicked = ui.button("Select all").clicked();
+            is_clicked.then(|| EditCommand::SelectAll.into()).into_iter().collect()
+        }
+    }
+
+    #[test]
+    fn a_small_panel_draws_its_value_and_answers_with_commands() {
+        let app = Harness::builder().build_eframe(|creation| App::new(creation, Options::default()).unwrap());
+        let count = app.state().editor().scene().reflector_count();
+        let draw = |ui: &mut Ui, (app, held, asked): &mut (Harness<'_, App>, Box<dyn AnyPanel>, Vec<Command>)| {
+            let App { state, jobs, .. } = app.state_mut();
+            held.ask(state, jobs, true);
+            held.polled().poll();
+            asked.extend(held.draw(ui, state, jobs, Panel::Guide));
+        };
+        let held = Held::<CountPanel>::start(|| ()).unwrap();
+        let mut drawn = Harness::new_ui_state(draw, (app, held, Vec::new()));
+        while drawn.state().1.is_busy() {
+            std::thread::yield_now();
+        }
+        drawn.run();
+        drawn.get_by_label(&format!("{count} reflectors"));
+        drawn.get_by_label("Select all").click();
+        drawn.run();
+        assert_eq!(drawn.state().2, [Command::from(EditCommand::SelectAll)]);
+    }
+}

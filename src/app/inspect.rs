@@ -71,17 +71,17 @@ impl App {
 
     /// Report of the last update, if there was one.
     pub fn report(&self) -> Option<&Report> {
-        self.jobs.pipeline.result().map(|r| &r.frame.report)
+        self.jobs.pipeline.maps.result().map(|r| &r.frame.report)
     }
 
     /// Maps with a picture of the latest scene.
     pub fn pictures(&self) -> Vec<MapKind> {
-        self.jobs.pipeline.result().map(|r| r.pictures.keys().copied().collect()).unwrap_or_default()
+        self.jobs.pipeline.maps.result().map(|r| r.pictures.keys().copied().collect()).unwrap_or_default()
     }
 
     /// Requests sent to the maps worker, and pictures painted, since the start.
     pub fn work_done(&self) -> (u64, u64) {
-        (self.jobs.pipeline.requests(), self.jobs.pipeline.result().map_or(0, |r| r.painted))
+        (self.jobs.pipeline.maps.requests(), self.jobs.pipeline.maps.result().map_or(0, |r| r.painted))
     }
 
     /// Where the method found something, as far as that is marked on the maps.
@@ -101,13 +101,13 @@ impl App {
 
     /// Why the method has no output, where it has none.
     pub fn refusal(&self) -> Option<&str> {
-        self.jobs.pipeline.refusal().map(|r| r.reason.as_str())
+        self.jobs.pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str())
     }
 
     /// Cells that the detector in use finds in the target and in the first method's output, and why it finds none.
     pub fn detected(&self) -> ([Option<usize>; 2], Option<&str>) {
         let count = |map: &Option<Arc<RangeAngleMap>>| Some(map.as_ref()?.lambda.iter().filter(|v| **v > 0.5).count());
-        let found = self.jobs.pipeline.result().map(|r| &r.detected);
+        let found = self.jobs.pipeline.maps.result().map(|r| &r.detected);
         let counts = found.map_or([None, None], |found| [count(&found.target), count(&found.outputs[0])]);
         (counts, self.jobs.pipeline.detector_error())
     }
@@ -179,7 +179,7 @@ impl App {
 
     /// Figures on screen, if there are any.
     pub fn metrics(&self) -> Option<Metrics> {
-        self.jobs.pipeline.scores().map(|s| s.metrics)
+        self.jobs.pipeline.scores_in(MethodSlot::First).map(|s| s.metrics)
     }
 
     /// Lambda of what the second method of the panel "Compare" made, if it made something.
@@ -200,12 +200,12 @@ impl App {
 
     /// Whether the maps on screen are those of a scene at rest, as every command computes them.
     pub fn is_settled(&self) -> bool {
-        self.jobs.pipeline.is_settled()
+        self.jobs.pipeline.maps.is_settled()
     }
 
     /// Whether those of a scene at rest are being computed.
     pub fn is_settling(&self) -> bool {
-        self.jobs.pipeline.is_settling()
+        self.jobs.pipeline.maps.is_settling()
     }
 
     /// Whether the output on screen belongs to something else than the maps.
@@ -231,7 +231,7 @@ impl App {
 
     /// What the evaluation has found, as CSV.
     pub fn evaluation_csv(&self) -> String {
-        self.jobs.evaluation.to_csv()
+        super::jobs::evaluation_to_csv(self.jobs.evaluation.rows())
     }
 
     /// The rows of the panel Failures.

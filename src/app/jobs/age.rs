@@ -33,7 +33,7 @@ impl Jobs {
     /// Whether the picture of a map is of other samples, or of another method, than those on screen.
     fn is_of_another_source(&self, state: &State, kind: MapKind) -> bool {
         let source = Source::of(state);
-        let Some(maps) = self.pipeline.result().filter(|r| r.pictures.contains_key(&kind)) else { return false };
+        let Some(maps) = self.pipeline.maps.result().filter(|r| r.pictures.contains_key(&kind)) else { return false };
         let Some(slot) = kind.slot() else { return maps.request.source != source };
         let pair = maps.request.pairs[slot as usize].as_ref();
         let method = state.method_in(slot).map(|method| method.name());

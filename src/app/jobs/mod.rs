@@ -45,30 +45,30 @@ pub use chirp::{ChirpQuery, ChirpResult};
 pub use derived::{Derived, Failure, Polled, Query};
 pub use dialogs::{Dialogs, Purpose, Question};
 pub use doppler::{DopplerQuery, DopplerResult};
-pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
+pub use evaluation::{EvaluationPlan, EvaluationRow, to_csv as evaluation_to_csv};
 pub use export::Exports;
 #[cfg(test)]
 pub use failures::some_row;
 pub use failures::{
-    Album, Failures, Plan as FailuresPlan, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, is_table_of_rows,
-    keep,
+    Album, Failures, FailuresPlan, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, is_table_of_rows, keep,
 };
 pub use frame_log::FrameLog;
 use kinds::KindsQuery;
 pub use kinds::{Fates, Verdict, fates_of};
 pub use lessons::Lessons;
 pub use method::Refusal;
-pub use method_times::MeasuredMethods;
+pub use method_times::TimesPlan;
 pub use phasors::{PhasorsQuery, PhasorsResult};
 pub use pipeline::{Pipeline, Wants};
 pub use recording::Recorder;
 use recording::Window;
-pub use run_time::RunTime;
+use rows::RowJob;
+pub use run_time::RunTimePlan;
 pub use scene_maps::Scores;
 pub use several::{SeveralMaps, Small};
 use theory::TheoryRequest;
 pub use theory::TheoryResult;
-pub use thresholds::Thresholds;
+pub use thresholds::ThresholdPlan;
 pub use training::{Log, Training};
 
 use crate::app::state::{Command, Panel, RowsCommand, State, ViewCommand};
@@ -87,15 +87,15 @@ pub struct Jobs {
     /// Maps, pictures, outputs.
     pub pipeline: Pipeline,
     /// Methods on test sets.
-    pub evaluation: Evaluation,
+    pub evaluation: RowJob<EvaluationPlan>,
     /// Thresholds that keep a rate of false alarms.
-    pub thresholds: Thresholds,
+    pub thresholds: RowJob<ThresholdPlan>,
     /// Methods on many scenes, row by row.
     pub failures: Failures,
     /// Run time against error.
-    pub run_time: RunTime,
+    pub run_time: RowJob<RunTimePlan>,
     /// How long every method takes.
-    pub method_times: MeasuredMethods,
+    pub method_times: RowJob<TimesPlan>,
     /// A training that is watched.
     pub training: Training,
     /// One map for several values.
@@ -130,11 +130,11 @@ impl Jobs {
         let wake = platform::waker(ctx);
         Ok(Jobs {
             pipeline: Pipeline::start(wake.clone())?,
-            evaluation: Evaluation::start(wake.clone())?,
-            thresholds: Thresholds::start(wake.clone())?,
+            evaluation: RowJob::start(wake.clone())?,
+            thresholds: RowJob::start(wake.clone())?,
             failures: Failures::start(folder, wake.clone())?,
-            run_time: RunTime::start(wake.clone())?,
-            method_times: MeasuredMethods::start(wake.clone())?,
+            run_time: RowJob::start(wake.clone())?,
+            method_times: RowJob::start(wake.clone())?,
             training: Training::start(wake.clone())?,
             several: SeveralMaps::start(wake.clone())?,
             kinds: Derived::start(wake.clone())?,
@@ -154,17 +154,16 @@ impl Jobs {
     pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
         let mut errors = platform::problems();
         errors.extend(self.pipeline.poll());
-        self.pipeline.record_times(&mut state.method_times);
         errors.extend(self.kinds.poll());
         errors.extend(self.theory.poll());
         errors.extend(self.evaluation.poll());
         errors.extend(self.failures.poll());
         let (found, failed) = self.failures.search.poll();
         errors.extend(failed);
-        let (thresholds, failed) = self.thresholds.poll();
-        errors.extend(failed);
+        errors.extend(self.thresholds.poll());
         errors.extend(self.run_time.poll());
-        errors.extend(self.method_times.poll(state));
+        errors.extend(self.method_times.poll());
+        self.record_times(state);
         errors.extend(self.training.poll());
         errors.extend(self.several.poll());
         errors.extend(self.lessons.poll(state));
@@ -179,7 +178,7 @@ impl Jobs {
         }
         let mut chosen = self.chosen(state);
         chosen.extend(begun);
-        for kept in thresholds {
+        for kept in self.thresholds.take_rows() {
             state.notices.info(kept.told);
             chosen.push(ViewCommand::SetMethodEta(kept.method, Some(kept.eta)).into());
         }
@@ -188,6 +187,15 @@ impl Jobs {
             chosen.push(RowsCommand::TakeFinding.into());
         }
         chosen
+    }
+
+    /// Keeps how long methods took, on screen and where they were timed.
+    fn record_times(&mut self, state: &mut State) {
+        self.pipeline.record_times(&mut state.method_times);
+        let timed = self.method_times.take_rows();
+        if let Some(plan) = self.method_times.plan() {
+            timed.into_iter().for_each(|(method, took)| state.method_times.record(plan.radar(), method, took));
+        }
     }
 
     /// Asks for what the panels of this frame need, if that changed; `wants` is what they read of maps and methods.
@@ -207,7 +215,7 @@ impl Jobs {
         {
             self.wake.request_repaint_after(later);
         }
-        if let Some(later) = self.pipeline.rests_in() {
+        if let Some(later) = self.pipeline.maps.rests_in() {
             self.wake.request_repaint_after(later);
         }
         if self.pipeline.is_busy() {
@@ -220,7 +228,7 @@ impl Jobs {
     pub fn take_pictures(&mut self, state: &State, draws_more: bool) {
         let is_outdated = state.pictured().into_iter().any(|kind| self.pipeline.is_outdated(kind));
         // Maps are computed once more when the scene comes to rest.
-        let is_done = !draws_more && !self.draws_more() && self.pipeline.rests_in().is_none() && !is_outdated;
+        let is_done = !draws_more && !self.draws_more() && self.pipeline.maps.rests_in().is_none() && !is_outdated;
         // What came after this frame was drawn is drawn in the next.
         let is_whole = std::mem::replace(&mut self.was_done, is_done) && is_done;
         let is_dimmed = state.pictured().into_iter().any(|kind| self.pipeline.is_stale(kind));

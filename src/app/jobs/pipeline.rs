@@ -11,7 +11,7 @@
 use super::derived::STALE;
 use super::detected::DETECTED;
 use super::maps::MapsJob;
-use super::method::{Basis, MethodJob, MethodRequest, MethodResult, Refusal};
+use super::method::{Basis, MethodJob, MethodRequest, MethodResult};
 use super::recorded::Unexplained;
 use super::scene_maps::{MapsRequest, MapsResult, Scores, Truth};
 use super::source::Source;
@@ -24,11 +24,11 @@ use crate::platform::Instant;
 use crate::scene::Reflector;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// The workers of maps and methods.
 pub struct Pipeline {
-    maps: MapsJob,
+    /// The maps of the scene on screen.
+    pub maps: MapsJob,
     /// The first method and the second.
     methods: [MethodJob; 2],
 }
@@ -151,14 +151,9 @@ impl Pipeline {
         self.methods[slot as usize].ask(request, state.editor.dragged().is_some());
     }
 
-    /// Stops a reconstruction that runs.
-    pub fn cancel_method(&mut self, slot: MethodSlot) {
-        self.methods[slot as usize].cancel();
-    }
-
-    /// The latest maps.
-    pub fn result(&self) -> Option<&MapsResult> {
-        self.maps.result()
+    /// Either method, to be stopped.
+    pub fn method_mut(&mut self, slot: MethodSlot) -> &mut MethodJob {
+        &mut self.methods[slot as usize]
     }
 
     /// Either method: its latest output, or why it has none.
@@ -238,65 +233,15 @@ impl Pipeline {
         self.maps.result()?.unexplained.as_ref()?.as_ref().err().map(String::as_str)
     }
 
-    /// Figures of the first method's output, against the target of the same scene.
-    pub fn scores(&self) -> Option<Scores> {
-        self.scores_in(MethodSlot::First)
-    }
-
     /// Figures of either method's output, against the target of the same scene.
     pub fn scores_in(&self, slot: MethodSlot) -> Option<Scores> {
         self.method(slot).output()?;
         self.maps.result()?.scores[slot as usize]
     }
 
-    /// Why the scene on screen can't be computed.
-    pub fn scene_error(&self) -> Option<&str> {
-        self.maps.scene_error()
-    }
-
-    /// Why the first method has no output for the scene on screen.
-    pub fn refusal(&self) -> Option<&Refusal> {
-        self.method(MethodSlot::First).refusal()
-    }
-
-    /// Progress of its reconstruction, 0 to 1; `None` when none runs.
-    pub fn method_progress(&self) -> Option<f32> {
-        self.method(MethodSlot::First).progress()
-    }
-
-    /// Requests sent to the maps worker: a test asks that an idle app sends none.
-    pub fn requests(&self) -> u64 {
-        self.maps.requests()
-    }
-
     /// Whether any worker has something to do, or will as soon as the scene rests.
     pub fn is_busy(&self) -> bool {
         self.maps.is_busy() || self.methods.iter().any(MethodJob::is_busy)
-    }
-
-    /// How long until the scene on screen rests; `None` where it does, or is held.
-    pub fn rests_in(&self) -> Option<Duration> {
-        self.maps.rests_in()
-    }
-
-    /// Whether the maps are those of the scene on screen at rest, as every command computes them.
-    pub fn is_settled(&self) -> bool {
-        self.maps.is_settled()
-    }
-
-    /// Whether they are being computed.
-    pub fn is_settling(&self) -> bool {
-        self.maps.is_settling()
-    }
-
-    /// Time of the last maps and pictures that followed a change.
-    pub fn took(&self) -> Option<Duration> {
-        self.maps.took()
-    }
-
-    /// Whether somebody looks at an output, or would if there were one.
-    pub fn wants_output(&self) -> bool {
-        self.maps.wants_ends()
     }
 
     /// Whether the shown output belongs to something else than the shown maps.

@@ -84,13 +84,13 @@ impl Content for ControlsPanel {
         let (state, jobs) = (&*cx.state, cx.jobs);
         let pipeline = &jobs.pipeline;
         let run = Run {
-            progress: pipeline.method_progress(),
-            refusal: pipeline.refusal(),
+            progress: pipeline.method(MethodSlot::First).progress(),
+            refusal: pipeline.method(MethodSlot::First).refusal(),
             output: pipeline.output().map(|o| (o.method, o.took)),
             // How many blobs there are answers many a question.
-            scores: pipeline.scores().filter(|_| !state.is_predicting()),
+            scores: pipeline.scores_in(MethodSlot::First).filter(|_| !state.is_predicting()),
             outdated: pipeline.output_is_outdated(),
-            wanted: pipeline.wants_output(),
+            wanted: pipeline.maps.wants_ends(),
             detector_error: pipeline.detector_error(),
             search: Search { progress: jobs.thresholds.progress(), note: jobs.thresholds.note() },
         };

@@ -65,7 +65,7 @@ impl Content for EvaluationPanel {
         let input = Input {
             methods: offered(state, cx.jobs),
             method: state.method().map(|m| m.name()),
-            radar: job.radar().unwrap_or(state.radar()),
+            radar: job.plan().map_or(state.radar(), |plan| &plan.campaign.radar),
             progress: job.progress(),
             rows: job.rows(),
             note: job.note(),

@@ -4,7 +4,7 @@ mod attempts;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
-use crate::app::state::{Command, MapKind};
+use crate::app::state::{Command, MapKind, MethodSlot};
 use crate::app::widgets::direction::{CONVENTION, angle_degrees};
 use crate::app::widgets::numbers::{plain, signed};
 use crate::reconstruct::Attempt;
@@ -62,7 +62,7 @@ impl Content for FoundPanel {
             found: output.filter(|_| !state.is_predicting()).and_then(|o| o.found.as_deref()),
             attempts: output.map_or(&[], |o| o.attempts.as_slice()),
             objects: &state.editor.scene().objects,
-            refusal: pipeline.refusal().map(|r| r.reason.as_str()),
+            refusal: pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str()),
             stale: pipeline.is_stale(MapKind::Output),
             has_ranges: state.radar().samples > 1 || recording.is_some_and(|r| r.range_metres.is_some()),
         };

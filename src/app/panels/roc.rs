@@ -46,14 +46,14 @@ impl Content for RocPanel {
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);
-        let shown = pipeline.result().filter(|_| !state.is_predicting());
+        let shown = pipeline.maps.result().filter(|_| !state.is_predicting());
         let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
         let method = pipeline.output().map_or("output", |o| o.method);
-        let refusal = pipeline.refusal().map(|r| r.reason.as_str());
+        let refusal = pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str());
         let eta = pipeline.eta(state, MethodSlot::First);
         let cfar = state.settings.cfar;
         let is_now = shown.is_some_and(|r| r.request.etas[0] == eta && r.request.cfar == cfar);
-        let metrics = pipeline.scores().filter(|_| is_now).map(|scores| scores.metrics);
+        let metrics = pipeline.scores_in(MethodSlot::First).filter(|_| is_now).map(|scores| scores.metrics);
         show(ui, Input { points, method, eta, cfar, metrics, refusal })
     }
 }

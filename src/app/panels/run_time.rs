@@ -53,10 +53,10 @@ impl Content for RunTimePanel {
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let job = &cx.jobs.run_time;
         let input = Input {
-            radar: job.radar().unwrap_or(cx.state.radar()),
+            radar: job.plan().map_or(cx.state.radar(), |plan| &plan.radar),
             progress: job.progress(),
             rows: job.rows(),
-            bare_fft_ms: job.bare_fft_ms(),
+            bare_fft_ms: job.end().copied(),
             note: job.note(),
         };
         show(ui, input, cx.memory)

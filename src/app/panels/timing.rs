@@ -36,7 +36,7 @@ impl Content for TimingPanel {
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let pipeline = &cx.jobs.pipeline;
-        let update = pipeline.result().map(|r| Update {
+        let update = pipeline.maps.result().map(|r| Update {
             report: &r.frame.report,
             took: r.took,
             painted: r.painted,

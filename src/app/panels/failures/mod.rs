@@ -90,11 +90,12 @@ fn live<'a>(state: &'a State, jobs: &Jobs) -> Option<Live<'a>> {
     let pipeline = &jobs.pipeline;
     let is_new = !pipeline.output_is_outdated() && !state.is_predicting();
     let fates = fates_of(&jobs.kinds, MethodSlot::First, pipeline).filter(|(_, current)| *current);
-    let now = pipeline.output().zip(pipeline.scores()).filter(|_| is_new).map(|(output, scores)| Now {
-        method: output.method,
-        metrics: scores.metrics,
-        fates: fates.map(|(fates, _)| summary(&fates.failures)),
-    });
+    let now =
+        pipeline.output().zip(pipeline.scores_in(MethodSlot::First)).filter(|_| is_new).map(|(output, scores)| Now {
+            method: output.method,
+            metrics: scores.metrics,
+            fates: fates.map(|(fates, _)| summary(&fates.failures)),
+        });
     Some(Live { row: &opened.row, now })
 }
 

@@ -30,7 +30,7 @@ impl MapMemory {
     /// A map's picture on the graphics card, if there is one.
     pub fn texture(&mut self, ui: &Ui, jobs: &Jobs, kind: MapKind) -> Option<TextureId> {
         let options = TextureOptions { minification: TextureFilter::Linear, ..TextureOptions::NEAREST };
-        let picture = jobs.pipeline.result().and_then(|r| r.pictures.get(&kind))?;
+        let picture = jobs.pipeline.maps.result().and_then(|r| r.pictures.get(&kind))?;
         let texture = self.textures.entry(kind).or_default();
         Some(texture.of(ui.ctx(), kind.title(), &picture.image, options))
     }
@@ -94,7 +94,7 @@ pub fn map_input<'a>(
     kind: MapKind,
 ) -> Input<'a> {
     let (settings, pipeline) = (&state.settings, &jobs.pipeline);
-    let picture = pipeline.result().and_then(|r| r.pictures.get(&kind));
+    let picture = pipeline.maps.result().and_then(|r| r.pictures.get(&kind));
     let found = if kind.slot() == Some(MethodSlot::First) { pipeline.shown_found(state) } else { &[] };
     let of_formulas = jobs
         .theory
@@ -149,7 +149,7 @@ fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<Tol
     let target = match state.settings.cfar {
         None => pair.target.as_deref(),
         Some(_) if pair.target.is_none() => None,
-        Some(_) => jobs.pipeline.result().and_then(|result| result.detected.target.as_ref()),
+        Some(_) => jobs.pipeline.maps.result().and_then(|result| result.detected.target.as_ref()),
     };
     Some(ToldApart { output, target: target?, etas: [eta, TARGET_ETA] })
 }
@@ -221,7 +221,7 @@ pub fn is_updating(jobs: &Jobs, kind: MapKind) -> bool {
 
 /// The numbers behind a map's picture.
 pub fn cells(jobs: &Jobs, kind: MapKind) -> Option<Cells<'_>> {
-    let frame = &jobs.pipeline.result()?.frame;
+    let frame = &jobs.pipeline.maps.result()?.frame;
     let pair = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| &o.pair);
     let scale = frame.full.as_ref().map(|m| m.scale);
     match kind {
@@ -293,7 +293,7 @@ fn veil(state: &State, kind: MapKind) -> Option<Veil> {
 
 /// Why a map has no picture, and what would help.
 fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>> {
-    if let Some(reason) = jobs.pipeline.scene_error() {
+    if let Some(reason) = jobs.pipeline.maps.scene_error() {
         return Some(Problem { reason, instead: None });
     }
     let is_recorded = state.editor.document().recording().is_some();

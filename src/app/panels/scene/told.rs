@@ -28,7 +28,7 @@ impl Content for ScenePanel {
             found_stale: pipeline.is_stale(MapKind::Output),
             trails: cx.jobs.failures.search.trails(state.editor.document().id()),
             cursor: state.shown_cursor(),
-            error: pipeline.scene_error(),
+            error: pipeline.maps.scene_error(),
             numbers: state.shows_axes(),
             hint: captions::of_scene(state, pipeline),
             tells_maps: !state.is_predicting(),
