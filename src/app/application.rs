@@ -2,7 +2,7 @@
 
 use super::apply::{self, Effect};
 use super::chrome::{file_dialog, help, menu, messages, palette, save_question, status_bar, tiles};
-use super::contents::{self, Contents};
+use super::contents::{self, Contents, Panels};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
 use super::kept::{self, Kept};
@@ -64,6 +64,7 @@ pub struct Options {
 pub struct App {
     pub(super) state: State,
     pub(super) jobs: Jobs,
+    pub(super) panels: Panels,
     memory: Memory,
     /// What was asked for outside a frame.
     pub(super) asked: Vec<Command>,
@@ -83,13 +84,12 @@ pub struct App {
     close_refused: bool,
 }
 
-/// What chrome and panels remember from frame to frame.
+/// What chrome remembers from frame to frame.
 #[derive(Default)]
 struct Memory {
     menu: menu::Memory,
     palette: palette::Memory,
     file_dialog: file_dialog::Memory,
-    panels: contents::Memory,
 }
 
 impl App {
@@ -145,6 +145,7 @@ impl App {
         Ok(App {
             state,
             jobs,
+            panels: Panels::start(platform::waker(ctx))?,
             memory,
             asked,
             frame_log,
@@ -236,7 +237,7 @@ impl App {
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
             let mut arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
-            let mut panels = Contents::new(state, jobs, &mut memory.panels);
+            let mut panels = Contents::new(state, jobs, &mut self.panels);
             commands.extend(tiles::show(ui, &mut arrangement, &mut panels));
             commands.extend(panels.into_commands());
             state.arrangement = arrangement;
@@ -361,6 +362,7 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         self.state.dark = ctx.theme() == egui::Theme::Dark;
         let mut commands = self.jobs.poll(&mut self.state);
+        self.panels.poll().into_iter().for_each(|error| self.state.notices.error(error));
         // Before anything is drawn, so that no panel acts on what is no longer there.
         commands.extend(self.read_input(&ctx));
         self.apply(&ctx, commands);
@@ -380,7 +382,10 @@ impl eframe::App for App {
         if self.state.editor.dragged().is_some() {
             self.state.note_first_drag();
         }
-        self.jobs.ask(&mut self.state);
+        let wants = self.panels.wants(&self.state);
+        self.jobs.ask(&mut self.state, wants);
+        self.panels.ask(&self.state, &self.jobs);
+        self.jobs.take_pictures(&self.state, self.panels.is_busy());
         self.update_title(&ctx);
         self.update_full_screen(&ctx);
         self.update_type(&ctx);

@@ -2,7 +2,12 @@
 
 use super::application::App;
 use super::apply;
-use super::state::{Arrangement, Command, MapKind, MapViews, MethodSlot, SceneView, Settings};
+use super::jobs::Derived;
+use super::panels::bounds::BoundsPanel;
+use super::panels::chirp::ChirpPanel;
+use super::panels::doppler::DopplerPanel;
+use super::panels::phasors::PhasorsPanel;
+use super::state::{Arrangement, Command, MapKind, MapViews, MethodSlot, Panel, SceneView, Settings};
 use crate::bounds::PositionBound;
 use crate::engine::EngineReport;
 use crate::evaluate::Metrics;
@@ -56,7 +61,7 @@ impl App {
 
     /// Whether a worker has something to do.
     pub fn is_busy(&self) -> bool {
-        self.jobs.is_busy()
+        self.jobs.is_busy() || self.panels.is_busy()
     }
 
     /// Whether everything that is unsaved is on disk as it is.
@@ -66,22 +71,22 @@ impl App {
 
     /// Report of the last update, if there was one.
     pub fn report(&self) -> Option<&EngineReport> {
-        self.jobs.pipeline.result().map(|r| &r.frame.report)
+        self.jobs.pipeline.maps.result().map(|r| &r.frame.report)
     }
 
     /// Maps with a picture of the latest scene.
     pub fn pictures(&self) -> Vec<MapKind> {
-        self.jobs.pipeline.result().map(|r| r.pictures.keys().copied().collect()).unwrap_or_default()
+        self.jobs.pipeline.maps.result().map(|r| r.pictures.keys().copied().collect()).unwrap_or_default()
     }
 
     /// Requests sent to the maps worker, and pictures painted, since the start.
     pub fn work_done(&self) -> (u64, u64) {
-        (self.jobs.pipeline.requests(), self.jobs.pipeline.result().map_or(0, |r| r.painted))
+        (self.jobs.pipeline.maps.requests(), self.jobs.pipeline.maps.result().map_or(0, |r| r.painted))
     }
 
     /// Where the method found something, as far as that is marked on the maps.
     pub fn marked_found(&self) -> &[Reflector] {
-        super::contents::shown_found(&self.state, &self.jobs.pipeline)
+        self.jobs.pipeline.shown_found(&self.state)
     }
 
     /// What the method found, where it is listed.
@@ -96,55 +101,57 @@ impl App {
 
     /// Why the method has no output, where it has none.
     pub fn refusal(&self) -> Option<&str> {
-        self.jobs.pipeline.refusal().map(|r| r.reason.as_str())
+        self.jobs.pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str())
     }
 
     /// Cells that the detector in use finds in the target and in the first method's output, and why it finds none.
     pub fn detected(&self) -> ([Option<usize>; 2], Option<&str>) {
         let count = |map: &Option<Arc<RangeAngleMap>>| Some(map.as_ref()?.lambda.iter().filter(|v| **v > 0.5).count());
-        let found = self.jobs.pipeline.result().map(|r| &r.detected);
+        let found = self.jobs.pipeline.maps.result().map(|r| &r.detected);
         let counts = found.map_or([None, None], |found| [count(&found.target), count(&found.outputs[0])]);
         (counts, self.jobs.pipeline.detector_error())
     }
 
     /// What is drawn as fresh and yet of something else than what is on screen: for a moment after a change, and never for longer.
     pub fn drawn_as_fresh_but_old(&self) -> Vec<String> {
-        self.jobs.drawn_as_fresh_but_old(&self.state)
+        let mut old = self.jobs.drawn_as_fresh_but_old(&self.state);
+        old.extend(self.panels.drawn_as_fresh_but_old(&self.state, &self.jobs));
+        old
     }
 
     /// Bounds asked for since the start.
     pub fn bounds_asked(&self) -> u64 {
-        self.jobs.bounds.requests()
+        self.panels.derived::<BoundsPanel>(Panel::Bounds).map_or(0, Derived::requests)
     }
 
     /// The bound on screen, if there is one.
     pub fn position_bound(&self) -> Option<PositionBound> {
-        self.jobs.bounds.value()?.ok()?.bound.ok()
+        self.panels.derived::<BoundsPanel>(Panel::Bounds)?.value()?.ok()?.bound.ok()
     }
 
     /// Chains of phasors asked for since the start.
     pub fn phasors_asked(&self) -> u64 {
-        self.jobs.phasors.requests()
+        self.panels.derived::<PhasorsPanel>(Panel::Phasors).map_or(0, Derived::requests)
     }
 
     /// Range bin and column of the chain of phasors on screen, and the end of the chain, if there is one.
     pub fn phasor_sum(&self) -> Option<([usize; 2], Complex64)> {
-        self.jobs.phasors.value()?.ok().map(|r| (r.cell, r.measured.sum()))
+        self.panels.derived::<PhasorsPanel>(Panel::Phasors)?.value()?.ok().map(|r| (r.cell, r.measured.sum()))
     }
 
     /// Beats asked for since the start.
     pub fn chirps_asked(&self) -> u64 {
-        self.jobs.chirps.requests()
+        self.panels.derived::<ChirpPanel>(Panel::Chirp).map_or(0, Derived::requests)
     }
 
     /// Range-Doppler maps asked for since the start.
     pub fn dopplers_asked(&self) -> u64 {
-        self.jobs.dopplers.requests()
+        self.panels.derived::<DopplerPanel>(Panel::RangeDoppler).map_or(0, Derived::requests)
     }
 
     /// Range bin and column of the strongest cell of the range-Doppler map on screen.
     pub fn doppler_peak(&self) -> Option<(usize, usize)> {
-        let decades = self.jobs.dopplers.value()?.ok()?.decades.decades();
+        let decades = self.panels.derived::<DopplerPanel>(Panel::RangeDoppler)?.value()?.ok()?.decades.decades();
         decades.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(cell, _)| cell)
     }
 
@@ -160,7 +167,7 @@ impl App {
 
     /// The range bin in which the beat on screen is strongest, and the element it is of.
     pub fn beat_peak(&self) -> Option<(usize, usize)> {
-        let result = self.jobs.chirps.value()?.ok()?;
+        let result = self.panels.derived::<ChirpPanel>(Panel::Chirp)?.value()?.ok()?;
         let peak = (0..result.spectrum.len()).max_by(|a, b| result.spectrum[*a].total_cmp(&result.spectrum[*b]))?;
         Some((peak, result.element))
     }
@@ -172,7 +179,7 @@ impl App {
 
     /// Figures on screen, if there are any.
     pub fn metrics(&self) -> Option<Metrics> {
-        self.jobs.pipeline.scores().map(|s| s.metrics)
+        self.jobs.pipeline.scores_in(MethodSlot::First).map(|s| s.metrics)
     }
 
     /// Lambda of what the second method of the panel "Compare" made, if it made something.
@@ -193,12 +200,12 @@ impl App {
 
     /// Whether the maps on screen are those of a scene at rest, as every command computes them.
     pub fn is_settled(&self) -> bool {
-        self.jobs.pipeline.is_settled()
+        self.jobs.pipeline.maps.is_settled()
     }
 
     /// Whether those of a scene at rest are being computed.
     pub fn is_settling(&self) -> bool {
-        self.jobs.pipeline.is_settling()
+        self.jobs.pipeline.maps.is_settling()
     }
 
     /// Whether the output on screen belongs to something else than the maps.
@@ -224,7 +231,7 @@ impl App {
 
     /// What the evaluation has found, as CSV.
     pub fn evaluation_csv(&self) -> String {
-        self.jobs.evaluation.to_csv()
+        super::jobs::evaluation_to_csv(self.jobs.evaluation.rows())
     }
 
     /// The rows of the panel Failures.

@@ -8,13 +8,17 @@
 //!          └──────────────────────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
-//! A panel is a function of what it shows and answers with commands; [`apply`] is the only place that changes settings. Imports run
-//! downward: application, contents, panels and chrome, jobs, widgets, state. Nothing shown is ever taken away before its successor is
+//! A panel asks for what it draws and answers with commands; [`apply`] is the only place that changes settings. Imports run
+//! downward: application, contents, panels and chrome, content, jobs, widgets, state. Nothing shown is ever taken away before its successor is
 //! there. Editing itself is in [`crate::interact`], without egui.
+
+#[macro_use]
+mod registry;
 
 mod application;
 mod apply;
 mod chrome;
+mod content;
 mod contents;
 mod input;
 mod inspect;

@@ -2,7 +2,7 @@
 
 use super::effect::Effect;
 use super::{map_picture, shared};
-use crate::app::jobs::{Jobs, Purpose, tell};
+use crate::app::jobs::{Jobs, Purpose, evaluation_to_csv, tell};
 use crate::app::state::{ExportCommand, State};
 
 /// Does such a command, but for what the clipboard has to do.
@@ -11,7 +11,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: ExportCommand) -> Opti
         ExportCommand::CopyMap(kind) => return map_picture::copy(state, jobs, kind).map(Effect::CopyImage),
         ExportCommand::CopyShared => return shared::text(state).map(Effect::Copy),
         ExportCommand::CopyLink => return shared::link(state).map(Effect::Copy),
-        ExportCommand::CopyEvaluation => return Some(Effect::Copy(jobs.evaluation.to_csv())),
+        ExportCommand::CopyEvaluation => return Some(Effect::Copy(evaluation_to_csv(jobs.evaluation.rows()))),
         ExportCommand::Picture => return choose(state, jobs, Purpose::ExportPicture),
         ExportCommand::Maps => return choose(state, jobs, Purpose::ExportMaps),
         ExportCommand::Metrics => return choose(state, jobs, Purpose::ExportMetrics),

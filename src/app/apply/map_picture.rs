@@ -27,7 +27,7 @@ fn picture(state: &State, jobs: &Jobs, kind: MapKind) -> Result<ColorImage, Stri
     if state.is_predicting() {
         return Err("it is hidden until you have predicted".to_owned());
     }
-    let painted = jobs.pipeline.result().and_then(|r| r.pictures.get(&kind));
+    let painted = jobs.pipeline.maps.result().and_then(|r| r.pictures.get(&kind));
     let Some(picture) = painted.filter(|_| state.arrangement.shown().contains(&Panel::Map(kind))) else {
         return Err("bring it into sight first".to_owned());
     };

@@ -1,6 +1,6 @@
 //! Commands that start long work, or stop it.
 
-use crate::app::jobs::{EvaluationPlan, Jobs, Purpose, tell};
+use crate::app::jobs::{EvaluationPlan, Jobs, Purpose, RunTimePlan, ThresholdPlan, TimesPlan, tell};
 use crate::app::state::{EvaluationChoice, MethodSlot, Panel, State, WorkCommand};
 use crate::evaluate::campaign::Campaign;
 use std::path::PathBuf;
@@ -9,17 +9,25 @@ use std::path::PathBuf;
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
     match command {
         WorkCommand::MeasureMethodTimes => {
-            let said = jobs.method_times.begin(state, jobs.pipeline.basis());
+            let said = TimesPlan::of(state, jobs.pipeline.basis()).map(|plan| {
+                let said = format!("Timing {} methods on the scene on screen.", plan.count());
+                jobs.method_times.begin(plan);
+                said
+            });
             tell(state, said);
         }
         WorkCommand::CancelMethodTimes => jobs.method_times.cancel(),
-        WorkCommand::CancelMethod => jobs.pipeline.cancel_method(MethodSlot::First),
-        WorkCommand::CancelSecond => jobs.pipeline.cancel_method(MethodSlot::Second),
+        WorkCommand::CancelMethod => jobs.pipeline.method_mut(MethodSlot::First).cancel(),
+        WorkCommand::CancelSecond => jobs.pipeline.method_mut(MethodSlot::Second).cancel(),
         WorkCommand::Evaluate(choice) => jobs.evaluation.begin(evaluation_plan(state, &choice)),
         WorkCommand::CancelEvaluation => jobs.evaluation.cancel(),
-        WorkCommand::FindThreshold(choice) => jobs.thresholds.begin(state, choice),
+        WorkCommand::FindThreshold(choice) => {
+            ThresholdPlan::of(state, choice).into_iter().for_each(|plan| jobs.thresholds.begin(plan));
+        }
         WorkCommand::CancelThreshold => jobs.thresholds.cancel(),
-        WorkCommand::Measure { thorough } => jobs.run_time.begin(state.radar().clone(), thorough),
+        WorkCommand::Measure { thorough } => {
+            jobs.run_time.begin(RunTimePlan { radar: state.radar().clone(), thorough });
+        }
         WorkCommand::CancelMeasurement => jobs.run_time.cancel(),
         WorkCommand::OpenLog => jobs.choose_file(state, Purpose::OpenLog),
         WorkCommand::WatchLog(path) => watch(state, jobs, path),

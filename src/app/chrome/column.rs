@@ -18,9 +18,9 @@ const TITLE: f32 = 20.0;
 /// The open panels from above: tools that somebody opened, then the scene, what a method makes of it and what there is to see, then the rest.
 pub fn order(arrangement: &Arrangement) -> Vec<Panel> {
     let first = [Panel::Scene, Panel::Map(MapKind::Output), Panel::Map(MapKind::Target), Panel::Controls];
-    let tools = Panel::TOOLS.into_iter();
-    let rest = Panel::tiles().into_iter().filter(|panel| !Panel::TOOLS.contains(panel) && !first.contains(panel));
-    tools.chain(first).chain(rest).filter(|panel| arrangement.has_tile(*panel)).collect()
+    let (tools, rest): (Vec<Panel>, Vec<Panel>) = Panel::tiles().into_iter().partition(|panel| panel.is_tool());
+    let rest = rest.into_iter().filter(|panel| !first.contains(panel));
+    tools.into_iter().chain(first).chain(rest).filter(|panel| arrangement.has_tile(*panel)).collect()
 }
 
 /// Draws `panels`, those in sight by `draw`.

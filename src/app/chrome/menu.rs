@@ -302,33 +302,36 @@ fn items<C: Into<Command>>(
 }
 
 /// Panels that are of use, each with a tick where it is open, and with its key.
-fn panels<'a>(ui: &mut Ui, panels: impl Iterator<Item = &'a Panel>, input: &Input<'_>, asked: &mut Vec<Command>) {
-    for &panel in panels.filter(|panel| is_of_use(**panel, input)) {
+fn panels(ui: &mut Ui, panels: impl IntoIterator<Item = Panel>, input: &Input<'_>, asked: &mut Vec<Command>) {
+    for panel in panels.into_iter().filter(|panel| is_of_use(*panel, input)) {
         let open = (input.is_open)(panel);
         let command = if open { WindowCommand::ClosePanel(panel) } else { WindowCommand::OpenPanel(panel) };
         ticked(ui, panel.tile_title(), command, open, asked);
     }
 }
 
+/// Panels that the menu Help lists.
+const HELP: [Panel; 2] = [Panel::Guide, Panel::Lesson];
+
 /// Tools and what belongs to them; those for research in a menu of their own.
 fn tools(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
-    let is_help = |panel: &&Panel| [Panel::Guide, Panel::Lesson].contains(panel);
-    let is_developer = |panel: &&Panel| Panel::DEVELOPER.contains(panel);
-    panels(ui, Panel::TOOLS.iter().filter(|panel| !is_help(panel) && !is_developer(panel)), input, asked);
+    let tools = Panel::tiles().into_iter().filter(|panel| panel.is_tool() && !HELP.contains(panel));
+    let (of_developers, tools): (Vec<Panel>, Vec<Panel>) = tools.partition(|panel| panel.is_developer());
+    panels(ui, tools, input, asked);
     ui.separator();
     item(ui, ViewCommand::Flip.into(), input, asked);
     ui.menu_button("Failures explained", |ui| presets_of(ui, memory, true, asked));
     ui.separator();
     item(ui, ViewCommand::ToggleDeveloper.into(), input, asked);
     if (input.is_on)(&ViewCommand::ToggleDeveloper.into()) == Some(true) {
-        panels(ui, Panel::DEVELOPER.iter(), input, asked);
+        panels(ui, of_developers, input, asked);
     }
 }
 
 fn help(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
-    panels(ui, [Panel::Guide, Panel::Lesson].iter(), input, asked);
+    panels(ui, HELP, input, asked);
     item(ui, WindowCommand::ToggleCaptions.into(), input, asked);
     ui.separator();
     items(ui, HelpPage::ALL.map(WindowCommand::Help), input, asked);
@@ -337,9 +340,7 @@ fn help(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
     ui.menu_button("Panels", |ui| {
-        let all = Panel::tiles();
-        let is_listed = |panel: &&Panel| !Panel::TOOLS.contains(panel) && !Panel::DEVELOPER.contains(panel);
-        panels(ui, all.iter().filter(is_listed), input, asked);
+        panels(ui, Panel::tiles().into_iter().filter(|panel| !panel.is_tool()), input, asked);
     });
     ui.menu_button("Arrangement", |ui| {
         for task in Task::ALL {

@@ -1,6 +1,7 @@
 //! The panels' tiles: tabs, title bars, one panel that fills the window.
 
 use super::column;
+use crate::app::content::OLD;
 use crate::app::state::{Arrangement, Command, Panel, WindowCommand};
 use crate::app::widgets::icons::{Icon, icon};
 use eframe::egui;
@@ -61,9 +62,6 @@ fn maximised(ui: &mut Ui, panel: Panel, behavior: &mut Behavior<'_>) {
 /// Between a tab's title and its sides, points.
 const TAB_MARGIN: f32 = 8.0;
 
-/// How strong what is old is drawn.
-pub const OLD: f32 = 0.55;
-
 /// The least that a caption is worth drawing in, points.
 const LEAST_CAPTION: f32 = 60.0;
 
@@ -97,9 +95,9 @@ impl Behavior<'_> {
 
     fn names_of_views(&mut self, ui: &mut Ui, front: Panel) {
         for view in front.views() {
-            let name = ui.selectable_label(*view == front, view.view_title());
-            if name.on_hover_text(view.describe()).clicked() && *view != front {
-                self.asked.push(WindowCommand::OpenView(*view).into());
+            let name = ui.selectable_label(view == front, view.view_title());
+            if name.on_hover_text(view.describe()).clicked() && view != front {
+                self.asked.push(WindowCommand::OpenView(view).into());
             }
         }
     }
@@ -268,7 +266,7 @@ mod tests {
     #[test]
     fn a_tab_that_comes_to_the_front_is_scrolled_into_sight() {
         let mut window = window();
-        for panel in Panel::TOOLS.into_iter().filter(|panel| Task::of(*panel).is_none()) {
+        for panel in Panel::tiles().into_iter().filter(|panel| panel.is_tool() && Task::of(*panel).is_none()) {
             window.state_mut().set_open(panel, true);
         }
         window.run_steps(3);

@@ -43,7 +43,7 @@ pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
         reflectors: scene.reflector_count(),
         bodies: bodies().count(),
         echoes: (!state.is_predicting()).then(|| bodies().map(|body| body.echo_count()).sum()),
-        took: jobs.pipeline.took(),
+        took: jobs.pipeline.maps.took(),
         alone: !platform::has_threads(),
     }
 }

@@ -1,70 +1,78 @@
-//! Panel by panel, what each is told: the only place that knows all of them.
+//! The panels that there are, each with its memory and what is computed for it.
 
 mod bars;
-mod captions;
-mod comparison;
-mod failures;
-mod maps;
-mod scene;
-mod tools;
 
 pub use bars::{menu_input, status_input};
 
-use super::chrome::tiles::{Draw, OLD};
-use super::jobs::{Jobs, Pipeline};
-use super::panels::{
-    bounds, controls, cuts, doppler, elements, evaluation, failures as failures_panel, guide, lesson, map, objects,
-    phasors, run_time, several, training,
-};
-use super::state::{Command, MapKind, Panel, State};
-use super::widgets::method_menu::Offered;
-use super::widgets::textures::Texture;
-use crate::scene::{Object, Reflector, Scene};
+use super::chrome::tiles::Draw;
+use super::content::{AnyPanel, Content, Held};
+use super::jobs::{Derived, Jobs, Wants};
+use super::panels;
+use super::state::{Command, Panel, State};
 use eframe::egui::Ui;
+use std::any::Any;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
-/// What panels remember from frame to frame.
-#[derive(Default)]
-pub struct Memory {
-    textures: BTreeMap<MapKind, Texture>,
-    reflectors: Reflectors,
-    bounds: bounds::Memory,
-    controls: controls::Memory,
-    phasors: phasors::Memory,
-    doppler: doppler::Memory,
-    cuts: cuts::Memory,
-    elements: elements::Memory,
-    evaluation: evaluation::Memory,
-    failures: failures_panel::Memory,
-    run_time: run_time::Memory,
-    training: training::Memory,
-    guide: guide::Memory,
-    lesson: lesson::Memory,
-    several: several::Memory,
-    map: map::Memory,
-    objects: objects::Memory,
-    hidden: Texture,
-}
-
-/// The reflectors of the scene on screen: spelled out once a scene, not once a map and frame.
-#[derive(Default)]
-struct Reflectors {
-    of: Option<Arc<Scene>>,
-    list: Vec<map::Marked>,
-}
-
-impl Reflectors {
-    fn of(&mut self, scene: &Arc<Scene>) -> &[map::Marked] {
-        if !self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, scene)) {
-            let marked = |object: &Object| map::Marked {
-                reflectors: object.marks(),
-                is_line: matches!(object, Object::Line(_)),
-            };
-            self.list = scene.objects.iter().map(marked).collect();
-            self.of = Some(scene.clone());
+/// Starts what draws each panel of the list.
+macro_rules! starts {
+    ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:ident $(of $tile:ident)?, $key:ident, $title:literal, $help:literal;)*) => {
+        fn start(panel: Panel, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Box<dyn AnyPanel>> {
+            match panel {
+                Panel::Map(_) => Held::<panels::map::MapPanel>::start(wake),
+                $(Panel::$name => Held::<panels::$($drawn_by)::+>::start(wake),)*
+            }
         }
-        &self.list
+    };
+}
+
+every_panel!(starts);
+
+/// All panels, by name.
+pub struct Panels(BTreeMap<Panel, Box<dyn AnyPanel>>);
+
+impl Panels {
+    /// Starts the workers of what is computed for each, which wait; `wake` is called from their threads.
+    ///
+    /// # Errors
+    /// When the system can't start a thread.
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Panels> {
+        let started = |panel: Panel| Ok((panel, start(panel, wake.clone())?));
+        Panel::all().into_iter().map(started).collect::<std::io::Result<_>>().map(Panels)
+    }
+
+    /// Takes in what was computed since the last frame. Returns messages for the user.
+    pub fn poll(&mut self) -> Vec<String> {
+        self.0.values_mut().filter_map(|panel| panel.polled().poll()).collect()
+    }
+
+    /// What the panels of the last frame read of maps and methods.
+    pub fn wants(&self, state: &State) -> Wants {
+        let shown = state.arrangement.shown().iter().filter_map(|panel| self.0.get(panel));
+        shown.fold(Wants::NOTHING, |all, panel| all.and(panel.wants()))
+    }
+
+    /// Asks for what is computed for the panels of this frame alone.
+    pub fn ask(&mut self, state: &State, jobs: &Jobs) {
+        for (panel, held) in &mut self.0 {
+            held.ask(state, jobs, state.arrangement.shown().contains(panel));
+        }
+    }
+
+    /// Whether something is computed for one of them.
+    pub fn is_busy(&self) -> bool {
+        self.0.values().any(|panel| panel.is_busy())
+    }
+
+    /// Titles of those that draw a value as fresh that is of something else than what is on screen.
+    pub fn drawn_as_fresh_but_old(&self, state: &State, jobs: &Jobs) -> Vec<String> {
+        let old = self.0.iter().filter(|(_, held)| held.is_fresh_but_old(state, jobs));
+        old.map(|(panel, _)| panel.title().to_owned()).collect()
+    }
+
+    /// What is computed for a panel of one type.
+    pub fn derived<C: Content>(&self, panel: Panel) -> Option<&Derived<C::Asks>> {
+        let held: &dyn Any = self.0.get(&panel)?.as_ref();
+        held.downcast_ref::<Held<C>>().map(Held::derived)
     }
 }
 
@@ -72,14 +80,14 @@ impl Reflectors {
 pub struct Contents<'a> {
     state: &'a mut State,
     jobs: &'a Jobs,
-    memory: &'a mut Memory,
+    panels: &'a mut Panels,
     commands: Vec<Command>,
 }
 
 impl<'a> Contents<'a> {
     /// Of what there is.
-    pub fn new(state: &'a mut State, jobs: &'a Jobs, memory: &'a mut Memory) -> Self {
-        Contents { state, jobs, memory, commands: Vec::new() }
+    pub fn new(state: &'a mut State, jobs: &'a Jobs, panels: &'a mut Panels) -> Self {
+        Contents { state, jobs, panels, commands: Vec::new() }
     }
 
     /// What was asked for.
@@ -90,82 +98,16 @@ impl<'a> Contents<'a> {
 
 impl Draw for Contents<'_> {
     fn draw(&mut self, ui: &mut Ui, panel: Panel) {
-        // Maps, scene and lists say so themselves, beside what is not old in them.
-        let tells_age = matches!(panel, Panel::Scene | Panel::Map(_) | Panel::Found | Panel::Compare);
-        if !tells_age && self.jobs.is_stale(panel) {
-            ui.multiply_opacity(OLD);
+        if let Some(held) = self.panels.0.get_mut(&panel) {
+            self.commands.extend(held.draw(ui, self.state, self.jobs, panel));
         }
-        let commands = match panel {
-            _ if tells_answers(panel) && self.state.is_predicting() => hidden(ui),
-            Panel::Scene => self.scene(ui),
-            Panel::Controls => self.controls(ui),
-            Panel::Radar => self.radar(ui),
-            Panel::Inspector => self.inspector(ui),
-            Panel::Objects => self.objects(ui),
-            Panel::Map(kind) => self.map(ui, kind),
-            Panel::Cuts => self.cuts(ui),
-            Panel::Elements => self.elements(ui),
-            Panel::Disturbances => self.disturbances(ui),
-            Panel::Found => self.found(ui),
-            Panel::Roc => self.roc(ui),
-            Panel::Timing => self.timing(ui),
-            Panel::Bounds => self.bounds(ui),
-            Panel::Phasors => self.phasors(ui),
-            Panel::Chirp => self.chirp(ui),
-            Panel::RangeDoppler => self.range_doppler(ui),
-            Panel::Evaluation => self.evaluation(ui),
-            Panel::Failures => self.failures(ui),
-            Panel::RunTime => self.run_time(ui),
-            Panel::Training => self.training(ui),
-            Panel::Guide => guide::show(ui, &mut self.memory.guide),
-            Panel::Lesson => self.lesson(ui),
-            Panel::Several => self.several(ui),
-            Panel::Compare => self.compare(ui),
-            Panel::Values => self.values(ui),
-        };
-        self.commands.extend(commands);
     }
 
     fn caption(&self, panel: Panel) -> Option<String> {
-        match panel {
-            Panel::Map(kind) => self.map_caption(kind),
-            _ => None,
-        }
+        self.panels.0.get(&panel)?.caption(self.state, self.jobs, panel)
     }
 
     fn is_old(&self, panel: Panel) -> bool {
-        self.jobs.is_stale(panel)
+        self.panels.0.get(&panel).is_some_and(|held| held.is_stale(self.jobs, panel))
     }
-}
-
-/// The methods to choose from, with the times that are known of them.
-fn offered<'a>(state: &'a State, jobs: &Jobs) -> Offered<'a> {
-    let times = state.method_times.on(state.radar());
-    Offered { all: &state.methods.all, times, timing: jobs.method_times.progress() }
-}
-
-/// Whether a panel tells what lessons ask: what follows from the radar, where maps show an object, what looks alike, how far
-/// the axes reach.
-fn tells_answers(panel: Panel) -> bool {
-    matches!(
-        panel,
-        Panel::Radar
-            | Panel::Inspector
-            | Panel::Bounds
-            | Panel::Cuts
-            | Panel::Phasors
-            | Panel::Chirp
-            | Panel::RangeDoppler
-    )
-}
-
-/// In the place of a panel that would answer the question.
-fn hidden(ui: &mut Ui) -> Vec<Command> {
-    ui.centered_and_justified(|ui| ui.weak("Hidden until you have predicted."));
-    Vec::new()
-}
-
-/// Where the method found something, if that is to be drawn: over a recording always.
-pub(super) fn shown_found<'a>(state: &State, pipeline: &'a Pipeline) -> &'a [Reflector] {
-    pipeline.output_of(state).filter(|_| state.draws_found()).map_or(&[], |output| &output.reflectors)
 }

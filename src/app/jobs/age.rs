@@ -1,32 +1,12 @@
-//! How old what panels draw is: the one place that says it of a panel.
+//! What is drawn of maps and marks as fresh though it is old.
 
 use super::Jobs;
-use super::bounds::BoundsRequest;
-use super::calibration::CalibrationQuery;
-use super::chirp::ChirpQuery;
 use super::derived::{Derived, Query};
-use super::doppler::DopplerQuery;
-use super::phasors::PhasorsQuery;
 use super::source::Source;
 use super::theory::TheoryRequest;
 use crate::app::state::{MapKind, MethodSlot, Panel, State};
 
 impl Jobs {
-    /// Whether what a panel draws has been of something else than what is on screen for so long that it must be told.
-    pub fn is_stale(&self, panel: Panel) -> bool {
-        match panel {
-            Panel::Map(kind) => self.pipeline.is_stale(kind),
-            Panel::Cuts | Panel::Values | Panel::Roc | Panel::Found => self.pipeline.is_stale(MapKind::Output),
-            Panel::Compare => MethodSlot::BOTH.into_iter().any(|slot| self.pipeline.is_stale(slot.map())),
-            Panel::Bounds => self.bounds.is_stale(),
-            Panel::Phasors => self.phasors.is_stale(),
-            Panel::Chirp => self.chirps.is_stale(),
-            Panel::RangeDoppler => self.dopplers.is_stale(),
-            Panel::Elements => self.calibration.is_stale(),
-            _ => false,
-        }
-    }
-
     /// What is drawn as fresh and yet of something else than what is on screen: for a moment after a change, and never for longer.
     pub fn drawn_as_fresh_but_old(&self, state: &State) -> Vec<String> {
         let mut old = Vec::new();
@@ -46,12 +26,6 @@ impl Jobs {
             judged.is_some_and(|(fates, current)| marks_kinds && current && fates.scene != source.scene),
             "kinds of failure",
         );
-        note(is_old(&self.bounds, BoundsRequest::of(state)) && shown.contains(&Panel::Bounds), "bounds");
-        let phasors = PhasorsQuery::of(state, &self.pipeline);
-        note(is_old(&self.phasors, phasors) && shown.contains(&Panel::Phasors), "phasors");
-        note(is_old(&self.chirps, Some(ChirpQuery::of(state))) && shown.contains(&Panel::Chirp), "chirp");
-        note(is_old(&self.dopplers, DopplerQuery::of(state)) && shown.contains(&Panel::RangeDoppler), "range-Doppler");
-        note(is_old(&self.calibration, CalibrationQuery::of(state)) && shown.contains(&Panel::Elements), "calibration");
         note(is_old(&self.theory, TheoryRequest::of(state)), "theory");
         old
     }
@@ -59,7 +33,7 @@ impl Jobs {
     /// Whether the picture of a map is of other samples, or of another method, than those on screen.
     fn is_of_another_source(&self, state: &State, kind: MapKind) -> bool {
         let source = Source::of(state);
-        let Some(maps) = self.pipeline.result().filter(|r| r.pictures.contains_key(&kind)) else { return false };
+        let Some(maps) = self.pipeline.maps.result().filter(|r| r.pictures.contains_key(&kind)) else { return false };
         let Some(slot) = kind.slot() else { return maps.request.source != source };
         let pair = maps.request.pairs[slot as usize].as_ref();
         let method = state.method_in(slot).map(|method| method.name());

@@ -187,12 +187,12 @@ fn in_background(
 }
 
 fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {
-    let result = pipeline.result().ok_or("There are no maps yet; try again in a moment.")?;
+    let result = pipeline.maps.result().ok_or("There are no maps yet; try again in a moment.")?;
     let (scores, output) = pipeline
-        .scores()
+        .scores_in(MethodSlot::First)
         .zip(pipeline.output())
         .ok_or("There are no figures: show an output panel and place a reflector first.")?;
-    if pipeline.output_is_outdated() || !pipeline.is_settled() {
+    if pipeline.output_is_outdated() || !pipeline.maps.is_settled() {
         return Err("The output is still being made; try again when it is there.".to_owned());
     }
     let m = scores.metrics;

@@ -80,7 +80,7 @@ impl KindsQuery {
     pub fn of(state: &State, pipeline: &Pipeline) -> Option<Self> {
         let told = state.arrangement.shown().contains(&Panel::Failures) && state.row_on_screen().is_some();
         // The headline of an output is made once the scene rests: a drag costs nothing for it.
-        if !(state.settings.show_kinds || told || pipeline.is_settled()) || !pipeline.wants_output() {
+        if !(state.settings.show_kinds || told || pipeline.maps.is_settled()) || !pipeline.maps.wants_ends() {
             return None;
         }
         let truth = pipeline.truth()?;

@@ -1,83 +1,62 @@
 //! Every method once on the samples on screen: how long each takes on this machine.
 
 use super::method::Basis;
-use super::rows::{RowJob, Stopped, Teller};
+use super::rows::{Plan, Stopped, Teller};
 use crate::app::state::State;
+use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What is to be measured.
-struct Plan {
+pub struct TimesPlan {
     basis: Basis,
     methods: Vec<Arc<dyn Reconstructor>>,
 }
 
-/// A method, and how long it took.
-type Row = (&'static str, Duration);
-
-/// The worker, and the radar of what it measures.
-pub struct MeasuredMethods {
-    job: RowJob<Plan, Row, ()>,
-    radar: Option<crate::radar::Radar>,
-}
-
-impl MeasuredMethods {
-    /// Starts the worker, which waits; `wake` is called from its thread.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Self> {
-        Ok(MeasuredMethods { job: RowJob::start("method times", run, wake)?, radar: None })
-    }
-
-    /// Measures every method that works on the radar, once each on the samples on screen.
+impl TimesPlan {
+    /// Every method that works on the radar, once each on the samples on screen.
     ///
     /// # Errors
     /// Where there are no samples of the two ends yet.
-    pub fn begin(&mut self, state: &State, basis: Option<Basis>) -> Result<String, String> {
+    pub fn of(state: &State, basis: Option<Basis>) -> Result<Self, String> {
         let basis = basis.ok_or("Show an output panel first: methods are timed on the samples on screen.")?;
         let works = |method: &&Arc<dyn Reconstructor>| method.check_array(basis.radar()).is_ok();
-        let methods: Vec<_> = state.methods.all.iter().filter(works).cloned().collect();
-        let said = format!("Timing {} methods on the scene on screen.", methods.len());
-        self.radar = Some(basis.radar().clone());
-        self.job.begin(Plan { basis, methods });
-        Ok(said)
+        let methods = state.methods.all.iter().filter(works).cloned().collect();
+        Ok(TimesPlan { basis, methods })
     }
 
-    /// Stops soon; times that were measured stay.
-    pub fn cancel(&mut self) {
-        self.job.cancel();
+    /// How many methods there are to be timed.
+    pub fn count(&self) -> usize {
+        self.methods.len()
     }
 
-    /// The part that is done, while it measures.
-    pub fn progress(&self) -> Option<f32> {
-        self.job.progress()
-    }
-
-    /// Takes in what was measured. Returns a message for the user.
-    pub fn poll(&mut self, state: &mut State) -> Option<String> {
-        let failed = self.job.poll();
-        if let Some(radar) = &self.radar {
-            for (method, took) in self.job.take_rows() {
-                state.method_times.record(radar, method, took);
-            }
-        }
-        failed.map(|said| format!("Timing the methods failed ({said}). Times measured before stay."))
+    /// The radar whose samples they work on.
+    pub fn radar(&self) -> &Radar {
+        self.basis.radar()
     }
 }
 
-fn run(plan: &Plan, teller: &Teller<'_, Row>) -> Result<(), Stopped> {
-    for (index, method) in plan.methods.iter().enumerate() {
-        let began = Instant::now();
-        // A method that can't answer these samples has no time; the others still have.
-        if plan.basis.reconstruct(method.as_ref(), teller.task.quiet()).is_ok() {
-            teller.row((method.name(), began.elapsed()));
+impl Plan for TimesPlan {
+    /// A method, and how long it took.
+    type Row = (&'static str, Duration);
+    type End = ();
+    const THREAD: &'static str = "method times";
+    const WHAT: &'static str = "Timing the methods";
+    const ADVICE: &'static str = "Times measured before stay.";
+
+    fn run(&self, teller: &Teller<'_, Self::Row>) -> Result<(), Stopped> {
+        for (index, method) in self.methods.iter().enumerate() {
+            let began = Instant::now();
+            // A method that can't answer these samples has no time; the others still have.
+            if self.basis.reconstruct(method.as_ref(), teller.task.quiet()).is_ok() {
+                teller.row((method.name(), began.elapsed()));
+            }
+            if teller.task.is_cancelled() {
+                return Err(Stopped::Cancelled);
+            }
+            teller.part((index + 1) as f32 / self.methods.len() as f32);
         }
-        if teller.task.is_cancelled() {
-            return Err(Stopped::Cancelled);
-        }
-        teller.part((index + 1) as f32 / plan.methods.len() as f32);
+        Ok(())
     }
-    Ok(())
 }

@@ -40,38 +40,35 @@ mod training;
 pub use bounds::bounds_of;
 pub use bounds::{BoundsRequest, BoundsResult};
 pub use calibration::Calibrated;
-use calibration::CalibrationQuery;
-use chirp::ChirpQuery;
-pub use chirp::ChirpResult;
-use derived::{Derived, Polled};
+pub use calibration::CalibrationQuery;
+pub use chirp::{ChirpQuery, ChirpResult};
+pub use derived::{Derived, Failure, Polled, Query};
 pub use dialogs::{Dialogs, Purpose, Question};
-use doppler::DopplerQuery;
-pub use doppler::DopplerResult;
-pub use evaluation::{Evaluation, EvaluationRow, Plan as EvaluationPlan};
+pub use doppler::{DopplerQuery, DopplerResult};
+pub use evaluation::{EvaluationPlan, EvaluationRow, to_csv as evaluation_to_csv};
 pub use export::Exports;
 #[cfg(test)]
 pub use failures::some_row;
 pub use failures::{
-    Album, Failures, Plan as FailuresPlan, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, is_table_of_rows,
-    keep,
+    Album, Failures, FailuresPlan, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, is_table_of_rows, keep,
 };
 pub use frame_log::FrameLog;
 use kinds::KindsQuery;
 pub use kinds::{Fates, Verdict, fates_of};
 pub use lessons::Lessons;
 pub use method::Refusal;
-pub use method_times::MeasuredMethods;
-use phasors::PhasorsQuery;
-pub use phasors::PhasorsResult;
-pub use pipeline::Pipeline;
+pub use method_times::TimesPlan;
+pub use phasors::{PhasorsQuery, PhasorsResult};
+pub use pipeline::{Pipeline, Wants};
 pub use recording::Recorder;
 use recording::Window;
-pub use run_time::RunTime;
+use rows::RowJob;
+pub use run_time::RunTimePlan;
 pub use scene_maps::Scores;
 pub use several::{SeveralMaps, Small};
 use theory::TheoryRequest;
 pub use theory::TheoryResult;
-pub use thresholds::Thresholds;
+pub use thresholds::ThresholdPlan;
 pub use training::{Log, Training};
 
 use crate::app::state::{Command, Panel, RowsCommand, State, ViewCommand};
@@ -89,26 +86,16 @@ const BAR: Duration = Duration::from_millis(100);
 pub struct Jobs {
     /// Maps, pictures, outputs.
     pub pipeline: Pipeline,
-    /// Bounds of one reflector.
-    pub bounds: Derived<BoundsRequest>,
-    /// What every element contributes to the cell under the cursor.
-    pub phasors: Derived<PhasorsQuery>,
-    /// The beat of one element.
-    pub chirps: Derived<ChirpQuery>,
-    /// The range-Doppler map.
-    pub dopplers: Derived<DopplerQuery>,
-    /// What the selected reflector tells of the elements.
-    pub calibration: Derived<CalibrationQuery>,
     /// Methods on test sets.
-    pub evaluation: Evaluation,
+    pub evaluation: RowJob<EvaluationPlan>,
     /// Thresholds that keep a rate of false alarms.
-    pub thresholds: Thresholds,
+    pub thresholds: RowJob<ThresholdPlan>,
     /// Methods on many scenes, row by row.
     pub failures: Failures,
     /// Run time against error.
-    pub run_time: RunTime,
+    pub run_time: RowJob<RunTimePlan>,
     /// How long every method takes.
-    pub method_times: MeasuredMethods,
+    pub method_times: RowJob<TimesPlan>,
     /// A training that is watched.
     pub training: Training,
     /// One map for several values.
@@ -134,14 +121,6 @@ pub struct Jobs {
     was_done: bool,
 }
 
-/// The derived values of jobs that are borrowed either way.
-macro_rules! every_derived {
-    ($jobs:expr) => {{
-        let Jobs { bounds, phasors, chirps, dopplers, calibration, kinds, theory, .. } = $jobs;
-        [bounds, phasors, chirps, dopplers, calibration, kinds, theory]
-    }};
-}
-
 impl Jobs {
     /// Starts every thread. `folder` is where the autosave is kept; without it there is none.
     ///
@@ -151,16 +130,11 @@ impl Jobs {
         let wake = platform::waker(ctx);
         Ok(Jobs {
             pipeline: Pipeline::start(wake.clone())?,
-            bounds: Derived::start(wake.clone())?,
-            phasors: Derived::start(wake.clone())?,
-            chirps: Derived::start(wake.clone())?,
-            dopplers: Derived::start(wake.clone())?,
-            calibration: Derived::start(wake.clone())?,
-            evaluation: Evaluation::start(wake.clone())?,
-            thresholds: Thresholds::start(wake.clone())?,
+            evaluation: RowJob::start(wake.clone())?,
+            thresholds: RowJob::start(wake.clone())?,
             failures: Failures::start(folder, wake.clone())?,
-            run_time: RunTime::start(wake.clone())?,
-            method_times: MeasuredMethods::start(wake.clone())?,
+            run_time: RowJob::start(wake.clone())?,
+            method_times: RowJob::start(wake.clone())?,
             training: Training::start(wake.clone())?,
             several: SeveralMaps::start(wake.clone())?,
             kinds: Derived::start(wake.clone())?,
@@ -176,28 +150,20 @@ impl Jobs {
         })
     }
 
-    fn derived(&self) -> [&dyn Polled; 7] {
-        every_derived!(self)
-    }
-
-    fn derived_mut(&mut self) -> [&mut dyn Polled; 7] {
-        every_derived!(self)
-    }
-
     /// Takes in what was finished since the last frame. Returns what is to be done with files that were chosen.
     pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
         let mut errors = platform::problems();
         errors.extend(self.pipeline.poll());
-        self.pipeline.record_times(&mut state.method_times);
-        errors.extend(self.derived_mut().into_iter().filter_map(|derived| derived.poll()));
+        errors.extend(self.kinds.poll());
+        errors.extend(self.theory.poll());
         errors.extend(self.evaluation.poll());
         errors.extend(self.failures.poll());
         let (found, failed) = self.failures.search.poll();
         errors.extend(failed);
-        let (thresholds, failed) = self.thresholds.poll();
-        errors.extend(failed);
+        errors.extend(self.thresholds.poll());
         errors.extend(self.run_time.poll());
-        errors.extend(self.method_times.poll(state));
+        errors.extend(self.method_times.poll());
+        self.record_times(state);
         errors.extend(self.training.poll());
         errors.extend(self.several.poll());
         errors.extend(self.lessons.poll(state));
@@ -212,7 +178,7 @@ impl Jobs {
         }
         let mut chosen = self.chosen(state);
         chosen.extend(begun);
-        for kept in thresholds {
+        for kept in self.thresholds.take_rows() {
             state.notices.info(kept.told);
             chosen.push(ViewCommand::SetMethodEta(kept.method, Some(kept.eta)).into());
         }
@@ -223,9 +189,18 @@ impl Jobs {
         chosen
     }
 
-    /// Asks for what the panels of this frame need, if that changed.
-    pub fn ask(&mut self, state: &mut State) {
-        self.pipeline.ask(state);
+    /// Keeps how long methods took, on screen and where they were timed.
+    fn record_times(&mut self, state: &mut State) {
+        self.pipeline.record_times(&mut state.method_times);
+        let timed = self.method_times.take_rows();
+        if let Some(plan) = self.method_times.plan() {
+            timed.into_iter().for_each(|(method, took)| state.method_times.record(plan.radar(), method, took));
+        }
+    }
+
+    /// Asks for what the panels of this frame need, if that changed; `wants` is what they read of maps and methods.
+    pub fn ask(&mut self, state: &mut State, wants: Wants) {
+        self.pipeline.ask(state, wants);
         self.lessons.ask(state);
         self.several.ask(state);
         let shown = state.arrangement.shown();
@@ -235,35 +210,30 @@ impl Jobs {
         }
         self.kinds.ask(KindsQuery::of(state, &self.pipeline));
         self.theory.ask(TheoryRequest::of(state));
-        self.bounds.ask(draws(Panel::Bounds).then(|| BoundsRequest::of(state)).flatten());
-        self.phasors.ask(draws(Panel::Phasors).then(|| PhasorsQuery::of(state, &self.pipeline)).flatten());
-        self.chirps.ask(draws(Panel::Chirp).then(|| ChirpQuery::of(state)));
-        self.dopplers.ask(draws(Panel::RangeDoppler).then(|| DopplerQuery::of(state)).flatten());
-        self.calibration.ask(draws(Panel::Elements).then(|| CalibrationQuery::of(state)).flatten());
         if draws(Panel::Training)
             && let Some(later) = self.training.look()
         {
             self.wake.request_repaint_after(later);
         }
-        if let Some(later) = self.pipeline.rests_in() {
+        if let Some(later) = self.pipeline.maps.rests_in() {
             self.wake.request_repaint_after(later);
         }
         if self.pipeline.is_busy() {
             self.wake.request_repaint_after(BAR);
         }
-        self.take_pictures(state, Instant::now());
         self.keep_unsaved(state);
     }
 
-    /// Takes the pictures of the window that are due.
-    fn take_pictures(&mut self, state: &State, now: Instant) {
+    /// Takes the pictures of the window that are due; `draws_more` is whether something of a panel is still computed.
+    pub fn take_pictures(&mut self, state: &State, draws_more: bool) {
         let is_outdated = state.pictured().into_iter().any(|kind| self.pipeline.is_outdated(kind));
         // Maps are computed once more when the scene comes to rest.
-        let is_done = !self.draws_more() && self.pipeline.rests_in().is_none() && !is_outdated;
+        let is_done = !draws_more && !self.draws_more() && self.pipeline.maps.rests_in().is_none() && !is_outdated;
         // What came after this frame was drawn is drawn in the next.
         let is_whole = std::mem::replace(&mut self.was_done, is_done) && is_done;
         let is_dimmed = state.pictured().into_iter().any(|kind| self.pipeline.is_stale(kind));
-        self.recorder.look(Window { is_dragged: state.editor.dragged().is_some(), is_dimmed, is_whole }, now);
+        self.recorder
+            .look(Window { is_dragged: state.editor.dragged().is_some(), is_dimmed, is_whole }, Instant::now());
     }
 
     /// Whether a picture of the window is taken: no message may stand in it.
@@ -275,7 +245,8 @@ impl Jobs {
     /// Whether something that panels draw is still being computed.
     fn draws_more(&self) -> bool {
         self.pipeline.is_busy()
-            || self.derived().into_iter().any(Polled::is_busy)
+            || self.kinds.is_busy()
+            || self.theory.is_busy()
             || self.several.is_busy()
             || self.lessons.is_reading()
     }

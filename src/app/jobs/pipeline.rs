@@ -11,23 +11,24 @@
 use super::derived::STALE;
 use super::detected::DETECTED;
 use super::maps::MapsJob;
-use super::method::{Basis, MethodJob, MethodRequest, MethodResult, Refusal};
+use super::method::{Basis, MethodJob, MethodRequest, MethodResult};
 use super::recorded::Unexplained;
 use super::scene_maps::{MapsRequest, MapsResult, Scores, Truth};
 use super::source::Source;
 use crate::app::shared::Shared;
-use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, Panel, State};
+use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, State};
 use crate::engine::MapRequest;
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
 use crate::platform::Instant;
+use crate::scene::Reflector;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// The workers of maps and methods.
 pub struct Pipeline {
-    maps: MapsJob,
+    /// The maps of the scene on screen.
+    pub maps: MapsJob,
     /// The first method and the second.
     methods: [MethodJob; 2],
 }
@@ -75,8 +76,8 @@ impl Pipeline {
     }
 
     /// Asks the workers for what the panels of this frame need, if that changed.
-    pub fn ask(&mut self, state: &State) {
-        let looked_at = LookedAt::of(state);
+    pub fn ask(&mut self, state: &State, wants: Wants) {
+        let looked_at = LookedAt::of(state, wants);
         let source = Source::of(state);
         for slot in MethodSlot::BOTH {
             let method = state.method_in(slot).map(|method| method.name());
@@ -87,7 +88,7 @@ impl Pipeline {
         self.maps.ask(request, state.editor.dragged().is_some());
         for slot in MethodSlot::BOTH {
             match looked_at.outputs[slot as usize] {
-                true => self.ask_method(state, slot, slot == MethodSlot::First && (looked_at.listed || is_recorded)),
+                true => self.ask_method(state, slot, slot == MethodSlot::First && (wants.listed || is_recorded)),
                 false if slot == MethodSlot::Second => self.methods[slot as usize].rest(),
                 false => {}
             }
@@ -96,7 +97,7 @@ impl Pipeline {
 
     fn maps_request(&self, state: &State, source: Source, looked_at: &LookedAt) -> MapsRequest {
         let map = |kind| looked_at.pictures.contains(&kind);
-        let all = looked_at.every_map;
+        let all = looked_at.wants.every_map;
         let output = looked_at.outputs.contains(&true);
         let settings = &state.settings;
         let wanted = MapRequest {
@@ -129,7 +130,7 @@ impl Pipeline {
             cfar: settings.cfar,
             etas: MethodSlot::BOTH.map(|slot| if is_read(slot) { self.eta(state, slot) } else { TARGET_ETA }),
             scores: output && (source.recording.is_some() || !source.scene.objects.is_empty() || is_noise),
-            roc: looked_at.roc,
+            roc: looked_at.wants.roc,
             source,
         }
     }
@@ -150,14 +151,9 @@ impl Pipeline {
         self.methods[slot as usize].ask(request, state.editor.dragged().is_some());
     }
 
-    /// Stops a reconstruction that runs.
-    pub fn cancel_method(&mut self, slot: MethodSlot) {
-        self.methods[slot as usize].cancel();
-    }
-
-    /// The latest maps.
-    pub fn result(&self) -> Option<&MapsResult> {
-        self.maps.result()
+    /// Either method, to be stopped.
+    pub fn method_mut(&mut self, slot: MethodSlot) -> &mut MethodJob {
+        &mut self.methods[slot as usize]
     }
 
     /// Either method: its latest output, or why it has none.
@@ -174,6 +170,11 @@ impl Pipeline {
     /// of this one.
     pub fn output_of(&self, state: &State) -> Option<&MethodResult> {
         self.output().filter(|output| output.document == state.editor.document().id())
+    }
+
+    /// Where the first method found something, if that is to be drawn: over a recording always.
+    pub fn shown_found(&self, state: &State) -> &[Reflector] {
+        self.output_of(state).filter(|_| state.draws_found()).map_or(&[], |output| &output.reflectors)
     }
 
     /// The scene of the latest maps and its target, where it is one of reflectors and not a recording.
@@ -232,65 +233,15 @@ impl Pipeline {
         self.maps.result()?.unexplained.as_ref()?.as_ref().err().map(String::as_str)
     }
 
-    /// Figures of the first method's output, against the target of the same scene.
-    pub fn scores(&self) -> Option<Scores> {
-        self.scores_in(MethodSlot::First)
-    }
-
     /// Figures of either method's output, against the target of the same scene.
     pub fn scores_in(&self, slot: MethodSlot) -> Option<Scores> {
         self.method(slot).output()?;
         self.maps.result()?.scores[slot as usize]
     }
 
-    /// Why the scene on screen can't be computed.
-    pub fn scene_error(&self) -> Option<&str> {
-        self.maps.scene_error()
-    }
-
-    /// Why the first method has no output for the scene on screen.
-    pub fn refusal(&self) -> Option<&Refusal> {
-        self.method(MethodSlot::First).refusal()
-    }
-
-    /// Progress of its reconstruction, 0 to 1; `None` when none runs.
-    pub fn method_progress(&self) -> Option<f32> {
-        self.method(MethodSlot::First).progress()
-    }
-
-    /// Requests sent to the maps worker: a test asks that an idle app sends none.
-    pub fn requests(&self) -> u64 {
-        self.maps.requests()
-    }
-
     /// Whether any worker has something to do, or will as soon as the scene rests.
     pub fn is_busy(&self) -> bool {
         self.maps.is_busy() || self.methods.iter().any(MethodJob::is_busy)
-    }
-
-    /// How long until the scene on screen rests; `None` where it does, or is held.
-    pub fn rests_in(&self) -> Option<Duration> {
-        self.maps.rests_in()
-    }
-
-    /// Whether the maps are those of the scene on screen at rest, as every command computes them.
-    pub fn is_settled(&self) -> bool {
-        self.maps.is_settled()
-    }
-
-    /// Whether they are being computed.
-    pub fn is_settling(&self) -> bool {
-        self.maps.is_settling()
-    }
-
-    /// Time of the last maps and pictures that followed a change.
-    pub fn took(&self) -> Option<Duration> {
-        self.maps.took()
-    }
-
-    /// Whether somebody looks at an output, or would if there were one.
-    pub fn wants_output(&self) -> bool {
-        self.maps.wants_ends()
     }
 
     /// Whether the shown output belongs to something else than the shown maps.
@@ -310,34 +261,53 @@ impl Pipeline {
     }
 }
 
+/// What panels read of maps and methods, besides the pictures that maps draw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wants {
+    /// The numbers of every map.
+    pub every_map: bool,
+    /// The first method's output.
+    pub output: bool,
+    /// The second method's.
+    pub second: bool,
+    /// A list of what was found.
+    pub listed: bool,
+    /// The ROC.
+    pub roc: bool,
+}
+
+impl Wants {
+    /// Nothing of all.
+    pub const NOTHING: Wants = Wants { every_map: false, output: false, second: false, listed: false, roc: false };
+    /// The first method's output.
+    pub const OUTPUT: Wants = Wants { output: true, ..Wants::NOTHING };
+
+    /// What two panels want together.
+    pub fn and(self, other: Wants) -> Wants {
+        Wants {
+            every_map: self.every_map || other.every_map,
+            output: self.output || other.output,
+            second: self.second || other.second,
+            listed: self.listed || other.listed,
+            roc: self.roc || other.roc,
+        }
+    }
+}
+
 /// What the panels in sight need.
 struct LookedAt {
     /// Maps whose pictures are drawn.
     pictures: BTreeSet<MapKind>,
-    /// Whether the numbers of every map are read.
-    every_map: bool,
-    /// Whether each method's output is.
+    /// Whether each method's output is read.
     outputs: [bool; 2],
-    /// Whether what was found is listed.
-    listed: bool,
-    /// Whether the ROC is looked at.
-    roc: bool,
+    /// What else is read.
+    wants: Wants,
 }
 
 impl LookedAt {
-    fn of(state: &State) -> LookedAt {
-        let shown = state.arrangement.shown();
+    fn of(state: &State, wants: Wants) -> LookedAt {
         let pictures = state.pictured();
-        let (compares, listed, roc) =
-            (shown.contains(&Panel::Compare), shown.contains(&Panel::Found), shown.contains(&Panel::Roc));
-        let every_map = shown.contains(&Panel::Cuts) || shown.contains(&Panel::Values);
         let drawn = pictures.iter().any(|kind| kind.slot() == Some(MethodSlot::First)) || state.marks_output();
-        LookedAt {
-            outputs: [drawn || every_map || roc || listed || compares, compares],
-            pictures,
-            every_map,
-            listed,
-            roc,
-        }
+        LookedAt { outputs: [drawn || wants.output, wants.second], pictures, wants }
     }
 }

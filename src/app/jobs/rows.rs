@@ -2,12 +2,13 @@
 
 use crate::platform;
 use crate::task::{Reply, Task, Worker};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 /// Why work ended early.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Stopped {
-    /// Somebody asked it to.
+    /// It was asked to.
     Cancelled,
     /// It can't be done, and why.
     Failed(String),
@@ -24,7 +25,7 @@ pub struct Teller<'a, R> {
 impl<R> Teller<'_, R> {
     /// A row is finished.
     pub fn row(&self, row: R) {
-        // Nobody listens any more once another run has begun.
+        // Another run may have begun, and then nothing listens.
         let _superseded = self.rows.send(row);
         (self.wake)();
     }
@@ -36,46 +37,70 @@ impl<R> Teller<'_, R> {
     }
 }
 
-/// The worker, and what it has found so far.
-pub struct RowJob<P, R, E> {
-    worker: Worker<(P, Sender<R>), Result<E, Stopped>>,
-    arriving: Option<Receiver<R>>,
-    rows: Vec<R>,
-    end: Option<E>,
+/// Long work, and all that it depends on.
+pub trait Plan: Send + Sync + 'static {
+    /// What it finds, one after another.
+    type Row: Send + 'static;
+    /// What the whole run comes to.
+    type End: Send + 'static;
+    /// Name of the thread.
+    const THREAD: &'static str;
+    /// What fails where it panics, as a sentence begins.
+    const WHAT: &'static str;
+    /// What the user may do then.
+    const ADVICE: &'static str;
+
+    /// Does the work.
+    ///
+    /// # Errors
+    /// Why it ended early.
+    fn run(&self, teller: &Teller<'_, Self::Row>) -> Result<Self::End, Stopped>;
+}
+
+/// The worker of one kind of plan, and what it has found so far.
+pub struct RowJob<P: Plan> {
+    worker: Worker<(Arc<P>, Sender<P::Row>), Result<P::End, Stopped>>,
+    plan: Option<Arc<P>>,
+    arriving: Option<Receiver<P::Row>>,
+    rows: Vec<P::Row>,
+    end: Option<P::End>,
     note: Option<String>,
 }
 
-impl<P: Send + Sync + 'static, R: Send + 'static, E: Send + 'static> RowJob<P, R, E> {
-    /// Starts the thread called `name`, which waits; `work` turns a plan into rows, `wake` is called from the thread.
+impl<P: Plan> RowJob<P> {
+    /// Starts the thread, which waits; `wake` is called from it.
     ///
     /// # Errors
     /// When the system can't start a thread.
-    pub fn start(
-        name: &'static str,
-        work: impl Fn(&P, &Teller<'_, R>) -> Result<E, Stopped> + Send + Sync + 'static,
-        wake: impl Fn() + Clone + Send + Sync + 'static,
-    ) -> std::io::Result<Self> {
-        // Threads of its own: on shared ones the maps would wait for it.
-        let threads = move || platform::pool(name);
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Self> {
         let each = wake.clone();
-        let run = move |threads: &mut Option<rayon::ThreadPool>, (plan, rows): (P, Sender<R>), task: &Task| {
-            let teller = Teller { rows, wake: &each, task };
-            match threads {
-                Some(threads) => threads.install(|| work(&plan, &teller)),
-                None => work(&plan, &teller),
-            }
-        };
-        let worker = Worker::spawn(name, threads, run, wake)?;
-        Ok(RowJob { worker, arriving: None, rows: Vec::new(), end: None, note: None })
+        let run =
+            move |threads: &mut Option<rayon::ThreadPool>, (plan, rows): (Arc<P>, Sender<P::Row>), task: &Task| {
+                let teller = Teller { rows, wake: &each, task };
+                match threads {
+                    Some(threads) => threads.install(|| plan.run(&teller)),
+                    None => plan.run(&teller),
+                }
+            };
+        // Threads of its own: on shared ones the maps would wait for it.
+        let worker = Worker::spawn(P::THREAD, || platform::pool(P::THREAD), run, wake)?;
+        Ok(RowJob { worker, plan: None, arriving: None, rows: Vec::new(), end: None, note: None })
     }
 
     /// Begins afresh with `plan`.
     pub fn begin(&mut self, plan: P) {
         let (rows, arriving) = channel();
+        let plan = Arc::new(plan);
         self.arriving = Some(arriving);
         self.rows.clear();
         (self.end, self.note) = (None, None);
-        self.worker.request((plan, rows));
+        self.worker.request((plan.clone(), rows));
+        self.plan = Some(plan);
+    }
+
+    /// The plan of the last run.
+    pub fn plan(&self) -> Option<&P> {
+        self.plan.as_deref()
     }
 
     /// Stops soon; what was found stays.
@@ -89,17 +114,17 @@ impl<P: Send + Sync + 'static, R: Send + 'static, E: Send + 'static> RowJob<P, R
     }
 
     /// What was found so far.
-    pub fn rows(&self) -> &[R] {
+    pub fn rows(&self) -> &[P::Row] {
         &self.rows
     }
 
     /// Hands over what was found since the last time; it is not among [`RowJob::rows`] any more.
-    pub fn take_rows(&mut self) -> Vec<R> {
+    pub fn take_rows(&mut self) -> Vec<P::Row> {
         std::mem::take(&mut self.rows)
     }
 
     /// What the whole run came to, once it has ended well.
-    pub fn end(&self) -> Option<&E> {
+    pub fn end(&self) -> Option<&P::End> {
         self.end.as_ref()
     }
 
@@ -108,7 +133,7 @@ impl<P: Send + Sync + 'static, R: Send + 'static, E: Send + 'static> RowJob<P, R
         self.note.as_deref()
     }
 
-    /// Takes in what is finished. Returns what a panic said.
+    /// Takes in what is finished. Returns a message for the user.
     pub fn poll(&mut self) -> Option<String> {
         let mut panicked = None;
         for reply in self.worker.replies() {
@@ -120,7 +145,7 @@ impl<P: Send + Sync + 'static, R: Send + 'static, E: Send + 'static> RowJob<P, R
                 Reply::Done { result: Err(Stopped::Failed(why)), .. } => self.note = Some(why),
                 Reply::Panicked { message, .. } => {
                     self.note = Some(format!("failed: {message}"));
-                    panicked = Some(message);
+                    panicked = Some(format!("{} failed ({message}). {}", P::WHAT, P::ADVICE));
                 }
             }
         }
@@ -137,38 +162,48 @@ mod tests {
     use crate::platform::Instant;
     use std::time::Duration;
 
-    fn rest<P: Send + Sync + 'static, R: Send + 'static, E: Send + 'static>(
-        job: &mut RowJob<P, R, E>,
-    ) -> Option<String> {
+    /// Finds so many rows, and ends in a way of its own.
+    struct Count(u32);
+
+    impl Plan for Count {
+        type Row = u32;
+        type End = u32;
+        const THREAD: &'static str = "test";
+        const WHAT: &'static str = "Counting";
+        const ADVICE: &'static str = "Try another number.";
+
+        fn run(&self, teller: &Teller<'_, u32>) -> Result<u32, Stopped> {
+            (0..self.0).for_each(|i| teller.row(i));
+            match self.0 {
+                3 => Err(Stopped::Failed("three".to_owned())),
+                4 => Err(Stopped::Cancelled),
+                5 => panic!("five"),
+                count => Ok(count),
+            }
+        }
+    }
+
+    fn rest(job: &mut RowJob<Count>) -> Option<String> {
         let deadline = Instant::now() + Duration::from_secs(20);
         while job.progress().is_some() {
             assert!(Instant::now() < deadline, "it never ends");
-            std::thread::sleep(Duration::from_millis(1));
+            std::thread::yield_now();
         }
         job.poll()
     }
 
     #[test]
     fn rows_stay_however_the_work_ends() {
-        let work = |plan: &u32, teller: &Teller<'_, u32>| {
-            (0..*plan).for_each(|i| teller.row(i));
-            match plan {
-                3 => Err(Stopped::Failed("three".to_owned())),
-                4 => Err(Stopped::Cancelled),
-                5 => panic!("five"),
-                _ => Ok(*plan),
-            }
-        };
-        let mut job = RowJob::start("test", work, || ()).unwrap();
-        for (plan, note, panicked) in [
+        let mut job = RowJob::start(|| ()).unwrap();
+        for (count, note, told) in [
             (2, None, None),
             (3, Some("three"), None),
             (4, Some("cancelled; what was finished stays"), None),
-            (5, Some("failed: five"), Some("five")),
+            (5, Some("failed: five"), Some("Counting failed (five). Try another number.")),
         ] {
-            job.begin(plan);
-            assert_eq!(rest(&mut job).as_deref(), panicked);
-            assert_eq!((job.rows().len(), job.note(), job.end().is_some()), (plan as usize, note, plan == 2));
+            job.begin(Count(count));
+            assert_eq!(rest(&mut job).as_deref(), told);
+            assert_eq!((job.rows().len(), job.note(), job.end().is_some()), (count as usize, note, count == 2));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The threshold at which a method keeps a rate of false alarms, looked for in the background.
 
-use super::rows::{RowJob, Stopped, Teller};
+use super::rows::{Plan, Stopped, Teller};
 use crate::app::state::{State, ThresholdChoice};
 use crate::evaluate::threshold::{KeptThreshold, ThresholdSearch};
 use crate::radar::counted;
@@ -9,7 +9,7 @@ use crate::scene::generate::Kind;
 use std::sync::Arc;
 
 /// Which method is tried on which scenes.
-struct Plan {
+pub struct ThresholdPlan {
     search: ThresholdSearch,
     method: Arc<dyn Reconstructor>,
 }
@@ -25,23 +25,9 @@ pub struct KeptEta {
     pub told: String,
 }
 
-/// The worker.
-pub struct Thresholds {
-    job: RowJob<Plan, KeptEta, ()>,
-}
-
-impl Thresholds {
-    /// Starts the worker, which waits; `wake` is called from its thread.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Self> {
-        Ok(Thresholds { job: RowJob::start("thresholds", run, wake)? })
-    }
-
-    /// Begins afresh, for the method in use, with the radar, floor and normalisation in use.
-    pub fn begin(&mut self, state: &State, choice: ThresholdChoice) {
-        let Some(method) = state.method().cloned() else { return };
+impl ThresholdPlan {
+    /// For the method in use, with the radar, floor and normalisation in use; `None` where there is no method.
+    pub fn of(state: &State, choice: ThresholdChoice) -> Option<Self> {
         let ThresholdChoice { false_alarm_percent, kinds, count } = choice;
         let search = ThresholdSearch {
             radar: state.radar().clone(),
@@ -52,41 +38,28 @@ impl Thresholds {
             false_alarm_percent,
             ..ThresholdSearch::default()
         };
-        self.job.begin(Plan { search, method });
-    }
-
-    /// Stops after the map that is being made.
-    pub fn cancel(&mut self) {
-        self.job.cancel();
-    }
-
-    /// The part that is done, while it runs.
-    pub fn progress(&self) -> Option<f32> {
-        self.job.progress()
-    }
-
-    /// How the last search ended, if not well.
-    pub fn note(&self) -> Option<&str> {
-        self.job.note()
-    }
-
-    /// Takes in what was found: once each threshold, and what a panic said.
-    pub fn poll(&mut self) -> (Vec<KeptEta>, Option<String>) {
-        let panicked = self.job.poll();
-        let said = panicked.map(|said| format!("The search for a threshold failed ({said}). Choose another method."));
-        (self.job.take_rows(), said)
+        Some(ThresholdPlan { search, method: state.method()?.clone() })
     }
 }
 
-fn run(plan: &Plan, teller: &Teller<'_, KeptEta>) -> Result<(), Stopped> {
-    let Plan { search, method } = plan;
-    let found = search.run(method.as_ref(), teller.task, |part| teller.part(part));
-    // Unlike rows, half a search has found nothing that could stay.
-    let why = |cancelled: bool, said: String| if cancelled { "Cancelled; η stays as it is.".to_owned() } else { said };
-    let found = found.map_err(|error| Stopped::Failed(why(error.is_cancelled(), error.to_string())))?;
-    let found = KeptThreshold { eta: rounded_up(found.eta), ..found };
-    teller.row(KeptEta { method: method.name(), eta: found.eta, told: told(search, method.name(), &found) });
-    Ok(())
+impl Plan for ThresholdPlan {
+    type Row = KeptEta;
+    type End = ();
+    const THREAD: &'static str = "thresholds";
+    const WHAT: &'static str = "The search for a threshold";
+    const ADVICE: &'static str = "Choose another method.";
+
+    fn run(&self, teller: &Teller<'_, KeptEta>) -> Result<(), Stopped> {
+        let ThresholdPlan { search, method } = self;
+        let found = search.run(method.as_ref(), teller.task, |part| teller.part(part));
+        // Unlike rows, half a search has found nothing that could stay.
+        let why =
+            |cancelled: bool, said: String| if cancelled { "Cancelled; η stays as it is.".to_owned() } else { said };
+        let found = found.map_err(|error| Stopped::Failed(why(error.is_cancelled(), error.to_string())))?;
+        let found = KeptThreshold { eta: rounded_up(found.eta), ..found };
+        teller.row(KeptEta { method: method.name(), eta: found.eta, told: told(search, method.name(), &found) });
+        Ok(())
+    }
 }
 
 /// A threshold to three decimals, as fields show it. Rounded up, it has no more false alarms than before.

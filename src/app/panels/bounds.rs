@@ -1,7 +1,8 @@
 //! What no unbiased estimator can beat: the ambiguity function around a reflector, and the Cramer-Rao bound of its position.
 
-use crate::app::jobs::{BoundsRequest, BoundsResult};
-use crate::app::state::{BoundsSettings, Command, Elements, ViewCommand};
+use crate::app::content::{Content, Cx};
+use crate::app::jobs::{BoundsRequest, BoundsResult, Jobs};
+use crate::app::state::{BoundsSettings, Command, Elements, State, ViewCommand};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{self, Chart};
 use crate::app::widgets::colour_bar::Bar;
@@ -33,6 +34,30 @@ pub struct Input<'a> {
 #[derive(Default)]
 pub struct Memory {
     texture: Texture,
+}
+
+/// Draws [`Panel::Bounds`](crate::app::state::Panel::Bounds).
+pub struct BoundsPanel;
+
+impl Content for BoundsPanel {
+    type Asks = BoundsRequest;
+    type Memory = Memory;
+    const TELLS_ANSWERS: bool = true;
+
+    fn asks(state: &State, _: &Jobs) -> Option<BoundsRequest> {
+        BoundsRequest::of(state)
+    }
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let state = &*cx.state;
+        let input = Input {
+            settings: state.settings.bounds,
+            elements: state.radar().elements,
+            has_subject: BoundsRequest::of(state).is_some(),
+            result: cx.value,
+        };
+        show(ui, input, cx.memory)
+    }
 }
 
 /// Draws the panel.

@@ -1,7 +1,9 @@
 //! A chirp: frequency against time of what is sent and of what returns, the beat as its samples, and the beat's spectrum.
 
+use crate::app::content::{Content, Cx};
 use crate::app::jobs::ChirpResult;
-use crate::app::state::{ChirpSettings, Command, RadarCommand, ViewCommand};
+use crate::app::jobs::{ChirpQuery, Jobs};
+use crate::app::state::{ChirpSettings, Command, RadarCommand, State, ViewCommand};
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::legend::{self, Entry, Sign};
@@ -46,6 +48,31 @@ pub struct Input<'a> {
     pub is_recorded: bool,
     /// The beat, or why there is none; nothing before the first.
     pub result: Option<Result<&'a ChirpResult, &'a str>>,
+}
+
+/// Draws [`Panel::Chirp`](crate::app::state::Panel::Chirp).
+pub struct ChirpPanel;
+
+impl Content for ChirpPanel {
+    type Asks = ChirpQuery;
+    type Memory = ();
+    const TELLS_ANSWERS: bool = true;
+
+    fn asks(state: &State, _: &Jobs) -> Option<ChirpQuery> {
+        Some(ChirpQuery::of(state))
+    }
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let state = &*cx.state;
+        let input = Input {
+            radar: state.radar(),
+            scene: state.scene(),
+            settings: state.settings.chirp,
+            is_recorded: state.editor.document().recording().is_some(),
+            result: cx.value,
+        };
+        show(ui, input)
+    }
 }
 
 /// Draws the panel.

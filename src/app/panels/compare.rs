@@ -1,9 +1,13 @@
 //! Two methods on the scene on screen: side by side, flipped in place, or parted by an edge.
 
 use super::map::{self, Over};
-use crate::app::state::{Command, Compare, Layout, MapKind, MapView, ViewCommand, WorkCommand};
+use super::map::{MapMemory, caption_of as caption, is_updating, map_input, marks_of, verdict};
+use crate::app::content::{Content, Cx, Nothing, offered};
+use crate::app::jobs::{Jobs, Wants};
+use crate::app::state::{Command, Compare, Layout, MapKind, MapView, MethodSlot, State, ViewCommand, WorkCommand};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
+use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
 use eframe::egui;
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
@@ -32,6 +36,70 @@ pub struct Input<'a> {
 
 /// Height of what stands above a map, points.
 const TITLE: f32 = 18.0;
+
+/// Draws [`Panel::Compare`](crate::app::state::Panel::Compare).
+pub struct ComparePanel;
+
+impl Content for ComparePanel {
+    type Asks = Nothing;
+    type Memory = MapMemory;
+    const WANTS: Wants = Wants { second: true, ..Wants::OUTPUT };
+    const MARKS_AGE: bool = true;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let Cx { state, jobs, memory, .. } = cx;
+        let kinds = state.settings.compare.maps();
+        let textures: Vec<_> = kinds.iter().map(|kind| memory.texture(ui, jobs, *kind)).collect();
+        let projection = state.settings.projection;
+        let mut view = *state.map_views.of(projection);
+        let marks = marks_of(ui, state);
+        let map = |(kind, texture): (&MapKind, _)| Titled {
+            title: title(state, jobs, *kind),
+            map: map_input(state, jobs, &marks, texture, *kind),
+        };
+        let second = jobs.pipeline.method(MethodSlot::Second);
+        let input = Input {
+            compare: &state.settings.compare,
+            methods: offered(state, jobs),
+            chosen: MethodSlot::BOTH.map(|slot| state.method_in(slot).map_or("", |m| m.name())),
+            maps: kinds.iter().zip(textures).map(map).collect(),
+            progress: second.progress(),
+        };
+        let asked = show(ui, input, &mut view, &mut memory.hand);
+        *state.map_views.of(projection) = view;
+        asked
+    }
+}
+
+/// What stands above a compared map: whose it is, and how good.
+fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
+    let method = kind.slot().and_then(|slot| state.method_in(slot)).map_or("", |m| m.name());
+    let shown = kind.slot().and_then(|slot| jobs.pipeline.method(slot).of_another_method());
+    let updating = match (shown, is_updating(jobs, kind)) {
+        (Some(shown), _) => return format!("{shown}'s result; {method} is running"),
+        (None, true) => " (updating)",
+        (None, false) => "",
+    };
+    let slot = kind.slot().filter(|_| !state.is_predicting());
+    let figures = slot.and_then(|slot| jobs.pipeline.scores_in(slot)).map(|s| s.metrics);
+    match kind {
+        MapKind::Output | MapKind::Second => {
+            let figures = figures.map_or_else(String::new, |m| {
+                let detection = m.detection.map_or("–".to_owned(), percent);
+                format!(" · SE {:.0} · P_D {detection} · P_FA {}", m.squared_error, percent(m.false_alarm))
+            });
+            let verdict = verdict(state, jobs, kind.slot().unwrap_or(MethodSlot::First));
+            let verdict = verdict.map_or_else(String::new, |verdict| format!(" · {verdict}"));
+            format!("{method}{verdict}{figures}{updating}")
+        }
+        MapKind::Difference | MapKind::SecondDifference => format!("{method} − target{updating}"),
+        MapKind::OutputAbove | MapKind::SecondAbove => {
+            let figures = caption(state, jobs, kind).unwrap_or_default();
+            format!("{method} > η · {figures}")
+        }
+        _ => format!("{}{updating}", kind.title()),
+    }
+}
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map::Memory) -> Vec<Command> {

@@ -6,10 +6,11 @@ mod display;
 mod false_alarms;
 mod maps;
 
+use crate::app::content::{Content, Cx, Nothing, offered};
 pub use false_alarms::{Memory, Search};
 
 use crate::app::jobs::{Refusal, Scores};
-use crate::app::state::{Command, Settings, Units, ViewCommand, WorkCommand};
+use crate::app::state::{Command, MethodSlot, Settings, Units, ViewCommand, WorkCommand};
 use crate::app::widgets::levels::{level, with_unit};
 use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
 use crate::app::widgets::number_field::NumberField;
@@ -70,6 +71,43 @@ pub struct Run<'a> {
     pub detector_error: Option<&'a str>,
     /// How the search for a threshold goes.
     pub search: Search<'a>,
+}
+
+/// Draws [`Panel::Controls`](crate::app::state::Panel::Controls).
+pub struct ControlsPanel;
+
+impl Content for ControlsPanel {
+    type Asks = Nothing;
+    type Memory = Memory;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let (state, jobs) = (&*cx.state, cx.jobs);
+        let pipeline = &jobs.pipeline;
+        let run = Run {
+            progress: pipeline.method(MethodSlot::First).progress(),
+            refusal: pipeline.method(MethodSlot::First).refusal(),
+            output: pipeline.output().map(|o| (o.method, o.took)),
+            // How many blobs there are answers many a question.
+            scores: pipeline.scores_in(MethodSlot::First).filter(|_| !state.is_predicting()),
+            outdated: pipeline.output_is_outdated(),
+            wanted: pipeline.maps.wants_ends(),
+            detector_error: pipeline.detector_error(),
+            search: Search { progress: jobs.thresholds.progress(), note: jobs.thresholds.note() },
+        };
+        let input = Input {
+            is_recorded: state.editor.document().recording().is_some(),
+            settings: &state.settings,
+            radar: state.radar(),
+            noise_seed: state.editor.scene().noise_seed,
+            methods: offered(state, jobs),
+            method: state.method().map(|m| m.as_ref()),
+            eta: pipeline.eta(state, MethodSlot::First),
+            range_db: pipeline.range_db(),
+            run,
+            uses: state.uses(),
+        };
+        show(ui, input, cx.memory)
+    }
 }
 
 /// Draws the panel.

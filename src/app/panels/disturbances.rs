@@ -1,5 +1,6 @@
 //! What disturbs the scene: somebody else's radar, and a wall that mirrors.
 
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::number_field::NumberField;
 use crate::radar::Radar;
@@ -15,6 +16,20 @@ pub struct Input<'a> {
     pub radar: &'a Radar,
     /// Whether a recording stands in the place of the scene: nothing is added to what was measured.
     pub is_recorded: bool,
+}
+
+/// Draws [`Panel::Disturbances`](crate::app::state::Panel::Disturbances).
+pub struct DisturbancesPanel;
+
+impl Content for DisturbancesPanel {
+    type Asks = Nothing;
+    type Memory = ();
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let document = cx.state.editor.document();
+        let is_recorded = document.recording().is_some();
+        show(ui, Input { disturbances: &document.scene().disturbances, radar: cx.state.radar(), is_recorded })
+    }
 }
 
 /// Draws the panel.

@@ -1,7 +1,9 @@
 //! The range-Doppler map: range against radial velocity, the radar's chirps, and the timeline on which the scene plays.
 
+use crate::app::content::{Content, Cx};
 use crate::app::jobs::DopplerResult;
-use crate::app::state::{Command, RadarCommand, TIMELINE_SECONDS, ViewCommand};
+use crate::app::jobs::{DopplerQuery, Jobs};
+use crate::app::state::{Command, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::colour_bar::Bar;
@@ -50,6 +52,35 @@ pub struct Input<'a> {
 #[derive(Default)]
 pub struct Memory {
     texture: Texture,
+}
+
+/// Draws [`Panel::RangeDoppler`](crate::app::state::Panel::RangeDoppler).
+pub struct DopplerPanel;
+
+impl Content for DopplerPanel {
+    type Asks = DopplerQuery;
+    type Memory = Memory;
+    const TELLS_ANSWERS: bool = true;
+
+    fn asks(state: &State, _: &Jobs) -> Option<DopplerQuery> {
+        DopplerQuery::of(state)
+    }
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let state = &*cx.state;
+        let input = Input {
+            radar: state.radar(),
+            scene: state.scene(),
+            seconds: state.timeline.seconds(),
+            is_playing: state.timeline.is_playing(),
+            marks: state.settings.show_reflectors,
+            colours: state.settings.colours,
+            normalisation: state.settings.normalisation,
+            is_recorded: state.editor.document().recording().is_some(),
+            result: cx.value,
+        };
+        show(ui, input, cx.memory)
+    }
 }
 
 /// Draws the panel.

@@ -4,8 +4,10 @@ mod list;
 mod strip;
 
 use self::strip::MOST_MILLIMETRES;
+use crate::app::content::{Content, Cx};
 use crate::app::jobs::Calibrated;
-use crate::app::state::{Command, RadarCommand};
+use crate::app::jobs::{CalibrationQuery, Jobs};
+use crate::app::state::{Command, RadarCommand, State};
 use crate::app::widgets::number_field::NumberField;
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
 use eframe::egui;
@@ -35,6 +37,27 @@ impl Default for Memory {
     fn default() -> Self {
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.0 };
         Memory { chosen: 0, tolerances, seed: 0, list: list::Memory::default() }
+    }
+}
+
+/// Draws [`Panel::Elements`](crate::app::state::Panel::Elements).
+pub struct ElementsPanel;
+
+impl Content for ElementsPanel {
+    type Asks = CalibrationQuery;
+    type Memory = Memory;
+
+    fn asks(state: &State, _: &Jobs) -> Option<CalibrationQuery> {
+        CalibrationQuery::of(state)
+    }
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let input = Input {
+            radar: cx.state.radar(),
+            elements: &cx.state.editor.scene().disturbances.elements,
+            calibration: cx.value,
+        };
+        show(ui, input, cx.memory)
     }
 }
 

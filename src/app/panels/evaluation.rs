@@ -1,5 +1,6 @@
 //! Methods on the tables' test scenes, beside what the thesis prints.
 
+use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::EvaluationRow;
 use crate::app::state::{Command, EvaluationChoice, ExportCommand, WorkCommand};
 use crate::app::widgets::method_menu::{Offered, method_menu};
@@ -49,6 +50,27 @@ pub struct Memory {
 impl Default for Memory {
     fn default() -> Self {
         Memory { methods: BTreeSet::new(), sets: [true; 3], count: 10, seed: 0 }
+    }
+}
+
+/// Draws [`Panel::Evaluation`](crate::app::state::Panel::Evaluation).
+pub struct EvaluationPanel;
+
+impl Content for EvaluationPanel {
+    type Asks = Nothing;
+    type Memory = Memory;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let (state, job) = (&*cx.state, &cx.jobs.evaluation);
+        let input = Input {
+            methods: offered(state, cx.jobs),
+            method: state.method().map(|m| m.name()),
+            radar: job.plan().map_or(state.radar(), |plan| &plan.campaign.radar),
+            progress: job.progress(),
+            rows: job.rows(),
+            note: job.note(),
+        };
+        show(ui, input, cx.memory)
     }
 }
 

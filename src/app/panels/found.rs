@@ -2,7 +2,9 @@
 
 mod attempts;
 
-use crate::app::state::Command;
+use crate::app::content::{Content, Cx, Nothing};
+use crate::app::jobs::Wants;
+use crate::app::state::{Command, MapKind, MethodSlot};
 use crate::app::widgets::direction::{CONVENTION, angle_degrees};
 use crate::app::widgets::numbers::{plain, signed};
 use crate::reconstruct::Attempt;
@@ -39,6 +41,33 @@ pub struct Input<'a> {
     pub stale: bool,
     /// Whether a range was measured: one sample tells none.
     pub has_ranges: bool,
+}
+
+/// Draws [`Panel::Found`](crate::app::state::Panel::Found).
+pub struct FoundPanel;
+
+impl Content for FoundPanel {
+    type Asks = Nothing;
+    type Memory = ();
+    const WANTS: Wants = Wants { listed: true, ..Wants::OUTPUT };
+    const MARKS_AGE: bool = true;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);
+        let output = pipeline.output_of(state);
+        let recording = state.editor.document().recording();
+        let input = Input {
+            draws_only: state.method().map(|m| m.name()).filter(|_| !state.finds_reflectors()),
+            method: output.map(|o| o.method),
+            found: output.filter(|_| !state.is_predicting()).and_then(|o| o.found.as_deref()),
+            attempts: output.map_or(&[], |o| o.attempts.as_slice()),
+            objects: &state.editor.scene().objects,
+            refusal: pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str()),
+            stale: pipeline.is_stale(MapKind::Output),
+            has_ranges: state.radar().samples > 1 || recording.is_some_and(|r| r.range_metres.is_some()),
+        };
+        show(ui, input)
+    }
 }
 
 /// Draws the panel.

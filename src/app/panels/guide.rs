@@ -1,5 +1,6 @@
 //! A guide: what the maps show and why, each paragraph with a button that sets it up.
 
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{
     Command, DocumentCommand, MapKind, Panel, Projection, RadarCommand, ViewCommand, WindowCommand,
 };
@@ -181,6 +182,18 @@ pub struct Memory {
     cache: CommonMarkCache,
     /// The chapter that is open, from 0.
     open: usize,
+}
+
+/// Draws [`Panel::Guide`](crate::app::state::Panel::Guide).
+pub struct GuidePanel;
+
+impl Content for GuidePanel {
+    type Asks = Nothing;
+    type Memory = Memory;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        show(ui, cx.memory)
+    }
 }
 
 /// Draws the panel: one chapter, and the way to the others.

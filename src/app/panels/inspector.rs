@@ -3,6 +3,7 @@
 mod look;
 mod slider;
 
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand, NewObject};
 use crate::app::widgets::direction::angle_of_place_degrees;
 use crate::app::widgets::entry::{arrange, button};
@@ -25,6 +26,21 @@ pub struct Input<'a> {
     pub coordinates: Coordinates,
     /// What a point of the scene's canvas covers: lengths are told as exactly as that.
     pub metres_per_point: f64,
+}
+
+/// Draws [`Panel::Inspector`](crate::app::state::Panel::Inspector).
+pub struct InspectorPanel;
+
+impl Content for InspectorPanel {
+    type Asks = Nothing;
+    type Memory = ();
+    const TELLS_ANSWERS: bool = true;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let (editor, coordinates) = (&cx.state.editor, cx.state.settings.coordinates);
+        let metres_per_point = cx.state.scene_view.metres_per_point;
+        show(ui, Input { editor, radar: editor.radar(), coordinates, metres_per_point })
+    }
 }
 
 /// Draws the panel.

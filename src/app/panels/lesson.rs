@@ -6,6 +6,7 @@ mod large;
 mod list;
 mod memory;
 
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, LessonCommand, LessonRun};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::inline::inline;
@@ -13,7 +14,7 @@ use crate::lesson::Progress;
 use answer::{answer, answered, judgement};
 use challenge::requirements;
 use eframe::egui;
-use eframe::egui::{ScrollArea, TextureId, Ui};
+use eframe::egui::{ScrollArea, TextureId, TextureOptions, Ui};
 use large::{LARGE, large};
 use list::list;
 pub use memory::Memory;
@@ -28,6 +29,26 @@ pub struct Input<'a> {
     pub hidden: Option<TextureId>,
     /// Whether lessons have the whole screen.
     pub presenting: bool,
+}
+
+/// Draws [`Panel::Lesson`](crate::app::state::Panel::Lesson).
+pub struct LessonPanel;
+
+impl Content for LessonPanel {
+    type Asks = Nothing;
+    type Memory = Memory;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let hidden = cx.jobs.lessons.hidden();
+        let texture = hidden.map(|image| cx.memory.hidden.of(ui.ctx(), "hidden", image, TextureOptions::NEAREST));
+        let input = Input {
+            run: cx.state.lesson.as_ref(),
+            progress: &cx.state.progress,
+            hidden: texture,
+            presenting: cx.state.is_presenting(),
+        };
+        show(ui, input, cx.memory)
+    }
 }
 
 /// Draws the panel.

@@ -1,6 +1,7 @@
 //! The panels, one a file: each a function of what it shows, which answers with what was asked for.
 
 pub mod bounds;
+mod captions;
 pub mod chirp;
 pub mod compare;
 pub mod controls;

@@ -1,5 +1,6 @@
 //! The list of the scene's objects: what each is, where it stands, how strongly it reflects; a click selects it.
 
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand};
 use crate::app::widgets::axes;
 use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind, focus_after_click};
@@ -30,6 +31,20 @@ pub struct Memory {
 }
 
 const ROW_HEIGHT: f32 = 20.0;
+
+/// Draws [`Panel::Objects`](crate::app::state::Panel::Objects).
+pub struct ObjectsPanel;
+
+impl Content for ObjectsPanel {
+    type Asks = Nothing;
+    type Memory = Memory;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let (editor, coordinates) = (&cx.state.editor, cx.state.settings.coordinates);
+        let input = Input { scene: editor.scene(), selection: editor.selection(), coordinates };
+        show(ui, input, cx.memory)
+    }
+}
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {

@@ -1,7 +1,9 @@
 //! Phasors: what every element contributes to the cell under the cursor, added head to tail in the complex plane.
 
+use crate::app::content::{Content, Cx};
 use crate::app::jobs::PhasorsResult;
-use crate::app::state::{Command, PhasorMap, PhasorSettings, ViewCommand};
+use crate::app::jobs::{Jobs, PhasorsQuery};
+use crate::app::state::{Command, PhasorMap, PhasorSettings, State, ViewCommand};
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::{Chart, Drawn, inner};
 use crate::app::widgets::direction::direction;
@@ -34,6 +36,31 @@ pub struct Memory {
     /// The part of the elements that is drawn; all where `None`.
     part: Option<f32>,
     is_playing: bool,
+}
+
+/// Draws [`Panel::Phasors`](crate::app::state::Panel::Phasors).
+pub struct PhasorsPanel;
+
+impl Content for PhasorsPanel {
+    type Asks = PhasorsQuery;
+    type Memory = Memory;
+    const TELLS_ANSWERS: bool = true;
+
+    fn asks(state: &State, jobs: &Jobs) -> Option<PhasorsQuery> {
+        PhasorsQuery::of(state, &jobs.pipeline)
+    }
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let state = &*cx.state;
+        let input = Input {
+            radar: state.radar(),
+            settings: state.settings.phasors,
+            finds_reflectors: state.finds_reflectors(),
+            is_recorded: state.editor.document().recording().is_some(),
+            result: cx.value,
+        };
+        show(ui, input, cx.memory)
+    }
 }
 
 /// Draws the panel.

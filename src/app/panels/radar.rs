@@ -6,6 +6,7 @@ mod places;
 mod strip;
 mod table;
 
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
@@ -45,6 +46,28 @@ impl Measured {
 struct Free {
     constants: bool,
     ends: bool,
+}
+
+/// Draws [`Panel::Radar`](crate::app::state::Panel::Radar).
+pub struct RadarPanel;
+
+impl Content for RadarPanel {
+    type Asks = Nothing;
+    type Memory = ();
+    const TELLS_ANSWERS: bool = true;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let editor = &cx.state.editor;
+        let measured = editor.document().recording().map(|r| Measured { by_all_elements: r.signal().is_some() });
+        let selected = editor.selection().single().and_then(|index| {
+            let object = editor.scene().objects.get(index).filter(|o| o.body().is_none())?;
+            let name = format!("{} {}", object.noun(), index + 1);
+            let of_many = if object.reflector_count() == 1 { name } else { format!("a reflector of {name}") };
+            let (place_metres, reflectivity) = (object.centre_metres(), object.reflectivity());
+            Some(Selected { name: of_many, place_metres, reflectivity })
+        });
+        show(ui, Input { radar: cx.state.radar(), measured, selected })
+    }
 }
 
 /// Draws the panel.

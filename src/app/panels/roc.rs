@@ -1,6 +1,8 @@
 //! Detection against false alarm of the scene on screen, over every threshold.
 
-use crate::app::state::Command;
+use crate::app::content::{Content, Cx, Nothing};
+use crate::app::jobs::Wants;
+use crate::app::state::{Command, MethodSlot};
 use crate::app::widgets::axes::{Axis, Tick};
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::legend::{self, Entry, Sign};
@@ -32,6 +34,28 @@ pub struct Input<'a> {
     pub metrics: Option<Metrics>,
     /// Why there is no output.
     pub refusal: Option<&'a str>,
+}
+
+/// Draws [`Panel::Roc`](crate::app::state::Panel::Roc).
+pub struct RocPanel;
+
+impl Content for RocPanel {
+    type Asks = Nothing;
+    type Memory = ();
+    const WANTS: Wants = Wants { roc: true, ..Wants::OUTPUT };
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);
+        let shown = pipeline.maps.result().filter(|_| !state.is_predicting());
+        let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
+        let method = pipeline.output().map_or("output", |o| o.method);
+        let refusal = pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str());
+        let eta = pipeline.eta(state, MethodSlot::First);
+        let cfar = state.settings.cfar;
+        let is_now = shown.is_some_and(|r| r.request.etas[0] == eta && r.request.cfar == cfar);
+        let metrics = pipeline.scores_in(MethodSlot::First).filter(|_| is_now).map(|scores| scores.metrics);
+        show(ui, Input { points, method, eta, cfar, metrics, refusal })
+    }
 }
 
 /// Draws the panel.

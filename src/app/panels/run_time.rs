@@ -1,5 +1,6 @@
 //! Run time against error on this machine, measured while one watches.
 
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, WorkCommand};
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
@@ -39,6 +40,26 @@ pub struct Memory {
 impl Default for Memory {
     fn default() -> Self {
         Memory { thorough: false, task: FrontTask::Scratch, reflectors: None }
+    }
+}
+
+/// Draws [`Panel::RunTime`](crate::app::state::Panel::RunTime).
+pub struct RunTimePanel;
+
+impl Content for RunTimePanel {
+    type Asks = Nothing;
+    type Memory = Memory;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let job = &cx.jobs.run_time;
+        let input = Input {
+            radar: job.plan().map_or(cx.state.radar(), |plan| &plan.radar),
+            progress: job.progress(),
+            rows: job.rows(),
+            bare_fft_ms: job.end().copied(),
+            note: job.note(),
+        };
+        show(ui, input, cx.memory)
     }
 }
 

@@ -1,5 +1,6 @@
 //! One map several times, side by side: what one constant does to it.
 
+use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::Small;
 use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, Variant, ViewCommand};
 use crate::app::widgets::method_menu::{Offered, method_lines};
@@ -31,6 +32,26 @@ pub struct Memory {
 
 /// Height of a map's name.
 const NAME: f32 = 18.0;
+
+/// Draws [`Panel::Several`](crate::app::state::Panel::Several).
+pub struct SeveralPanel;
+
+impl Content for SeveralPanel {
+    type Asks = Nothing;
+    type Memory = Memory;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let state = &*cx.state;
+        let input = Input {
+            several: &state.settings.several,
+            radar: state.radar(),
+            methods: offered(state, cx.jobs),
+            maps: cx.jobs.several.shown(),
+            veiled: state.is_predicting(),
+        };
+        show(ui, input, cx.memory)
+    }
+}
 
 /// Draws the panel. A click on a map puts its value before the scene.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {

@@ -1,5 +1,6 @@
 //! What each stage of the last update cost, and what was skipped and why.
 
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::Command;
 use crate::engine::{EngineReport, StageOutcome};
 use eframe::egui;
@@ -24,6 +25,26 @@ pub struct Update<'a> {
     pub output: Option<(&'static str, Duration)>,
     /// Whether that output is of an earlier scene.
     pub outdated: bool,
+}
+
+/// Draws [`Panel::Timing`](crate::app::state::Panel::Timing).
+pub struct TimingPanel;
+
+impl Content for TimingPanel {
+    type Asks = Nothing;
+    type Memory = ();
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let pipeline = &cx.jobs.pipeline;
+        let update = pipeline.maps.result().map(|r| Update {
+            report: &r.frame.report,
+            took: r.took,
+            painted: r.painted,
+            output: pipeline.output().map(|o| (o.method, o.took)),
+            outdated: pipeline.output_is_outdated(),
+        });
+        show(ui, Input { update })
+    }
 }
 
 /// Draws the panel.

@@ -1,5 +1,6 @@
 //! A training watched: its loss, and how far it is.
 
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Log;
 use crate::app::state::{Command, WorkCommand};
 use crate::app::widgets::entry::button;
@@ -47,6 +48,20 @@ impl Default for Memory {
     #[cfg(not(feature = "network"))]
     fn default() -> Self {
         Memory { recipes: Vec::new() }
+    }
+}
+
+/// Draws [`Panel::Training`](crate::app::state::Panel::Training).
+pub struct TrainingPanel;
+
+impl Content for TrainingPanel {
+    type Asks = Nothing;
+    type Memory = Memory;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let job = &cx.jobs.training;
+        let running = job.is_running().then(|| job.progress().unwrap_or(0.0));
+        show(ui, Input { path: job.path(), log: job.log(), note: job.note(), running }, cx.memory)
     }
 }
 

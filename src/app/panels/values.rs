@@ -1,7 +1,10 @@
 //! What every map has under the pointer, in one small table.
 
 use super::map::Cells;
-use crate::app::state::{Command, Cursor, MapKind};
+use super::map::{cells, is_updating};
+use crate::app::content::{Content, Cx, Nothing};
+use crate::app::jobs::Wants;
+use crate::app::state::{Command, Cursor, MapKind, MethodSlot, Panel};
 use crate::app::widgets::direction::{CONVENTION, direction};
 use crate::radar::Radar;
 use eframe::egui;
@@ -42,6 +45,31 @@ pub struct Input<'a> {
     pub rows: &'a [Row<'a>],
     /// Whether nothing is told: a prediction is asked for.
     pub hidden: bool,
+}
+
+/// Draws [`Panel::Values`](crate::app::state::Panel::Values).
+pub struct ValuesPanel;
+
+impl Content for ValuesPanel {
+    type Asks = Nothing;
+    type Memory = ();
+    const WANTS: Wants = Wants { every_map: true, ..Wants::OUTPUT };
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let (state, jobs) = (&*cx.state, cx.jobs);
+        // What is to be predicted is not to be read off a table.
+        let hidden = state.is_predicting();
+        let compares = state.arrangement.shown().contains(&Panel::Compare);
+        let listed = |kind: &MapKind| compares || kind.slot() != Some(MethodSlot::Second);
+        let row = |kind: MapKind| {
+            let method = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| o.method);
+            let cells = cells(jobs, kind)?;
+            Some(Row { kind, method, cells, updating: is_updating(jobs, kind) })
+        };
+        let kinds = LISTED.into_iter().filter(listed).filter(|_| !hidden);
+        let rows: Vec<Row<'_>> = kinds.filter_map(row).collect();
+        show(ui, Input { radar: state.radar(), cursor: state.cut_cursor(), rows: &rows, hidden })
+    }
 }
 
 /// Draws the panel.

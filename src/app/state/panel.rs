@@ -1,211 +1,202 @@
 //! Everything that can be shown in a tile, by name.
 
+use eframe::egui::Key;
 use serde::{Deserialize, Serialize};
 
-/// Everything that can be shown, each in a tile of its own or as one of several views of a tile.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub enum Panel {
-    /// The scene's canvas.
-    Scene,
-    /// Floor, display and reconstruction settings.
-    Controls,
-    /// The radar's constants and what follows from them.
-    Radar,
-    /// Numbers of the selected objects.
-    Inspector,
-    /// The list of objects.
-    Objects,
-    /// A map.
-    Map(MapKind),
-    /// Range profile and angle cut through the cursor.
-    Cuts,
-    /// Elements as they are built; a view of [`Panel::Radar`].
-    Elements,
-    /// An interferer and a mirror; a view of [`Panel::Radar`].
-    Disturbances,
-    /// What the method found, as a list.
-    Found,
-    /// P_D against P_FA.
-    Roc,
-    /// What each stage cost and what was skipped.
-    Timing,
-    /// Ambiguity function and Cramer-Rao bound.
-    Bounds,
-    /// What every element contributes to the cell under the cursor.
-    Phasors,
-    /// What is sent and what returns, as frequency against time, and the beat; the first view of the tile Waveform.
-    Chirp,
-    /// Range against radial velocity, and the time at which the scene is looked at; a view of [`Panel::Chirp`].
-    RangeDoppler,
-    /// Methods on the tables' test sets; a view of [`Panel::Failures`].
-    Evaluation,
-    /// Scenes on which methods fail, row by row; the first view of the tile Evaluate.
-    Failures,
-    /// Run time against error; a view of [`Panel::Failures`].
-    #[serde(alias = "Front")]
-    RunTime,
-    /// A training watched.
-    Training,
-    /// What the maps show and why.
-    Guide,
-    /// Predict, look, change.
-    Lesson,
-    /// One map for several values of a constant.
-    Several,
-    /// Two methods on the scene on screen.
-    Compare,
-    /// What every map has under the pointer; a view of [`Panel::Cuts`].
-    Values,
+/// Where a panel stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// It edits, and has a tile at first.
+    Editing,
+    /// It shows what came of the scene, and has a tile at first.
+    Result,
+    /// It is a tool for a question of its own: closed at first.
+    Tool,
+    /// It is for developers of the program and of methods: menus list it where *Developer* is ticked.
+    Developer,
+    /// It shares the tile of another.
+    ViewOf(Panel),
 }
 
+/// What is known of a panel without drawing it.
+struct Facts {
+    panel: Panel,
+    place: Place,
+    key: Option<Key>,
+    title: &'static str,
+    help: &'static str,
+}
+
+/// A tile of several views: the panel that stands for it, its title, that panel's name among the views, and what the tile is for.
+struct SharedTile {
+    tile: Panel,
+    title: &'static str,
+    view: &'static str,
+    help: &'static str,
+}
+
+const SHARED: [SharedTile; 4] = [
+    SharedTile {
+        tile: Panel::Radar,
+        title: "Radar",
+        view: "Constants",
+        help: "The radar's constants, its elements as they are built, and what disturbs it",
+    },
+    SharedTile {
+        tile: Panel::Cuts,
+        title: "Cuts",
+        view: "Profiles",
+        help: "Range profile and angle cut of all maps through the cursor, and their values under it",
+    },
+    SharedTile {
+        tile: Panel::Chirp,
+        title: "Waveform",
+        view: "Chirp",
+        help: "What is sent and what returns, the beat, and range against radial velocity",
+    },
+    SharedTile {
+        tile: Panel::Failures,
+        title: "Evaluate",
+        view: "Rows",
+        help: "Methods on many scenes: every row, the printed tables, and run time against error",
+    },
+];
+
+/// What a line of the list says of its place and its key.
+macro_rules! listed_as {
+    (editing) => {
+        Place::Editing
+    };
+    (result) => {
+        Place::Result
+    };
+    (tool) => {
+        Place::Tool
+    };
+    (developer) => {
+        Place::Developer
+    };
+    (view $tile:ident) => {
+        Place::ViewOf(Panel::$tile)
+    };
+    (key none) => {
+        None
+    };
+    (key $key:ident) => {
+        Some(Key::$key)
+    };
+}
+
+/// The names of all panels, and what is known of each.
+macro_rules! ids {
+    ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:ident $(of $tile:ident)?, $key:ident, $title:literal, $help:literal;)*) => {
+        /// Everything that can be shown, each in a tile of its own or as one of several views of a tile.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        pub enum Panel {
+            /// A map.
+            Map(MapKind),
+            $(#[doc = $help] $(#[$meta])* $name,)*
+        }
+
+        const FACTS: &[Facts] = &[$(Facts {
+            panel: Panel::$name,
+            place: listed_as!($place $($tile)?),
+            key: listed_as!(key $key),
+            title: $title,
+            help: $help,
+        }),*];
+    };
+}
+
+every_panel!(ids);
+
 impl Panel {
-    /// Tiles that are closed at first: each is a tool for a question of its own.
-    pub const TOOLS: [Panel; 11] = [
-        Panel::Guide,
-        Panel::Lesson,
-        Panel::Failures,
-        Panel::Radar,
-        Panel::Found,
-        Panel::Bounds,
-        Panel::Phasors,
-        Panel::Chirp,
-        Panel::Several,
-        Panel::Compare,
-        Panel::Training,
-    ];
+    /// What the list says of it; nothing of maps.
+    fn facts(self) -> Option<&'static Facts> {
+        FACTS.iter().find(|facts| facts.panel == self)
+    }
 
-    /// Tiles for developers of the program and of methods: menus list them where *Developer* is ticked.
-    pub const DEVELOPER: [Panel; 2] = [Panel::Timing, Panel::Training];
+    fn place(self) -> Option<Place> {
+        self.facts().map(|facts| facts.place)
+    }
 
-    /// Tiles that are shared by several views, each with its name and its views, the first of which stands for the tile.
-    const SHARED: &'static [(&'static str, &'static [Panel])] = &[
-        ("Radar", &[Panel::Radar, Panel::Elements, Panel::Disturbances]),
-        ("Cuts", &[Panel::Cuts, Panel::Values]),
-        ("Waveform", &[Panel::Chirp, Panel::RangeDoppler]),
-        ("Evaluate", &[Panel::Failures, Panel::Evaluation, Panel::RunTime]),
-    ];
+    /// Whether it is a tool for a question of its own, which is closed at first.
+    pub fn is_tool(self) -> bool {
+        matches!(self.place(), Some(Place::Tool | Place::Developer))
+    }
+
+    /// Whether it is for developers of the program and of methods: menus list it where *Developer* is ticked.
+    pub fn is_developer(self) -> bool {
+        self.place() == Some(Place::Developer)
+    }
 
     /// All panels that have a tile, in the order menus list them.
     pub fn tiles() -> Vec<Panel> {
-        let mut all = vec![Panel::Scene, Panel::Controls, Panel::Inspector, Panel::Objects];
-        all.extend(MapKind::ALL.map(Panel::Map));
-        all.extend([Panel::Cuts, Panel::Roc, Panel::Timing]);
-        all.extend(Panel::TOOLS);
-        all
+        Panel::all().into_iter().filter(|panel| panel.tile() == *panel).collect()
     }
 
-    /// All panels, the views of a tile side by side.
+    /// All panels, the views of a tile side by side, the maps behind what edits.
     pub fn all() -> Vec<Panel> {
-        let views = |tile: Panel| {
-            if tile.views().is_empty() { vec![tile] } else { tile.views().to_vec() }
+        let listed = |is_editing: bool| {
+            let chosen = FACTS.iter().filter(move |facts| (facts.place == Place::Editing) == is_editing);
+            chosen.map(|facts| facts.panel)
         };
-        Panel::tiles().into_iter().flat_map(views).collect()
+        listed(true).chain(MapKind::ALL.map(Panel::Map)).chain(listed(false)).collect()
     }
 
     /// The views of the tile that this is one of; none where it has a tile to itself.
-    pub fn views(self) -> &'static [Panel] {
-        let shared = Panel::SHARED.iter().find(|(_, views)| views.contains(&self));
-        shared.map_or(&[], |(_, views)| *views)
+    pub fn views(self) -> Vec<Panel> {
+        let tile = self.tile();
+        let others = FACTS.iter().filter(|facts| facts.place == Place::ViewOf(tile)).map(|facts| facts.panel);
+        let views: Vec<Panel> = [tile].into_iter().chain(others).collect();
+        if views.len() > 1 { views } else { Vec::new() }
     }
 
     /// The panel whose tile shows this one.
     pub fn tile(self) -> Panel {
-        self.views().first().copied().unwrap_or(self)
+        match self.place() {
+            Some(Place::ViewOf(tile)) => tile,
+            _ => self,
+        }
+    }
+
+    fn shared(self) -> Option<&'static SharedTile> {
+        SHARED.iter().find(|shared| shared.tile == self.tile())
     }
 
     /// Title of its tile.
     pub fn tile_title(self) -> &'static str {
-        let shared = Panel::SHARED.iter().find(|(_, views)| views.contains(&self));
-        shared.map_or_else(|| self.title(), |(title, _)| *title)
+        self.shared().map_or_else(|| self.title(), |shared| shared.title)
     }
 
     /// Its name among the views of its tile.
     pub fn view_title(self) -> &'static str {
-        match self {
-            Panel::Radar => "Constants",
-            Panel::Cuts => "Profiles",
-            Panel::Failures => "Rows",
-            Panel::Evaluation => "Tables",
-            other => other.title(),
-        }
+        self.shared().filter(|shared| shared.tile == self).map_or_else(|| self.title(), |shared| shared.view)
     }
 
     /// What its tile is for.
     pub fn describe_tile(self) -> &'static str {
-        match self.tile() {
-            Panel::Radar => "The radar's constants, its elements as they are built, and what disturbs it",
-            Panel::Cuts => "Range profile and angle cut of all maps through the cursor, and their values under it",
-            Panel::Chirp => "What is sent and what returns, the beat, and range against radial velocity",
-            Panel::Failures => "Methods on many scenes: every row, the printed tables, and run time against error",
-            other => other.describe(),
-        }
+        self.shared().map_or_else(|| self.describe(), |shared| shared.help)
+    }
+
+    /// The key that shows and hides it.
+    pub fn key(self) -> Option<Key> {
+        self.facts().and_then(|facts| facts.key)
     }
 
     /// Its title.
     pub fn title(self) -> &'static str {
-        match self {
-            Panel::Scene => "Scene",
-            Panel::Controls => "Settings",
-            Panel::Radar => "Radar",
-            Panel::Inspector => "Inspector",
-            Panel::Objects => "Objects",
-            Panel::Map(kind) => kind.title(),
-            Panel::Cuts => "Cuts",
-            Panel::Elements => "Elements",
-            Panel::Disturbances => "Disturbances",
-            Panel::Found => "Found",
-            Panel::Roc => "ROC",
-            Panel::Timing => "Timing",
-            Panel::Bounds => "Bounds",
-            Panel::Phasors => "Phasors",
-            Panel::Chirp => "Chirp",
-            Panel::RangeDoppler => "Range-Doppler",
-            Panel::Evaluation => "Evaluation",
-            Panel::Failures => "Failures",
-            Panel::RunTime => "Run time",
-            Panel::Training => "Training",
-            Panel::Guide => "Guide",
-            Panel::Lesson => "Lessons",
-            Panel::Several => "Compare settings",
-            Panel::Compare => "Compare",
-            Panel::Values => "Values",
+        match (self, self.facts()) {
+            (Panel::Map(kind), _) => kind.title(),
+            (_, facts) => facts.map_or("", |facts| facts.title),
         }
     }
 
     /// What it is for.
     pub fn describe(self) -> &'static str {
-        match self {
-            Panel::Scene => "The reflectors before the radar; drag them",
-            Panel::Controls => "Floor, display and reconstruction settings",
-            Panel::Radar => "The radar's constants, and what follows from each",
-            Panel::Inspector => "Numbers of what is selected",
-            Panel::Objects => "The scene's objects in a list: click to select, with Ctrl or Shift several",
-            Panel::Map(kind) => kind.describe(),
-            Panel::Cuts => "Range profile and angle cut of all maps through the cursor",
-            Panel::Elements => "Gain, phase and place of each element, dead ones, and calibration on a reflector",
-            Panel::Disturbances => "An unsynchronised radar, and a wall that mirrors",
-            Panel::Found => "What the method found: angle, range and strength",
-            Panel::Roc => "Detection against false alarm of this scene, over every threshold",
-            Panel::Timing => "What each stage of the last update cost, and what was skipped and why",
-            Panel::Bounds => "How well any method could place a reflector, and what looks like it to chosen elements",
-            Panel::Chirp => "Frequency against time of what is sent and what returns, the beat and its spectrum",
-            Panel::RangeDoppler => {
-                "Range against radial velocity of several chirps, and a timeline that plays the scene"
-            }
-            Panel::Phasors => "What every element contributes to the cell under the cursor, added head to tail",
-            Panel::Evaluation => "Tables 4.1 to 4.3 for any method, beside the printed values",
-            Panel::Failures => {
-                "Every scene that methods were tried on, row by row: sort, filter, open, make worse, keep"
-            }
-            Panel::RunTime => "Run time against error of the simulation on this machine",
-            Panel::Training => "The loss of a network while it is trained",
-            Panel::Guide => "What the maps show and why, with something to try",
-            Panel::Several => {
-                "One map for several values of a constant: window, bandwidth, elements, spacing, SNR, method"
-            }
-            Panel::Compare => "Two methods on this scene: side by side, flipped in place, or parted by an edge",
-            Panel::Values => "What every map has under the pointer",
-            Panel::Lesson => "Questions to answer before the maps are shown, and things to bring about",
+        match (self, self.facts()) {
+            (Panel::Map(kind), _) => kind.describe(),
+            (_, facts) => facts.map_or("", |facts| facts.help),
         }
     }
 }

@@ -32,9 +32,9 @@ pub fn least_size(panel: Panel) -> Vec2 {
         Panel::Cuts | Panel::Values | Panel::Roc => [260.0, 180.0],
         Panel::Guide | Panel::Lesson => [300.0, 260.0],
         Panel::Radar | Panel::Elements | Panel::Disturbances => [280.0, 260.0],
-        Panel::Bounds | Panel::Phasors | Panel::Chirp | Panel::RangeDoppler | Panel::Training => [360.0, 280.0],
         Panel::Several => [420.0, 320.0],
         Panel::Compare | Panel::Failures | Panel::Evaluation | Panel::RunTime => [560.0, 320.0],
+        _ => [360.0, 280.0],
     };
     Vec2::new(width, height)
 }

@@ -148,8 +148,7 @@ fn window_menus(command: &WindowCommand) -> &'static [&'static str] {
         | WindowCommand::ToggleCaptions => &["Help"],
         // A tile of several views stands in the menu by a name of its own.
         WindowCommand::TogglePanel(panel) if panel.title() != panel.tile_title() => &[],
-        WindowCommand::TogglePanel(panel) if Panel::DEVELOPER.contains(panel) => &["Tools"],
-        WindowCommand::TogglePanel(panel) if Panel::TOOLS.contains(panel) => &["Tools"],
+        WindowCommand::TogglePanel(panel) if panel.is_tool() => &["Tools"],
         WindowCommand::TogglePanel(_) => &["View", "Panels"],
         WindowCommand::Escape => &["Edit"],
         WindowCommand::Quit => &["File"],

@@ -50,7 +50,7 @@ fn panels_for_developers_are_listed_where_their_switch_is_on() {
     let mut menu = bar_for(900.0, true, false);
     open(&mut menu, &["Tools"]);
     let _tool = menu.get_by_label("Bounds");
-    for panel in Panel::DEVELOPER {
+    for panel in Panel::all().into_iter().filter(|panel| panel.is_developer()) {
         assert!(menu.query_by_label(panel.title()).is_none(), "{panel:?}");
     }
     let mut menu = bar(900.0);

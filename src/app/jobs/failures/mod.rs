@@ -13,7 +13,7 @@ pub use table::RowTable;
 pub use table::some_row;
 pub use thumbnails::{Album, HEIGHT as THUMBNAIL_HEIGHT, Thumbnail, WIDTH as THUMBNAIL_WIDTH};
 
-use super::rows::{RowJob, Stopped, Teller};
+use super::rows::{Plan, RowJob, Stopped, Teller};
 use crate::app::state::{Conditions, State};
 use crate::evaluate::campaign::{Campaign, Unfit};
 use crate::evaluate::rows::{FORMAT, Row, WHY_NO_OTHER_FORMAT};
@@ -36,7 +36,7 @@ const EVERY: Duration = Duration::from_secs(10);
 const FILE: &str = "failures.csv";
 
 /// What is to be tried.
-pub struct Plan {
+pub struct FailuresPlan {
     /// Radar, floor, scenes.
     pub campaign: Campaign,
     /// The sets.
@@ -45,22 +45,48 @@ pub struct Plan {
     pub methods: Vec<Arc<dyn Reconstructor>>,
 }
 
-impl Plan {
+impl FailuresPlan {
     fn maps(&self) -> usize {
         let scenes: u32 = self.sets.iter().map(|set| self.campaign.scenes(set)).sum();
         scenes as usize * self.methods.len()
     }
 }
 
-/// A plan, and the table that its rows go to.
+/// A plan, the table that its rows go to, and the album of their small maps.
 struct Run {
-    plan: Plan,
+    plan: FailuresPlan,
     generation: u64,
+    album: Album,
+}
+
+impl Plan for Run {
+    type Row = (u64, Row);
+    type End = Vec<Unfit>;
+    const THREAD: &'static str = "failures";
+    const WHAT: &'static str = "Trying methods";
+    const ADVICE: &'static str = "Leave the method out, or try another seed.";
+
+    fn run(&self, teller: &Teller<'_, (u64, Row)>) -> Result<Vec<Unfit>, Stopped> {
+        let Run { plan, generation, album } = self;
+        let methods: Vec<&dyn Reconstructor> = plan.methods.iter().map(AsRef::as_ref).collect();
+        let (mut done, total) = (0, plan.maps().max(1));
+        let found = plan.campaign.run_fit(&plan.sets, &methods, teller.task, |row, trial, answer| {
+            album.insert(*generation, row, Ok(Arc::new(Thumbnail::of(trial, answer))));
+            done += 1;
+            teller.task.set_progress(done as f32 / total as f32);
+            teller.row((*generation, row.clone()));
+        });
+        match found {
+            Ok((_, unfit)) => Ok(unfit),
+            Err(error) if error.is_cancelled() => Err(Stopped::Cancelled),
+            Err(error) => Err(Stopped::Failed(error.to_string())),
+        }
+    }
 }
 
 /// The rows there are, and the threads that make more.
 pub struct Failures {
-    run: RowJob<Run, (u64, Row), Vec<Unfit>>,
+    run: RowJob<Run>,
     table: RowTable,
     /// The rows that others took the place of last.
     before: Option<(Arc<Vec<Row>>, Conditions)>,
@@ -79,12 +105,7 @@ impl Failures {
     /// Starts the threads and reads what the last session left in `folder`; `wake` is called from them.
     pub fn start(folder: Option<&Path>, wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Failures> {
         let thumbnails = Thumbnails::start(wake.clone())?;
-        let album = thumbnails.album.clone();
-        let run = RowJob::start(
-            "failures",
-            move |run: &Run, teller: &Teller<'_, (u64, Row)>| try_all(run, &album, teller),
-            wake.clone(),
-        )?;
+        let run = RowJob::start(wake.clone())?;
         let store = Store::start(wake.clone())?;
         let file = folder.map(|folder| folder.join(FILE));
         if let Some(file) = file.as_ref().filter(|file| fs::exists(file)) {
@@ -97,7 +118,7 @@ impl Failures {
 
     /// Tries what `plan` says. Rows made under the same conditions stay; others, and those of an older format, make room, as figures don't
     /// compare.
-    pub fn begin(&mut self, plan: Plan) {
+    pub fn begin(&mut self, plan: FailuresPlan) {
         let Campaign { floor, normalisation, ref radar, .. } = plan.campaign;
         let conditions = Conditions { floor, normalisation, radar: radar.clone() };
         self.take_in_rows();
@@ -105,7 +126,8 @@ impl Failures {
             self.replace(Vec::new(), conditions);
         }
         self.thumbnails.stop();
-        self.run.begin(Run { plan, generation: self.table.generation() });
+        let album = self.thumbnails.album.clone();
+        self.run.begin(Run { plan, generation: self.table.generation(), album });
     }
 
     /// Stops after the map that is being made; the rows stay.
@@ -195,10 +217,9 @@ impl Failures {
 
     /// Takes in what is finished. Returns messages for the user.
     pub fn poll(&mut self) -> Vec<String> {
-        let failed = |said| format!("Trying methods failed ({said}). Leave the method out, or try another seed.");
-        let mut errors: Vec<String> = self.run.poll().map(failed).into_iter().collect();
+        let mut errors = Vec::from_iter(self.run.poll());
         self.take_in_rows();
-        errors.extend(self.thumbnails.poll().map(|said| format!("Small maps could not be drawn: {said}")));
+        errors.extend(self.thumbnails.poll());
         for done in self.store.poll() {
             match done {
                 Done::Read { own, kept: Ok((rows, conditions)), .. } => {
@@ -288,21 +309,4 @@ fn said_of_older(rows: &[Row]) -> Option<String> {
     Some(format!(
         "These rows are of {format}: {WHY_NO_OTHER_FORMAT}. Their scenes and small maps have the floor of now."
     ))
-}
-
-fn try_all(run: &Run, album: &Album, teller: &Teller<'_, (u64, Row)>) -> Result<Vec<Unfit>, Stopped> {
-    let Run { plan, generation } = run;
-    let methods: Vec<&dyn Reconstructor> = plan.methods.iter().map(AsRef::as_ref).collect();
-    let (mut done, total) = (0, plan.maps().max(1));
-    let found = plan.campaign.run_fit(&plan.sets, &methods, teller.task, |row, trial, answer| {
-        album.insert(*generation, row, Ok(Arc::new(Thumbnail::of(trial, answer))));
-        done += 1;
-        teller.task.set_progress(done as f32 / total as f32);
-        teller.row((*generation, row.clone()));
-    });
-    match found {
-        Ok((_, unfit)) => Ok(unfit),
-        Err(error) if error.is_cancelled() => Err(Stopped::Cancelled),
-        Err(error) => Err(Stopped::Failed(error.to_string())),
-    }
 }

@@ -1,6 +1,6 @@
 //! The search for a worse scene near the one on screen, or for its repair, in the background.
 
-use crate::app::jobs::rows::{RowJob, Stopped, Teller};
+use crate::app::jobs::rows::{Plan, RowJob, Stopped, Teller};
 use crate::app::state::{SearchChoice, State};
 use crate::evaluate::worsen::{Aim, Finding, WorseningMeasure, WorseningSearch as Job};
 use crate::radar::counted;
@@ -9,10 +9,33 @@ use crate::scene::Scene;
 use std::sync::Arc;
 
 /// Where the search begins, and how it goes.
-struct Plan {
+struct SearchPlan {
     job: Job,
     scene: Arc<Scene>,
     method: Arc<dyn Reconstructor>,
+}
+
+impl Plan for SearchPlan {
+    type Row = Finding;
+    type End = ();
+    const THREAD: &'static str = "search";
+    const WHAT: &'static str = "The search";
+    const ADVICE: &'static str = "Choose another method, or move something.";
+
+    fn run(&self, teller: &Teller<'_, Finding>) -> Result<(), Stopped> {
+        let mut told = 0;
+        let on_try = |tries: u32, path: &[Finding]| {
+            path[told..].iter().for_each(|finding| teller.row(finding.clone()));
+            told = path.len();
+            teller.part(tries as f32 / self.job.tries.max(1) as f32);
+            !teller.task.is_cancelled()
+        };
+        let outcome = self.job.run(&self.scene, self.method.as_ref(), teller.task, on_try);
+        let outcome = outcome.map_err(|error| Stopped::Failed(error.to_string()))?;
+        // What the last batch found before it was stopped.
+        outcome.path[told..].iter().for_each(|finding| teller.row(finding.clone()));
+        if teller.task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(()) }
+    }
 }
 
 /// What a search is about.
@@ -25,7 +48,7 @@ struct Subject {
 
 /// The worker, and the path of the last search.
 pub struct Search {
-    job: RowJob<Plan, Finding, ()>,
+    job: RowJob<SearchPlan>,
     subject: Option<Subject>,
     /// Places of every object, from scene to scene of the path.
     trails: Vec<Vec<[f64; 2]>>,
@@ -38,7 +61,7 @@ pub struct Search {
 impl Search {
     /// Starts the worker, which waits; `wake` is called from its thread.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Search> {
-        let job = RowJob::start("search", run, wake)?;
+        let job = RowJob::start(wake)?;
         Ok(Search { job, subject: None, trails: Vec::new(), drawn: 0, told: true })
     }
 
@@ -59,7 +82,7 @@ impl Search {
         let document = state.editor.document().id();
         self.subject = Some(Subject { scene: scene.clone(), document, choice, method: method.name() });
         (self.trails, self.drawn, self.told) = (Vec::new(), 0, false);
-        self.job.begin(Plan { job, scene, method });
+        self.job.begin(SearchPlan { job, scene, method });
     }
 
     /// Stops soon; what was found stays.
@@ -105,7 +128,7 @@ impl Search {
         self.subject.as_ref().is_some_and(|s| Arc::ptr_eq(&s.scene, scene))
     }
 
-    /// Takes in what was found. Whether the search ended just now, and what a panic said.
+    /// Takes in what was found. Whether the search ended just now, and a message for the user.
     pub fn poll(&mut self) -> (bool, Option<String>) {
         let panicked = self.job.poll();
         let path = if self.subject.is_some() { self.job.rows() } else { &[] };
@@ -117,7 +140,7 @@ impl Search {
         self.drawn = path.len();
         let ended = !self.told && self.job.progress().is_none();
         self.told |= ended;
-        (ended, panicked.map(|said| format!("The search failed ({said}). Choose another method, or move something.")))
+        (ended, panicked)
     }
 
     /// What the search came to, in words.
@@ -142,19 +165,4 @@ impl Search {
             self.forget();
         }
     }
-}
-
-fn run(plan: &Plan, teller: &Teller<'_, Finding>) -> Result<(), Stopped> {
-    let mut told = 0;
-    let on_try = |tries: u32, path: &[Finding]| {
-        path[told..].iter().for_each(|finding| teller.row(finding.clone()));
-        told = path.len();
-        teller.part(tries as f32 / plan.job.tries.max(1) as f32);
-        !teller.task.is_cancelled()
-    };
-    let outcome = plan.job.run(&plan.scene, plan.method.as_ref(), teller.task, on_try);
-    let outcome = outcome.map_err(|error| Stopped::Failed(error.to_string()))?;
-    // What the last batch found before it was stopped.
-    outcome.path[told..].iter().for_each(|finding| teller.row(finding.clone()));
-    if teller.task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(()) }
 }

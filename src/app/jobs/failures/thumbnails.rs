@@ -1,7 +1,7 @@
 //! Small maps of what rows are of: a byte a cell, the latest so many of them.
 
 use super::table::RowKey;
-use crate::app::jobs::rows::{RowJob, Stopped, Teller};
+use crate::app::jobs::rows::{Plan, RowJob, Stopped, Teller};
 use crate::app::state::Conditions;
 use crate::evaluate::rows::Row;
 use crate::evaluate::trial::{TimedAnswer, Trial};
@@ -113,27 +113,25 @@ impl Album {
 }
 
 /// Rows whose thumbnails are missing.
-struct Plan {
+struct MissingThumbnails {
     generation: u64,
     conditions: Conditions,
     rows: Vec<(Row, Option<Arc<dyn Reconstructor>>)>,
+    album: Album,
 }
 
 /// Makes thumbnails of rows that were not made here, one after the other.
 pub struct Thumbnails {
     /// Those there are.
     pub album: Album,
-    job: RowJob<Plan, (), ()>,
+    job: RowJob<MissingThumbnails>,
     asked: Vec<RowKey>,
 }
 
 impl Thumbnails {
     /// Starts the thread, which waits; `wake` is called from it.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Thumbnails> {
-        let album = Album::default();
-        let theirs = album.clone();
-        let work = move |plan: &Plan, teller: &Teller<'_, ()>| make(plan, &theirs, teller);
-        Ok(Thumbnails { album, job: RowJob::start("thumbnails", work, wake)?, asked: Vec::new() })
+        Ok(Thumbnails { album: Album::default(), job: RowJob::start(wake)?, asked: Vec::new() })
     }
 
     /// Asks for those of `rows` that are missing, unless it was asked for all of them already.
@@ -151,7 +149,8 @@ impl Thumbnails {
         }
         self.job.cancel();
         let rows = missing.into_iter().map(|row| (row.clone(), method(&row.method))).collect();
-        self.job.begin(Plan { generation, conditions: conditions.clone(), rows });
+        let album = self.album.clone();
+        self.job.begin(MissingThumbnails { generation, conditions: conditions.clone(), rows, album });
         self.asked = keys;
     }
 
@@ -165,7 +164,7 @@ impl Thumbnails {
         self.job.cancel();
     }
 
-    /// Takes in what is finished. Returns what a panic said.
+    /// Takes in what is finished. Returns a message for the user.
     pub fn poll(&mut self) -> Option<String> {
         self.job.poll()
     }
@@ -174,22 +173,30 @@ impl Thumbnails {
 /// The scene simulated last, for the next row of the same.
 type Last<'a> = Option<(&'a Row, Trial)>;
 
-fn make(plan: &Plan, album: &Album, teller: &Teller<'_, ()>) -> Result<(), Stopped> {
-    let mut last: Last<'_> = None;
-    for (row, method) in &plan.rows {
-        // A method that panics on one row must not do so in every frame.
-        let made = catch_unwind(AssertUnwindSafe(|| one(plan, row, method.as_deref(), teller, &mut last)));
-        if teller.task.is_cancelled() {
-            return Err(Stopped::Cancelled);
+impl Plan for MissingThumbnails {
+    type Row = ();
+    type End = ();
+    const THREAD: &'static str = "thumbnails";
+    const WHAT: &'static str = "Drawing small maps";
+    const ADVICE: &'static str = "Their rows stay.";
+
+    fn run(&self, teller: &Teller<'_, ()>) -> Result<(), Stopped> {
+        let mut last: Last<'_> = None;
+        for (row, method) in &self.rows {
+            // A method that panics on one row must not do so in every frame.
+            let made = catch_unwind(AssertUnwindSafe(|| one(self, row, method.as_deref(), teller, &mut last)));
+            if teller.task.is_cancelled() {
+                return Err(Stopped::Cancelled);
+            }
+            self.album.insert(self.generation, row, made.unwrap_or_else(|panic| Err(panic_message(panic.as_ref()))));
+            teller.part(0.5);
         }
-        album.insert(plan.generation, row, made.unwrap_or_else(|panic| Err(panic_message(panic.as_ref()))));
-        teller.part(0.5);
+        Ok(())
     }
-    Ok(())
 }
 
 fn one<'a>(
-    plan: &Plan,
+    plan: &MissingThumbnails,
     row: &'a Row,
     method: Option<&dyn Reconstructor>,
     teller: &Teller<'_, ()>,

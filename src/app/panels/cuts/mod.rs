@@ -4,6 +4,8 @@ mod markers;
 mod measure;
 mod trace;
 
+use crate::app::content::{Content, Cx, Nothing};
+use crate::app::jobs::Wants;
 use crate::app::state::{Command, Cursor, CutMap, MapKind, PinnedCut, Units, ViewCommand};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Dash, Drawn, Span};
@@ -63,6 +65,31 @@ impl Line {
 struct View {
     span: Option<Span>,
     markers: Markers,
+}
+
+/// Draws [`Panel::Cuts`](crate::app::state::Panel::Cuts).
+pub struct CutsPanel;
+
+impl Content for CutsPanel {
+    type Asks = Nothing;
+    type Memory = Memory;
+    const WANTS: Wants = Wants { every_map: true, ..Wants::OUTPUT };
+    const TELLS_ANSWERS: bool = true;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let state = &*cx.state;
+        // What is to be predicted is not to be read off a cut.
+        let hidden = state.is_predicting();
+        let maps = if hidden { Vec::new() } else { cx.jobs.pipeline.cut_maps() };
+        let input = Input {
+            radar: state.radar(),
+            cursor: state.cut_cursor(),
+            maps: &maps,
+            pins: if hidden { &[] } else { state.pins.all() },
+            units: state.settings.units,
+        };
+        show(ui, input, cx.memory)
+    }
 }
 
 /// Draws the panel: angle cut above (or left), range profile below (or right).

@@ -11,9 +11,12 @@ mod points;
 mod shared;
 mod table;
 
+use crate::app::content::{Content, Cx, Nothing, offered};
+use crate::app::jobs::{Jobs, fates_of};
+use crate::evaluate::worsen::summary;
 pub use input::{Input, Live, Now, Searched};
 
-use crate::app::state::{Command, RowsCommand};
+use crate::app::state::{Command, MethodSlot, RowsCommand, State};
 use crate::radar::counted;
 use charts::View;
 use eframe::egui;
@@ -41,6 +44,59 @@ impl Memory {
     pub fn in_sight(&self) -> &[usize] {
         &self.in_sight
     }
+}
+
+/// Draws [`Panel::Failures`](crate::app::state::Panel::Failures).
+pub struct FailuresPanel;
+
+impl Content for FailuresPanel {
+    type Asks = Nothing;
+    type Memory = Memory;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let (state, jobs) = (&*cx.state, cx.jobs);
+        let (job, own) = (&jobs.failures, jobs.own_scenes(state));
+        let (table, search) = (job.table(), &job.search);
+        let opened = state.failures.opened.as_ref().filter(|opened| opened.generation == table.generation());
+        let input = Input {
+            methods: offered(state, jobs),
+            method: state.method().map(|m| m.name()),
+            table,
+            album: job.album(),
+            before: job.before(),
+            progress: job.progress(),
+            note: job.note(),
+            unfit: job.unfit(),
+            own: own.as_deref(),
+            colours: state.settings.colours,
+            opened: opened.map(|opened| opened.index),
+            on_screen: live(state, jobs),
+            search: Searched {
+                progress: search.progress(),
+                summary: search.summary(),
+                note: search.note(),
+                has_found: search.path().len() > 1,
+            },
+        };
+        let asked = show(ui, &input, cx.memory);
+        cx.state.failures.in_sight = cx.memory.in_sight().to_vec();
+        asked
+    }
+}
+
+/// The row that was opened, while its scene is on screen, and the figures of now.
+fn live<'a>(state: &'a State, jobs: &Jobs) -> Option<Live<'a>> {
+    let opened = state.row_on_screen()?;
+    let pipeline = &jobs.pipeline;
+    let is_new = !pipeline.output_is_outdated() && !state.is_predicting();
+    let fates = fates_of(&jobs.kinds, MethodSlot::First, pipeline).filter(|(_, current)| *current);
+    let now =
+        pipeline.output().zip(pipeline.scores_in(MethodSlot::First)).filter(|_| is_new).map(|(output, scores)| Now {
+            method: output.method,
+            metrics: scores.metrics,
+            fates: fates.map(|(fates, _)| summary(&fates.failures)),
+        });
+    Some(Live { row: &opened.row, now })
 }
 
 /// Draws the panel.

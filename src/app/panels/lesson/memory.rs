@@ -1,10 +1,13 @@
 //! What the panel remembers from frame to frame.
 
 use crate::app::state::LessonRun;
+use crate::app::widgets::textures::Texture;
 
 /// What was typed but not answered yet.
 #[derive(Default)]
 pub struct Memory {
+    /// The picture that a challenge hides.
+    pub(super) hidden: Texture,
     pub(super) number: String,
     pub(super) eta: f32,
     pub(super) learner: String,
@@ -24,7 +27,8 @@ impl Memory {
         let of = Some((run.id.clone(), run.step));
         let begins = self.of != of;
         if begins {
-            *self = Memory { of, eta: 0.5, learner: std::mem::take(&mut self.learner), ..Memory::default() };
+            let (learner, hidden) = (std::mem::take(&mut self.learner), std::mem::take(&mut self.hidden));
+            *self = Memory { of, eta: 0.5, learner, hidden, ..Memory::default() };
         }
         begins
     }

@@ -15,17 +15,19 @@ mod plot;
 mod scale;
 mod swipe;
 mod theory;
+mod told;
 mod window;
 
 pub use answer::Places;
 pub use blank::{Problem, Veil};
 pub use caption::{Caption, caption};
-pub use frame::{Cells, Marked, Marks};
+pub use frame::{Cells, Marks};
 pub use hand::Memory;
 pub use hatch::ToldApart;
 pub use kinds::Kinds;
 pub use swipe::Over;
 pub use theory::Theory;
+pub use told::{MapMemory, MapPanel, caption_of, cells, is_updating, map_input, marks_of, verdict};
 
 use crate::app::state::{
     Command, Cursor, DifferenceView, Directions, ExportCommand, LessonCommand, MapKind, MapView, Panel, Projection,

@@ -6,6 +6,7 @@ mod bodies;
 mod canvas;
 mod disturbances;
 mod hint;
+mod told;
 mod trail;
 
 use crate::app::state::{Command, Cursor, EditCommand, NewObject, SceneView, ViewCommand};
@@ -19,6 +20,7 @@ use canvas::{Canvas, Look};
 use eframe::egui;
 use eframe::egui::{CursorIcon, Id, Painter, PointerButton, Rect, RectAlign, Response, Sense, Ui, Vec2, vec2};
 pub use hint::Hint;
+pub use told::ScenePanel;
 
 /// What the canvas shows beside the scene.
 pub struct Input<'a> {

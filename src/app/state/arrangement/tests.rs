@@ -4,8 +4,7 @@ use super::*;
 fn tools_are_closed_at_first() {
     let arrangement = Arrangement::default();
     for panel in Panel::tiles() {
-        let closed = [Panel::Timing, Panel::Map(MapKind::Doubt), Panel::Map(MapKind::Unexplained)].contains(&panel)
-            || Panel::TOOLS.contains(&panel);
+        let closed = [MapKind::Doubt, MapKind::Unexplained].map(Panel::Map).contains(&panel) || panel.is_tool();
         assert_eq!(arrangement.is_open(panel), !closed, "{panel:?}");
     }
 }

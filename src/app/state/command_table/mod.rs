@@ -20,29 +20,6 @@ use eframe::egui::{Key, KeyboardShortcut};
 use entry::{alt, command, key, named};
 use std::sync::OnceLock;
 
-/// Keys that show or hide a panel.
-const PANEL_KEYS: &[(Panel, Key)] = &[
-    (Panel::Guide, Key::F1),
-    (Panel::Controls, Key::F2),
-    (Panel::Inspector, Key::F3),
-    (Panel::Cuts, Key::F4),
-    (Panel::Lesson, Key::F5),
-    (Panel::Roc, Key::F6),
-    (Panel::Timing, Key::F7),
-    (Panel::Bounds, Key::F8),
-    (Panel::Evaluation, Key::F9),
-    (Panel::Failures, Key::E),
-    (Panel::RunTime, Key::F10),
-    (Panel::Several, Key::S),
-    (Panel::Compare, Key::J),
-    (Panel::Values, Key::I),
-    (Panel::Phasors, Key::A),
-    (Panel::Chirp, Key::U),
-    (Panel::RangeDoppler, Key::Y),
-    (Panel::Radar, Key::W),
-    (Panel::Training, Key::F12),
-];
-
 /// Keys of [`Task::ALL`], with Alt.
 const TASK_KEYS: [Key; 4] = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
 
@@ -64,10 +41,9 @@ fn random(kind: Kind) -> Entry {
 
 /// What shows and hides each panel, pages of help, what lets a panel fill the window, and what copies a map.
 fn of_panels() -> Vec<Entry> {
-    let panel_key = |panel| PANEL_KEYS.iter().find(|(p, _)| *p == panel).and_then(|(_, k)| key(*k));
     let toggle = |panel: Panel| {
         let name = format!("Show or hide: {}", panel.title());
-        named(Command::Window(WindowCommand::TogglePanel(panel)), name, panel.describe(), panel_key(panel))
+        named(Command::Window(WindowCommand::TogglePanel(panel)), name, panel.describe(), panel.key().and_then(key))
     };
     let maximise = |panel: Panel| {
         let name = format!("Maximise: {}", panel.title());

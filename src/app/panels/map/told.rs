@@ -1,91 +1,108 @@
-//! What maps, cuts and the ROC are told.
+//! What a map is told.
 
-use super::{Contents, Reflectors, captions, shown_found};
+use super::frame::{Cells, Marked, Marks};
+use super::{
+    Caption, EARLIER_SCENE, Input, Kinds, Memory, Places, Problem, Shown, Theory, ToldApart, Veil, caption, show,
+};
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, TheoryResult, fates_of};
-use crate::app::panels::{cuts, map, roc};
-use crate::app::state::{Command, MapKind, MethodSlot, State};
+use crate::app::panels::captions;
+use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
+use crate::app::widgets::textures::Texture;
 use crate::engine::ReadyMap;
 use crate::evaluate::{TARGET_ETA, median_offset_metres};
 use crate::reconstruct::untrained_noise;
 use crate::scattering::Echoing;
-use eframe::egui::{TextureFilter, TextureId, TextureOptions, Ui};
+use crate::scene::{Object, Scene};
+use eframe::egui::{Id, TextureFilter, TextureId, TextureOptions, Ui};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
-impl Contents<'_> {
-    pub(super) fn map(&mut self, ui: &mut Ui, kind: MapKind) -> Vec<Command> {
-        let texture = self.texture(ui, kind);
-        let projection = self.state.settings.projection;
-        let mut view = *self.state.map_views.of(projection);
-        let objects = marked(self.state, &mut self.memory.reflectors);
-        let input = map_input(self.state, self.jobs, objects, texture, kind);
-        let asked = map::show(ui, input, &mut view, &mut self.memory.map);
-        *self.state.map_views.of(projection) = view;
-        asked
-    }
+/// What a panel of maps remembers: its pictures on the graphics card, and what the pointer holds.
+#[derive(Default)]
+pub struct MapMemory {
+    textures: BTreeMap<MapKind, Texture>,
+    /// What the pointer holds.
+    pub hand: Memory,
+}
 
+impl MapMemory {
     /// A map's picture on the graphics card, if there is one.
-    pub(super) fn texture(&mut self, ui: &Ui, kind: MapKind) -> Option<TextureId> {
+    pub fn texture(&mut self, ui: &Ui, jobs: &Jobs, kind: MapKind) -> Option<TextureId> {
         let options = TextureOptions { minification: TextureFilter::Linear, ..TextureOptions::NEAREST };
-        let picture = self.jobs.pipeline.result().and_then(|r| r.pictures.get(&kind))?;
-        let texture = self.memory.textures.entry(kind).or_default();
+        let picture = jobs.pipeline.maps.result().and_then(|r| r.pictures.get(&kind))?;
+        let texture = self.textures.entry(kind).or_default();
         Some(texture.of(ui.ctx(), kind.title(), &picture.image, options))
-    }
-
-    pub(super) fn cuts(&mut self, ui: &mut Ui) -> Vec<Command> {
-        let state = &*self.state;
-        // What is to be predicted is not to be read off a cut.
-        let hidden = state.is_predicting();
-        let maps = if hidden { Vec::new() } else { self.jobs.pipeline.cut_maps() };
-        let input = cuts::Input {
-            radar: state.radar(),
-            cursor: state.cut_cursor(),
-            maps: &maps,
-            pins: if hidden { &[] } else { state.pins.all() },
-            units: state.settings.units,
-        };
-        cuts::show(ui, input, &mut self.memory.cuts)
-    }
-
-    pub(super) fn roc(&mut self, ui: &mut Ui) -> Vec<Command> {
-        let pipeline = &self.jobs.pipeline;
-        let shown = pipeline.result().filter(|_| !self.state.is_predicting());
-        let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
-        let method = pipeline.output().map_or("output", |o| o.method);
-        let refusal = pipeline.refusal().map(|r| r.reason.as_str());
-        let eta = pipeline.eta(self.state, MethodSlot::First);
-        let cfar = self.state.settings.cfar;
-        let is_now = shown.is_some_and(|r| r.request.etas[0] == eta && r.request.cfar == cfar);
-        let metrics = pipeline.scores().filter(|_| is_now).map(|scores| scores.metrics);
-        roc::show(ui, roc::Input { points, method, eta, cfar, metrics, refusal })
-    }
-
-    pub(super) fn map_caption(&self, kind: MapKind) -> Option<String> {
-        caption(self.state, self.jobs, kind)
     }
 }
 
-/// The reflectors to be marked, object by object.
-pub(super) fn marked<'a>(state: &State, reflectors: &'a mut Reflectors) -> &'a [map::Marked] {
-    if state.settings.show_reflectors { reflectors.of(state.scene()) } else { &[] }
+/// A map in a panel of its own.
+pub struct MapPanel;
+
+impl Content for MapPanel {
+    type Asks = Nothing;
+    type Memory = MapMemory;
+    const MARKS_AGE: bool = true;
+
+    fn caption(state: &State, jobs: &Jobs, panel: Panel) -> Option<String> {
+        let Panel::Map(kind) = panel else { return None };
+        caption_of(state, jobs, kind)
+    }
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let Cx { panel: Panel::Map(kind), state, jobs, memory, .. } = cx else { return Vec::new() };
+        let texture = memory.texture(ui, jobs, kind);
+        let projection = state.settings.projection;
+        let mut view = *state.map_views.of(projection);
+        let marks = marks_of(ui, state);
+        let asked = show(ui, map_input(state, jobs, &marks, texture, kind), &mut view, &mut memory.hand);
+        *state.map_views.of(projection) = view;
+        asked
+    }
+}
+
+/// The reflectors of a scene.
+#[derive(Clone, Default)]
+struct Spelled {
+    of: Option<Arc<Scene>>,
+    marks: Arc<[Marked]>,
+}
+
+/// The reflectors to be marked, object by object: spelled out once a scene, not once a map and frame.
+pub fn marks_of(ui: &Ui, state: &State) -> Arc<[Marked]> {
+    let scene = state.scene();
+    if !state.settings.show_reflectors {
+        return Arc::default();
+    }
+    ui.data_mut(|data| {
+        let spelled: &mut Spelled = data.get_temp_mut_or_default(Id::unique("marks of the scene"));
+        if !spelled.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, scene)) {
+            let marked =
+                |object: &Object| Marked { reflectors: object.marks(), is_line: matches!(object, Object::Line(_)) };
+            *spelled = Spelled { of: Some(scene.clone()), marks: scene.objects.iter().map(marked).collect() };
+        }
+        spelled.marks.clone()
+    })
 }
 
 /// What a map is told.
-pub(super) fn map_input<'a>(
+pub fn map_input<'a>(
     state: &'a State,
     jobs: &'a Jobs,
-    objects: &'a [map::Marked],
+    objects: &'a [Marked],
     texture: Option<TextureId>,
     kind: MapKind,
-) -> map::Input<'a> {
+) -> Input<'a> {
     let (settings, pipeline) = (&state.settings, &jobs.pipeline);
-    let picture = pipeline.result().and_then(|r| r.pictures.get(&kind));
-    let found = if kind.slot() == Some(MethodSlot::First) { shown_found(state, pipeline) } else { &[] };
+    let picture = pipeline.maps.result().and_then(|r| r.pictures.get(&kind));
+    let found = if kind.slot() == Some(MethodSlot::First) { pipeline.shown_found(state) } else { &[] };
     let of_formulas = jobs
         .theory
         .value()
         .filter(|_| !jobs.theory.is_stale())
         .and_then(Result::ok)
         .filter(|r| r.request.radar == *state.radar());
-    map::Input {
+    Input {
         kind,
         radar: state.editor.radar(),
         scene: state.scene(),
@@ -103,7 +120,7 @@ pub(super) fn map_input<'a>(
         stale: pipeline.is_stale(kind),
         old: old(state, jobs, kind),
         cells: cells(jobs, kind),
-        marks: map::Marks { objects, found },
+        marks: Marks { objects, found },
         kinds: kinds(state, jobs, kind),
         told_apart: kind.slot().filter(|_| kind.is_above()).and_then(|slot| told_apart(state, jobs, slot)),
         cfar: settings.cfar.filter(|_| kind.is_above()),
@@ -112,7 +129,7 @@ pub(super) fn map_input<'a>(
         cursor: state.shown_cursor(),
         note: note(state, kind),
         line: captions::of_map(state, kind),
-        shown: map::Shown {
+        shown: Shown {
             reflectors: settings.show_reflectors,
             found: settings.show_found,
             theory: settings.show_theory,
@@ -126,15 +143,15 @@ pub(super) fn map_input<'a>(
 }
 
 /// What tells hits, misses and false alarms of a method's output apart, where there is a target.
-fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<map::ToldApart<'a>> {
+fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<ToldApart<'a>> {
     let pair = &jobs.pipeline.method(slot).output()?.pair;
     let (output, eta) = jobs.pipeline.judged(state, slot)?;
     let target = match state.settings.cfar {
         None => pair.target.as_deref(),
         Some(_) if pair.target.is_none() => None,
-        Some(_) => jobs.pipeline.result().and_then(|result| result.detected.target.as_ref()),
+        Some(_) => jobs.pipeline.maps.result().and_then(|result| result.detected.target.as_ref()),
     };
-    Some(map::ToldApart { output, target: target?, etas: [eta, TARGET_ETA] })
+    Some(ToldApart { output, target: target?, etas: [eta, TARGET_ETA] })
 }
 
 /// Over which noise the method whose map it is was trained, where the scene has other noise. A recording's noise is not known.
@@ -146,20 +163,20 @@ fn note(state: &State, kind: MapKind) -> Option<String> {
 }
 
 /// What became of every object, where that is to be marked: on the maps of the whole array.
-fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Kinds<'a>> {
+fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Kinds<'a>> {
     let slot = match kind {
         MapKind::Target | MapKind::TargetAbove => MethodSlot::First,
         other => other.slot()?,
     };
     let (fates, current) = fates_of(&jobs.kinds, slot, &jobs.pipeline).filter(|_| state.settings.show_kinds)?;
-    Some(map::Kinds { fates, current })
+    Some(Kinds { fates, current })
 }
 
 /// What stands in a map's title.
-pub(super) fn caption(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
+pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     let pipeline = &jobs.pipeline;
     let slot = kind.slot().unwrap_or(MethodSlot::First);
-    map::caption(map::Caption {
+    caption(Caption {
         kind,
         method: pipeline.method(slot).output().map(|o| o.method),
         updating: is_updating(jobs, kind),
@@ -176,7 +193,7 @@ pub(super) fn caption(state: &State, jobs: &Jobs, kind: MapKind) -> Option<Strin
 }
 
 /// What became of the objects in a method's output, as far as that is known of the one on screen: "5 of 5 found, 0 false, 3 cm off".
-pub(super) fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<String> {
+pub fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<String> {
     let (fates, current) = fates_of(&jobs.kinds, slot, &jobs.pipeline)?;
     if !current || state.is_predicting() || fates.scene.objects.is_empty() {
         return None;
@@ -197,14 +214,14 @@ fn off_text(metres: f64) -> String {
 }
 
 /// Whether a map is of something else than what is on screen.
-pub(super) fn is_updating(jobs: &Jobs, kind: MapKind) -> bool {
+pub fn is_updating(jobs: &Jobs, kind: MapKind) -> bool {
     let outdated = |slot| jobs.pipeline.method(slot).outdated().is_some();
     jobs.pipeline.is_stale(kind) || kind.slot().is_some_and(outdated)
 }
 
 /// The numbers behind a map's picture.
-pub(super) fn cells(jobs: &Jobs, kind: MapKind) -> Option<map::Cells<'_>> {
-    let frame = &jobs.pipeline.result()?.frame;
+pub fn cells(jobs: &Jobs, kind: MapKind) -> Option<Cells<'_>> {
+    let frame = &jobs.pipeline.maps.result()?.frame;
     let pair = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| &o.pair);
     let scale = frame.full.as_ref().map(|m| m.scale);
     match kind {
@@ -212,29 +229,29 @@ pub(super) fn cells(jobs: &Jobs, kind: MapKind) -> Option<map::Cells<'_>> {
         MapKind::Input1 => frame.last.as_ref().map(cells_of),
         MapKind::Target | MapKind::TargetAbove => frame.full.as_ref().map(cells_of),
         MapKind::Output | MapKind::OutputAbove | MapKind::Second | MapKind::SecondAbove => {
-            pair.map(|p| map::Cells { map: &p.output, minus: None, scale })
+            pair.map(|p| Cells { map: &p.output, minus: None, scale })
         }
         MapKind::Difference | MapKind::SecondDifference => {
-            pair.and_then(|p| Some(map::Cells { map: &p.output, minus: Some(p.target.as_deref()?), scale }))
+            pair.and_then(|p| Some(Cells { map: &p.output, minus: Some(p.target.as_deref()?), scale }))
         }
-        MapKind::Doubt => pair.and_then(|p| Some(map::Cells { map: p.doubt.as_deref()?, minus: None, scale: None })),
+        MapKind::Doubt => pair.and_then(|p| Some(Cells { map: p.doubt.as_deref()?, minus: None, scale: None })),
         MapKind::Unexplained => jobs.pipeline.unexplained().map(|u| cells_of(&u.map)),
     }
 }
 
-fn cells_of(map: &ReadyMap) -> map::Cells<'_> {
-    map::Cells { map: &map.lambda, minus: None, scale: Some(map.scale) }
+fn cells_of(map: &ReadyMap) -> Cells<'_> {
+    Cells { map: &map.lambda, minus: None, scale: Some(map.scale) }
 }
 
 /// What the formulas say of the map.
-fn theory(result: &TheoryResult, kind: MapKind) -> Option<map::Theory<'_>> {
+fn theory(result: &TheoryResult, kind: MapKind) -> Option<Theory<'_>> {
     let [first, last, full] = &result.overlays;
     let overlay = match kind {
         MapKind::Input0 => first,
         MapKind::Input1 => last,
         _ => full,
     };
-    Some(map::Theory {
+    Some(Theory {
         name: &result.request.name,
         overlay: overlay.as_ref()?,
         reflector: result.request.reflector,
@@ -246,11 +263,11 @@ fn theory(result: &TheoryResult, kind: MapKind) -> Option<map::Theory<'_>> {
 }
 
 /// The place that was guessed in a lesson's step, and the true one.
-fn places(state: &State, kind: MapKind) -> Option<map::Places> {
+fn places(state: &State, kind: MapKind) -> Option<Places> {
     let (run, scene) = (state.lesson.as_ref()?, state.editor.scene());
     let (guess, truth) = run.places(kind, state.radar(), scene)?;
     let judged = run.judgement.as_ref()?.as_ref().ok()?;
-    Some(map::Places { guess, truth, distance: judged.distance.clone() })
+    Some(Places { guess, truth, distance: judged.distance.clone() })
 }
 
 /// The method that is at work where another one's output of the same scene is shown.
@@ -264,20 +281,20 @@ fn old(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     let of_another_method = kind.slot().and_then(|slot| jobs.pipeline.method(slot).of_another_method());
     match (of_another_method, kind.slot().and_then(|slot| state.method_in(slot))) {
         (Some(shown), Some(wanted)) => format!("{shown}'s result; {} is running", wanted.name()),
-        _ => map::EARLIER_SCENE.to_owned(),
+        _ => EARLIER_SCENE.to_owned(),
     }
 }
 
 /// Why a map is hidden: a lesson asks for a prediction first.
-fn veil(state: &State, kind: MapKind) -> Option<map::Veil> {
+fn veil(state: &State, kind: MapKind) -> Option<Veil> {
     let run = state.lesson.as_ref().filter(|run| run.is_predicting())?;
-    Some(map::Veil { is_clicked: run.clicked_map() == Some(kind) })
+    Some(Veil { is_clicked: run.clicked_map() == Some(kind) })
 }
 
 /// Why a map has no picture, and what would help.
-fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Problem<'a>> {
-    if let Some(reason) = jobs.pipeline.scene_error() {
-        return Some(map::Problem { reason, instead: None });
+fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>> {
+    if let Some(reason) = jobs.pipeline.maps.scene_error() {
+        return Some(Problem { reason, instead: None });
     }
     let is_recorded = state.editor.document().recording().is_some();
     if kind == MapKind::Unexplained {
@@ -286,25 +303,25 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<map::Proble
             None if is_recorded => return None,
             None => "Open a recording: this map shows what reflectors laid over it leave unexplained.",
         };
-        return Some(map::Problem { reason, instead: None });
+        return Some(Problem { reason, instead: None });
     }
     if is_recorded && (matches!(kind, MapKind::Target | MapKind::TargetAbove) || kind.is_difference()) {
         // Where there is a target, there is a picture, and nobody reads this.
         let reason = "The recording has the samples of the two ends alone: nobody knows what all elements would see.";
-        return Some(map::Problem { reason, instead: None });
+        return Some(Problem { reason, instead: None });
     }
     if kind.is_above()
         && let Some(reason) = jobs.pipeline.detector_error()
     {
-        return Some(map::Problem { reason, instead: None });
+        return Some(Problem { reason, instead: None });
     }
     let slot = kind.slot()?;
     if kind == MapKind::Doubt && jobs.pipeline.method(slot).output().is_some_and(|output| output.pair.doubt.is_none()) {
         let reason = "This method does not say how far off it expects its output to be.";
-        return Some(map::Problem { reason, instead: None });
+        return Some(Problem { reason, instead: None });
     }
     let refusal = jobs.pipeline.method(slot).refusal()?;
     let instead = || state.methods.instead_of(refusal.method, state.radar());
     // The second is chosen beside the maps.
-    Some(map::Problem { reason: &refusal.reason, instead: if slot == MethodSlot::First { instead() } else { None } })
+    Some(Problem { reason: &refusal.reason, instead: if slot == MethodSlot::First { instead() } else { None } })
 }

@@ -49,7 +49,7 @@ pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
     let is_told = state.tells_first_drag && state.lesson.is_none() && state.editor.dragged().is_none();
     let places_metres = is_told.then(|| post_and_wall(scene)).flatten()?;
     let is_old = [MapKind::Input0, MapKind::Input1, MapKind::Target].iter().any(|kind| pipeline.is_stale(*kind));
-    let frame = &pipeline.result().filter(|_| !is_old)?.frame;
+    let frame = &pipeline.maps.result().filter(|_| !is_old)?.frame;
     let maps = [frame.first.as_ref()?, frame.last.as_ref()?, frame.full.as_ref()?];
     let text = match places_metres {
         None => OFF_THE_RING,

@@ -1,0 +1,241 @@
+//! What a panel is: what it needs computed, what it remembers, and how it is drawn.
+
+use super::jobs::{Derived, Failure, Jobs, Polled, Query, Wants};
+use super::state::{Command, MapKind, Panel, State};
+use super::widgets::method_menu::Offered;
+use crate::task::Task;
+use eframe::egui::Ui;
+
+/// A panel's own file implements this; [`every_panel`](super) has its line.
+pub trait Content: 'static {
+    /// What it draws that is computed for it alone; [`Nothing`] where there is no such thing.
+    type Asks: Query;
+    /// What it remembers from frame to frame.
+    type Memory: Default + 'static;
+    /// What it reads of maps and methods, which are computed for all panels.
+    const WANTS: Wants = Wants::NOTHING;
+    /// Whether it marks what is old in it; else all of it is dimmed.
+    const MARKS_AGE: bool = false;
+    /// Whether it tells what lessons ask, so that it is hidden until the answer is given.
+    const TELLS_ANSWERS: bool = false;
+
+    /// What is to be computed for it, while it is in sight.
+    fn asks(_state: &State, _jobs: &Jobs) -> Option<Self::Asks> {
+        None
+    }
+
+    /// What stands in the title bar beside its name.
+    fn caption(_state: &State, _jobs: &Jobs, _panel: Panel) -> Option<String> {
+        None
+    }
+
+    /// Draws it; what the user asked for.
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command>;
+}
+
+/// What a panel is drawn of.
+pub struct Cx<'a, C: Content + ?Sized> {
+    /// Which panel it is: maps are one type.
+    pub panel: Panel,
+    /// What the app holds.
+    pub state: &'a mut State,
+    /// What was computed for all panels.
+    pub jobs: &'a Jobs,
+    /// What the panel remembers.
+    pub memory: &'a mut C::Memory,
+    /// What was computed for it alone, or why there is nothing; `None` before the first time.
+    pub value: Option<Result<&'a <C::Asks as Query>::Value, &'a str>>,
+}
+
+/// The query of a panel for which nothing is computed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Nothing {}
+
+impl Query for Nothing {
+    type Value = ();
+    type State = ();
+    const THREAD: &'static str = "nothing";
+    const WHAT: &'static str = "Computing nothing";
+    const ADVICE: &'static str = "";
+
+    fn compute(&self, (): &mut (), _: &Task) -> Result<(), Failure> {
+        match *self {}
+    }
+}
+
+/// A panel's memory, and the value that is computed for it.
+pub struct Held<C: Content> {
+    memory: C::Memory,
+    derived: Derived<C::Asks>,
+}
+
+impl<C: Content> Held<C> {
+    /// Starts the worker of its value, which waits; `wake` is called from its thread.
+    ///
+    /// # Errors
+    /// When the system can't start a thread.
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Box<dyn AnyPanel>> {
+        Ok(Box::new(Held::<C> { memory: C::Memory::default(), derived: Derived::start(wake)? }))
+    }
+
+    /// The value.
+    pub fn derived(&self) -> &Derived<C::Asks> {
+        &self.derived
+    }
+}
+
+/// A panel of any type.
+pub trait AnyPanel: std::any::Any {
+    /// What it reads of maps and methods.
+    fn wants(&self) -> Wants;
+
+    /// Asks for its value, where it is in sight; lets it rest where it isn't.
+    fn ask(&mut self, state: &State, jobs: &Jobs, is_in_sight: bool);
+
+    /// What is computed for it alone.
+    fn polled(&mut self) -> &mut dyn Polled;
+
+    /// Whether that is being computed.
+    fn is_busy(&self) -> bool;
+
+    /// Whether what it draws has been of something else than what is on screen for so long that it must be told: the one place that says so.
+    fn is_stale(&self, jobs: &Jobs, panel: Panel) -> bool;
+
+    /// Whether it draws a value as fresh that is of something else than what is on screen.
+    fn is_fresh_but_old(&self, state: &State, jobs: &Jobs) -> bool;
+
+    /// What stands in the title bar beside its name.
+    fn caption(&self, state: &State, jobs: &Jobs, panel: Panel) -> Option<String>;
+
+    /// Draws it; what the user asked for.
+    fn draw(&mut self, ui: &mut Ui, state: &mut State, jobs: &Jobs, panel: Panel) -> Vec<Command>;
+}
+
+/// How strong what is old is drawn.
+pub const OLD: f32 = 0.55;
+
+impl<C: Content> AnyPanel for Held<C> {
+    fn wants(&self) -> Wants {
+        C::WANTS
+    }
+
+    fn ask(&mut self, state: &State, jobs: &Jobs, is_in_sight: bool) {
+        self.derived.ask(is_in_sight.then(|| C::asks(state, jobs)).flatten());
+    }
+
+    fn polled(&mut self) -> &mut dyn Polled {
+        &mut self.derived
+    }
+
+    fn is_busy(&self) -> bool {
+        self.derived.is_busy()
+    }
+
+    fn is_stale(&self, jobs: &Jobs, panel: Panel) -> bool {
+        let is_old = |kind| jobs.pipeline.is_stale(kind);
+        match panel {
+            Panel::Map(kind) => is_old(kind),
+            _ => {
+                self.derived.is_stale()
+                    || (C::WANTS.output && is_old(MapKind::Output))
+                    || (C::WANTS.second && is_old(MapKind::Second))
+            }
+        }
+    }
+
+    fn is_fresh_but_old(&self, state: &State, jobs: &Jobs) -> bool {
+        let is_drawn_as_fresh = self.derived.value().is_some() && !self.derived.is_stale();
+        is_drawn_as_fresh && !self.derived.is_of(C::asks(state, jobs).as_ref())
+    }
+
+    fn caption(&self, state: &State, jobs: &Jobs, panel: Panel) -> Option<String> {
+        C::caption(state, jobs, panel)
+    }
+
+    fn draw(&mut self, ui: &mut Ui, state: &mut State, jobs: &Jobs, panel: Panel) -> Vec<Command> {
+        if C::TELLS_ANSWERS && state.is_predicting() {
+            ui.centered_and_justified(|ui| ui.weak("Hidden until you have predicted."));
+            return Vec::new();
+        }
+        if !C::MARKS_AGE && self.is_stale(jobs, panel) {
+            ui.multiply_opacity(OLD);
+        }
+        let Held { memory, derived } = self;
+        C::show(ui, Cx { panel, state, jobs, memory, value: derived.value() })
+    }
+}
+
+/// The methods to choose from, with the times that are known of them.
+pub fn offered<'a>(state: &'a State, jobs: &Jobs) -> Offered<'a> {
+    let times = state.method_times.on(state.radar());
+    Offered { all: &state.methods.all, times, timing: jobs.method_times.progress() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::shared::Shared;
+    use crate::app::state::EditCommand;
+    use crate::app::{App, Options};
+    use crate::scene::Scene;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// The scene whose reflectors are counted.
+    #[derive(Clone, PartialEq)]
+    struct Counted(Shared<Scene>);
+
+    impl Query for Counted {
+        type Value = usize;
+        type State = ();
+        const THREAD: &'static str = "count";
+        const WHAT: &'static str = "Counting";
+        const ADVICE: &'static str = "Change the scene to try again.";
+
+        fn compute(&self, (): &mut (), _: &Task) -> Result<usize, Failure> {
+            Ok(self.0.reflector_count())
+        }
+    }
+
+    /// The panel that ARCHITECTURE shows: it counts reflectors, and has a button.
+    struct CountPanel;
+
+    impl Content for CountPanel {
+        type Asks = Counted;
+        type Memory = ();
+
+        fn asks(state: &State, _: &Jobs) -> Option<Counted> {
+            Some(Counted(state.scene().into()))
+        }
+
+        fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+            if let Some(Ok(count)) = cx.value {
+                ui.label(format!("{count} reflectors"));
+            }
+            let is_clicked = ui.button("Select all").clicked();
+            is_clicked.then(|| EditCommand::SelectAll.into()).into_iter().collect()
+        }
+    }
+
+    #[test]
+    fn a_small_panel_draws_its_value_and_answers_with_commands() {
+        let app = Harness::builder().build_eframe(|creation| App::new(creation, Options::default()).unwrap());
+        let count = app.state().editor().scene().reflector_count();
+        let draw = |ui: &mut Ui, (app, held, asked): &mut (Harness<'_, App>, Box<dyn AnyPanel>, Vec<Command>)| {
+            let App { state, jobs, .. } = app.state_mut();
+            held.ask(state, jobs, true);
+            held.polled().poll();
+            asked.extend(held.draw(ui, state, jobs, Panel::Guide));
+        };
+        let held = Held::<CountPanel>::start(|| ()).unwrap();
+        let mut drawn = Harness::new_ui_state(draw, (app, held, Vec::new()));
+        while drawn.state().1.is_busy() {
+            std::thread::yield_now();
+        }
+        drawn.run();
+        drawn.get_by_label(&format!("{count} reflectors"));
+        drawn.get_by_label("Select all").click();
+        drawn.run();
+        assert_eq!(drawn.state().2, [Command::from(EditCommand::SelectAll)]);
+    }
+}
