@@ -4,12 +4,14 @@ use crate::recording::AxisKind::{self, Chirp, Element, Frame, Iq, Receiver, Samp
 use crate::recording::layout::Spectrum;
 use crate::recording::numbers::Numbers;
 use crate::recording::profile::RadarProfile;
-use ndarray::{Array2, ArrayD, Axis};
+use ndarray::{Array2, ArrayD, Axis, s};
 use num_complex::Complex64;
 
 /// Most lines along an axis, and most numbers of each, that it is judged by.
 const LINES: usize = 128;
 const LINE_NUMBERS: usize = 1 << 12;
+/// Least chirps of one transmitter that tell whether they are the same.
+const LEAST_IN_TURN: usize = 4;
 /// Log-odds of a `.cfg` that says a count, and of one that says another.
 const SAID: f64 = 8.0;
 /// Log-odds of an axis along which all is the same that it counts chirps; and of a sharp spectrum that it counts samples, for each decibel.
@@ -120,10 +122,11 @@ fn judged(kinds: &[AxisKind], lengths: &[usize], looks: &[Look], profile: Option
                 ));
                 power.clone_from(&look.power);
             }
-            Chirp => {
+            Frame if *len > 1 => log_odds += OF_SAME / 2.0 * look.same,
+            Chirp if *len > 1 => {
                 log_odds += OF_SAME * look.same;
                 reasons.push(format!(
-                    "Axis {n} counts chirps: {:.0} % of the power is the same along it.",
+                    "Axis {n} counts chirps: {:.0} % of the power is the same along it or along every second or third.",
                     100.0 * look.same
                 ));
             }
@@ -155,6 +158,7 @@ fn length(kind: AxisKind, len: usize) -> f64 {
         (Transmitter, 1..=3) => 0.0,
         (Transmitter, 4..=16) => -1.0,
         (Transmitter, _) => -8.0,
+        (Chirp, 1) => -3.0,
         (Chirp, 0..8) => -1.0,
         (Chirp, _) => usual,
         (Frame | Iq, _) => 0.0,
@@ -194,12 +198,18 @@ fn look(numbers: &Numbers, iq: Option<usize>, axis: usize) -> Look {
     let rows = lines(numbers, iq, axis);
     let len = rows.ncols().max(1) as f64;
     let all: f64 = rows.iter().map(|v| v.norm_sqr()).sum();
-    let same: f64 = rows.outer_iter().map(|row| row.sum().norm_sqr() / len).sum();
+    // Transmitters in turn make every second or third chirp the same.
+    let alike = |step: usize| -> f64 {
+        let count = rows.ncols().div_ceil(step) as f64;
+        let kept = rows.slice(s![.., ..;step as isize]);
+        kept.outer_iter().map(|row| row.sum().norm_sqr() / count).sum::<f64>() * len / count
+    };
+    let same = (1..=3).filter(|step| *step == 1 || rows.ncols() >= LEAST_IN_TURN * step).map(alike).fold(0.0, f64::max);
     let is_real = rows.iter().all(|v| v.im == 0.0);
     let spectrum = Spectrum::of(&rows, 1);
     let spectrum = if is_real { spectrum.of_real() } else { spectrum };
     let flatness_db = if is_real { spectrum.flatness_db() + 10.0 * 2f64.log10() } else { spectrum.flatness_db() };
-    Look { same: if all > 0.0 { same / all } else { 0.0 }, flatness_db, power: spectrum.power }
+    Look { same: if all > 0.0 { (same / all).min(1.0) } else { 0.0 }, flatness_db, power: spectrum.power }
 }
 
 /// Some lines along an axis, `[lines, numbers]`.

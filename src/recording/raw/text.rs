@@ -60,10 +60,7 @@ pub(super) fn of_array(array: &Array<'_>, about: &About<'_>) -> String {
         put(&mut out, "array", &quoted(key));
     }
     let is_pair = in_turn.is_some() || reading.kinds.contains(&AxisKind::Transmitter);
-    let named = |kind: &AxisKind| match kind {
-        AxisKind::Element if is_pair => quoted("receiver"),
-        kind => quoted(&kind.to_string()),
-    };
+    let named = |kind: &AxisKind| quoted(&kind.to_string());
     put(&mut out, "axes", &format!("[{}]", reading.kinds.iter().map(named).collect::<Vec<_>>().join(", ")));
     signs(&mut out, about.profile, true);
     if reading.kinds.contains(&AxisKind::Frame) {
