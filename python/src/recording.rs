@@ -33,10 +33,10 @@ impl Recording {
         load(&path).map(Recording).map_err(errors::recording)
     }
 
-    /// Opens a raw capture as it is, its layout found by evidence, or reads a recording's TOML. `doubts` say what is taken for granted.
+    /// Opens a raw capture or an array as it is, its layout found by evidence, or reads a recording's TOML. `doubts` say what is taken for granted.
     ///
     /// Args:
-    ///     path: The capture (.bin, .dat, .raw), its .cfg, or a recording's TOML.
+    ///     path: The capture (.bin, .dat, .raw), an array (.npy, .npz, .mat), its .cfg, or a recording's TOML.
     ///     config: The .cfg of a capture; the one of the same name beside it, or the only one there, where none is given.
     ///
     /// Raises:
@@ -45,9 +45,9 @@ impl Recording {
     #[staticmethod]
     #[pyo3(signature = (path, config=None))]
     fn open(path: PathBuf, config: Option<PathBuf>) -> PyResult<Self> {
-        if config.is_some() && !recording::raw::is_raw(&path) {
+        if config.is_some() && !recording::raw::is_raw_at(&path) {
             return Err(errors::value(
-                "config is the .cfg of a raw capture; expected one (.bin, .dat or .raw) as path",
+                "config is the .cfg of a raw capture; expected one (.bin, .dat, .raw) or an array as path",
             ));
         }
         let opened = match config {
@@ -186,5 +186,5 @@ pub fn pickled(
         }
         None => Recorded::Ends(arrays::ends(ends, &radar)?),
     };
-    Ok(Recording(recording::Recording { name, notes, radar, samples, missing, range_metres, doubts }))
+    Ok(Recording(recording::Recording { name, notes, radar, samples, missing, range_metres, doubts, origin: None }))
 }

@@ -1,15 +1,17 @@
 //! `apertura import`: what a raw capture holds, and the TOML that says so.
 
+use super::input::load_board;
 use super::{CommandError, print};
 use crate::files::write_bytes;
+use crate::recording::Origin;
 use crate::recording::layout::{Candidate, Certainty, Kind};
-use crate::recording::raw::{self, Imported, boards};
+use crate::recording::raw::{self, Imported};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Say what a raw capture holds, found by evidence, and write the TOML that describes it
+/// Say what a raw capture or an array holds, found by evidence, and write the TOML that describes it
 ///
-/// FILE is a capture of 16-bit samples as radars and capture cards write them, or the .cfg that set the radar up. The .cfg is the one that --config
+/// FILE is a capture of 16-bit samples as radars and capture cards write them, an array (.npy, .npz, .mat), or the .cfg that set the radar up. The .cfg is the one that --config
 /// names, or the one of the same name beside the capture, or the only one there; without any the samples and receivers of a chirp are searched
 /// too. Candidates are judged by the spectrum that each makes, by receivers that see the same, by the count of frames that fill the file, by the
 /// half of the range axis that is empty, and by what the .cfg says.
@@ -17,10 +19,10 @@ use std::path::{Path, PathBuf};
 /// `apertura maps`, `reconstruct` and `range-doppler`, and the window, open FILE as it is: a TOML is needed only to change what it says.
 ///
 /// --json prints one object: data, config, certainty (sure, likely or open), decided_by, log_odds_to_the_next, layouts (the four best: words, parts,
-/// q_first, receivers, header_bytes, packets, samples, receiver_count, loop_chirps, loops, log_odds, evidence), sentences, doubts and toml.
+/// q_first, receivers, header_bytes, packets, samples, receiver_count, loop_chirps, loops, log_odds, evidence; of an array axes and log_odds), sentences, doubts and toml.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Raw capture, or the .cfg beside it
+    /// Raw capture, array, or the .cfg beside it
     file: PathBuf,
 
     /// The .cfg that set the radar up
@@ -45,35 +47,28 @@ const MAX_LISTED_LAYOUTS: usize = 4;
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
-        let board = self.board.as_deref().map(board).transpose()?;
+        let board = self.board.as_deref().map(load_board).transpose()?;
         let imported = raw::import(&self.file, self.config.as_deref(), board).map_err(CommandError::failed)?;
         if let Some(output) = &self.output {
-            check_output(output, &imported.data)?;
+            check_output(output, &imported.origin.data)?;
         }
         // What can't be read in the end is no import.
         let recording = imported.recording().map_err(CommandError::failed)?;
         if self.json {
             print(&described(&imported, &recording.doubts).to_string())?;
         } else {
-            imported.sentences.iter().try_for_each(|sentence| print(sentence))?;
+            imported.origin.sentences.iter().try_for_each(|sentence| print(sentence))?;
             recording
                 .doubts
                 .iter()
-                .filter(|d| !imported.sentences.contains(d))
+                .filter(|d| !imported.origin.sentences.contains(d))
                 .try_for_each(|doubt| print(&format!("note: {doubt}")))?;
         }
         let Some(output) = &self.output else { return Ok(()) };
         let failed = |source| CommandError::File { path: output.clone(), source };
-        write_bytes(output, imported.toml.as_bytes()).map_err(failed)?;
+        write_bytes(output, imported.origin.toml().as_bytes()).map_err(failed)?;
         if self.json { Ok(()) } else { print(&format!("wrote {}", output.display())) }
     }
-}
-
-fn board(name: &str) -> Result<&'static boards::Board, CommandError> {
-    boards::by_name(name).ok_or_else(|| {
-        let names: Vec<&str> = boards::ALL.iter().map(|b| b.name).collect();
-        CommandError::Usage(format!("--board {name}: no such board is known; expected {}", names.join(", ")))
-    })
 }
 
 /// The TOML names the capture by its place beside it.
@@ -95,23 +90,26 @@ fn check_output(output: &Path, data: &Path) -> Result<(), CommandError> {
 }
 
 fn described(imported: &Imported, doubts: &[String]) -> Value {
-    let Imported { data, config, found, toml, sentences, .. } = imported;
-    let certainty = match found.certainty() {
+    let Origin { data, config, offers, sentences, .. } = &imported.origin;
+    let certainty = match imported.certainty() {
         Certainty::Sure => "sure",
         Certainty::Likely => "likely",
         Certainty::Open => "open",
     };
-    let layouts: Vec<Value> = found.candidates.iter().take(MAX_LISTED_LAYOUTS).map(layout).collect();
+    let layouts: Vec<Value> = match &imported.found {
+        Some(found) => found.candidates.iter().take(MAX_LISTED_LAYOUTS).map(layout).collect(),
+        None => offers.iter().map(|o| json!({ "axes": o.described, "log_odds": o.log_odds })).collect(),
+    };
     json!({
         "data": data.display().to_string(),
         "config": config.as_ref().map(|c| c.display().to_string()),
         "certainty": certainty,
-        "decided_by": kind(found.decided_by()),
-        "log_odds_to_the_next": found.margin(),
+        "decided_by": imported.found.as_ref().map_or("axes", |found| kind(found.decided_by())),
+        "log_odds_to_the_next": imported.margin(),
         "layouts": layouts,
         "sentences": sentences,
         "doubts": doubts,
-        "toml": toml,
+        "toml": imported.origin.toml(),
     })
 }
 

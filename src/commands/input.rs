@@ -1,6 +1,7 @@
 //! What a subcommand looks at: a scene that is simulated, or a recording.
 
 use super::CommandError;
+use crate::recording::raw::boards::{self, Board};
 use crate::recording::{self, Recording};
 use crate::scene::file::{self, SceneFile};
 use crate::share::{SharedScene, is_shared};
@@ -46,15 +47,28 @@ pub struct ConfigArg {
 pub fn load_recording(path: &Path, config: Option<&Path>) -> Result<Recording, CommandError> {
     let recording = match config {
         None => recording::file::load(path),
-        Some(_) if !recording::raw::is_raw(path) => {
-            let message = "--config is that of a raw capture; expected one as input";
+        Some(_) if !recording::raw::is_raw_at(path) => {
+            let message = "--config is that of a raw capture or an array; expected one as input";
             return Err(CommandError::Usage(format!("{}: {message}", path.display())));
         }
         Some(config) => recording::raw::open(path, Some(config)),
     }
     .map_err(CommandError::failed)?;
-    recording.doubts.iter().for_each(|doubt| eprintln!("note: {}: {doubt}", path.display()));
+    print_doubts(path, &recording.doubts);
     Ok(recording)
+}
+
+/// Says on standard error what is doubtful of the file `path`.
+pub fn print_doubts(path: &Path, doubts: &[String]) {
+    doubts.iter().for_each(|doubt| eprintln!("note: {}: {doubt}", path.display()));
+}
+
+/// The board of this name.
+pub fn load_board(name: &str) -> Result<&'static Board, CommandError> {
+    boards::by_name(name).ok_or_else(|| {
+        let names: Vec<&str> = boards::ALL.iter().map(|b| b.name).collect();
+        CommandError::Usage(format!("--board {name}: no such board is known; expected {}", names.join(", ")))
+    })
 }
 
 /// The text itself, where it stands in place of a file's name.

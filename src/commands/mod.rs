@@ -19,6 +19,7 @@ mod input;
 mod layouts;
 #[cfg(feature = "app")]
 mod lesson;
+mod listen;
 mod maps;
 mod methods;
 mod network_args;
@@ -79,6 +80,7 @@ enum Command {
     Layouts(layouts::Args),
     #[cfg(feature = "app")]
     Lesson(lesson::Args),
+    Listen(listen::Args),
     Maps(maps::Args),
     Methods(methods::Args),
     RangeDoppler(range_doppler::Args),
@@ -107,6 +109,7 @@ impl Command {
             Command::Layouts(args) => args.run(),
             #[cfg(feature = "app")]
             Command::Lesson(args) => args.run(),
+            Command::Listen(args) => args.run(),
             Command::Maps(args) => args.run(),
             Command::Methods(args) => args.run(),
             Command::RangeDoppler(args) => args.run(),

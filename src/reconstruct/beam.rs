@@ -24,7 +24,7 @@ impl<'a> Beam<'a> {
 
     /// The cosine within `within` of `about` from which most is heard at this range, all elements added in phase.
     pub fn strongest_near(&self, range_metres: f64, about: f64, within: f64) -> f64 {
-        let bin = self.radar.bin_of_range(range_metres).round().rem_euclid(self.radar.samples as f64) as usize;
+        let bin = self.bin(range_metres);
         let cosine = |step: i32| (about + within * f64::from(step) / f64::from(STEPS)).clamp(-1.0, 1.0);
         let power = |step: i32| self.power(bin, range_metres, cosine(step));
         // The nearest of equal ones: silence keeps its place.
@@ -33,6 +33,15 @@ impl<'a> Beam<'a> {
             if found > best.1 { (step, found) } else { best }
         });
         cosine(best.0)
+    }
+
+    /// The power that is heard from a place.
+    pub fn power_at(&self, range_metres: f64, cos_theta: f64) -> f64 {
+        self.power(self.bin(range_metres), range_metres, cos_theta)
+    }
+
+    fn bin(&self, range_metres: f64) -> usize {
+        self.radar.bin_of_range(range_metres).round().rem_euclid(self.radar.samples as f64) as usize
     }
 
     fn power(&self, bin: usize, range_metres: f64, cosine: f64) -> f64 {

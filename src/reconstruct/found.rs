@@ -37,7 +37,7 @@ pub fn reconstruct_and_find(
 }
 
 /// What `method` found where `answer` is its answer to `request`, the strongest first: its own reflectors, or the peaks of its map
-/// within 20 dB of the strongest. A map that `request` stretches by its smallest cell knows no decibels: its peaks come from a second
+/// within 20 dB of the strongest; nothing on few elements by a method whose places are those of cells. A map that `request` stretches by its smallest cell knows no decibels: its peaks come from a second
 /// one.
 /// # Errors
 /// As [`Reconstructor::reconstruct`].
@@ -49,7 +49,9 @@ pub fn find(
     answer: &Reconstruction,
 ) -> Result<Vec<Detection>, ReconstructError> {
     let normalisation = Normalisation::DynamicRange(MAP_RANGE);
-    if !answer.reflectors.is_empty() {
+    if radar.elements <= FEW_ELEMENTS && !method.lists_few_elements() {
+        Ok(Vec::new())
+    } else if !answer.reflectors.is_empty() {
         Ok(answer.detections(radar))
     } else if request.normalisation == normalisation {
         Ok(found_in_map(radar, ends, answer))
@@ -73,22 +75,27 @@ fn found_in_map(radar: &Radar, ends: &TwoEnds, answer: &Reconstruction) -> Vec<D
     if radar.elements > FEW_ELEMENTS { found.collect() } else { between_columns(radar, ends, found) }
 }
 
-/// The peaks with the directions from which both ends together hear most near them, peaks that are then one once.
+/// The peaks with the directions from which both ends together hear most near them, peaks that are then one once; each as strong as both ends
+/// hear it, since a pseudo-spectrum's heights tell no strength.
 fn between_columns(radar: &Radar, ends: &TwoEnds, peaks: impl Iterator<Item = Detection>) -> Vec<Detection> {
     let beam = Beam::new(radar, ends);
     let column = (radar.cos_of_column(1.0) - radar.cos_of_column(0.0)).abs();
-    let mut found: Vec<Detection> = Vec::new();
+    let mut found: Vec<(f64, Detection)> = Vec::new();
     for peak in peaks {
         let cos_theta = beam.strongest_near(peak.range_metres, peak.cos_theta, 1.5 * column);
-        let is_new = |f: &Detection| {
+        let is_new = |(_, f): &(f64, Detection)| {
             let bins = (f.range_metres - peak.range_metres).abs() / radar.range_resolution_metres();
             bins > 1.5 || (f.cos_theta - cos_theta).abs() > ONE_PEAK * column
         };
         if found.iter().all(is_new) {
-            found.push(Detection { cos_theta, ..peak });
+            found.push((beam.power_at(peak.range_metres, cos_theta), Detection { cos_theta, ..peak }));
         }
     }
-    found
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let strongest = found.first().map_or(0.0, |(power, _)| *power).max(f64::MIN_POSITIVE);
+    let level = |power: f64| Decibels(10.0 * (power / strongest).max(f64::MIN_POSITIVE).log10());
+    let all = found.into_iter().map(|(power, f)| Detection { relative_power: level(power), ..f });
+    all.filter(|f| f.relative_power.0 > -SPAN.0).collect()
 }
 
 #[cfg(test)]

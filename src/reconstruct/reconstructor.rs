@@ -67,6 +67,11 @@ pub trait Reconstructor: Send + Sync {
         false
     }
 
+    /// Whether what it finds on an array of few elements, whose columns are wide, stands where the echoes are.
+    fn lists_few_elements(&self) -> bool {
+        true
+    }
+
     /// How many elements each end must have.
     fn fewest_end_elements(&self) -> usize {
         3

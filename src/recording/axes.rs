@@ -2,10 +2,13 @@
 
 use super::analytic::analytic;
 use super::numbers::Numbers;
-use ndarray::{Array2, ArrayD, Axis, IxDyn};
+use ndarray::{Array2, Array4, ArrayD, Axis, IxDyn};
 use num_complex::Complex64;
 use serde::Deserialize;
 use std::fmt;
+
+/// Most numbers whose chirps are joined.
+const MOST_JOINED: usize = 1 << 23;
 
 /// What an axis of an array counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -43,7 +46,7 @@ impl fmt::Display for AxisKind {
 
 /// Which of several chirps are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(untagged, expecting = "expected a chirp's number from 0, or \"mean\"")]
+#[serde(untagged, expecting = "expected a chirp's number from 0, \"mean\" or \"strongest\"")]
 pub enum Chirp {
     /// One, from 0.
     Number(usize),
@@ -57,6 +60,8 @@ pub enum Chirp {
 pub enum Join {
     /// Their complex mean: what stands still stays, what moves fades.
     Mean,
+    /// Of each range bin the strongest Doppler cell, transmitters in turn compensated for its velocity.
+    Strongest,
 }
 
 /// Why an array is not what its axes say.
@@ -93,7 +98,7 @@ pub enum AxesError {
     #[error("axis \"iq\" has length {0}; expected 2, real and imaginary part")]
     Iq(usize),
     /// Which chirp was not said.
-    #[error("the array has {0} chirps; expected recording.chirp = 0 to {last} or \"mean\"", last = .0.saturating_sub(1))]
+    #[error("the array has {0} chirps; expected recording.chirp = 0 to {last}, \"mean\" or \"strongest\"", last = .0.saturating_sub(1))]
     ChirpUnsaid(usize),
     /// There is no such chirp.
     #[error("recording.chirp is {asked}; expected 0 to {last}, the array has {chirps} chirps", last = chirps.saturating_sub(1))]
@@ -130,6 +135,61 @@ pub(super) fn one_frame(
         Numbers::Real(values) => Numbers::Real(values.index_axis_move(Axis(place), asked)),
         Numbers::Complex(values) => Numbers::Complex(values.index_axis_move(Axis(place), asked)),
     })
+}
+
+/// Splits the axis of chirps into loops and `transmitters` that send in turn; elements are their receivers then.
+///
+/// # Errors
+/// [`AxesError`] where the axes are others, or the chirps don't divide.
+pub(super) fn in_turn(
+    numbers: Numbers,
+    kinds: &mut Vec<AxisKind>,
+    transmitters: Option<usize>,
+) -> Result<Numbers, AxesError> {
+    let Some(transmitters) = transmitters else { return Ok(numbers) };
+    let place = kinds.iter().position(|k| *k == AxisKind::Chirp);
+    let shape = numbers.shape().to_vec();
+    let (Some(place), false) = (place, kinds.contains(&AxisKind::Transmitter) || kinds.len() != shape.len()) else {
+        let expected = "expected an axis \"chirp\" and none \"transmitter\" beside recording.transmitters_in_turn";
+        return Err(AxesError::Kinds(expected.to_owned()));
+    };
+    if transmitters == 0 || !shape[place].is_multiple_of(transmitters) {
+        let message = format!("{} chirps are no multiple of {transmitters} transmitters in turn", shape[place]);
+        return Err(AxesError::Kinds(message));
+    }
+    let split = [&shape[..place], &[shape[place] / transmitters, transmitters], &shape[place + 1..]].concat();
+    kinds.insert(place + 1, AxisKind::Transmitter);
+    kinds.iter_mut().filter(|kind| **kind == AxisKind::Element).for_each(|kind| *kind = AxisKind::Receiver);
+    let failed = |e: ndarray::ShapeError| AxesError::Kinds(e.to_string());
+    Ok(match numbers {
+        Numbers::Real(values) => Numbers::Real(values.to_shape(split).map_err(failed)?.into_owned()),
+        Numbers::Complex(values) => Numbers::Complex(values.to_shape(split).map_err(failed)?.into_owned()),
+    })
+}
+
+/// Sorts `numbers` into `[loops, transmitters, receivers, samples]`, where there are chirps to join; at most so many numbers that they are
+/// held several times.
+///
+/// # Errors
+/// [`AxesError`] where `kinds` are not the array's axes.
+pub(super) fn loops(numbers: Numbers, kinds: &[AxisKind]) -> Result<Array4<Complex64>, AxesError> {
+    let mut kinds = kinds.to_vec();
+    check(&kinds, numbers.shape())?;
+    let values = complex(numbers, &mut kinds)?;
+    let place = |kind| kinds.iter().position(|k| *k == kind);
+    let len = |kind| place(kind).map_or(1, |p| values.shape()[p]);
+    let order: Vec<usize> =
+        [AxisKind::Chirp, AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Element, AxisKind::Sample]
+            .into_iter()
+            .filter_map(place)
+            .collect();
+    let receivers = len(AxisKind::Receiver) * len(AxisKind::Element);
+    let of_a_loop = len(AxisKind::Transmitter) * receivers * len(AxisKind::Sample);
+    let held = (MOST_JOINED / of_a_loop.max(1)).clamp(1, len(AxisKind::Chirp).max(1));
+    let shape = (len(AxisKind::Chirp).min(held), len(AxisKind::Transmitter), receivers, len(AxisKind::Sample));
+    let sorted = values.view().permuted_axes(IxDyn(&order));
+    let numbers = sorted.iter().copied().take(shape.0 * of_a_loop).collect();
+    Array4::from_shape_vec(shape, numbers).map_err(|e| AxesError::Kinds(e.to_string()))
 }
 
 /// Sorts `numbers` into `[elements, samples]`. Real samples become the analytic signal of as many samples: the far half of the range axis is
@@ -219,7 +279,8 @@ fn one_chirp(
     kinds.remove(place);
     let chirps = values.shape()[place];
     let number = match chirp {
-        Some(Chirp::Joined(Join::Mean)) => {
+        // Where no loops are joined, the strongest cell is that of what stands still.
+        Some(Chirp::Joined(Join::Mean | Join::Strongest)) => {
             return values.mean_axis(Axis(place)).ok_or(AxesError::NoChirp { asked: 0, chirps });
         }
         Some(Chirp::Number(number)) => number,
@@ -233,96 +294,4 @@ fn one_chirp(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use AxisKind::{Element, Iq, Receiver, Sample, Transmitter};
-    use ndarray::array;
-
-    /// `shape` numbered from 0 in C order, as complex numbers.
-    fn numbered(shape: &[usize]) -> Numbers {
-        let count: usize = shape.iter().product();
-        let values = (0..count).map(|v| Complex64::from(v as f64)).collect();
-        Numbers::Complex(ArrayD::from_shape_vec(IxDyn(shape), values).unwrap())
-    }
-
-    fn reals(values: Array2<Complex64>) -> Array2<f64> {
-        values.mapv(|v| v.re)
-    }
-
-    #[test]
-    fn axes_are_put_in_order() {
-        let straight = arrange(numbered(&[2, 3]), &[Element, Sample], None).unwrap();
-        assert_eq!(reals(straight), array![[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]);
-        let turned = arrange(numbered(&[2, 3]), &[Sample, Element], None).unwrap();
-        assert_eq!(reals(turned), array![[0.0, 3.0], [1.0, 4.0], [2.0, 5.0]]);
-        let snapshot = arrange(numbered(&[3]), &[Element], None).unwrap();
-        assert_eq!(reals(snapshot), array![[0.0], [1.0], [2.0]]);
-    }
-
-    #[test]
-    fn pairs_count_through_the_receivers_first() {
-        let found = arrange(numbered(&[2, 1, 3]), &[Receiver, Sample, Transmitter], None).unwrap();
-        assert_eq!(reals(found), array![[0.0], [3.0], [1.0], [4.0], [2.0], [5.0]]);
-    }
-
-    #[test]
-    fn chirps_are_picked_or_joined_but_never_guessed() {
-        let of = |chirp| arrange(numbered(&[2, 2, 1]), &[AxisKind::Chirp, Element, Sample], chirp);
-        assert_eq!(reals(of(Some(Chirp::Number(1))).unwrap()), array![[2.0], [3.0]]);
-        assert_eq!(reals(of(Some(Chirp::Joined(Join::Mean))).unwrap()), array![[1.0], [2.0]]);
-        assert!(of(None).unwrap_err().to_string().contains("recording.chirp = 0 to 1 or \"mean\""));
-        assert!(of(Some(Chirp::Number(2))).unwrap_err().to_string().contains("expected 0 to 1"));
-        let needless = arrange(numbered(&[2, 1]), &[Element, Sample], Some(Chirp::Number(0)));
-        assert!(needless.unwrap_err().to_string().contains("no axis is \"chirp\""));
-    }
-
-    #[test]
-    fn iq_may_have_its_own_axis() {
-        let parts = array![[[1.0, 2.0]], [[3.0, 4.0]]].into_dyn();
-        let found = arrange(Numbers::Real(parts.clone()), &[Element, Sample, Iq], None).unwrap();
-        assert_eq!(found, array![[Complex64::new(1.0, 2.0)], [Complex64::new(3.0, 4.0)]]);
-        let without = arrange(Numbers::Real(array![1.0, 2.0].into_dyn()), &[Element], None).unwrap_err();
-        assert!(without.to_string().contains("axis \"iq\""), "{without}");
-        assert_eq!(arrange(Numbers::Real(parts), &[Element, Iq, Sample], None), Err(AxesError::Iq(1)));
-        assert_eq!(arrange(numbered(&[1, 2]), &[Element, Iq], None), Err(AxesError::Complex));
-    }
-
-    #[test]
-    fn one_frame_is_picked() {
-        let of = |frame| {
-            let mut kinds = vec![AxisKind::Frame, Element, Sample];
-            let numbers = one_frame(numbered(&[2, 2, 1]), &mut kinds, frame)?;
-            arrange(numbers, &kinds, None).map(reals)
-        };
-        assert_eq!((of(None).unwrap(), of(Some(1)).unwrap()), (array![[0.0], [1.0]], array![[2.0], [3.0]]));
-        assert!(of(Some(2)).unwrap_err().to_string().contains("recording.frame is 2; expected 0 to 1"));
-        let needless = one_frame(numbered(&[2, 1]), &mut vec![Element, Sample], Some(0));
-        assert!(needless.unwrap_err().to_string().contains("no axis is \"frame\""));
-    }
-
-    #[test]
-    fn real_samples_become_the_positive_half_of_their_spectrum() {
-        let turn = |n: usize| std::f64::consts::TAU * 3.0 * n as f64 / 16.0;
-        let waves = Array2::from_shape_fn((1, 16), |(_, n)| turn(n).cos());
-        let found = arrange(Numbers::Real(waves.into_dyn()), &[Element, Sample], None).unwrap();
-        for (n, v) in found.iter().enumerate() {
-            assert!((v - Complex64::from_polar(1.0, turn(n))).norm() < 1e-12, "{n}: {v}");
-        }
-    }
-
-    #[test]
-    fn wrong_axes_are_told() {
-        for (kinds, part) in [
-            (vec![Element], "shape [2, 3]"),
-            (vec![Element, Element], "\"element\" stands twice"),
-            (vec![Sample, Iq], "expected either"),
-            (vec![Transmitter, Sample], "both \"transmitter\" and \"receiver\""),
-            (vec![Transmitter, Element], "expected either"),
-        ] {
-            let message = arrange(numbered(&[2, 3]), &kinds, None).unwrap_err().to_string();
-            assert!(message.contains(part), "{message}");
-        }
-        assert_eq!(arrange(numbered(&[0, 3]), &[Element, Sample], None).unwrap().dim(), (0, 3));
-        assert_eq!(arrange(numbered(&[3, 0]), &[Element, Sample], None).unwrap().dim(), (0, 0));
-    }
-}
+mod tests;

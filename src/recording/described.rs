@@ -4,12 +4,13 @@ use super::doubts::doubts;
 use super::profile::lines::text_of;
 use super::said_radar::said_radar;
 use super::said_recording::Table;
-use super::samples::{Open, read_samples};
+use super::samples::{Open, read_loops, read_samples};
 use super::signs::{FORMAT, Signs, oldest};
 use super::{Fault, RadarProfile, Recording, RecordingError};
 use crate::platform::fs::File;
 use crate::radar::Radar;
 use crate::scene::file::SceneTextError;
+use crate::signal::ChirpSamples;
 use serde::Deserialize;
 use std::io::{self, Read};
 use std::path::Path;
@@ -123,7 +124,7 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
     let Parts { format, name, notes, table, radar, profile, signs } = parts(text, path, open)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let data = folder.join(&table.file);
-    // Keys stand in the TOML, whatever file they are about.
+    // Keys stand in the TOML, those about other files too.
     let place = |fault: Fault| match fault {
         Fault::Key { .. } | Fault::Calibration(_) => fault.of(path),
         fault => fault.of(&data),
@@ -135,5 +136,20 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
     missing.dedup();
     let mut doubts = doubts(&radar, &samples, format > oldest());
     doubts.extend(found);
-    Ok(Recording { name, notes, radar, samples, missing, range_metres, doubts })
+    Ok(Recording { name, notes, radar, samples, missing, range_metres, doubts, origin: None })
+}
+
+/// Every loop of the frame that a text describes: the radar with their number and interval, and the samples, `[loops, elements, samples]`.
+pub(super) fn loops_of(text: &str, path: &Path, open: Open<'_>) -> Result<(Radar, ChirpSamples), RecordingError> {
+    let Parts { table, mut radar, profile, signs, .. } = parts(text, path, open)?;
+    let Some(profile) = profile else {
+        let expected = "it: without a .cfg nothing says the interval of chirps";
+        return Err(Fault::key("recording.capture.config", "is missing", expected).of(path));
+    };
+    let samples = read_loops(&table, open, Some(&profile), signs).map_err(|fault| fault.of(path))?;
+    radar.chirps = samples.dim().0;
+    radar.chirp_interval_seconds =
+        (profile.chirp_interval_seconds * profile.chirp_transmitters.len() as f64).max(radar.chirp_seconds);
+    radar.validate().map_err(|e| Fault::from(e).of(path))?;
+    Ok((radar, ChirpSamples { samples }))
 }

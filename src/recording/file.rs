@@ -42,9 +42,8 @@
 //! loop = 0
 //! ```
 
-use super::described::{Parts, from_parts, open_file, parts, read_text};
+use super::described::{from_parts, loops_of, open_file, read_text};
 use super::raw;
-use super::samples::{Open, read_loops};
 use super::{Fault, Recording, RecordingError};
 use crate::radar::Radar;
 use crate::signal::ChirpSamples;
@@ -56,9 +55,9 @@ pub fn is_recording(text: &str) -> bool {
     toml::de::DeTable::parse(text).is_ok_and(|table| table.get_ref().contains_key("recording"))
 }
 
-/// Whether the file `path` is a recording: the TOML of one, or by its ending a raw capture or the `.cfg` of one.
+/// Whether the file `path` is a recording: the TOML of one, a raw capture, an array, or the `.cfg` of one.
 pub fn is_recording_at(path: &Path) -> bool {
-    raw::is_raw(path) || is_toml_at(path)
+    raw::is_raw_at(path) || is_toml_at(path)
 }
 
 /// Whether the file `path` is the TOML of a recording; not where it can't be read or ends otherwise.
@@ -80,7 +79,7 @@ pub fn data_path(path: &Path) -> Option<PathBuf> {
 /// # Errors
 /// [`RecordingError`] names the file, the key or the array, and what was expected of it.
 pub fn load(path: &Path) -> Result<Recording, RecordingError> {
-    if raw::is_raw(path) {
+    if raw::is_raw_at(path) {
         return raw::open(path, None);
     }
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -94,10 +93,10 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
 /// # Errors
 /// As [`load`]; [`Fault::Key`] where the recording is no capture with a `.cfg`.
 pub fn load_loops(path: &Path, config: Option<&Path>) -> Result<(Radar, ChirpSamples), RecordingError> {
-    let (text, path) = match raw::is_raw(path) {
+    let (text, path) = match raw::is_raw_at(path) {
         true => {
-            let imported = raw::import(path, config, None)?;
-            (imported.toml, imported.data)
+            let origin = raw::import(path, config, None)?.origin;
+            (origin.toml(), origin.data)
         }
         false => {
             let text = read_text(open_file(path).map_err(|e| Fault::from(e).of(path))?).map_err(|e| e.of(path))?;
@@ -105,18 +104,7 @@ pub fn load_loops(path: &Path, config: Option<&Path>) -> Result<(Radar, ChirpSam
         }
     };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let open: Open<'_> = &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)));
-    let Parts { table, mut radar, profile, signs, .. } = parts(&text, &path, open)?;
-    let Some(profile) = profile else {
-        let expected = "it: without a .cfg nothing says the interval of chirps";
-        return Err(Fault::key("recording.capture.config", "is missing", expected).of(&path));
-    };
-    let samples = read_loops(&table, open, Some(&profile), signs).map_err(|fault| fault.of(&path))?;
-    radar.chirps = samples.dim().0;
-    radar.chirp_interval_seconds =
-        (profile.chirp_interval_seconds * profile.chirp_transmitters.len() as f64).max(radar.chirp_seconds);
-    radar.validate().map_err(|e| Fault::from(e).of(&path))?;
-    Ok((radar, ChirpSamples { samples }))
+    loops_of(&text, &path, &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))))
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
-//! MATLAB's `.mat` files, versions 5 and 7 ("MAT-File Format", The MathWorks): numeric arrays, real or complex, compressed or not.
+//! MATLAB's `.mat` files, versions 5 and 7 ("MAT-File Format", The MathWorks): numeric arrays, real or complex, compressed or not,
+//! by themselves, in structs or in cells.
 //!
 //! The crates that read them know no complex numbers (`mat5`) or inflate without a bound (`matfile`), so this reader is the
 //! program's own. It reads forward only, and asks for no memory before the size was compared with what the file says elsewhere.
 
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
 use flate2::read::ZlibDecoder;
-use ndarray::{ArrayD, IxDyn, ShapeBuilder, ShapeError};
+use ndarray::{ArrayD, Axis, IxDyn, ShapeBuilder, ShapeError, stack};
 use num_complex::Complex64;
 use std::io::{self, Read};
 
@@ -54,6 +55,9 @@ pub enum MatError {
 
 const HEADER_BYTES: usize = 128;
 const MATRIX: u32 = 14;
+/// Classes of arrays that hold others.
+const CELL: u32 = 1;
+const STRUCT: u32 = 2;
 const COMPRESSED: u32 = 15;
 
 /// Longest name that is read, bytes; MATLAB's own have up to 63.
@@ -62,40 +66,68 @@ const MAX_NAME_BYTES: u64 = 256;
 /// Most dimensions of an array.
 const MAX_DIMENSIONS: u64 = 16;
 
-/// Reads the array called `key`.
+/// Longest text of a struct's field names, bytes; most cells that are frames of one array; and how deep structs are looked into.
+const MAX_FIELD_BYTES: u64 = 1 << 16;
+const MAX_CELLS: usize = 1 << 12;
+const MAX_DEPTH: usize = 4;
+
+/// Reads the array called `key`: a variable, a member of a struct (`radar.adcData`), or the cells of one, all of one shape, one after
+/// another along a first axis.
 ///
 /// # Errors
 /// [`MatError`] names the array, and what was expected of it.
-pub(super) fn read_mat(mut file: impl Read, key: &str) -> Result<Numbers, MatError> {
+pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, MatError> {
+    let mut search = Search { want: Some(key), ..Search::default() };
+    look_through(file, &mut search)?;
+    let found = if search.names.is_empty() { "nothing".to_owned() } else { search.names.join(", ") };
+    search.wanted.ok_or_else(|| MatError::Missing { key: key.to_owned(), found })
+}
+
+/// Names and shapes of all arrays of numbers, those in structs and cells too.
+///
+/// # Errors
+/// [`MatError`].
+pub(super) fn shapes(file: impl Read) -> Result<Vec<(String, Vec<usize>)>, MatError> {
+    let mut search = Search::default();
+    look_through(file, &mut search)?;
+    Ok(search.shapes)
+}
+
+/// What is looked for, and what was met on the way.
+#[derive(Default)]
+struct Search<'a> {
+    want: Option<&'a str>,
+    wanted: Option<Numbers>,
+    names: Vec<String>,
+    shapes: Vec<(String, Vec<usize>)>,
+}
+
+fn look_through(mut file: impl Read, search: &mut Search<'_>) -> Result<(), MatError> {
     let big_endian = header(&mut file)?;
-    let mut found = Vec::new();
     loop {
         let mut reader = Elements { file: &mut file, big_endian };
-        let Some(tag) = reader.tag().map_err(|e| damaged("the file", e))? else { break };
+        let Some(tag) = reader.tag().map_err(|e| damaged("the file", e))? else { return Ok(()) };
         let mut part = (&mut file).take(tag.bytes);
-        let variable = match tag.kind {
-            MATRIX => variable(&mut part, big_endian, key)?,
+        match tag.kind {
+            MATRIX => matrix(&mut part, big_endian, None, 0, search)?,
             COMPRESSED => {
                 let mut inflated = ZlibDecoder::new(&mut part);
                 let mut reader = Elements { file: &mut inflated, big_endian };
                 let inner = reader.tag().map_err(|e| damaged("a compressed variable", e))?;
                 match inner {
                     Some(inner) if inner.kind == MATRIX => {
-                        variable(&mut inflated.by_ref().take(inner.bytes), big_endian, key)?
+                        matrix(&mut inflated.by_ref().take(inner.bytes), big_endian, None, 0, search)?;
                     }
                     _ => return Err(damaged("a compressed variable", "it holds no array")),
                 }
             }
             _ => return Err(damaged("the file", format!("it holds an element of kind {}, no variable", tag.kind))),
-        };
-        match variable {
-            Variable::Wanted(numbers) => return Ok(numbers),
-            Variable::Other(name) => found.push(name),
+        }
+        if search.wanted.is_some() {
+            return Ok(());
         }
         io::copy(&mut part, &mut io::sink())?;
     }
-    let found = if found.is_empty() { "nothing".to_owned() } else { found.join(", ") };
-    Err(MatError::Missing { key: key.to_owned(), found })
 }
 
 fn damaged(what: &str, reason: impl ToString) -> MatError {
@@ -107,7 +139,9 @@ fn header(file: &mut impl Read) -> Result<bool, MatError> {
     let mut header = [0; HEADER_BYTES];
     file.read_exact(&mut header).map_err(|_| MatError::Header("it is shorter than the header"))?;
     if header.starts_with(b"MATLAB 7.3") || header.starts_with(b"\x89HDF") {
-        return Err(MatError::Header("it is version 7.3, an HDF5 file; save it with the option -v7"));
+        return Err(MatError::Header(
+            "it is version 7.3, an HDF5 file; save it with the option -v7, or as an .npz by numpy.savez",
+        ));
     }
     match &header[124..] {
         [0, 1, b'I', b'M'] => Ok(false),
@@ -118,42 +152,130 @@ fn header(file: &mut impl Read) -> Result<bool, MatError> {
     }
 }
 
-/// What stood under a name.
-enum Variable {
-    Wanted(Numbers),
-    Other(String),
-}
-
-/// Reads flags, dimensions and name of a variable, and its numbers where it is the one called `key`.
-fn variable(file: &mut dyn Read, big_endian: bool, key: &str) -> Result<Variable, MatError> {
+/// Reads flags, dimensions and name of an array, and its numbers where it is the one that is looked for. What a struct or a cell holds has
+/// no name of its own: it is called `named`.
+fn matrix(
+    file: &mut dyn Read,
+    big_endian: bool,
+    named: Option<&str>,
+    depth: usize,
+    search: &mut Search<'_>,
+) -> Result<(), MatError> {
     let mut reader = Elements { file, big_endian };
     let unnamed = |e| damaged("a variable", e);
     let flags = reader.element(8).map_err(unnamed)?;
     let dimensions = reader.element(4 * MAX_DIMENSIONS).map_err(unnamed)?;
-    let name = reader.element(MAX_NAME_BYTES).map_err(unnamed)?;
-    let name = String::from_utf8_lossy(&name.bytes).trim_end_matches('\0').to_owned();
-    if name != key {
-        return Ok(Variable::Other(name));
-    }
-    let what = format!("array \"{key}\"");
+    let own = reader.element(MAX_NAME_BYTES).map_err(unnamed)?;
+    let own = String::from_utf8_lossy(&own.bytes).trim_end_matches('\0').to_owned();
+    let name = named.map_or(own, str::to_owned);
+    let what = format!("array \"{name}\"");
     let word = flags.bytes.first_chunk().map(|b| reader.word(*b)).ok_or_else(|| damaged(&what, "it has no flags"))?;
-    if let Some(found) = no_numbers(word & 0xff) {
-        return Err(MatError::Kind { key: name, found });
-    }
     let shape: Vec<usize> =
         dimensions.bytes.chunks_exact(4).map(|b| reader.word([b[0], b[1], b[2], b[3]]) as usize).collect();
-    let Some(count) = bounded_count(&shape) else { return Err(MatError::TooLarge { key: name, shape }) };
+    let is_wanted = search.want == Some(name.as_str());
+    let one = shape.iter().all(|len| *len == 1);
+    search.names.push(name.clone());
+    match (word & 0xff, no_numbers(word & 0xff)) {
+        (_, None) if is_wanted => search.wanted = Some(numbers_of(&mut reader, &name, shape, word & 0x800 != 0)?),
+        (_, None) => search.shapes.push((name, shape)),
+        (STRUCT, _) if one && !is_wanted && depth < MAX_DEPTH => fields(&mut reader, &name, depth, search)?,
+        (CELL, _) if depth < MAX_DEPTH => cells(&mut reader, &name, &shape, depth, search)?,
+        (_, Some(found)) if is_wanted => return Err(MatError::Kind { key: name, found }),
+        _ => {}
+    }
+    Ok(())
+}
+
+/// The numbers of an array of this shape.
+fn numbers_of(reader: &mut Elements<'_>, name: &str, shape: Vec<usize>, is_complex: bool) -> Result<Numbers, MatError> {
+    let what = format!("array \"{name}\"");
+    let Some(count) = bounded_count(&shape) else { return Err(MatError::TooLarge { key: name.to_owned(), shape }) };
     let mut part = || reader.numbers(count).map_err(|e| damaged(&what, e));
     let column_major = |e: ShapeError| damaged(&what, e);
     let real = part()?;
-    let is_complex = word & 0x800 != 0;
     let order = IxDyn(&shape).f();
-    Ok(Variable::Wanted(if is_complex {
+    Ok(if is_complex {
         let values = real.into_iter().zip(part()?).map(|(re, im)| Complex64::new(re, im)).collect();
         Numbers::Complex(ArrayD::from_shape_vec(order, values).map_err(column_major)?)
     } else {
         Numbers::Real(ArrayD::from_shape_vec(order, real).map_err(column_major)?)
-    }))
+    })
+}
+
+/// The next array inside a struct or a cell.
+fn inner(reader: &mut Elements<'_>, named: &str, depth: usize, search: &mut Search<'_>) -> Result<(), MatError> {
+    let what = format!("\"{named}\"");
+    let tag = reader.tag().map_err(|e| damaged(&what, e))?.filter(|tag| tag.kind == MATRIX);
+    let tag = tag.ok_or_else(|| damaged(&what, "it ends too soon or holds no array"))?;
+    let mut part = (&mut *reader.file).take(tag.bytes);
+    if tag.bytes > 0 {
+        matrix(&mut part, reader.big_endian, Some(named), depth + 1, search)?;
+    }
+    io::copy(&mut part, &mut io::sink())?;
+    Ok(())
+}
+
+/// The members of a struct, as `name.member`.
+fn fields(reader: &mut Elements<'_>, name: &str, depth: usize, search: &mut Search<'_>) -> Result<(), MatError> {
+    let what = format!("struct \"{name}\"");
+    let length = reader.element(8).map_err(|e| damaged(&what, e))?;
+    let length = length.bytes.first_chunk().map_or(0, |b| reader.word(*b) as usize);
+    let names = reader.element(MAX_FIELD_BYTES).map_err(|e| damaged(&what, e))?;
+    if length == 0 {
+        return Err(damaged(&what, "its members have no names"));
+    }
+    for field in names.bytes.chunks_exact(length) {
+        let field = String::from_utf8_lossy(field);
+        let end = field.find('\0').unwrap_or(field.len());
+        inner(reader, &format!("{name}.{}", &field[..end]), depth, search)?;
+        if search.wanted.is_some() {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The cells of an array as one array: all of one shape, along a first axis.
+fn cells(
+    reader: &mut Elements<'_>,
+    name: &str,
+    shape: &[usize],
+    depth: usize,
+    search: &mut Search<'_>,
+) -> Result<(), MatError> {
+    let is_wanted = search.want == Some(name);
+    let count = bounded_count(shape).filter(|count| *count <= MAX_CELLS).unwrap_or(0);
+    let mut all: Vec<ArrayD<Complex64>> = Vec::new();
+    let mut is_complex = false;
+    let unlike =
+        || MatError::Kind { key: name.to_owned(), found: "a cell array whose cells are no arrays of one shape" };
+    for n in 0..count {
+        let mut one = Search { want: is_wanted.then_some(name), ..Search::default() };
+        inner(reader, name, depth, &mut one)?;
+        match one.wanted {
+            None if is_wanted => return Err(unlike()),
+            None => {
+                let of_first = one.shapes.into_iter().next().filter(|_| n == 0);
+                search.shapes.extend(of_first.map(|(_, inner)| (name.to_owned(), [vec![count], inner].concat())));
+                return Ok(());
+            }
+            Some(Numbers::Real(values)) => all.push(values.mapv(Complex64::from)),
+            Some(Numbers::Complex(values)) => {
+                is_complex = true;
+                all.push(values);
+            }
+        }
+        let held = all[0].len().saturating_mul(count);
+        if held > MAX_NUMBERS {
+            return Err(MatError::TooLarge { key: name.to_owned(), shape: [&[count], all[0].shape()].concat() });
+        }
+    }
+    if is_wanted {
+        let views: Vec<_> = all.iter().map(|a| a.view()).collect();
+        let joined = stack(Axis(0), &views).map_err(|_| unlike())?;
+        search.wanted = Some(if is_complex { Numbers::Complex(joined) } else { Numbers::Real(joined.mapv(|v| v.re)) });
+    }
+    Ok(())
 }
 
 /// What a class is where it is not made of numbers.
@@ -228,7 +350,7 @@ impl Elements<'_> {
         Ok(Element { kind: tag.kind, bytes })
     }
 
-    /// The next element as `count` numbers, in whatever type it is stored.
+    /// The next element as `count` numbers, in any type.
     fn numbers(&mut self, count: usize) -> Result<Vec<f64>, String> {
         let Element { kind, bytes } = self.element(8 * count as u64)?;
         let width = match kind {
@@ -267,128 +389,4 @@ fn number(kind: u32, bytes: &[u8], big_endian: bool) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use flate2::{Compression, write::ZlibEncoder};
-    use ndarray::array;
-    use proptest::prelude::*;
-    use std::io::Write;
-
-    fn element(kind: u32, bytes: &[u8]) -> Vec<u8> {
-        let mut out = [kind.to_le_bytes(), (bytes.len() as u32).to_le_bytes()].concat();
-        out.extend_from_slice(bytes);
-        out.resize(out.len().next_multiple_of(8), 0);
-        out
-    }
-
-    /// One variable, as MATLAB writes it.
-    fn variable(name: &str, class: u32, shape: &[i32], parts: &[(u32, Vec<u8>)]) -> Vec<u8> {
-        let flags = class | if parts.len() == 2 { 0x800 } else { 0 };
-        let shape: Vec<u8> = shape.iter().flat_map(|d| d.to_le_bytes()).collect();
-        let mut body = element(6, &[flags.to_le_bytes(), [0; 4]].concat());
-        body.extend(element(5, &shape));
-        // Short names stand in the tag itself.
-        let mut small = (1u32 | (name.len() as u32) << 16).to_le_bytes().to_vec();
-        small.extend_from_slice(name.as_bytes());
-        small.resize(8, 0);
-        body.extend(if name.len() <= 4 { small } else { element(1, name.as_bytes()) });
-        parts.iter().for_each(|(kind, bytes)| body.extend(element(*kind, bytes)));
-        element(MATRIX, &body)
-    }
-
-    fn file(variables: &[Vec<u8>]) -> Vec<u8> {
-        let mut bytes = vec![b' '; 124];
-        bytes[..10].copy_from_slice(b"MATLAB 5.0");
-        bytes.extend_from_slice(&[0, 1, b'I', b'M']);
-        variables.iter().for_each(|v| bytes.extend(v));
-        bytes
-    }
-
-    fn compressed(variable: &[u8]) -> Vec<u8> {
-        let mut zip = ZlibEncoder::new(Vec::new(), Compression::default());
-        zip.write_all(variable).unwrap();
-        let zip = zip.finish().unwrap();
-        [COMPRESSED.to_le_bytes().to_vec(), (zip.len() as u32).to_le_bytes().to_vec(), zip].concat()
-    }
-
-    fn doubles(values: &[f64]) -> (u32, Vec<u8>) {
-        (9, values.iter().flat_map(|v| v.to_le_bytes()).collect())
-    }
-
-    fn sample() -> Vec<u8> {
-        let complex = variable("data", 6, &[1, 2], &[doubles(&[1.0, 2.0]), doubles(&[-1.0, 0.5])]);
-        let narrow =
-            variable("narrow", 6, &[2, 2], &[(3, [1i16, -2, 3, 4].iter().flat_map(|v| v.to_le_bytes()).collect())]);
-        file(&[variable("text", 4, &[1, 1], &[(4, vec![65, 0])]), compressed(&complex), narrow])
-    }
-
-    #[test]
-    fn every_number_format_is_read() {
-        let complex = array![[Complex64::new(1.0, -1.0), Complex64::new(2.0, 0.5)]].into_dyn();
-        assert_eq!(read_mat(sample().as_slice(), "data").unwrap(), Numbers::Complex(complex));
-        let real = array![[1.0, 3.0], [-2.0, 4.0]].into_dyn();
-        assert_eq!(read_mat(sample().as_slice(), "narrow").unwrap(), Numbers::Real(real), "columns first");
-    }
-
-    #[test]
-    fn high_byte_first() {
-        let swap = |words: &[u32]| words.iter().flat_map(|w| w.to_be_bytes()).collect::<Vec<u8>>();
-        let body = [
-            swap(&[6, 8, 6, 0, 5, 8, 1, 1, 1 | 1 << 16]),
-            b"a\0\0\0".to_vec(),
-            swap(&[9, 8]),
-            1.5f64.to_be_bytes().to_vec(),
-        ]
-        .concat();
-        let mut bytes = vec![b' '; 124];
-        bytes.extend_from_slice(&[1, 0, b'M', b'I']);
-        bytes.extend(swap(&[MATRIX, body.len() as u32]));
-        bytes.extend(body);
-        assert_eq!(read_mat(bytes.as_slice(), "a").unwrap(), Numbers::Real(array![[1.5]].into_dyn()));
-    }
-
-    #[test]
-    fn faults_name_what_was_expected() {
-        let told = |bytes: &[u8], key: &str, parts: [&str; 2]| {
-            let message = read_mat(bytes, key).unwrap_err().to_string();
-            assert!(parts.iter().all(|p| message.contains(p)), "{message}");
-        };
-        told(&sample(), "iq", ["\"iq\"", "text, data, narrow"]);
-        told(&sample(), "text", ["\"text\" is text", "numbers"]);
-        told(b"short", "a", ["version 5 or 7", "shorter"]);
-        told(&[b'x'; 200], "a", ["version 5 or 7", "byte order"]);
-        let mut new = sample();
-        new[..10].copy_from_slice(b"MATLAB 7.3");
-        told(&new, "a", ["HDF5", "-v7"]);
-        told(&file(&[variable("a", 6, &[-1, -1], &[doubles(&[1.0])])]), "a", ["\"a\"", "at most"]);
-        told(&file(&[variable("a", 6, &[1, 3], &[doubles(&[1.0])])]), "a", ["\"a\"", "expected 24"]);
-        told(&file(&[variable("a", 6, &[1, 1], &[doubles(&[1.0, 2.0])])]), "a", ["\"a\"", "at most 8"]);
-        told(&file(&[element(9, &[0; 8])]), "a", ["kind 9", "no variable"]);
-        let whole = file(&[variable("a", 6, &[1, 1], &[doubles(&[1.0])])]);
-        told(&whole[..whole.len() - 4], "a", ["\"a\"", "too soon"]);
-    }
-
-    #[test]
-    fn what_inflates_without_end_takes_no_memory() {
-        // 64 MiB of zeros behind an array that claims to be small.
-        let mut bomb = variable("a", 6, &[1, 1], &[(9, vec![0; 64 << 20])]);
-        bomb.truncate(64 << 20);
-        let message = read_mat(file(&[compressed(&bomb)]).as_slice(), "a").unwrap_err().to_string();
-        assert!(message.contains("at most 8"), "{message}");
-    }
-
-    proptest! {
-        #[test]
-        fn mutated_files_are_read_or_refused(at in 128usize..600, byte: u8, cut in 0usize..16) {
-            let mut bytes = sample();
-            let length = bytes.len();
-            bytes[128 + at % (length - 128)] = byte;
-            bytes.truncate(length - cut);
-            for key in ["data", "narrow"] {
-                if let Ok(numbers) = read_mat(bytes.as_slice(), key) {
-                    prop_assert!(numbers.shape().iter().product::<usize>() <= 8, "no more numbers than bytes");
-                }
-            }
-        }
-    }
-}
+mod tests;

@@ -10,7 +10,9 @@
 //! | `matlab` | `.mat`, versions 5 and 7 |
 //! | `capture`, `profile` | samples of a capture card, and the `.cfg` that set the radar up |
 //! | [`layout`] | how the bytes of a raw capture stand for samples, by evidence |
-//! | [`raw`] | raw captures as they are: the text that describes them is made |
+//! | [`raw`] | raw captures and arrays as they are: the text that describes them is made |
+//! | `origin` | where such a recording comes from, and what else its bytes could be |
+//! | [`packets`] | packets that a capture card sends, to frames |
 //! | `axes`, `analytic` | an array of any shape, of real samples too, to `[elements, samples]` |
 //! | `calibration` | what is taken off each element |
 //! | `signs` | which way phases turn, and where on the chirp the carrier lies |
@@ -31,6 +33,8 @@ pub mod layout;
 mod matlab;
 mod numbers;
 mod numpy;
+mod origin;
+pub mod packets;
 pub mod presets;
 mod profile;
 pub mod raw;
@@ -46,12 +50,14 @@ pub use error::{Fault, RecordingError};
 pub use matlab::MatError;
 pub use numbers::MAX_NUMBERS;
 pub use numpy::NumpyError;
+pub use origin::{Offer, Origin};
 pub use profile::lines::text_of as config_text;
 pub use profile::{ProfileError, RadarProfile};
 pub use signs::FORMAT;
 
 use crate::radar::{End, Radar};
 use crate::signal::{BeatSignal, TwoEnds};
+use std::sync::Arc;
 
 /// Samples of a radar's elements, and the radar.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +77,8 @@ pub struct Recording {
     pub range_metres: Option<f64>,
     /// What looks wrong and can't be known from the samples, a sentence each.
     pub doubts: Vec<String>,
+    /// Where it comes from, where no text of its user's describes it: other ways to read the same file.
+    pub origin: Option<Arc<Origin>>,
 }
 
 /// Whose samples a recording holds.
@@ -122,6 +130,7 @@ impl Recording {
             missing: Vec::new(),
             range_metres: None,
             doubts: Vec::new(),
+            origin: None,
         }
     }
 

@@ -75,6 +75,23 @@ pub(super) fn read_npz(mut file: impl Read + Seek, key: &str) -> Result<Numbers,
     read_array(entry, &what)
 }
 
+/// Names and shapes of the arrays of an archive, without their numbers; those that can't be read are left out.
+///
+/// # Errors
+/// [`NumpyError`].
+pub(super) fn shapes(mut file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, NumpyError> {
+    check_entries(&mut file).map_err(|e| NumpyError::Archive(e.to_string()))?;
+    let mut archive = ZipArchive::new(file).map_err(|e| NumpyError::Archive(e.to_string()))?;
+    let names: Vec<String> = archive.file_names().map(str::to_owned).collect();
+    let mut shape = |name: &String| {
+        let mut entry = archive.by_name(name).ok()?;
+        let bytes = header_bytes(&mut entry).ok()?;
+        let header = Header::from_reader(&mut bytes.as_slice()).ok()?;
+        Some((name.strip_suffix(".npy")?.to_owned(), header.shape))
+    };
+    Ok(names.iter().filter_map(&mut shape).collect())
+}
+
 /// Reads the one array of an `.npy` file.
 ///
 /// # Errors

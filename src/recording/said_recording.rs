@@ -17,6 +17,11 @@ pub(super) struct Table {
     pub axes: Option<Vec<AxisKind>>,
     pub chirp: Option<Chirp>,
     pub frame: Option<usize>,
+    /// How many transmitters send in turn along the axis of chirps.
+    pub transmitters_in_turn: Option<usize>,
+    /// Which transmitters and receivers form the line of elements; all where nothing is said.
+    pub transmitters_taken: Option<Vec<usize>>,
+    pub receivers_taken: Option<Vec<usize>>,
     #[serde(default)]
     elements: Covers,
     #[serde(default)]
@@ -109,7 +114,8 @@ impl Table {
     /// Whether the file counts transmitters and receivers whose places the text says: then those say which element is which.
     pub fn counts_pairs(&self) -> bool {
         let has_both = |axes: &Vec<AxisKind>| axes.contains(&AxisKind::Transmitter);
-        self.has_places && (self.capture.is_some() || self.axes.as_ref().is_some_and(has_both))
+        let in_turn = self.transmitters_in_turn.is_some();
+        self.has_places && (self.capture.is_some() || in_turn || self.axes.as_ref().is_some_and(has_both))
     }
 
     /// How the name of the data file ends, in small letters.

@@ -1,12 +1,12 @@
 //! Samples in the data files of a recording, brought into the order of the array's elements.
 
-use super::axes::{arrange, one_frame};
-use super::capture::Meaning;
+use super::axes::{Join, arrange, in_turn, loops, one_frame};
+use super::capture::{Meaning, strongest_of};
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
 use super::said_recording::{Covers, Table};
 use super::signs::Signs;
-use super::{AxisKind, Capture, Fault, RadarProfile, Recorded, matlab};
+use super::{AxisKind, Capture, Chirp, Fault, RadarProfile, Recorded, matlab};
 use crate::radar::Radar;
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array2, Array3, Axis, concatenate};
@@ -97,7 +97,7 @@ fn read(
 ) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
     let (mut rows, notes) = match &table.capture {
         Some(capture) => read_capture(table, radar, open, capture, profile)?,
-        None => read_arrays(table, open)?,
+        None => read_arrays(table, radar, open)?,
     };
     if let Some(((element, sample), _)) = rows.indexed_iter().find(|(_, v)| !v.is_finite()) {
         return Err(Fault::NotFinite { element, sample });
@@ -210,7 +210,7 @@ fn check_capture(table: &Table) -> Result<(), Fault> {
     Ok(())
 }
 
-fn read_arrays(table: &Table, open: Open<'_>) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+fn read_arrays(table: &Table, radar: &Radar, open: Open<'_>) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
     let Some(axes) = &table.axes else {
         let kinds = "a list of \"element\", \"sample\", \"chirp\" and so on, one for each axis of the array";
         return Err(Fault::key("recording.axes", "is missing", kinds));
@@ -222,7 +222,17 @@ fn read_arrays(table: &Table, open: Open<'_>) -> Result<(Array2<Complex64>, Vec<
         notes.borrow_mut().extend(numbers.mend_signs());
         let numbers = one_frame(numbers, &mut kinds, table.frame)?;
         notes.borrow_mut().extend(told_of_real(&numbers, &kinds));
-        Ok::<_, Fault>(arrange(numbers, &kinds, table.chirp)?)
+        let numbers = in_turn(numbers, &mut kinds, table.transmitters_in_turn)?;
+        let len = |kind| kinds.iter().position(|k| *k == kind).map_or(1, |place| numbers.shape()[place]);
+        let sizes = [len(AxisKind::Transmitter), len(AxisKind::Receiver)];
+        let rows = if table.chirp == Some(Chirp::Joined(Join::Strongest)) && kinds.contains(&AxisKind::Chirp) {
+            let (rows, note) = joined(table, radar, numbers, &kinds)?;
+            notes.borrow_mut().extend(note);
+            rows
+        } else {
+            arrange(numbers, &kinds, table.chirp)?
+        };
+        taken(table, rows, sizes)
     };
     let rows = match (&table.array, &table.first, &table.last) {
         (array_key, None, None) => array(array_key.as_deref()),
@@ -242,6 +252,55 @@ fn read_arrays(table: &Table, open: Open<'_>) -> Result<(Array2<Complex64>, Vec<
     let mut notes = notes.into_inner();
     notes.dedup();
     Ok((rows, notes))
+}
+
+/// Of each range bin the strongest Doppler cell, `[elements, samples]`, and what was done.
+fn joined(
+    table: &Table,
+    radar: &Radar,
+    numbers: Numbers,
+    kinds: &[AxisKind],
+) -> Result<(Array2<Complex64>, Option<String>), Fault> {
+    let loops = loops(numbers, kinds)?;
+    let (_, transmitters, _, _) = loops.dim();
+    let all: Vec<usize> = (0..transmitters).collect();
+    let chosen = table.transmitters_taken.as_deref().unwrap_or(&all);
+    if chosen.iter().any(|t| *t >= transmitters) {
+        return Err(no_such("recording.transmitters_taken", chosen, transmitters));
+    }
+    let (rows, note) = strongest_of(loops, chosen, &turns(radar));
+    let kinds = [AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Sample];
+    Ok((arrange(Numbers::Complex(rows.into_dyn()), &kinds, None)?, note))
+}
+
+/// The rows of the transmitters and receivers that form the line, of those that the array counts.
+fn taken(
+    table: &Table,
+    rows: Array2<Complex64>,
+    [transmitters, receivers]: [usize; 2],
+) -> Result<Array2<Complex64>, Fault> {
+    let Table { transmitters_taken, receivers_taken, .. } = table;
+    if transmitters_taken.is_none() && receivers_taken.is_none() {
+        return Ok(rows);
+    }
+    let of = |key: &str, taken: &Option<Vec<usize>>, count: usize| match taken {
+        None => Ok((0..count).collect::<Vec<_>>()),
+        Some(taken) if taken.iter().all(|n| *n < count) => Ok(taken.clone()),
+        Some(taken) => Err(no_such(key, taken, count)),
+    };
+    let receivers_taken = of("recording.receivers_taken", receivers_taken, receivers)?;
+    let of_one = |t: &usize| receivers_taken.iter().map(|r| t * receivers + r).collect::<Vec<usize>>();
+    let transmitters = of("recording.transmitters_taken", transmitters_taken, transmitters)?;
+    let places: Vec<usize> = transmitters.iter().flat_map(of_one).collect();
+    if places.iter().any(|place| *place >= rows.nrows()) {
+        let expected = "it only where axes count transmitters and receivers";
+        return Err(Fault::key("recording.transmitters_taken", "is there", expected));
+    }
+    Ok(rows.select(Axis(0), &places))
+}
+
+fn no_such(key: &str, taken: &[usize], count: usize) -> Fault {
+    Fault::key(key, format!("is {taken:?}"), format!("numbers from 0 to {}, each once", count.saturating_sub(1)))
 }
 
 /// What real samples are taken for, and complex ones that are real.

@@ -6,6 +6,7 @@ mod captures;
 mod conventions;
 mod damage;
 mod disturbances;
+mod echo_lists;
 mod failures;
 mod house;
 mod lessons;

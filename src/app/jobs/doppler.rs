@@ -4,7 +4,7 @@ use super::derived::{Failure, Query};
 use super::source::Source;
 use crate::app::state::State;
 use crate::app::widgets::textures::colour_table;
-use crate::maps::doppler::range_doppler_for;
+use crate::maps::doppler::{RangeDopplerMap, range_doppler_for};
 use crate::maps::{LogMap, Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::Radar;
@@ -21,10 +21,15 @@ pub struct DopplerQuery {
 }
 
 impl DopplerQuery {
-    /// The map of what is on screen; `None` where the radar sends one chirp.
+    /// The map of what is on screen; `None` where the radar of a scene sends one chirp, and of a recording whose loops are not known.
     pub fn of(state: &State) -> Option<Self> {
         let (normalisation, colours) = (state.settings.normalisation, state.settings.colours);
-        (state.radar().chirps > 1).then(|| DopplerQuery { source: Source::of(state), normalisation, colours })
+        let source = Source::of(state);
+        let has_chirps = match &source.recording {
+            None => source.radar.chirps > 1,
+            Some(recording) => recording.origin.is_some(),
+        };
+        has_chirps.then_some(DopplerQuery { source, normalisation, colours })
     }
 }
 
@@ -40,26 +45,34 @@ pub struct DopplerResult {
 
 impl Query for DopplerQuery {
     type Value = DopplerResult;
-    /// The decades of the last scene: colours and normalisation are chosen among many for one.
-    type State = Option<(Source, LogMap)>;
+    /// The decades of the last scene or recording, and the radar: colours and normalisation are chosen among many for one.
+    type State = Option<(Source, Radar, LogMap)>;
     const THREAD: &'static str = "range-Doppler";
     const WHAT: &'static str = "Computing the range-Doppler map";
     const ADVICE: &'static str = "Change the scene to try again.";
 
     fn compute(&self, kept: &mut Self::State, task: &Task) -> Result<DopplerResult, Failure> {
         let DopplerQuery { source, normalisation, colours } = self;
-        let decades = match kept.take() {
-            Some((of, decades)) if of == *source => decades,
-            _ => {
-                let (scene, floor) = source.simulated()?;
-                let map = range_doppler_for(task, &source.radar, scene, floor, scene.noise_seed);
-                map.map_err(|e| e.to_string())?.log_magnitude()
-            }
+        let (radar, decades) = match kept.take() {
+            Some((of, radar, decades)) if of == *source => (radar, decades),
+            _ => source_map(source, task)?,
         };
         let image = picture(&decades.normalise(*normalisation), *colours);
-        *kept = Some((source.clone(), decades.clone()));
-        Ok(DopplerResult { radar: source.radar.clone(), decades, image })
+        *kept = Some((source.clone(), radar.clone(), decades.clone()));
+        Ok(DopplerResult { radar, decades, image })
     }
+}
+
+/// The map of a scene's chirps, or of the loops of a recording's frame; and the radar whose chirps they are.
+fn source_map(source: &Source, task: &Task) -> Result<(Radar, LogMap), String> {
+    if let Some(origin) = source.recording.as_ref().and_then(|r| r.origin.as_ref()) {
+        let (radar, samples) = origin.loops().map_err(|e| e.to_string())?;
+        let map = RangeDopplerMap::of(&radar, samples);
+        return Ok((radar, map.log_magnitude()));
+    }
+    let (scene, floor) = source.simulated()?;
+    let map = range_doppler_for(task, &source.radar, scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
+    Ok((source.radar.clone(), map.log_magnitude()))
 }
 
 fn picture(map: &RangeAngleMap, colours: ColourMap) -> Arc<ColorImage> {

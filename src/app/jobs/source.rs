@@ -39,7 +39,9 @@ impl Source {
     pub fn simulated(&self) -> Result<(&Scene, Floor), String> {
         match self.recording {
             None => Ok((&**self.scene, self.floor)),
-            Some(_) => Err("A recording has one chirp, which tells no velocity.".to_owned()),
+            Some(_) => {
+                Err("One chirp tells no velocity; a raw capture with its .cfg has the loops of a frame.".to_owned())
+            }
         }
     }
 

@@ -42,7 +42,7 @@ pub struct Input<'a> {
     pub colours: ColourMap,
     /// What the colours stand for.
     pub normalisation: Normalisation,
-    /// Whether a recording stands in the place of the scene: it has one chirp.
+    /// Whether a recording stands in the place of the scene: its chirps are those of the file.
     pub is_recorded: bool,
     /// The map, or why there is none; nothing before the first.
     pub result: Option<Result<&'a DopplerResult, &'a str>>,
@@ -91,7 +91,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
         timeline(ui, &input, &mut asked);
         said(ui, &input, &mut asked);
         match input.result {
-            _ if input.is_recorded || input.radar.chirps < 2 => {}
+            _ if !input.is_recorded && input.radar.chirps < 2 => {}
+            None if input.is_recorded => {}
             None => _ = ui.weak("computing…"),
             Some(Err(error)) => _ = ui.colored_label(ui.visuals().error_fg_color, error),
             Some(Ok(result)) => {
@@ -122,7 +123,8 @@ fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             }
         });
     });
-    ui.weak(follows(input.radar));
+    let of_file = input.result.and_then(Result::ok).filter(|_| input.is_recorded).map(|result| &result.radar);
+    ui.weak(follows(of_file.unwrap_or(input.radar)));
     if radar != *input.radar {
         radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
         asked.push(RadarCommand::Set(Box::new(radar)).into());
@@ -165,7 +167,13 @@ fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 /// Why there is no map, or what to know of it.
 fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     if input.is_recorded {
-        ui.weak("A recording has one chirp, which tells no velocity.");
+        let text = match input.result {
+            None => {
+                "The loops of a raw capture's frame make this map, where its .cfg says their interval. One chirp tells no velocity."
+            }
+            Some(_) => "The loops of the recording's frame, as the .cfg says them.",
+        };
+        ui.weak(text);
     } else if input.radar.chirps < 2 {
         ui.horizontal_wrapped(|ui| {
             ui.label("One chirp tells no velocity.");
@@ -281,6 +289,32 @@ mod tests {
         decades[[10, radar.chirps / 2]] = 0.0;
         let image = ColorImage::new([radar.chirps, radar.samples], vec![Color32::BLACK; radar.chirps * radar.samples]);
         DopplerResult { radar: radar.clone(), decades: LogMap::new(decades), image: Arc::new(image) }
+    }
+
+    #[test]
+    fn a_recording_shows_the_loops_of_its_frame() {
+        let texts = |result: Option<DopplerResult>| {
+            let (radar, scene, mut memory) = (radar(1), Scene::default(), Memory::default());
+            let panel = Harness::builder().with_size([700.0, 420.0]).build_ui(move |ui| {
+                let input = Input {
+                    radar: &radar,
+                    scene: &scene,
+                    seconds: 0.0,
+                    is_playing: false,
+                    marks: true,
+                    colours: ColourMap::default(),
+                    normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
+                    is_recorded: true,
+                    result: result.as_ref().map(Ok),
+                };
+                show(ui, input, &mut memory);
+            });
+            (seen::texts(panel.output()), panel.query_by_label("Range-Doppler map").is_some())
+        };
+        let (told, drawn) = texts(Some(result(&radar(64))));
+        assert!(drawn && told.iter().any(|t| t.text.contains("in steps of")), "{told:?}");
+        let (told, drawn) = texts(None);
+        assert!(!drawn && told.iter().any(|t| t.text.contains("raw capture")), "{told:?}");
     }
 
     fn panel(size: [f32; 2], chirps: usize, velocity: f64, seconds: f64) -> Harness<'static, Vec<Command>> {

@@ -223,6 +223,10 @@ fn shrink(v: Complex64, by: f64) -> Complex64 {
 }
 
 impl Reconstructor for Fista {
+    fn lists_few_elements(&self) -> bool {
+        false
+    }
+
     fn family(&self) -> Family {
         Family::Sparse
     }

@@ -30,8 +30,9 @@ pub use table::{Capture, Part, Together, Turn};
 use super::layout::stream::Stream;
 use super::profile::RadarProfile;
 use channels::Channels;
-use ndarray::Array3;
+use ndarray::{Array3, Array4};
 use num_complex::Complex64;
+use quality::Quality;
 use std::io::{Read, Seek};
 
 /// What the samples of a capture mean.
@@ -42,6 +43,18 @@ pub(super) struct Meaning<'a> {
     pub turns: &'a [f64],
     /// The beat's phase rises from sample to sample.
     pub beat_rises: bool,
+}
+
+/// Of the loops of an array, `[loops, transmitters, receivers, samples]`, in each range bin the strongest Doppler cell, with the chosen
+/// transmitters turned back by its velocity; and what was done, in a sentence. `turns` are as in [`Meaning`].
+pub(super) fn strongest_of(
+    samples: Array4<Complex64>,
+    chosen: &[usize],
+    turns: &[f64],
+) -> (Array3<Complex64>, Option<String>) {
+    let (loops, chirps, ..) = samples.dim();
+    let frame = Frame { samples, quality: Quality::new(loops * chirps) };
+    doppler::strongest(&frame, &Channels::default(), chosen, turns)
 }
 
 impl Capture {

@@ -185,7 +185,7 @@ fn faults_name_file_key_shape_expectation() {
             ["d.npz", "holds 8 samples; expected 4 as radar.samples says (it is read as 4 elements by 8 samples)"],
         ),
         (usual("").replace("\"element\"", "\"antenna\""), ["line 12", "antenna"]),
-        (usual("chirp = \"median\""), ["line 13", "a chirp's number from 0, or \"mean\""]),
+        (usual("chirp = \"median\""), ["line 13", "a chirp's number from 0, \"mean\""]),
         (usual("elements = \"ends\""), ["d.npz", "holds 8 elements; expected 6 as radar.end_elements"]),
         (usual("missing = [1, 1]"), ["recording.missing", "each once"]),
         (usual("missing = [8]"), ["recording.missing names element 8", "below 8"]),

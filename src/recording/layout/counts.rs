@@ -23,11 +23,14 @@ const INTERLEAVED: [usize; 5] = [16, 8, 4, 3, 2];
 const COMB: f64 = 0.6;
 /// Receivers that radars usually have.
 const USUAL_RECEIVERS: usize = 4;
-/// Samples by which the parts are judged, and then the length of rows.
-const FIRST_NUMBERS: usize = 1 << 14;
-const THEN_NUMBERS: usize = 1 << 15;
+/// Samples by which parts and the length of rows are judged.
+const JUDGED_NUMBERS: usize = 1 << 15;
+/// Lengths of rows by which the parts are judged.
+const LEVEL_LENGTHS: [usize; 3] = [64, 128, 256];
+/// A shorter length divides a longer one where so much more of its other beginnings does not follow.
+const DIVIDES: f64 = 1.4;
 /// Rows after which rows may repeat.
-const MOST_PERIOD: usize = 64;
+const LONGEST_PERIOD: usize = 64;
 /// Rows are the same again where they are so much alike, as a part of the most alike; and at least so much.
 const REPEATS: f64 = 0.9;
 const LEAST_ALIKE: f64 = 0.3;
@@ -49,34 +52,30 @@ struct Cut {
     mixed: usize,
 }
 
-/// Searches the lengths of rows: the order of parts that makes the sharpest spectrum of any length, and then the length at whose multiples
-/// samples don't follow from those before.
+/// Searches the lengths of rows: the order of parts that makes the sharpest spectra, and then the length at whose multiples samples don't
+/// follow from those before.
 pub(super) fn search<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>) -> io::Result<Searched> {
-    let bytes = samples_of(stream, marks, 4 * THEN_NUMBERS)?;
+    let bytes = samples_of(stream, marks, 4 * JUDGED_NUMBERS)?;
     let marked = marks.filter(|m| m.apart > 0).map(|m| m.apart - HEADER_BYTES);
     let words = likely_words(&bytes);
-    let numbers =
-        |layout: &Layout, most: usize| decode::numbers(layout, &bytes, (bytes.len() / layout.parts.bytes()).min(most));
-    let mut best: Option<(f64, Layout)> = None;
-    for parts in Parts::ALL {
+    let numbers = |layout: &Layout| {
+        let count = bytes.len() / layout.parts.bytes();
+        decode::numbers(layout, &bytes, count.min(JUDGED_NUMBERS))
+    };
+    let levels = Parts::ALL.into_iter().filter_map(|parts| {
         let layout = layout(words, parts);
-        let numbers = numbers(&layout, FIRST_NUMBERS);
-        let levels = SAMPLES.into_iter().filter(|samples| numbers.len() >= 2 * samples).map(|samples| {
-            let spectrum = Spectrum::of(&rows(&numbers, samples, 1), 1);
-            if parts == Parts::Real { spectrum.of_real().level } else { spectrum.level }
-        });
-        if let Some(level) = levels.min_by(f64::total_cmp).filter(|level| best.is_none_or(|(least, _)| *level < least))
-        {
-            best = Some((level, layout));
-        }
-    }
-    let Some((_, layout)) = best else { return Ok(Searched { counts: Vec::new(), note: None }) };
-    let numbers = numbers(&layout, THEN_NUMBERS);
+        Some((level(&numbers(&layout), parts == Parts::Real)?, layout))
+    });
+    let Some((_, layout)) = levels.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return Ok(Searched { counts: Vec::new(), note: None });
+    };
+    let numbers = numbers(&layout);
     let residual = residual(&numbers);
     let fits = |length: &usize| marked.is_none_or(|held| held.is_multiple_of(length * layout.parts.bytes()));
-    let longer = SAMPLES.into_iter().flat_map(|samples| [samples, 4 * samples]).filter(fits);
-    let broken = longer.map(|length| (broken(&residual, length), length));
-    let length = broken.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(SAMPLES[0], |(_, length)| length);
+    let lengths: Vec<usize> = SAMPLES.into_iter().flat_map(|samples| [samples, 4 * samples]).filter(fits).collect();
+    let broken = lengths.iter().map(|length| (broken(&residual, *length), *length));
+    let longest = broken.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(SAMPLES[0], |(_, length)| length);
+    let length = divided(&residual, longest, &lengths);
     let mixed = interleaved(&numbers, length);
     let cut = Cut { layout, samples: length / mixed, mixed };
     let note = Some(
@@ -85,6 +84,35 @@ pub(super) fn search<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks
             .to_owned(),
     );
     Ok(Searched { counts: vec![counted(&cut, &numbers, stream.bytes(), marks, marked)], note })
+}
+
+/// How low the spectra of rows of a few lengths lie, all together; real numbers in rows of twice as many, which hold as much. `None` where
+/// they are too few.
+fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
+    let mut sum = 0.0;
+    for length in LEVEL_LENGTHS {
+        let length = if is_real { 2 * length } else { length };
+        if numbers.len() < 2 * length {
+            break;
+        }
+        let spectrum = Spectrum::of(&rows(numbers, length, 1), 1);
+        sum += if is_real { spectrum.of_real().level } else { spectrum.level };
+    }
+    (numbers.len() >= 4 * LEVEL_LENGTHS[0]).then_some(sum)
+}
+
+/// The length of rows of which `longest` is several: where an echo goes on almost unbroken from receiver to receiver, most of what does not
+/// follow stands at the beginnings of loops.
+fn divided(residual: &[f64], longest: usize, lengths: &[usize]) -> usize {
+    let mut length = longest;
+    loop {
+        let shorter = lengths.iter().copied().filter(|l| *l < length && length.is_multiple_of(*l));
+        let within = shorter.map(|l| (broken_within(residual, l, length), l));
+        match within.max_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((ratio, shorter)) if ratio > DIVIDES => length = shorter,
+            _ => return length,
+        }
+    }
 }
 
 /// How much of each number does not follow from the [`ORDER`] before it, as a power: linear prediction by least squares.
@@ -119,19 +147,28 @@ fn solved(mut system: [[Complex64; ORDER + 1]; ORDER]) -> [Complex64; ORDER] {
 
 /// How much less the first numbers of rows of this length follow from those before them than all others.
 fn broken(residual: &[f64], length: usize) -> f64 {
+    broken_at(residual, length, |_| true)
+}
+
+/// The same of those rows of this length that don't begin where longer ones do.
+fn broken_within(residual: &[f64], length: usize, longer: usize) -> f64 {
+    broken_at(residual, length, |row| !row.is_multiple_of(longer / length))
+}
+
+fn broken_at(residual: &[f64], length: usize, counts: impl Fn(usize) -> bool) -> f64 {
     if residual.len() < 3 * length || length <= 2 * ORDER {
         return 0.0;
     }
-    let (mut first, mut other) = (0.0, 0.0);
-    let rows = residual.chunks_exact(length).skip(1);
-    let count = rows.len() as f64;
-    for row in rows {
-        first += row[..ORDER].iter().sum::<f64>();
-        other += row[ORDER..].iter().sum::<f64>();
+    let (mut first, mut other) = ((0.0, 0.0), (0.0, 0.0));
+    for (n, row) in residual.chunks_exact(length).enumerate().skip(1) {
+        if counts(n) {
+            first = (first.0 + row[..ORDER].iter().sum::<f64>(), first.1 + ORDER as f64);
+        }
+        other = (other.0 + row[ORDER..].iter().sum::<f64>(), other.1 + (length - ORDER) as f64);
     }
-    let (first, other) = (first / (count * ORDER as f64), other / (count * (length - ORDER) as f64));
+    let mean = |(sum, count): (f64, f64)| sum / f64::max(count, 1.0);
     // Rounding alone leaves as much.
-    first / (other + 0.2)
+    mean(first) / (mean(other) + 0.2)
 }
 
 /// How many receivers stand sample by sample in rows of this length: their spectrum repeats as often.
@@ -216,12 +253,12 @@ fn counted(cut: &Cut, numbers: &[Complex64], bytes: u64, marks: Option<Marks>, m
 
 /// After how many rows they are the same again; that of the usual receivers where all are alike or none is.
 fn period(rows: &Array2<Complex64>) -> usize {
-    let mut centred = rows.slice(s![..rows.nrows().min(4 * MOST_PERIOD), ..]).to_owned();
+    let mut centred = rows.slice(s![..rows.nrows().min(4 * LONGEST_PERIOD), ..]).to_owned();
     for mut row in centred.outer_iter_mut() {
         let mean = row.sum() / row.len().max(1) as f64;
         row.mapv_inplace(|v| v - mean);
     }
-    let most = MOST_PERIOD.min(centred.nrows() / 2);
+    let most = LONGEST_PERIOD.min(centred.nrows() / 2);
     let product = |a: ArrayView1<'_, Complex64>, b: ArrayView1<'_, Complex64>| -> f64 {
         a.iter().zip(b).map(|(a, b)| (a * b.conj()).re).sum()
     };

@@ -72,7 +72,7 @@ pub enum LayoutError {
         /// Who says so.
         whose: &'static str,
     },
-    /// Whatever the layout, the bytes make no echo.
+    /// The bytes make no echo in any layout.
     #[error(
         "is no capture of a kind that is known: in every layout its spectrum is flat, as of random bytes ({tried} were tried); expected \
          16-bit samples, with the .cfg that set the radar up beside them where there is one"

@@ -32,5 +32,6 @@ pub use evidence::{Evidence, Kind};
 pub use find::{Candidate, Found, LayoutError, find};
 pub use parts::{Parts, ReceiverOrder};
 pub use shape::{Counts, Layout};
+pub(in crate::recording) use spectrum::Spectrum;
 pub use verdict::Certainty;
 pub use words::Words;

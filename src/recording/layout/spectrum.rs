@@ -14,7 +14,7 @@ const BELOW_PEAK_DB: f64 = 40.0;
 
 /// Mean powers of range profiles, and figures on them.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Spectrum {
+pub(in crate::recording) struct Spectrum {
     /// Power of each range bin, mean over chirps and receivers.
     pub power: Vec<f64>,
     /// Mean over the bins of the natural logarithm of `power`: low where the layout is right, since then echoes stand in few bins.

@@ -44,7 +44,7 @@ impl<R: Read + Seek> Stream<R> {
         Ok(stream)
     }
 
-    /// The bytes of `file`, whatever it begins with.
+    /// The bytes of `file`, packets or not.
     ///
     /// # Errors
     /// What the system says.

@@ -18,6 +18,17 @@ pub enum Certainty {
 const SURE: f64 = 5.0;
 const LIKELY: f64 = 1.0;
 
+impl Certainty {
+    /// By how much the best has more log-odds than the next.
+    pub fn of(margin: Option<f64>) -> Certainty {
+        match margin {
+            Some(margin) if margin < LIKELY => Certainty::Open,
+            Some(margin) if margin < SURE => Certainty::Likely,
+            _ => Certainty::Sure,
+        }
+    }
+}
+
 impl Found {
     /// The best candidate.
     pub fn best(&self) -> &Candidate {
@@ -31,11 +42,7 @@ impl Found {
 
     /// How sure the choice is.
     pub fn certainty(&self) -> Certainty {
-        match self.margin() {
-            Some(margin) if margin < LIKELY => Certainty::Open,
-            Some(margin) if margin < SURE => Certainty::Likely,
-            _ => Certainty::Sure,
-        }
+        Certainty::of(self.margin())
     }
 
     /// The kind of evidence that parts the best from the next.

@@ -1,4 +1,4 @@
-//! The lines of a `.cfg`: commands with their numbers, out of whatever stands around them.
+//! The lines of a `.cfg`: commands with their numbers, out of the text around them.
 
 use super::error::ProfileError;
 

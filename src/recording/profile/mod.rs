@@ -67,6 +67,9 @@ pub struct RadarProfile {
     pub notes: Vec<String>,
 }
 
+/// Bytes of the header before each chirp, where `lvdsStreamCfg` asks for one.
+const CHIRP_HEADER_BYTES: usize = 64;
+
 /// A bias of more metres is none.
 const MOST_BIAS_METRES: f64 = 1000.0;
 
@@ -77,6 +80,15 @@ impl RadarProfile {
     /// [`ProfileError`] names the line, the command and what was expected, or the dialect.
     pub fn parse(text: &str) -> Result<RadarProfile, ProfileError> {
         RadarProfile::of_sub_frame(text, None)
+    }
+
+    /// Bytes of a frame as a capture card sends it, 16 bits to a number, headers of chirps counted; `None` where it is larger than 1 GiB.
+    pub fn frame_bytes(&self) -> Option<usize> {
+        let chirp = self.samples.checked_mul(self.receivers)?;
+        let headers =
+            if self.headers { self.frame_numbers.checked_div(chirp)?.checked_mul(CHIRP_HEADER_BYTES)? } else { 0 };
+        let bytes = self.frame_numbers.checked_mul(if self.real { 2 } else { 4 })?.checked_add(headers)?;
+        Some(bytes).filter(|bytes| (1..=1 << 30).contains(bytes))
     }
 
     /// The same for one sub-frame of an advanced frame, from 0; the first where none is said.

@@ -14,11 +14,11 @@ pub(super) fn data_of(path: &Path) -> Result<PathBuf, RecordingError> {
     if !ends(path, "cfg") {
         return Ok(path.to_owned());
     }
-    let same = path.with_extension("bin");
-    if fs::exists(&same) {
+    let all = ["bin", "dat", "raw", "npy", "npz", "mat"];
+    if let Some(same) = all.into_iter().map(|end| path.with_extension(end)).find(|same| fs::exists(same)) {
         return Ok(same);
     }
-    only(path, &["bin", "dat", "raw"]).ok_or_else(|| {
+    only(path, &all).ok_or_else(|| {
         let expected = "a capture beside it, of the same name (.bin) or the only one there";
         Fault::key("the .cfg", "sets a radar up and holds no samples", expected).of(path)
     })

@@ -2,7 +2,7 @@
 
 use super::boards::{self, Board};
 use crate::radar::SPEED_OF_LIGHT;
-use crate::recording::layout::Candidate;
+use crate::recording::layout::Counts;
 use crate::recording::profile::RadarProfile;
 
 /// Carrier where nothing says one, hertz.
@@ -18,6 +18,8 @@ pub(super) struct Line {
     /// Places along it, metres.
     pub transmitter_x_metres: Vec<f64>,
     pub receiver_x_metres: Vec<f64>,
+    /// The board whose antennas they are, where one was taken.
+    pub board: Option<&'static str>,
     /// What was taken for granted or left out.
     pub doubts: Vec<String>,
 }
@@ -30,23 +32,25 @@ struct Sender {
     up: f64,
 }
 
-/// The line of a candidate: by the places that the `.cfg` says, by `board`, or by the board that the transmitters make likely.
-pub(super) fn line(best: &Candidate, profile: Option<&RadarProfile>, board: Option<&Board>) -> Line {
-    let counts = best.counts;
-    let Some(profile) = profile else {
-        let apart = match counts.chirps {
-            1 => String::new(),
-            chirps => format!("{chirps} transmitters {} half wavelengths apart and ", counts.receivers),
-        };
-        let doubt = format!(
-            "Nothing says where the antennas stand: {apart}{} receivers half a wavelength apart are taken for granted.",
-            counts.receivers
-        );
-        let senders =
-            (0..counts.chirps).map(|chirp| Sender { chirp, across: (chirp * counts.receivers) as f64, up: 0.0 });
-        let receivers: Vec<f64> = (0..counts.receivers).map(|n| n as f64).collect();
-        return metres(&senders.collect::<Vec<_>>(), &receivers, None, USUAL_CARRIER_HZ, vec![doubt]);
+/// Elements half a wavelength apart, where nothing says where they stand.
+pub(super) fn uniform(counts: Counts, carrier_hz: f64) -> Line {
+    let Counts { receivers, chirps, .. } = counts;
+    let apart = match chirps {
+        1 => String::new(),
+        chirps => format!("{chirps} transmitters {receivers} half wavelengths apart and "),
     };
+    let doubt = format!(
+        "Nothing says where the antennas stand: {apart}{receivers} receivers half a wavelength apart are taken for granted."
+    );
+    let senders: Vec<Sender> =
+        (0..chirps).map(|chirp| Sender { chirp, across: (chirp * receivers) as f64, up: 0.0 }).collect();
+    let receivers: Vec<f64> = (0..receivers).map(|n| n as f64).collect();
+    metres(&senders, &receivers, None, carrier_hz, vec![doubt])
+}
+
+/// The line of a capture: by the places that the `.cfg` says, by `board`, or by the board that the transmitters make likely.
+pub(super) fn line(counts: Counts, profile: Option<&RadarProfile>, board: Option<&'static Board>) -> Line {
+    let Some(profile) = profile else { return uniform(counts, USUAL_CARRIER_HZ) };
     let carrier_hz = profile.carrier_hz();
     if board.is_none()
         && let Some((senders, taken, receivers)) = of_geometry(profile)
@@ -71,7 +75,7 @@ pub(super) fn line(best: &Candidate, profile: Option<&RadarProfile>, board: Opti
     doubts.extend(note);
     let place = |n: &usize| taken_board.receivers.get(*n).copied().unwrap_or(*n as f64);
     let receivers: Vec<f64> = profile.receiver_numbers.iter().map(place).collect();
-    metres(&senders, &receivers, None, carrier_hz, doubts)
+    Line { board: Some(taken_board.name), ..metres(&senders, &receivers, None, carrier_hz, doubts) }
 }
 
 fn metres(
@@ -87,6 +91,7 @@ fn metres(
         receivers: taken,
         transmitter_x_metres: senders.iter().map(|s| s.across * half_wave).collect(),
         receiver_x_metres: receivers.iter().map(|x| x * half_wave).collect(),
+        board: None,
         doubts,
     }
 }

@@ -1,4 +1,4 @@
-//! Raw captures as they are: the layout found by evidence, the antennas of a board, and the TOML that says so.
+//! Raw captures and arrays as they are: the layout found by evidence, the antennas of a board, and the TOML that says so.
 //!
 //! A capture that is opened goes the way of every recording: the text that describes it is made, and read.
 //!
@@ -8,50 +8,51 @@
 //! | `line` | the antennas of a `.cfg` that form one line |
 //! | `beside` | the `.cfg` beside a capture, and the files that go on from it |
 //! | `text` | the TOML |
+//! | `array` | arrays without a text |
+//! | `axes` | what the axes of an array count, by evidence |
+//! | `imported` | what was found |
 
+mod array;
+mod axes;
 mod beside;
 pub mod boards;
+mod imported;
 mod line;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 mod text;
 
+pub use imported::Imported;
+
 use super::capture::{Capture, Frame, Part, Plan, ReceiverOrder, Together, Turn};
-use super::described::{config_text, from_parts, open_file};
+use super::described::{config_text, open_file};
 use super::layout::stream::Stream;
 use super::layout::{Candidate, Certainty, Found, Kind, find};
 use super::profile::RadarProfile;
 use super::samples::{Chain, Source};
-use super::{Fault, Recording, RecordingError};
+use super::{Fault, Offer, Origin, Recording, RecordingError};
 use boards::Board;
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-/// What was found of a capture, and the text that describes it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Imported {
-    /// The file with the samples.
-    pub data: PathBuf,
-    /// The `.cfg`, where there is one.
-    pub config: Option<PathBuf>,
-    /// The layouts, the best first.
-    pub found: Found,
-    /// The TOML of the recording, to stand in the folder of `data`.
-    pub toml: String,
-    /// What was found, a sentence each.
-    pub sentences: Vec<String>,
-    /// What is doubtful, a sentence each.
-    pub doubts: Vec<String>,
-}
+/// Layouts that are offered.
+const OFFERED: usize = 4;
 
-/// Whether `path` names a raw capture, or the `.cfg` of one, by how it ends.
+/// Whether `path` names a raw capture, an array without a text, or the `.cfg` of one, by how it ends. An `.npz` is one only by what it
+/// holds: [`is_raw_at`].
 pub fn is_raw(path: &Path) -> bool {
-    let ends = |end: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end));
-    ["bin", "dat", "raw", "cfg"].into_iter().any(ends)
+    let ends = |end: &&str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end));
+    ["bin", "dat", "raw", "cfg"].iter().any(ends) || array::ENDINGS.iter().filter(|end| **end != "npz").any(ends)
 }
 
-/// Opens a raw capture as it is: the best layout, the antennas that its `.cfg` makes likely. `config` is its `.cfg`; where none is said,
-/// the one of the same name beside it, or the only one there.
+/// The same, and whether an `.npz` holds samples: an array of two axes or more, and no reflectors of a scene.
+pub fn is_raw_at(path: &Path) -> bool {
+    let is_npz = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz"));
+    is_raw(path) || is_npz && array::has_samples(path)
+}
+
+/// Opens a raw capture or an array as it is: the best layout, the antennas that its `.cfg` makes likely. `config` is its `.cfg`; where none
+/// is said, the one of the same name beside it, or the only one there.
 ///
 /// # Errors
 /// [`RecordingError`] names the file and what would help.
@@ -59,60 +60,98 @@ pub fn open(path: &Path, config: Option<&Path>) -> Result<Recording, RecordingEr
     import(path, config, None)?.recording()
 }
 
-/// Finds out what a raw capture holds, by the antennas of `board` or of those that its `.cfg` makes likely.
+/// Finds out what a raw capture or an array holds, by the antennas of `board` or of those that its `.cfg` makes likely.
 ///
 /// # Errors
 /// [`RecordingError`] names the file and what would help.
-pub fn import(path: &Path, config: Option<&Path>, board: Option<&Board>) -> Result<Imported, RecordingError> {
+pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>) -> Result<Imported, RecordingError> {
     let data = beside::data_of(path)?;
     let own = (data != path).then(|| path.to_owned());
     let config = config.map(Path::to_owned).or(own).or_else(|| beside::config_of(&data));
     let profile = config.as_deref().map(read_config).transpose()?;
+    let is_array = data.extension().is_some_and(|e| array::ENDINGS.iter().any(|end| e.eq_ignore_ascii_case(end)));
+    if is_array {
+        return array::import(&data, config, profile.as_ref(), board);
+    }
+    capture_of(data, config, profile.as_ref(), board)
+}
+
+/// Finds out how the bytes of one frame stand for samples, as a capture card sends them; `config` is the `.cfg` that set the radar up.
+///
+/// # Errors
+/// [`RecordingError`] names the `.cfg` or what is wrong with the bytes.
+pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) -> Result<Imported, RecordingError> {
+    let profile = read_config(config)?;
+    let data = config.with_file_name("frame.bin");
+    let stream = Stream::plain(Cursor::new(bytes)).map_err(|e| Fault::from(e).of(&data))?;
+    described(stream, data, Vec::new(), Some(config.to_owned()), Some(&profile), board)
+}
+
+/// Bytes of a frame as the `.cfg` at `path` says them.
+///
+/// # Errors
+/// [`RecordingError`] names the file and what is wrong with it.
+pub fn frame_bytes(path: &Path) -> Result<usize, RecordingError> {
+    let profile = read_config(path)?;
+    profile.frame_bytes().ok_or_else(|| {
+        Fault::key("the frame", "is larger than 1 GiB", "chirps and samples that fit in memory").of(path)
+    })
+}
+
+fn capture_of(
+    data: PathBuf,
+    config: Option<PathBuf>,
+    profile: Option<&RadarProfile>,
+    board: Option<&'static Board>,
+) -> Result<Imported, RecordingError> {
     let more = beside::more_files(&data);
     let source = open_all(&data, &more).map_err(|e| Fault::from(e).of(&data))?;
-    let mut stream = Stream::new(source).map_err(|e| Fault::from(e).of(&data))?;
-    let found = find(&mut stream, profile.as_ref()).map_err(|e| Fault::from(e).of(&data))?;
+    let stream = Stream::new(source).map_err(|e| Fault::from(e).of(&data))?;
+    described(stream, data, more, config, profile, board)
+}
+
+/// The layouts of a capture, and the texts that describe it.
+fn described<R: Read + io::Seek>(
+    mut stream: Stream<R>,
+    data: PathBuf,
+    more: Vec<PathBuf>,
+    config: Option<PathBuf>,
+    profile: Option<&RadarProfile>,
+    board: Option<&'static Board>,
+) -> Result<Imported, RecordingError> {
+    let found = find(&mut stream, profile).map_err(|e| Fault::from(e).of(&data))?;
     let best = found.best();
-    let line = line::line(best, profile.as_ref(), board);
-    let mut doubts = doubts_of(&found, profile.as_ref());
+    let line = line::line(best.counts, profile, board);
+    let mut doubts = doubts_of(&found, profile);
     doubts.extend(line.doubts.iter().cloned());
     doubts
         .extend((!more.is_empty()).then(|| format!("The capture goes on in {} more files, read as one.", more.len())));
-    let constant = constant_of(&mut stream, best, profile.as_ref());
+    let (constant, frames) = frame_of(&mut stream, best, profile);
     doubts.extend(constant.map(|db| {
         format!(
             "A constant part (leakage or offset) stands {db:.0} dB over all else and is taken out: recording.capture.constant = \"keep\" keeps it."
         )
     }));
     let mut sentences = found.sentences();
-    sentences.extend(profile.iter().flat_map(said));
-    let about = text::About {
-        data: &data,
-        config: config.as_deref(),
-        more: &more,
-        profile: profile.as_ref(),
-        line: &line,
-        takes_constant_out: constant.is_some(),
-        sentences: &sentences,
+    sentences.extend(profile.iter().flat_map(|p| said(p)));
+    let offer = |candidate: &Candidate| {
+        let line = line::line(candidate.counts, profile, board);
+        let about = text::About {
+            data: &data,
+            config: config.as_deref(),
+            more: &more,
+            profile,
+            line: &line,
+            takes_constant_out: constant.is_some(),
+            sentences: &sentences,
+        };
+        let (described, power) = (candidate.described(), candidate.power.clone());
+        Offer { described, log_odds: candidate.log_odds(), power, toml: text::text(candidate, &about) }
     };
-    let toml = text::text(best, &about);
-    Ok(Imported { data, config, found, toml, sentences, doubts })
-}
-
-impl Imported {
-    /// The recording as its text describes it.
-    ///
-    /// # Errors
-    /// [`RecordingError`] names the file, the key or the array.
-    pub fn recording(&self) -> Result<Recording, RecordingError> {
-        let folder = self.data.parent().unwrap_or(Path::new("")).to_owned();
-        let mut recording = from_parts(&self.toml, &self.data.with_extension("toml"), &|name| {
-            Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)) as Box<dyn Source>)
-        })?;
-        let known = recording.doubts.clone();
-        recording.doubts.splice(0..0, self.doubts.iter().filter(|d| !known.contains(d)).cloned());
-        Ok(recording)
-    }
+    let offers = found.candidates.iter().take(OFFERED).map(offer).collect();
+    let board = line.board;
+    let origin = Origin { data, config, offers, taken: 0, sentences, doubts, board, frames, frame: 0 };
+    Ok(Imported { origin, found: Some(found) })
 }
 
 /// Reads a `.cfg` in any encoding.
@@ -179,16 +218,16 @@ fn said(profile: &RadarProfile) -> Vec<String> {
     said
 }
 
-/// How far the constant part stands above all else in the first frame, decibels, where it does.
-fn constant_of<R: Read + io::Seek>(
+/// How far the constant part stands above all else in the first frame, decibels, where it does; and how many whole frames there are.
+fn frame_of<R: Read + io::Seek>(
     stream: &mut Stream<R>,
     best: &Candidate,
     profile: Option<&RadarProfile>,
-) -> Option<f64> {
+) -> (Option<f64>, u64) {
     let capture = capture(best, profile);
-    let plan = Plan::new(&capture, profile, stream.bytes()).ok()?;
-    let quality = Frame::read(stream, &capture, &plan).ok()?.quality;
-    (quality.tells_constant()).then_some(quality.constant_db)
+    let Ok(plan) = Plan::new(&capture, profile, stream.bytes()) else { return (None, 0) };
+    let Ok(Frame { quality, .. }) = Frame::read(stream, &capture, &plan) else { return (None, plan.frames) };
+    (quality.tells_constant().then_some(quality.constant_db), plan.frames)
 }
 
 /// A candidate's layout as it would stand in a text.

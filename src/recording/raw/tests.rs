@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use std::fs;
 
 /// Two transmitters, four receivers, 64 samples, four loops.
-const CFG: &str = "channelCfg 15 5 0\nadcCfg 2 1\nadcbufCfg -1 0 0 1 1\nprofileCfg 0 77 30 6 60 0 0 50 1 64 4000 0 0 30\n\
+pub const CFG: &str = "channelCfg 15 5 0\nadcCfg 2 1\nadcbufCfg -1 0 0 1 1\nprofileCfg 0 77 30 6 60 0 0 50 1 64 4000 0 0 30\n\
                    chirpCfg 0 0 0 0 0 0 0 1\nchirpCfg 1 1 0 0 0 0 0 4\nframeCfg 0 1 4 0 100 1 0\n";
 
 /// One frame of I Q pairs: an echo in range bin 11.4, at broadside.
@@ -16,7 +16,7 @@ fn frame() -> Vec<u8> {
     (0..4 * 2 * 4 * 64).flat_map(sample).flat_map(i16::to_le_bytes).collect()
 }
 
-fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
+pub fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     files.iter().for_each(|(name, bytes)| fs::write(folder.path().join(name), bytes).unwrap());
     folder
@@ -41,13 +41,13 @@ fn a_capture_is_opened_with_the_cfg_beside_it() {
 fn the_text_that_is_written_reads_the_same_samples() {
     let folder = folder(&[("a.bin", &frame()), ("a.cfg", CFG.as_bytes())]);
     let imported = import(&folder.path().join("a.bin"), None, None).unwrap();
-    fs::write(folder.path().join("r.toml"), &imported.toml).unwrap();
+    fs::write(folder.path().join("r.toml"), imported.origin.toml()).unwrap();
     let read = super::super::file::load(&folder.path().join("r.toml")).unwrap();
     assert_eq!(read.samples, imported.recording().unwrap().samples);
     assert!(
-        imported.toml.contains("config = \"a.cfg\"") && imported.toml.contains("parts = \"pairs\""),
+        imported.origin.toml().contains("config = \"a.cfg\"") && imported.origin.toml().contains("parts = \"pairs\""),
         "{}",
-        imported.toml
+        imported.origin.toml()
     );
 }
 
@@ -79,11 +79,11 @@ fn transmitters_at_another_height_are_left_out_of_the_line() {
     let bytes = [frame(), frame()].concat();
     let folder = folder(&[("a.bin", &bytes), ("a.cfg", three.as_bytes())]);
     let imported = import(&folder.path().join("a.bin"), None, None).unwrap();
-    assert!(imported.toml.contains("chirps = [0, 1]"), "{}", imported.toml);
+    assert!(imported.origin.toml().contains("chirps = [0, 1]"), "{}", imported.origin.toml());
     assert!(
-        imported.doubts.iter().any(|d| d.contains("Chirps 2 of a loop are sent at another height")),
+        imported.origin.doubts.iter().any(|d| d.contains("Chirps 2 of a loop are sent at another height")),
         "{:?}",
-        imported.doubts
+        imported.origin.doubts
     );
 }
 

@@ -1,7 +1,9 @@
 //! The TOML of a raw capture.
 
+use super::axes::Reading;
 use super::line::{Line, USUAL_CARRIER_HZ};
 use crate::radar::{Antennas, SPEED_OF_LIGHT};
+use crate::recording::AxisKind;
 use crate::recording::layout::{Candidate, Kind, Layout, Parts};
 use crate::recording::profile::RadarProfile;
 use std::fmt::Write;
@@ -22,29 +24,88 @@ pub(super) struct About<'a> {
 pub(super) fn text(best: &Candidate, about: &About<'_>) -> String {
     let name = about.data.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut out = format!("format = 3\nname = {}\nnotes = {}\n", quoted(&name), quoted(&about.sentences.join("\n")));
-    radar(&mut out, best, about);
+    let halves = if best.layout.parts == Parts::Real { 2 } else { 1 };
+    radar(&mut out, None, best.counts.samples.div_ceil(halves), about);
     out.push_str("\n[recording]\n");
     put(&mut out, "file", &quoted(&beside(about.data, about.data)));
-    let falls = about.profile.is_some_and(|p| !p.rises());
-    put(&mut out, "beat_sign", if falls { "\"-\"" } else { "\"+\"" });
-    if falls {
-        put(&mut out, "sweep", "\"down\"");
-    }
-    if about.profile.is_none() {
-        put(&mut out, "carrier_at", "\"middle\"");
-    }
+    signs(&mut out, about.profile, about.profile.is_none());
     capture(&mut out, best, about);
     out
 }
 
-fn radar(out: &mut String, best: &Candidate, about: &About<'_>) {
+/// An array whose axes were named.
+pub(super) struct Array<'a> {
+    pub reading: &'a Reading,
+    pub shape: &'a [usize],
+    /// Its name in the file.
+    pub key: Option<&'a str>,
+    /// How many transmitters send in turn along the axis of chirps.
+    pub in_turn: Option<usize>,
+}
+
+/// The text that describes an array.
+pub(super) fn of_array(array: &Array<'_>, about: &About<'_>) -> String {
+    let Array { reading, shape, key, in_turn } = *array;
+    let name = about.data.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let mut out = format!("format = 3\nname = {}\nnotes = {}\n", quoted(&name), quoted(&about.sentences.join("\n")));
+    let samples = reading.len(AxisKind::Sample, shape);
+    let said = about.profile.map(|p| {
+        let bandwidth = p.slope_hz_per_second.abs() * samples as f64 / p.samples_per_second;
+        [p.carrier_hz(), bandwidth, samples as f64 / p.samples_per_second]
+    });
+    radar(&mut out, said, samples, about);
+    out.push_str("\n[recording]\n");
+    put(&mut out, "file", &quoted(&beside(about.data, about.data)));
+    if let Some(key) = key {
+        put(&mut out, "array", &quoted(key));
+    }
+    let is_pair = in_turn.is_some() || reading.kinds.contains(&AxisKind::Transmitter);
+    let named = |kind: &AxisKind| quoted(&kind.to_string());
+    put(&mut out, "axes", &format!("[{}]", reading.kinds.iter().map(named).collect::<Vec<_>>().join(", ")));
+    signs(&mut out, about.profile, true);
+    if reading.kinds.contains(&AxisKind::Frame) {
+        out.push_str("frame = 0\n");
+    }
+    if reading.kinds.contains(&AxisKind::Chirp) {
+        out.push_str("# Or a number from 0, or \"mean\".\nchirp = \"strongest\"\n");
+    }
+    if let Some(transmitters) = in_turn {
+        put(&mut out, "transmitters_in_turn", &transmitters.to_string());
+    }
+    if is_pair && about.line.chirps.len() < in_turn.unwrap_or(reading.len(AxisKind::Transmitter, shape)) {
+        put(&mut out, "transmitters_taken", &format!("{:?}", about.line.chirps));
+    }
+    if let Some(taken) = about.line.receivers.as_ref().filter(|_| is_pair) {
+        put(&mut out, "receivers_taken", &format!("{taken:?}"));
+    }
+    out
+}
+
+/// Which way phases turn, and where on the chirp the carrier lies.
+fn signs(out: &mut String, profile: Option<&RadarProfile>, says_carrier: bool) {
+    let falls = profile.is_some_and(|p| !p.rises());
+    put(out, "beat_sign", if falls { "\"-\"" } else { "\"+\"" });
+    if falls {
+        put(out, "sweep", "\"down\"");
+    }
+    if says_carrier {
+        put(out, "carrier_at", "\"middle\"");
+    }
+}
+
+/// The table `[radar]`; `said` are carrier, bandwidth and seconds of the samples where the `.cfg` is not named in the text.
+fn radar(out: &mut String, said: Option<[f64; 3]>, samples: usize, about: &About<'_>) {
     out.push_str("\n[radar]\nconvention = \"physical\"\n");
-    if about.profile.is_none() {
+    if let Some([carrier, bandwidth, seconds]) = said {
+        put(out, "carrier_hz", &number(carrier));
+        put(out, "bandwidth_hz", &number(bandwidth));
+        put(out, "chirp_seconds", &number(seconds));
+        put(out, "samples", &samples.to_string());
+    } else if about.profile.is_none() {
         out.push_str("# Not known: a bin of range is one metre with this bandwidth.\n");
         put(out, "carrier_hz", &number(USUAL_CARRIER_HZ));
         put(out, "bandwidth_hz", &number(SPEED_OF_LIGHT / 2.0));
-        let halves = if best.layout.parts == Parts::Real { 2 } else { 1 };
-        put(out, "samples", &best.counts.samples.div_ceil(halves).to_string());
+        put(out, "samples", &samples.to_string());
     }
     let Line { transmitter_x_metres, receiver_x_metres, .. } = about.line;
     put(out, "transmitter_x_metres", &list(transmitter_x_metres));

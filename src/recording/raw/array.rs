@@ -1,0 +1,215 @@
+//! Arrays without a text: what their axes count by evidence, and the TOML that says so.
+
+use super::axes::{Reading, readings};
+use super::boards::Board;
+use super::imported::Imported;
+use super::line::{Line, USUAL_CARRIER_HZ, line, uniform};
+use super::text::{self, About};
+use crate::recording::described::open_file;
+use crate::recording::layout::{Certainty, Counts};
+use crate::recording::numbers::Numbers;
+use crate::recording::profile::RadarProfile;
+use crate::recording::{AxisKind, Fault, Offer, Origin, RecordingError, matlab, numpy};
+use crate::scene::npz::X_KEY;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// Readings that are offered.
+const OFFERED: usize = 4;
+
+/// How files of arrays end.
+pub(super) const ENDINGS: [&str; 5] = ["npy", "npz", "mat", "h5", "hdf5"];
+
+/// Finds out what the array in `data` holds.
+///
+/// # Errors
+/// [`RecordingError`] names the file and what would help.
+pub(super) fn import(
+    data: &Path,
+    config: Option<PathBuf>,
+    profile: Option<&RadarProfile>,
+    board: Option<&'static Board>,
+) -> Result<Imported, RecordingError> {
+    let (key, mut numbers) = largest(data).map_err(|fault| fault.of(data))?;
+    let mut doubts: Vec<String> = numbers.mend_signs().into_iter().collect();
+    let shape = numbers.shape().to_vec();
+    let mut all = readings(&numbers, profile);
+    all.truncate(OFFERED);
+    let Some(best) = all.first() else {
+        let expected = "2 to 5 axes, none of length 0: samples and elements, with chirps, frames or transmitters";
+        return Err(Fault::key("the array", format!("has shape {shape:?}"), expected).of(data));
+    };
+    let mut sentences = vec![format!(
+        "The array{} holds {}.",
+        key.as_ref().map_or(String::new(), |k| format!(" \"{k}\"")),
+        best.described(&shape)
+    )];
+    sentences.extend(best.reasons.iter().cloned());
+    if let Some(next) = all.get(1)
+        && Certainty::of(Some(best.log_odds - next.log_odds)) != Certainty::Sure
+    {
+        doubts.push(format!("What the axes count is likely, not sure. As likely is: {}.", next.described(&shape)));
+    }
+    if profile.is_none() {
+        doubts.push(
+            "No .cfg says the carrier and the slope: a bin of range is shown as one metre, and directions are those of elements half a \
+             wavelength apart."
+                .to_owned(),
+        );
+    }
+    let offer = |reading: &Reading| {
+        let in_turn = in_turn(reading, &shape, profile);
+        let line = line_of(reading, &shape, in_turn, profile, board);
+        let about = About {
+            data,
+            config: config.as_deref(),
+            more: &[],
+            profile,
+            line: &line,
+            takes_constant_out: false,
+            sentences: &sentences,
+        };
+        let array = text::Array { reading, shape: &shape, key: key.as_deref(), in_turn };
+        let (described, power) = (reading.described(&shape), reading.power.clone());
+        (Offer { described, log_odds: reading.log_odds, power, toml: text::of_array(&array, &about) }, line)
+    };
+    let (offers, lines): (Vec<Offer>, Vec<Line>) = all.iter().map(offer).unzip();
+    let board = lines.first().and_then(|line| line.board);
+    doubts.extend(lines.into_iter().take(1).flat_map(|line| line.doubts));
+    let frames = best.len(AxisKind::Frame, &shape) as u64;
+    let data = data.to_owned();
+    let origin = Origin { data, config: config.clone(), offers, taken: 0, sentences, doubts, board, frames, frame: 0 };
+    Ok(Imported { origin, found: None })
+}
+
+/// The array with the most numbers of the file, and its name where it has one.
+fn largest(data: &Path) -> Result<(Option<String>, Numbers), Fault> {
+    let open = || open_file(data).map(BufReader::new);
+    let ending = data.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let most = |all: Vec<(String, Vec<usize>)>| {
+        let count = |shape: &[usize]| shape.iter().fold(1usize, |n, len| n.saturating_mul(*len));
+        let largest = all.into_iter().max_by_key(|(_, shape)| count(shape));
+        largest
+            .map(|(key, _)| key)
+            .ok_or_else(|| Fault::key("the file", "holds no array of numbers", "one with samples"))
+    };
+    match ending.as_str() {
+        "npy" => Ok((None, numpy::read_npy(open()?)?)),
+        "npz" => {
+            let key = most(numpy::shapes(open()?)?)?;
+            let numbers = numpy::read_npz(open()?, &key)?;
+            Ok((Some(key), numbers))
+        }
+        "mat" => {
+            let key = most(matlab::shapes(open()?)?)?;
+            let numbers = matlab::read_mat(open()?, &key)?;
+            Ok((Some(key), numbers))
+        }
+        _ => Err(Fault::key(
+            "the file",
+            "is HDF5, which is not read",
+            "the array as an .npz (numpy.savez) or as a .mat saved with the option -v7",
+        )),
+    }
+}
+
+/// Arrays of an `.npz` that is a scene, or what the program itself wrote.
+const OTHERS: [&str; 4] = [X_KEY, "format_version", "net_output", "sub0"];
+
+/// Whether an `.npz` holds samples: an array of two axes or more, and none of a scene or of maps.
+pub(super) fn has_samples(path: &Path) -> bool {
+    let all = open_file(path).ok().and_then(|file| numpy::shapes(BufReader::new(file)).ok()).unwrap_or_default();
+    all.iter().all(|(key, _)| !OTHERS.contains(&key.as_str())) && all.iter().any(|(_, shape)| shape.len() > 1)
+}
+
+/// How many transmitters send in turn along the axis of chirps: those of the `.cfg`, where no axis counts them.
+fn in_turn(reading: &Reading, shape: &[usize], profile: Option<&RadarProfile>) -> Option<usize> {
+    let profile = profile?;
+    let (transmitters, chirps) = (profile.chirp_transmitters.len(), reading.len(AxisKind::Chirp, shape));
+    let is_so = transmitters > 1
+        && !profile.both_transmitters
+        && reading.kinds.contains(&AxisKind::Chirp)
+        && reading.len(AxisKind::Element, shape) == profile.receivers
+        && chirps == profile.loops * transmitters;
+    is_so.then_some(transmitters)
+}
+
+/// The antennas: those of the `.cfg` where the array counts them so, or elements half a wavelength apart.
+fn line_of(
+    reading: &Reading,
+    shape: &[usize],
+    in_turn: Option<usize>,
+    profile: Option<&RadarProfile>,
+    board: Option<&'static Board>,
+) -> Line {
+    let receivers = reading.len(AxisKind::Element, shape) * reading.len(AxisKind::Receiver, shape);
+    let chirps = in_turn.unwrap_or(reading.len(AxisKind::Transmitter, shape));
+    let loops = reading.len(AxisKind::Chirp, shape) / in_turn.unwrap_or(1);
+    let counts = Counts { samples: reading.len(AxisKind::Sample, shape), receivers, chirps, loops };
+    match profile {
+        Some(profile) if receivers == profile.receivers && chirps == profile.chirp_transmitters.len() => {
+            line(counts, Some(profile), board)
+        }
+        _ => uniform(counts, profile.map_or(USUAL_CARRIER_HZ, RadarProfile::carrier_hz)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::radar::SPEED_OF_LIGHT;
+    use crate::recording::file::load;
+    use crate::recording::raw::tests::{CFG, folder};
+    use ndarray::{Array4, ArrayD};
+    use ndarray_npy::WriteNpyExt;
+    use num_complex::Complex64;
+    use std::f64::consts::TAU;
+
+    /// Four loops of two transmitters in turn, four receivers, 64 samples: an echo in range bin 11, at a cosine of 0.25.
+    fn cube() -> Array4<Complex64> {
+        Array4::from_shape_fn((1, 8, 4, 64), |(_, chirp, receiver, n)| {
+            let element = (4 * (chirp % 2) + receiver) as f64;
+            let noise = ((n * 7 + receiver * 13 + chirp * 5) % 23) as f64 / 10.0;
+            Complex64::from_polar(900.0, TAU * (11.0 * n as f64 / 64.0 - 0.125 * element)) + noise
+        })
+    }
+
+    fn npy(values: ArrayD<Complex64>) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        values.write_npy(&mut bytes).unwrap();
+        bytes
+    }
+
+    #[test]
+    fn a_bare_array_is_opened_in_bins() {
+        let folder = folder(&[("cube.npy", &npy(cube().into_dyn()))]);
+        let recording = load(&folder.path().join("cube.npy")).unwrap();
+        assert_eq!((recording.radar.elements, recording.radar.samples), (4, 64));
+        let origin = recording.origin.clone().unwrap();
+        assert_eq!(origin.offers[0].described, "1 frames × 8 chirps × 4 elements × 64 samples");
+        assert!(recording.doubts.iter().any(|d| d.contains("No .cfg says the carrier")), "{:?}", recording.doubts);
+        assert!(recording.radar.range_resolution_metres() - 1.0 < 1e-9);
+    }
+
+    #[test]
+    fn the_cfg_tells_transmitters_in_turn_apart() {
+        let folder = folder(&[("cube.npy", &npy(cube().into_dyn())), ("cube.cfg", CFG.as_bytes())]);
+        let recording = load(&folder.path().join("cube.npy")).unwrap();
+        assert_eq!(recording.radar.elements, 8);
+        let samples = &recording.signal().unwrap().samples;
+        // The phase of an echo falls by an eighth of a turn from element to element, or rises, all along the line.
+        let steps: Vec<f64> = (1..8).map(|n| (samples[[n, 5]] / samples[[n - 1, 5]]).arg() / TAU).collect();
+        assert!(steps.iter().all(|step| (step.abs() - 0.125).abs() < 0.01), "{steps:?}");
+        let slope = SPEED_OF_LIGHT / (2.0 * 50e12 * 64.0 / 4e6);
+        assert!((recording.radar.range_resolution_metres() / slope - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_no_cube_is_told() {
+        let flat = ArrayD::from_elem(vec![64], Complex64::ONE);
+        let folder = folder(&[("flat.npy", &npy(flat)), ("new.h5", b"\x89HDF"), ("no.npz", b"PK")]);
+        let told = |name: &str| load(&folder.path().join(name)).unwrap_err().to_string();
+        assert!(told("flat.npy").contains("has shape [64]; expected 2 to 5 axes"), "{}", told("flat.npy"));
+        assert!(told("new.h5").contains("HDF5") && told("new.h5").contains("-v7"), "{}", told("new.h5"));
+        assert!(told("no.npz").contains("no.npz"), "{}", told("no.npz"));
+    }
+}

@@ -1,0 +1,34 @@
+//! What was found of a file, and how sure it is.
+
+use crate::recording::layout::{Certainty, Found};
+use crate::recording::{Origin, Recording, RecordingError};
+
+/// What was found of a file, and the texts that describe it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// The file, and the ways to read it.
+    pub origin: Origin,
+    /// The layouts of a raw capture; nothing for an array.
+    pub found: Option<Found>,
+}
+
+impl Imported {
+    /// How sure the choice is.
+    pub fn certainty(&self) -> Certainty {
+        Certainty::of(self.margin())
+    }
+
+    /// By how much the best has more log-odds than the next; none where there is no other.
+    pub fn margin(&self) -> Option<f64> {
+        let offers = &self.origin.offers;
+        Some(offers.first()?.log_odds - offers.get(1)?.log_odds)
+    }
+
+    /// The recording as its text describes it.
+    ///
+    /// # Errors
+    /// [`RecordingError`] names the file, the key or the array.
+    pub fn recording(&self) -> Result<Recording, RecordingError> {
+        self.origin.recording()
+    }
+}

@@ -1,0 +1,72 @@
+//! Lists of echoes on small arrays: what any method lists first is where the echo is.
+
+use apertura::methods;
+use apertura::radar::{Convention, Decibels, Radar};
+use apertura::reconstruct::found::reconstruct_and_find;
+use apertura::reconstruct::{NoisePrior, Request};
+use apertura::scene::Scene;
+use apertura::signal::{Floor, simulate};
+
+/// A physical radar of 77 GHz whose two ends are all of its elements, or of 86 the outer ones.
+fn radar(elements: usize) -> Radar {
+    let end_elements = if elements > 16 { 12 } else { elements / 2 };
+    let radar = Radar { elements, end_elements, samples: 64, bandwidth_hz: 1e9, ..Radar::default() };
+    radar.in_convention(Convention::Physical)
+}
+
+#[test]
+fn every_list_of_echoes_begins_with_the_true_one() {
+    let (mut wrong, mut listed) = (Vec::new(), 0);
+    for elements in [8, 12, 16, 86] {
+        let radar = radar(elements);
+        // Half of what the eye tells apart, or a tenth where that is finer.
+        let within = (1.0 / elements as f64).max(0.03);
+        for cosine in [0.1, -0.43] {
+            let range = 4.0f64;
+            let scene = Scene::of_points([(range * cosine, range * (1.0 - cosine * cosine).sqrt())]);
+            let ends = simulate(&radar, &scene, Floor::Snr(Decibels(30.0)), 3).unwrap().two_ends(&radar);
+            let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
+            for method in methods::all().iter().filter(|m| m.check_array(&radar).is_ok()) {
+                let Ok((_, found)) = reconstruct_and_find(method.as_ref(), &radar, &ends, &request) else { continue };
+                let Some(first) = found.first() else { continue };
+                listed += 1;
+                let is_there = (first.cos_theta - cosine).abs() < within
+                    && (first.range_metres - range).abs() < radar.range_resolution_metres();
+                if !is_there {
+                    wrong.push(format!(
+                        "{} on {elements}: {:.3} for {cosine} at {:.2} m",
+                        method.name(),
+                        first.cos_theta,
+                        first.range_metres
+                    ));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty() && listed > 40, "{listed} lists, of which\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn two_to_five_elements_are_answered_or_refused() {
+    for elements in 2..=5 {
+        let radar = Radar { elements, end_elements: elements / 2, samples: 32, ..Radar::default() }
+            .in_convention(Convention::Physical);
+        let scene = Scene::of_points([(0.1, 1.0)]);
+        let ends = simulate(&radar, &scene, Floor::Snr(Decibels(30.0)), 3).unwrap().two_ends(&radar);
+        let mut answers = 0;
+        for method in methods::all() {
+            match method.reconstruct(&radar, &ends, &Request::default()) {
+                Ok(answer) => {
+                    answers += 1;
+                    assert_eq!(answer.lambda.lambda.dim(), (32, elements), "{}", method.name());
+                    assert!(answer.lambda.lambda.iter().all(|v| (0.0..=1.0).contains(v)), "{}", method.name());
+                }
+                Err(error) => {
+                    let needed = format!("it needs {} elements of each end", method.fewest_end_elements());
+                    assert!(error.to_string().contains(&needed), "{}: {error}", method.name());
+                }
+            }
+        }
+        assert_eq!(answers, if elements < 4 { 0 } else { 2 }, "{elements} elements");
+    }
+}
