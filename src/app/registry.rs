@@ -31,6 +31,8 @@ macro_rules! every_panel {
             Disturbances disturbances::DisturbancesPanel, view of Radar, none, "Disturbances",
                 "An unsynchronised radar, and a wall that mirrors";
             Found found::FoundPanel, tool, none, "Found", "What the method found: angle, range and strength";
+            Recording recording::RecordingPanel, tool, none, "Recording",
+                "How the file of a recording was read, other ways to read it, its frames, and what is doubtful";
             Bounds bounds::BoundsPanel, tool, F8, "Bounds",
                 "How well any method could place a reflector, and what looks like it to chosen elements";
             Phasors phasors::PhasorsPanel, tool, A, "Phasors",

@@ -277,7 +277,7 @@ fn presets_of(ui: &mut Ui, memory: &Memory, failures: bool, asked: &mut Vec<Comm
 fn is_of_use(panel: Panel, input: &Input<'_>) -> bool {
     let has_content = match panel {
         Panel::Found => input.finds_reflectors,
-        Panel::Map(MapKind::Unexplained) => input.has_recording,
+        Panel::Map(MapKind::Unexplained) | Panel::Recording => input.has_recording,
         _ => true,
     };
     has_content || (input.is_open)(panel)

@@ -88,7 +88,7 @@ impl Purpose {
     /// How the file's name may end, and what such files are.
     pub fn kind(self) -> (&'static str, &'static [&'static str]) {
         match self {
-            Purpose::Open => ("Scenes and recordings", &["toml", "npz", "bin", "dat", "raw", "cfg"]),
+            Purpose::Open => ("Scenes and recordings", &["toml", "npz", "bin", "dat", "raw", "cfg", "npy", "mat"]),
             Purpose::SaveScene | Purpose::OwnScenes => ("Scenes", &["toml", "npz"]),
             Purpose::OpenLesson => ("Lessons", &["toml"]),
             Purpose::OpenLog | Purpose::ExportMetrics | Purpose::OpenRows | Purpose::SaveRows => ("Table", &["csv"]),

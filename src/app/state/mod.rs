@@ -34,7 +34,7 @@ pub use bounds_settings::{BoundsSettings, Elements};
 pub use chirp_settings::ChirpSettings;
 pub use command::{
     Command, DocumentCommand, EditCommand, EvaluationChoice, ExportCommand, LessonCommand, NewObject, RadarCommand,
-    RowsCommand, ThresholdChoice, ViewCommand, WindowCommand, WorkCommand,
+    RowsCommand, ThresholdChoice, ViewCommand, Way, WindowCommand, WorkCommand,
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
 pub use compare::{Compare, Layout};
