@@ -199,7 +199,11 @@ mod tests {
         output.lambda.slice_mut(ndarray::s![400..404, 200..210]).fill(0.95);
         output.lambda[[402, 205]] = 1.0;
         let judged = Shared::new(output.clone());
-        let request = KindsQuery { truth, outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None] };
+        let request = KindsQuery {
+            floor: Floor::Exact,
+            truth,
+            outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None],
+        };
         let Truth { source: Source { radar, scene, .. }, target, scale } = &request.truth;
         let footprints = Footprints::new(radar, scene, target, *scale);
         let [Some(fates), None] = judge(&footprints, &request) else { panic!("of the first alone") };

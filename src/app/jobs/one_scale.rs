@@ -2,7 +2,7 @@
 
 use crate::app::shared::Shared;
 use crate::app::state::MapKind;
-use crate::engine::{Frame, ReadyMap};
+use crate::engine::{EngineFrame, ReadyMap};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use std::collections::BTreeMap;
 
@@ -25,7 +25,11 @@ pub struct OneScale(BTreeMap<MapKind, Rescaled>);
 impl OneScale {
     /// The inputs, the target and the outputs on the scale of the strongest of inputs and target, which spans as many decibels as the widest.
     /// An output's own scale is the target's.
-    pub fn of(&mut self, frame: &Frame, outputs: [Option<&Shared<RangeAngleMap>>; 2]) -> BTreeMap<MapKind, Rescaled> {
+    pub fn of(
+        &mut self,
+        frame: &EngineFrame,
+        outputs: [Option<&Shared<RangeAngleMap>>; 2],
+    ) -> BTreeMap<MapKind, Rescaled> {
         let ready = |map: &ReadyMap| (Shared::from(&map.lambda), map.scale);
         let of_frame =
             [(MapKind::Input0, &frame.first), (MapKind::Input1, &frame.last), (MapKind::Target, &frame.full)];

@@ -294,7 +294,7 @@ mod tests {
     #[test]
     fn a_recording_shows_the_loops_of_its_frame() {
         let texts = |result: Option<DopplerResult>| {
-            let (radar, scene, mut memory) = (radar(1), Scene::default(), Memory::default());
+            let (radar, scene, mut memory) = (radar(1), Scene::default(), DopplerMemory::default());
             let panel = Harness::builder().with_size([700.0, 420.0]).build_ui(move |ui| {
                 let input = Input {
                     radar: &radar,
