@@ -39,7 +39,7 @@ pub use state::{
     Arrangement, BoundsSettings, Brightness, ChirpSettings, Command, Compare, Cursor, DifferenceView, Directions,
     DocumentCommand, EditCommand, Elements, Entry, EvaluationChoice, ExportCommand, FailureChoice, Layout,
     LessonCommand, MapKind, NewObject, Panel, Projection, RadarCommand, RowsCommand, SearchChoice, Settings,
-    ThresholdChoice, Units, ViewCommand, WindowCommand, WorkCommand, listed, listed_on_a_page,
+    ThresholdChoice, Units, ViewCommand, Way, WindowCommand, WorkCommand, listed, listed_on_a_page,
 };
 
 /// Why the app did not open.

@@ -31,6 +31,8 @@ macro_rules! every_panel {
             Disturbances disturbances::DisturbancesPanel, view of Radar, none, "Disturbances",
                 "An unsynchronised radar, and a wall that mirrors";
             Found found::FoundPanel, tool, none, "Found", "What the method found: angle, range and strength";
+            Recording recording::RecordingPanel, tool, none, "Recording",
+                "How the file of a recording was read, other ways to read it, its frames, and what is doubtful";
             Bounds bounds::BoundsPanel, tool, F8, "Bounds",
                 "How well any method could place a reflector, and what looks like it to chosen elements";
             Phasors phasors::PhasorsPanel, tool, A, "Phasors",
@@ -39,10 +41,10 @@ macro_rules! every_panel {
                 "Frequency against time of what is sent and what returns, the beat and its spectrum";
             RangeDoppler doppler::DopplerPanel, view of Chirp, Y, "Range-Doppler",
                 "Range against radial velocity of several chirps, and a timeline that plays the scene";
-            Several several::SeveralPanel, tool, S, "Compare settings",
-                "One map for several values of a constant: window, bandwidth, elements, spacing, SNR, method";
             Compare compare::ComparePanel, tool, J, "Compare",
                 "Two methods on this scene: side by side, flipped in place, or parted by an edge";
+            Several several::SeveralPanel, view of Compare, S, "Compare settings",
+                "One map for several windows, bandwidths, elements, spacings, floors, noise levels, radars or methods";
             Timing timing::TimingPanel, developer, F7, "Timing",
                 "What each stage of the last update cost, and what was skipped and why";
             Training training::TrainingPanel, developer, F12, "Training", "The loss of a network while it is trained";

@@ -186,6 +186,18 @@ impl Document {
         Ok(())
     }
 
+    /// The same recording read another way: with what is laid over it, where its radar stays the same. `None` where no recording is there.
+    pub fn read_another_way(&self, recording: Recording) -> Option<Self> {
+        let before = self.measured.as_ref()?;
+        let is_same_radar = recording.radar == before.recording.radar;
+        let measured = Measured { recording: Arc::new(recording), source: before.source.clone() };
+        if !is_same_radar {
+            return Some(Document::over(measured));
+        }
+        let document = Document::new(self.content.clone(), self.path.clone(), self.saved.clone());
+        Some(Document { measured: Some(measured), ..document })
+    }
+
     /// The recording that stands where the echoes of the scene would, if one does.
     pub fn recording(&self) -> Option<&Arc<Recording>> {
         self.measured.as_ref().map(|m| &m.recording)

@@ -11,7 +11,7 @@
 //! | `capture`, `profile` | samples of a capture card, and the `.cfg` that set the radar up |
 //! | [`layout`] | how the bytes of a raw capture stand for samples, by evidence |
 //! | [`raw`] | raw captures and arrays as they are: the text that describes them is made |
-//! | `origin` | where such a recording comes from, and what else its bytes could be |
+//! | `origin`, `reread` | where such a recording comes from, what else its bytes could be, and reading them so |
 //! | [`packets`] | packets that a capture card sends, to frames |
 //! | `axes`, `analytic` | an array of any shape, of real samples too, to `[elements, samples]` |
 //! | `calibration` | what is taken off each element |
@@ -38,6 +38,7 @@ pub mod packets;
 pub mod presets;
 mod profile;
 pub mod raw;
+mod reread;
 mod said_radar;
 mod said_recording;
 mod samples;

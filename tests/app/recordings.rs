@@ -2,7 +2,8 @@
 
 use crate::session::{Session, harness, step_until};
 use apertura::app::{
-    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand,
+    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, Way,
+    WindowCommand,
 };
 use apertura::interact::{Document, Editor, Place};
 use apertura::maps::Normalisation;
@@ -242,4 +243,39 @@ fn a_selected_point_calibrates_the_elements() {
     s.settle();
     let left = s.state().editor().scene().disturbances.elements.spread();
     assert!(left.gain.0 < 0.01 && left.phase_degrees < 0.5, "{left:?}");
+}
+
+/// A capture of two frames of I Q pairs with its `.cfg`, in the session's folder: one transmitter, four receivers, four loops; an echo in range
+/// bin 11.
+fn captured(s: &Session) -> PathBuf {
+    let sample = |n: usize| {
+        let turns = std::f64::consts::TAU * 11.0 * (n % 64) as f64 / 64.0;
+        let noise = |of: usize| ((n * of) % 23) as f64 / 4.0;
+        [(900.0 * turns.cos() + noise(7)) as i16, (900.0 * turns.sin() + noise(13)) as i16]
+    };
+    let bytes: Vec<u8> = (0..2 * 4 * 4 * 64).flat_map(sample).flat_map(i16::to_le_bytes).collect();
+    let cfg = "channelCfg 15 1 0\nadcCfg 2 1\nadcbufCfg -1 0 0 1 1\nprofileCfg 0 77 30 6 60 0 0 50 1 64 4000 0 0 30\n\
+               chirpCfg 0 0 0 0 0 0 0 1\nframeCfg 0 0 4 0 100 1 0\n";
+    let path = s.folder.path().join("room.bin");
+    std::fs::write(&path, bytes).unwrap();
+    std::fs::write(path.with_extension("cfg"), cfg).unwrap();
+    path
+}
+
+#[test]
+fn a_capture_is_opened_and_read_another_way() {
+    let mut s = with_iaa();
+    let path = captured(&s);
+    s.ask(DocumentCommand::OpenPath(path));
+    assert!(s.state().arrangement().is_open(Panel::Recording));
+    let origin = |s: &Session| s.state().editor().document().recording().unwrap().origin.clone().unwrap();
+    assert_eq!((origin(&s).frames, origin(&s).taken, s.state().radar().elements), (2, 0, 4));
+    s.ask(WindowCommand::OpenPanel(Panel::RangeDoppler));
+    assert_eq!(s.state().doppler_peak(), Some((11, 2)), "four loops, at rest");
+    s.ask(DocumentCommand::ReadAnotherWay(Way::Frame(1)));
+    assert_eq!((origin(&s).frame, s.state().editor().document().title().as_str()), (1, "room.bin"));
+    s.ask(DocumentCommand::ReadAnotherWay(Way::Layout(1)));
+    assert_eq!(origin(&s).taken, 1);
+    undo(&mut s);
+    assert_eq!(origin(&s).taken, 0);
 }

@@ -2,9 +2,10 @@
 
 use super::{saving, shared};
 use crate::app::jobs::{Jobs, Purpose};
-use crate::app::state::{DocumentCommand, MapKind, Panel, Settings, State};
+use crate::app::state::{DocumentCommand, MapKind, Panel, Settings, State, Way};
 use crate::interact::Document;
-use crate::recording;
+use crate::recording::raw::boards;
+use crate::recording::{self, raw};
 use crate::scene::Scene;
 use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
@@ -29,6 +30,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) {
         DocumentCommand::Discard(id) => state.editor.discard(id),
         DocumentCommand::Preset(index) => preset(state, index),
         DocumentCommand::Recording(index) => shipped_recording(state, index),
+        DocumentCommand::ReadAnotherWay(way) => read_another_way(state, way),
         DocumentCommand::RandomScene(kind) => random_scene(state, kind),
         DocumentCommand::SetNextRandom { seed, number } => {
             (state.settings.random_seed, state.settings.random_number) = (seed, number);
@@ -51,7 +53,10 @@ fn show(state: &mut State, label: &str, document: Document) {
     use_a_method_that_can(state);
     if let Some(recording) = recording {
         show_recording_panels(state);
-        recording.doubts.iter().for_each(|doubt| state.notices.error(doubt.clone()));
+        // What is doubtful stands in the panel.
+        if recording.origin.is_some() || !recording.doubts.is_empty() {
+            state.arrangement.set_open(Panel::Recording, true);
+        }
     }
 }
 
@@ -112,6 +117,26 @@ fn shipped_recording(state: &mut State, index: usize) {
     match Document::shipped_recording(preset) {
         Ok(document) => show(state, "recording", document),
         Err(error) => state.notices.error(format!("Recording {}: {error}", preset.id)),
+    }
+}
+
+/// Reads the file of the recording on screen another way; on any error it stays as it is.
+fn read_another_way(state: &mut State, way: Way) {
+    let Some(origin) = state.editor.document().recording().and_then(|r| r.origin.clone()) else { return };
+    let read = match way {
+        Way::Layout(taken) => origin.with(taken, 0),
+        Way::Frame(frame) => origin.with(origin.taken, frame),
+        Way::Board(name) => raw::import(&origin.data, origin.config.as_deref(), boards::by_name(name))
+            .and_then(|imported| imported.recording()),
+    };
+    match read {
+        Ok(recording) => {
+            if let Some(document) = state.editor.document().read_another_way(recording) {
+                state.editor.open("read another way", document);
+                use_a_method_that_can(state);
+            }
+        }
+        Err(error) => state.notices.error(format!("{error}\nThe recording on screen was kept.")),
     }
 }
 

@@ -19,6 +19,7 @@ pub mod map;
 pub mod objects;
 pub mod phasors;
 pub mod radar;
+pub mod recording;
 pub mod roc;
 pub mod run_time;
 pub mod scene;

@@ -5,7 +5,7 @@ use eframe::egui;
 use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
-/// What somebody is at: each task has an arrangement of panels of its own, kept as the user leaves it.
+/// What the window is used for: each task has an arrangement of panels of its own, kept as the user leaves it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Task {
     /// The scene, its settings and all maps.
@@ -75,17 +75,18 @@ fn explore() -> Tree<Panel> {
     let [in0, in1, target, output, target_above, output_above, difference, doubt, unexplained] =
         MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
     let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
-    let [guide, lesson, radar] = [Panel::Guide, Panel::Lesson, Panel::Radar].map(&mut pane);
-    let of_results = [Panel::Found, Panel::Bounds, Panel::Phasors, Panel::Chirp, Panel::Training, Panel::Several];
+    let [guide, lesson, recording, radar] =
+        [Panel::Guide, Panel::Lesson, Panel::Recording, Panel::Radar].map(&mut pane);
+    let of_results = [Panel::Found, Panel::Bounds, Panel::Phasors, Panel::Chirp, Panel::Training];
     let tools = of_results.map(pane);
-    for closed in [timing, guide, lesson, radar, doubt, unexplained].iter().chain(&tools) {
+    for closed in [timing, guide, lesson, recording, radar, doubt, unexplained].iter().chain(&tools) {
         tiles.set_visible(*closed, false);
     }
     let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
     let scene = tabs(&mut tiles, vec![scene]);
     let controls = tabs(&mut tiles, vec![controls, radar, timing]);
     // What is read while settings change stands beside them.
-    let beside = tabs(&mut tiles, vec![guide, lesson]);
+    let beside = tabs(&mut tiles, vec![guide, lesson, recording]);
     let inspector = tabs(&mut tiles, vec![inspector, objects]);
     let left = column(&mut tiles, vec![scene, controls, inspector], &[0.40, 0.37, 0.23]);
     let first = tabs(&mut tiles, vec![in0]);

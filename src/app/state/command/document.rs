@@ -4,6 +4,17 @@ use crate::app::state::SaveAnswer;
 use crate::scene::generate::Kind;
 use std::path::PathBuf;
 
+/// Another way to read the file of a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// By this of the layouts that are offered.
+    Layout(usize),
+    /// Another frame, from 0.
+    Frame(u64),
+    /// With the antennas of the board of this name.
+    Board(&'static str),
+}
+
 /// Commands that put another scene on screen, or this one in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DocumentCommand {
@@ -19,7 +30,7 @@ pub enum DocumentCommand {
     SaveAs,
     /// Save the scene in this file.
     SaveTo(PathBuf),
-    /// Whether the scene is saved in a file that can't hold all of it, or that somebody else has written to.
+    /// Whether the scene is saved in a file that can't hold all of it, or that another program has written to.
     AnswerSave(SaveAnswer),
     /// Put this unsaved document, which another took the place of, on screen again.
     Recover(u64),
@@ -29,6 +40,8 @@ pub enum DocumentCommand {
     Preset(usize),
     /// Open a recording that comes with the program.
     Recording(usize),
+    /// Read the file of the recording another way.
+    ReadAnotherWay(Way),
     /// Make a random test scene.
     RandomScene(Kind),
     /// Which random scene is next.

@@ -11,7 +11,7 @@ mod view;
 mod window;
 mod work;
 
-pub use document::DocumentCommand;
+pub use document::{DocumentCommand, Way};
 pub use edit::EditCommand;
 pub use export::ExportCommand;
 pub use lesson::LessonCommand;

@@ -1,0 +1,62 @@
+//! Recordings of a file without a text: read by any of the texts that describe it.
+
+use super::described::{from_parts, loops_of, open_file};
+use super::samples::Open;
+use super::{Origin, Recording, RecordingError};
+use crate::radar::Radar;
+use crate::signal::ChirpSamples;
+use std::io::{BufReader, Cursor};
+use std::path::Path;
+use std::sync::Arc;
+
+impl Origin {
+    /// The same file read another way, or another frame of it.
+    ///
+    /// # Errors
+    /// As [`Origin::recording`].
+    pub fn with(&self, taken: usize, frame: u64) -> Result<Recording, RecordingError> {
+        Origin { taken, frame, ..self.clone() }.recording()
+    }
+
+    /// The recording as the text of the way that was taken describes it.
+    ///
+    /// # Errors
+    /// [`RecordingError`] names the file, the key or the array.
+    pub fn recording(&self) -> Result<Recording, RecordingError> {
+        let folder = self.data.parent().unwrap_or(Path::new("")).to_owned();
+        self.read(&|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))))
+    }
+
+    /// The same of a frame whose bytes are here in place of the file.
+    ///
+    /// # Errors
+    /// As [`Origin::recording`].
+    pub fn recording_of(&self, bytes: &[u8]) -> Result<Recording, RecordingError> {
+        let folder = self.data.parent().unwrap_or(Path::new("")).to_owned();
+        let own = self.data.file_name().map(|name| name.to_string_lossy().into_owned());
+        self.read(&|name| match own.as_deref() == Some(name) {
+            true => Ok(Box::new(Cursor::new(bytes.to_vec()))),
+            false => Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))),
+        })
+    }
+
+    /// Every loop of the frame, for a range-Doppler map: the radar with their number and interval, and the samples,
+    /// `[loops, elements, samples]`.
+    ///
+    /// # Errors
+    /// As [`Origin::recording`], and where no `.cfg` says the interval of chirps.
+    pub fn loops(&self) -> Result<(Radar, ChirpSamples), RecordingError> {
+        let folder = self.data.parent().unwrap_or(Path::new("")).to_owned();
+        loops_of(&self.toml(), &self.data.with_extension("toml"), &|name| {
+            Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)))
+        })
+    }
+
+    fn read(&self, open: Open<'_>) -> Result<Recording, RecordingError> {
+        let mut recording = from_parts(&self.toml(), &self.data.with_extension("toml"), open)?;
+        let known = recording.doubts.clone();
+        recording.doubts.splice(0..0, self.doubts.iter().filter(|d| !known.contains(d)).cloned());
+        recording.origin = Some(Arc::new(self.clone()));
+        Ok(recording)
+    }
+}
