@@ -60,7 +60,8 @@ pub fn argument(py: Python<'_>, message: String) -> PyErr {
 
 /// A whole number from 0 to the largest of `T`, as the argument of this name.
 pub fn whole<T: TryFrom<i128> + Bounded>(name: &str, number: i128) -> PyResult<T> {
-    T::try_from(number).map_err(|_| value(format!("{name} is {number}; expected a whole number from 0 to {}", T::MAX_COUNT)))
+    T::try_from(number)
+        .map_err(|_| value(format!("{name} is {number}; expected a whole number from 0 to {}", T::MAX_COUNT)))
 }
 
 /// Unsigned numbers.

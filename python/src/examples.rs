@@ -12,7 +12,7 @@ use apertura::network::floors::Floors;
 use apertura::network::live::arrays::Arrays;
 use apertura::network::live::constants::turn_rows;
 use apertura::network::live::dataset::{self as files, DatasetError, DatasetRequest, ExamplePart};
-use apertura::network::live::examples::{self, Example, ExamplesRequest, Features, EndSamples};
+use apertura::network::live::examples::{self, EndSamples, Example, ExamplesRequest, Features};
 use apertura::network::live::features::{FeatureExtractor, LiveInput};
 use apertura::network::live::grid::{COARSE, COARSE_CHANNELS, FINE, FINE_CHANNELS, ROW_CHANNELS};
 use apertura::network::live::radars::Radars;

@@ -62,12 +62,17 @@ pub fn object(from: &Bound<'_, PyAny>, index: usize) -> PyResult<Object> {
             let seed = field(from, "seed", &what)?;
             Object::Gaussian(GaussianCluster { seed, ..cluster })
         }
-        Some("wall") => Object::Wall(Wall::new(number("x_metres")?, number("y_metres")?, number("length_metres")?, number("angle_degrees")?)),
+        Some("wall") => Object::Wall(Wall::new(
+            number("x_metres")?,
+            number("y_metres")?,
+            number("length_metres")?,
+            number("angle_degrees")?,
+        )),
         Some("box") => Object::Box(Block::new(
-                [number("x_metres")?, number("y_metres")?],
-                [number("length_metres")?, number("width_metres")?],
-                number("angle_degrees")?,
-            )),
+            [number("x_metres")?, number("y_metres")?],
+            [number("length_metres")?, number("width_metres")?],
+            number("angle_degrees")?,
+        )),
         Some("post") => Object::Post(Post::new(number("x_metres")?, number("y_metres")?, number("radius_metres")?)),
         Some("polygon") => Object::Polygon(Polygon::new(corners(from, &what)?)),
         _ => {

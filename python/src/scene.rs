@@ -13,7 +13,7 @@ use apertura::scene::file::{SceneFile, from_toml, load, save, to_toml};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::scene::presets::{ALL, Preset};
 use apertura::scene::{self, Disturbances};
-use apertura::share::{VisiblePart, SharedScene, SharedView};
+use apertura::share::{SharedScene, SharedView, VisiblePart};
 use apertura::signal::{Floor, Unfinished, simulate_for};
 use numpy::PyArray2;
 use pyo3::exceptions::PyTypeError;

@@ -1,6 +1,6 @@
 //! Transmitters apart from receivers, held to sums of their own: samples, maps, bounds, recordings, methods.
 
-use super::off_line::{largest_difference, sample};
+use super::off_line::{largest_difference, sample, straight as small};
 use apertura::bounds::cramer_rao;
 use apertura::engine::{Engine, MapRequest};
 use apertura::files::npz::write_npz;
@@ -10,9 +10,9 @@ use apertura::radar::{Antennas, Decibels, Layout, Radar, presets::RadarPreset};
 use apertura::reconstruct::found::reconstruct_and_find;
 use apertura::reconstruct::{Detection, NoisePrior, ReconstructError, Request};
 use apertura::recording::{Recording, file};
-use apertura::scene::{Block, Object, Point, Reflector, Scene, Wall};
+use apertura::scene::{Object, Point, Reflector, Scene};
 use apertura::signal::chirps::{chirp_elements, simulate_chirps};
-use apertura::signal::{Floor, judge, simulate};
+use apertura::signal::{Floor, simulate};
 use ndarray::Array3;
 use num_complex::Complex64;
 use rand::seq::SliceRandom;
@@ -21,18 +21,13 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use std::f64::consts::TAU;
 
-fn small(transmitters: usize, receivers: usize) -> Radar {
-    let usual = Radar { bandwidth_hz: 1e9, samples: 96, ..Radar::default() };
-    usual.of_pairs(transmitters, receivers).unwrap()
-}
-
 /// The same elements, each sending and hearing by itself.
 fn monostatic(radar: &Radar) -> Radar {
     Radar { antennas: None, ..radar.clone() }
 }
 
 /// Three by eight pairs of which some stand at the place of another, and whose last transmitter leaves gaps.
-fn with_gaps() -> Radar {
+pub fn with_gaps() -> Radar {
     let radar = small(3, 8);
     let antennas = radar.antennas.clone().unwrap();
     let step = 2.0 * radar.element_spacing_metres;
@@ -76,51 +71,6 @@ fn the_search_finds_points_beside_gaps() {
         let polar = radar.polar_of(point.x_metres, point.y_metres);
         assert!((found.range_metres - polar.range_metres).abs() < 0.03, "{point:?}: {found:?}");
         assert!((found.cos_theta - polar.cos_theta).abs() < 0.02, "{point:?}: {found:?}");
-    }
-}
-
-#[test]
-fn samples_of_pairs_are_a_direct_sum() {
-    let points = [(0.6, 1.4), (-2.0, 5.0), (1.0, 9.0), (0.1, 3.0), (-4.0, 7.0)];
-    for radar in [small(3, 4), small(12, 16), small(2, 31), with_gaps()] {
-        let antennas = radar.antennas.clone().unwrap();
-        let signal = simulate(&radar, &Scene::of_points(points), Floor::Exact, 0).unwrap();
-        for (n, pair) in antennas.pairs().iter().enumerate() {
-            let Some([t, r]) = *pair else {
-                assert!(signal.samples.row(n).iter().all(|v| v.norm_sqr() == 0.0), "element {n} is a gap");
-                continue;
-            };
-            let (transmitter, receiver) = (antennas.transmitter_x_metres()[t], antennas.receiver_x_metres()[r]);
-            for sample_number in [0, 1, 50, 95] {
-                let direct = sample(&radar, [transmitter, receiver].map(|x| [x, 0.0]), &points, sample_number)
-                    * radar.transmit_power_watts;
-                let off = (signal.samples[[n, sample_number]] - direct).norm() / signal.peak();
-                assert!(off < 1e-10, "element {n}, sample {sample_number}: {off:e}");
-            }
-        }
-    }
-}
-
-fn bodies() -> Scene {
-    let objects = vec![
-        Object::Wall(Wall::new(-1.0, 3.0, 2.0, 10.0)),
-        Object::Box(Block::new([0.8, 2.0], [0.5, 0.4], 80.0)),
-        Object::Point(Point::new(0.2, 4.0)),
-    ];
-    Scene { objects, ..Scene::default() }
-}
-
-#[test]
-fn points_with_bodies_are_what_double_double_arithmetic_gives() {
-    for radar in [small(3, 4), small(4, 5)] {
-        for scene in [bodies(), Scene::of_points((0..9).map(|i| (f64::from(i) - 4.0, 1.5 + 0.7 * f64::from(i))))] {
-            let echoing = apertura::scattering::Echoing::of(&radar, &scene);
-            let judged = judge::beat_signal(&radar, &echoing);
-            for floor in [Floor::Exact, Floor::Thesis] {
-                let off = largest_difference(&judged, &simulate(&radar, &scene, floor, 0).unwrap());
-                assert!(off < 1e-10, "over {floor}: {off:e}");
-            }
-        }
     }
 }
 

@@ -7,7 +7,7 @@ use super::grid::{COARSE, COARSE_CHANNELS, CONSTANTS, FINE, FINE_CHANNELS, ROW_C
 pub const INPUT_CHANNELS: usize = FINE_CHANNELS * FOLD + COARSE_CHANNELS + ROW_CHANNELS + SCALARS + 4 + CONSTANTS;
 pub(super) const FOLD: usize = FINE / COARSE;
 /// Columns of the coarse head's side-lobe sources.
-pub(super) const WIDE: usize = 128;
+pub(super) const WIDE_COLUMNS: usize = 128;
 pub(super) const DECODER_CHANNELS: usize = 8;
 
 /// Channels and residual blocks of each level.

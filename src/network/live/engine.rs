@@ -2,7 +2,7 @@
 //!
 //! [`super::module`] is what trains and what this is tested against; this is what runs during a drag.
 
-use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, LiveConfig, WIDE};
+use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, LiveConfig, WIDE_COLUMNS};
 use super::constants::{SPACING_AT, window_of};
 use super::doubt::DoubtHead;
 use super::features::LiveInput;
@@ -97,7 +97,7 @@ impl LiveEngine {
             widen: layers.widened("widen.conv", c0, DECODER_CHANNELS)?,
             fine1: layers.conv("fine1.conv", [DECODER_CHANNELS + FINE_CHANNELS; 2], config.fine)?,
             fine2: layers.small("fine2", config.fine, 2 * COLUMNS_PER_FINE, 1)?,
-            row_sources: layers.small("row_sources", c0, WIDE / COARSE, 1)?,
+            row_sources: layers.small("row_sources", c0, WIDE_COLUMNS / COARSE, 1)?,
             lobes: WindowLobes::all(file)?,
             scalar1: layers.linear("scalar1", [2 * c3 + SCALARS + CONSTANTS, CONSTANTS], 64)?,
             scalar2: layers.linear("scalar2", [64, 0], 2)?,
@@ -215,12 +215,12 @@ fn decode(
     let computed = kernels.columns.add_up(floor, unseen, read, lobes);
     let mut map = vec![0.0; ROWS * COLUMNS];
     map.par_chunks_mut(ROWS_AT_ONCE * COLUMNS).enumerate().for_each(|(chunk, lines)| {
-        let mut wide = [0.0; ROWS_AT_ONCE * WIDE];
-        for (at, (line, wide)) in lines.chunks_exact_mut(COLUMNS).zip(wide.chunks_exact_mut(WIDE)).enumerate() {
+        let mut wide = [0.0; ROWS_AT_ONCE * WIDE_COLUMNS];
+        for (at, (line, wide)) in lines.chunks_exact_mut(COLUMNS).zip(wide.chunks_exact_mut(WIDE_COLUMNS)).enumerate() {
             let row = chunk * ROWS_AT_ONCE + at;
             fill_line(heads, lobes, row, line);
             let cells = sources.data[row * COARSE * sources.c..].chunks_exact(sources.c);
-            spread_out(cells, 0..WIDE / COARSE, wide);
+            spread_out(cells, 0..WIDE_COLUMNS / COARSE, wide);
             for (w, [a, b, c, d, e, f, g, h]) in wide.iter_mut().zip(line.as_chunks::<COLUMNS_PER_SOURCE>().0) {
                 // Pair by pair, which a processor does side by side.
                 *w += (((a + b) + (c + d)) + ((e + f) + (g + h))) / COLUMNS_PER_SOURCE as f32;
@@ -233,11 +233,11 @@ fn decode(
 }
 
 /// Adds what the sources `wide` of some lines add to all their cells, and the floor.
-fn add_lobes_in_angle(rows: &[f32], floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE], lines: &mut [f32]) {
+fn add_lobes_in_angle(rows: &[f32], floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE_COLUMNS], lines: &mut [f32]) {
     let simd = Simd::chosen();
-    for (block, kernel) in rows.chunks_exact(WIDE * PRODUCT_COLUMNS).enumerate() {
+    for (block, kernel) in rows.chunks_exact(WIDE_COLUMNS * PRODUCT_COLUMNS).enumerate() {
         let mut lobes = [0.0; ROWS_AT_ONCE * PRODUCT_COLUMNS];
-        product(simd, wide, kernel, std::iter::once(0..WIDE), &mut lobes);
+        product(simd, wide, kernel, std::iter::once(0..WIDE_COLUMNS), &mut lobes);
         for (line, lobes) in lines.chunks_exact_mut(COLUMNS).zip(lobes.chunks_exact(PRODUCT_COLUMNS)) {
             let cells = line[block * PRODUCT_COLUMNS * COLUMNS_PER_SOURCE..].chunks_exact_mut(COLUMNS_PER_SOURCE);
             for (cells, lobe) in cells.zip(lobes) {
@@ -249,7 +249,7 @@ fn add_lobes_in_angle(rows: &[f32], floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE
 
 const ROWS_AT_ONCE: usize = 8;
 
-const COLUMNS_PER_SOURCE: usize = COLUMNS / WIDE;
+const COLUMNS_PER_SOURCE: usize = COLUMNS / WIDE_COLUMNS;
 
 /// Amplitudes that these channels of neighbouring cells say, side by side.
 fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>, out: &mut [f32]) {

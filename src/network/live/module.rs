@@ -1,7 +1,7 @@
 //! The live network as a burn module.
 
 pub use super::config::INPUT_CHANNELS;
-use super::config::{DECODER_CHANNELS, FOLD, LiveConfig, WIDE};
+use super::config::{DECODER_CHANNELS, FOLD, LiveConfig, WIDE_COLUMNS};
 use super::constants::{SPACING_AT, WINDOWS, WINDOWS_AT};
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
@@ -108,14 +108,14 @@ impl LiveNetwork {
             widen: WrapConv::new(c0, DECODER_CHANNELS * FOLD, device),
             fine1: WrapConv::new(DECODER_CHANNELS + FINE_CHANNELS, config.fine, device),
             fine2: small(mix(config.fine, 2 * COLUMNS / FINE)),
-            row_sources: small(mix(c0, WIDE / COARSE)),
+            row_sources: small(mix(c0, WIDE_COLUMNS / COARSE)),
             col_kernel: Param::from_tensor(hann_tail(ROWS, -0.5, device)),
-            row_kernel: Param::from_tensor(hann_tail(WIDE, -1.0, device)),
+            row_kernel: Param::from_tensor(hann_tail(WIDE_COLUMNS, -1.0, device)),
             col_kernels: Param::from_tensor(
                 hann_tail(ROWS, -0.5, device).unsqueeze_dim::<2>(0).repeat_dim(0, WINDOWS - 1),
             ),
             row_kernels: Param::from_tensor(
-                hann_tail(WIDE, -1.0, device).unsqueeze_dim::<2>(0).repeat_dim(0, WINDOWS - 1),
+                hann_tail(WIDE_COLUMNS, -1.0, device).unsqueeze_dim::<2>(0).repeat_dim(0, WINDOWS - 1),
             ),
             scalar1: LinearConfig::new(2 * c3 + SCALARS + CONSTANTS, 64).init(device),
             scalar2: zeroed(LinearConfig::new(64, 2).init(device)),
@@ -170,11 +170,13 @@ impl LiveNetwork {
         };
         let column = kernel(&self.col_kernel, &self.col_kernels, ROWS).matmul(plane(1));
         let sharp = plane(0) + column;
-        let sources = spread_columns(self.row_sources.forward(y0), WIDE / COARSE).reshape([n, ROWS, WIDE]);
-        let each = COLUMNS / WIDE;
-        let pooled = sharp.clone().reshape([n, ROWS, WIDE, each]).mean_dim(3).reshape([n, ROWS, WIDE]);
-        let row = (amplitudes(sources) + pooled).matmul(kernel(&self.row_kernel, &self.row_kernels, WIDE));
-        let row = row.reshape([n, ROWS, WIDE, 1]).expand([n, ROWS, WIDE, each]).reshape([n, ROWS, COLUMNS]);
+        let sources =
+            spread_columns(self.row_sources.forward(y0), WIDE_COLUMNS / COARSE).reshape([n, ROWS, WIDE_COLUMNS]);
+        let each = COLUMNS / WIDE_COLUMNS;
+        let pooled = sharp.clone().reshape([n, ROWS, WIDE_COLUMNS, each]).mean_dim(3).reshape([n, ROWS, WIDE_COLUMNS]);
+        let row = (amplitudes(sources) + pooled).matmul(kernel(&self.row_kernel, &self.row_kernels, WIDE_COLUMNS));
+        let row =
+            row.reshape([n, ROWS, WIDE_COLUMNS, 1]).expand([n, ROWS, WIDE_COLUMNS, each]).reshape([n, ROWS, COLUMNS]);
         let total = sharp + row + (floor * LN_10).exp().reshape([n, 1, 1]);
         LiveOutput { decades: total.log() / LN_10, minimum }
     }
