@@ -19,6 +19,9 @@ const OF_SAME: f64 = 6.0;
 const OF_SHARP_DB: f64 = 0.5;
 const MOST_SHARP_DB: f64 = 12.0;
 
+/// Log-odds of an axis of two real numbers that they are real and imaginary part.
+const OF_PARTS: f64 = 5.0;
+
 /// Kinds that the axes of an array may count together, by how many axes there are.
 const TOGETHER: [&[AxisKind]; 6] = [
     &[Element, Sample],
@@ -85,7 +88,7 @@ pub(super) fn readings(numbers: &Numbers, profile: Option<&RadarProfile>) -> Vec
             let mut reading = judged(&kinds, &lengths, &looks, profile);
             if let Some(iq) = iq {
                 reading.kinds.insert(iq, Iq);
-                reading.log_odds += if iq + 1 == shape.len() { 4.0 } else { 2.0 };
+                reading.log_odds += OF_PARTS;
             }
             all.push(reading);
         }
