@@ -133,17 +133,8 @@ impl Reconstructor for Function {
         Family::Own
     }
 
-    fn knows_pairs(&self) -> bool {
-        // It is told the radar, and with it where antennas stand.
-        true
-    }
-
     fn hears_layouts(&self) -> bool {
         true
-    }
-
-    fn finds_reflectors(&self) -> bool {
-        false
     }
 
     fn weights(&self) -> Option<Weights> {

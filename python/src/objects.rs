@@ -11,6 +11,20 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+/// Sets fields of a data class to those of the same names.
+macro_rules! set {
+    ($fields:ident, $of:ident: $($name:ident),+) => {
+        $($fields.set_item(stringify!($name), $of.$name)?;)+
+    };
+}
+
+/// A struct of numbers that a data class has under the same names.
+macro_rules! read {
+    ($number:ident, $kind:ident { $($name:ident),+ }) => {
+        $kind { $($name: $number(stringify!($name))?),+ }
+    };
+}
+
 /// A field of a data class, as a number; its name is part of the error.
 fn field<'py, T>(of: &Bound<'py, PyAny>, name: &str, what: &str) -> PyResult<T>
 where
@@ -34,54 +48,38 @@ pub fn object(from: &Bound<'_, PyAny>, index: usize) -> PyResult<Object> {
     let mut object = match kind.as_deref() {
         Some("point") => {
             let point = Point::new(number("x_metres")?, number("y_metres")?);
-            Object::Point(Point { reflectivity: number("reflectivity")?, ..point })
+            Object::Point(point)
         }
         Some("line") => {
             let spacing = number("spacing_metres")?;
             let line = Line::vertical(number("x_metres")?, number("y_start_metres")?, spacing, count()?);
             let direction_degrees = number("direction_degrees")?;
-            Object::Line(Line { direction_degrees, reflectivity: number("reflectivity")?, ..line })
+            Object::Line(Line { direction_degrees, ..line })
         }
         Some("gaussian") => {
             let std = [number("x_std_metres")?, number("y_std_metres")?];
             let cluster = GaussianCluster::new([number("x_metres")?, number("y_metres")?], std, count()?);
             let seed = field(from, "seed", &what)?;
-            Object::Gaussian(GaussianCluster { seed, reflectivity: number("reflectivity")?, ..cluster })
+            Object::Gaussian(GaussianCluster { seed, ..cluster })
         }
-        Some("wall") => Object::Wall(Wall {
-            reflectivity: number("reflectivity")?,
-            roughness_millimetres: number("roughness_millimetres")?,
-            seed: field(from, "seed", &what)?,
-            ..Wall::new(number("x_metres")?, number("y_metres")?, number("length_metres")?, number("angle_degrees")?)
-        }),
-        Some("box") => Object::Box(Block {
-            reflectivity: number("reflectivity")?,
-            roughness_millimetres: number("roughness_millimetres")?,
-            seed: field(from, "seed", &what)?,
-            ..Block::new(
+        Some("wall") => Object::Wall(Wall::new(number("x_metres")?, number("y_metres")?, number("length_metres")?, number("angle_degrees")?)),
+        Some("box") => Object::Box(Block::new(
                 [number("x_metres")?, number("y_metres")?],
                 [number("length_metres")?, number("width_metres")?],
                 number("angle_degrees")?,
-            )
-        }),
-        Some("post") => Object::Post(Post {
-            reflectivity: number("reflectivity")?,
-            roughness_millimetres: number("roughness_millimetres")?,
-            seed: field(from, "seed", &what)?,
-            ..Post::new(number("x_metres")?, number("y_metres")?, number("radius_metres")?)
-        }),
-        Some("polygon") => Object::Polygon(Polygon {
-            reflectivity: number("reflectivity")?,
-            roughness_millimetres: number("roughness_millimetres")?,
-            seed: field(from, "seed", &what)?,
-            ..Polygon::new(corners(from, &what)?)
-        }),
+            )),
+        Some("post") => Object::Post(Post::new(number("x_metres")?, number("y_metres")?, number("radius_metres")?)),
+        Some("polygon") => Object::Polygon(Polygon::new(corners(from, &what)?)),
         _ => {
             let found = from.get_type().name()?;
             let expected = "Point, Line, Cluster, Wall, Box, Post or Polygon";
             return Err(PyTypeError::new_err(format!("{what} is a {found}; expected {expected}")));
         }
     };
+    object.set_reflectivity(number("reflectivity")?);
+    if let Some((roughness_millimetres, seed)) = object.roughness_mut() {
+        (*roughness_millimetres, *seed) = (number("roughness_millimetres")?, field(from, "seed", &what)?);
+    }
     let [x, y] = velocity()?;
     let [velocity_x, velocity_y] = object.velocity_mut();
     (*velocity_x, *velocity_y) = (x, y);
@@ -112,46 +110,27 @@ pub fn of_object<'py>(py: Python<'py>, object: &Object) -> PyResult<Bound<'py, P
     }
     let name = match object {
         Object::Point(p) => {
-            fields.set_item("x_metres", p.x_metres)?;
-            fields.set_item("y_metres", p.y_metres)?;
+            set!(fields, p: x_metres, y_metres);
             "Point"
         }
         Object::Line(l) => {
-            fields.set_item("x_metres", l.x_metres)?;
-            fields.set_item("y_start_metres", l.y_start_metres)?;
-            fields.set_item("spacing_metres", l.spacing_metres)?;
-            fields.set_item("direction_degrees", l.direction_degrees)?;
-            fields.set_item("count", l.count)?;
+            set!(fields, l: x_metres, y_start_metres, spacing_metres, direction_degrees, count);
             "Line"
         }
         Object::Gaussian(g) => {
-            fields.set_item("x_metres", g.x_metres)?;
-            fields.set_item("y_metres", g.y_metres)?;
-            fields.set_item("x_std_metres", g.x_std_metres)?;
-            fields.set_item("y_std_metres", g.y_std_metres)?;
-            fields.set_item("count", g.count)?;
-            fields.set_item("seed", g.seed)?;
+            set!(fields, g: x_metres, y_metres, x_std_metres, y_std_metres, count, seed);
             "Cluster"
         }
         Object::Wall(w) => {
-            fields.set_item("x_metres", w.x_metres)?;
-            fields.set_item("y_metres", w.y_metres)?;
-            fields.set_item("length_metres", w.length_metres)?;
-            fields.set_item("angle_degrees", w.angle_degrees)?;
+            set!(fields, w: x_metres, y_metres, length_metres, angle_degrees);
             "Wall"
         }
         Object::Box(b) => {
-            fields.set_item("x_metres", b.x_metres)?;
-            fields.set_item("y_metres", b.y_metres)?;
-            fields.set_item("length_metres", b.length_metres)?;
-            fields.set_item("width_metres", b.width_metres)?;
-            fields.set_item("angle_degrees", b.angle_degrees)?;
+            set!(fields, b: x_metres, y_metres, length_metres, width_metres, angle_degrees);
             "Box"
         }
         Object::Post(p) => {
-            fields.set_item("x_metres", p.x_metres)?;
-            fields.set_item("y_metres", p.y_metres)?;
-            fields.set_item("radius_metres", p.radius_metres)?;
+            set!(fields, p: x_metres, y_metres, radius_metres);
             "Post"
         }
         Object::Polygon(p) => {
@@ -165,41 +144,23 @@ pub fn of_object<'py>(py: Python<'py>, object: &Object) -> PyResult<Bound<'py, P
 
 pub fn interferer(from: &Bound<'_, PyAny>) -> PyResult<Interferer> {
     let number = |name: &str| field::<f64>(from, name, "interferer");
-    Ok(Interferer {
-        x_metres: number("x_metres")?,
-        y_metres: number("y_metres")?,
-        strength: number("strength")?,
-        crossing: number("crossing")?,
-        duration: number("duration")?,
-    })
+    Ok(read!(number, Interferer { x_metres, y_metres, strength, crossing, duration }))
 }
 
 pub fn of_interferer<'py>(py: Python<'py>, of: &Interferer) -> PyResult<Bound<'py, PyAny>> {
     let fields = PyDict::new(py);
-    fields.set_item("x_metres", of.x_metres)?;
-    fields.set_item("y_metres", of.y_metres)?;
-    fields.set_item("strength", of.strength)?;
-    fields.set_item("crossing", of.crossing)?;
-    fields.set_item("duration", of.duration)?;
+    set!(fields, of: x_metres, y_metres, strength, crossing, duration);
     data_class(py, "Interferer", &fields)
 }
 
 pub fn mirror(from: &Bound<'_, PyAny>) -> PyResult<Mirror> {
     let number = |name: &str| field::<f64>(from, name, "mirror");
-    Ok(Mirror {
-        x_metres: number("x_metres")?,
-        y_metres: number("y_metres")?,
-        direction_degrees: number("direction_degrees")?,
-        reflection: number("reflection")?,
-    })
+    Ok(read!(number, Mirror { x_metres, y_metres, direction_degrees, reflection }))
 }
 
 pub fn of_mirror<'py>(py: Python<'py>, of: &Mirror) -> PyResult<Bound<'py, PyAny>> {
     let fields = PyDict::new(py);
-    fields.set_item("x_metres", of.x_metres)?;
-    fields.set_item("y_metres", of.y_metres)?;
-    fields.set_item("direction_degrees", of.direction_degrees)?;
-    fields.set_item("reflection", of.reflection)?;
+    set!(fields, of: x_metres, y_metres, direction_degrees, reflection);
     data_class(py, "Mirror", &fields)
 }
 

@@ -5,7 +5,7 @@ use super::chrome::{file_dialog, help, menu, messages, palette, save_question, s
 use super::contents::{self, Contents, Panels};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
-use super::kept::{self, Kept};
+use super::kept::{self, KeptSettings};
 use super::state::{
     Arrangement, Command, DocumentCommand, LessonCommand, Methods, Notices, Pointer, State, ViewCommand,
 };
@@ -65,7 +65,7 @@ pub struct App {
     pub(super) state: State,
     pub(super) jobs: Jobs,
     pub(super) panels: Panels,
-    memory: Memory,
+    memory: ChromeMemory,
     /// What was asked for outside a frame.
     pub(super) asked: Vec<Command>,
     frame_log: Option<FrameLog>,
@@ -86,10 +86,10 @@ pub struct App {
 
 /// What chrome remembers from frame to frame.
 #[derive(Default)]
-struct Memory {
-    menu: menu::Memory,
-    palette: palette::Memory,
-    file_dialog: file_dialog::Memory,
+struct ChromeMemory {
+    menu: menu::MenuMemory,
+    palette: palette::PaletteMemory,
+    file_dialog: file_dialog::FileDialogMemory,
 }
 
 impl App {
@@ -140,8 +140,8 @@ impl App {
         let asked = options.lesson.map(|v| Command::Lesson(LessonCommand::OpenFile(v))).into_iter();
         let asked = asked.chain(options.shared.map(|v| Command::Document(DocumentCommand::OpenShared(v))));
         let asked = asked.chain(options.commands).collect();
-        let palette = palette::Memory::remembering(kept.recent_commands);
-        let memory = Memory { palette, ..Memory::default() };
+        let palette = palette::PaletteMemory::remembering(kept.recent_commands);
+        let memory = ChromeMemory { palette, ..ChromeMemory::default() };
         Ok(App {
             state,
             jobs,
@@ -203,7 +203,7 @@ impl App {
         commands
     }
 
-    /// Keeps the window open once where it is to be closed and what is unsaved can't be kept. Whoever closes it again means it.
+    /// Keeps the window open once where it is to be closed and what is unsaved can't be kept. Closing it again closes it.
     fn check_close(&mut self, ctx: &egui::Context) {
         if !ctx.input(|i| i.viewport().close_requested()) {
             return;
@@ -401,7 +401,7 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         let state = &mut self.state;
         let arrangement = std::mem::replace(state.kept_arrangement(), Arrangement::empty());
-        let kept = Kept {
+        let kept = KeptSettings {
             settings: state.settings.clone(),
             arrangement,
             recent: state.recent.clone(),

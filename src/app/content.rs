@@ -11,7 +11,7 @@ pub trait Content: 'static {
     /// What it draws that is computed for it alone; [`Nothing`] where there is no such thing.
     type Asks: Query;
     /// What it remembers from frame to frame.
-    type Memory: Default + 'static;
+    type Remembers: Default + 'static;
     /// What it reads of maps and methods, which are computed for all panels.
     const WANTS: Wants = Wants::NOTHING;
     /// Whether it marks what is old in it; else all of it is dimmed.
@@ -42,7 +42,7 @@ pub struct Cx<'a, C: Content + ?Sized> {
     /// What was computed for all panels.
     pub jobs: &'a Jobs,
     /// What the panel remembers.
-    pub memory: &'a mut C::Memory,
+    pub memory: &'a mut C::Remembers,
     /// What was computed for it alone, or why there is nothing; `None` before the first time.
     pub value: Option<Result<&'a <C::Asks as Query>::Value, &'a str>>,
 }
@@ -65,7 +65,7 @@ impl Query for Nothing {
 
 /// A panel's memory, and the value that is computed for it.
 pub struct Held<C: Content> {
-    memory: C::Memory,
+    memory: C::Remembers,
     derived: Derived<C::Asks>,
 }
 
@@ -75,7 +75,7 @@ impl<C: Content> Held<C> {
     /// # Errors
     /// When the system can't start a thread.
     pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Box<dyn AnyPanel>> {
-        Ok(Box::new(Held::<C> { memory: C::Memory::default(), derived: Derived::start(wake)? }))
+        Ok(Box::new(Held::<C> { memory: C::Remembers::default(), derived: Derived::start(wake)? }))
     }
 
     /// The value.
@@ -202,7 +202,7 @@ mod tests {
 
     impl Content for CountPanel {
         type Asks = Counted;
-        type Memory = ();
+        type Remembers = ();
 
         fn asks(state: &State, _: &Jobs) -> Option<Counted> {
             Some(Counted(state.scene().into()))

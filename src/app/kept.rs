@@ -23,7 +23,7 @@ const MOST_BYTES: u64 = 16 << 20;
 /// What is kept from one start to the next.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
-pub(super) struct Kept {
+pub(super) struct KeptSettings {
     pub settings: Settings,
     #[serde(alias = "layout")]
     pub arrangement: Arrangement,
@@ -38,7 +38,7 @@ pub(super) struct Kept {
     pub recent_commands: Vec<String>,
 }
 
-impl Kept {
+impl KeptSettings {
     /// Hands this to the window library, which writes it.
     pub fn write(&self, storage: &mut dyn eframe::Storage) {
         storage.set_string(VERSION_KEY, env!("CARGO_PKG_VERSION").to_owned());
@@ -48,9 +48,12 @@ impl Kept {
 
 /// What was kept, and whether maps say what they show: not where nothing can be kept, as in tests. Where the text is there and
 /// can't be read, it is put into a file of its own in `folder`, and the third says so.
-pub(super) fn read(storage: Option<&dyn eframe::Storage>, folder: Option<&Path>) -> (Kept, bool, Option<String>) {
-    let Some(storage) = storage else { return (Kept::default(), false, None) };
-    let kept: Option<Kept> = eframe::get_value(storage, eframe::APP_KEY);
+pub(super) fn read(
+    storage: Option<&dyn eframe::Storage>,
+    folder: Option<&Path>,
+) -> (KeptSettings, bool, Option<String>) {
+    let Some(storage) = storage else { return (KeptSettings::default(), false, None) };
+    let kept: Option<KeptSettings> = eframe::get_value(storage, eframe::APP_KEY);
     let captions = !kept.as_ref().is_some_and(|k| k.captions_seen);
     let problem = match (&kept, storage.get_string(eframe::APP_KEY)) {
         (None, Some(text)) => Some(set_aside(folder, &text, storage.get_string(VERSION_KEY).as_deref())),
@@ -160,7 +163,7 @@ mod tests {
         let mut storage = InMemory::default();
         assert!(read(Some(&storage), None).1, "a first start");
         for seen in [false, true] {
-            Kept { captions_seen: seen, ..Kept::default() }.write(&mut storage);
+            KeptSettings { captions_seen: seen, ..KeptSettings::default() }.write(&mut storage);
             assert_eq!(read(Some(&storage), None).1, !seen);
         }
         assert!(!read(None, None).1, "nowhere to keep that it was seen");
@@ -170,7 +173,7 @@ mod tests {
     fn settings_of_a_newer_program_are_set_aside() {
         let folder = tempfile::tempdir().unwrap();
         let mut storage = InMemory::default();
-        Kept::default().write(&mut storage);
+        KeptSettings::default().write(&mut storage);
         assert_eq!(read(Some(&storage), Some(folder.path())).2, None);
         let newer = "(settings: (theme: Sepia))";
         storage.0.insert(eframe::APP_KEY.to_owned(), newer.to_owned());

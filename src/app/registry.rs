@@ -41,10 +41,10 @@ macro_rules! every_panel {
                 "Frequency against time of what is sent and what returns, the beat and its spectrum";
             RangeDoppler doppler::DopplerPanel, view of Chirp, Y, "Range-Doppler",
                 "Range against radial velocity of several chirps, and a timeline that plays the scene";
-            Several several::SeveralPanel, tool, S, "Compare settings",
-                "One map for several values of a constant: window, bandwidth, elements, spacing, SNR, method";
             Compare compare::ComparePanel, tool, J, "Compare",
                 "Two methods on this scene: side by side, flipped in place, or parted by an edge";
+            Several several::SeveralPanel, view of Compare, S, "Compare settings",
+                "One map for several windows, bandwidths, elements, spacings, floors, noise levels, radars or methods";
             Timing timing::TimingPanel, developer, F7, "Timing",
                 "What each stage of the last update cost, and what was skipped and why";
             Training training::TrainingPanel, developer, F12, "Training", "The loss of a network while it is trained";

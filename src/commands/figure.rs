@@ -13,7 +13,7 @@ use std::path::Path;
 pub type DrawingResult<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
 /// Something that can be drawn on any of plotters' areas.
-pub trait Drawing {
+pub trait Plot {
     /// Width and height in pixels.
     fn size(&self) -> (u32, u32);
 
@@ -21,7 +21,7 @@ pub trait Drawing {
 }
 
 /// Writes `STEM.svg` and `STEM.png` into `folder`, which is made where it is missing.
-pub fn save(figure: &impl Drawing, folder: &Path, stem: &str) -> Result<(), CommandError> {
+pub fn save(figure: &impl Plot, folder: &Path, stem: &str) -> Result<(), CommandError> {
     ready(folder)?;
     let mut svg = String::new();
     on_white(figure, SVGBackend::with_string(&mut svg, figure.size())).map_err(|e| undrawn(stem, &e))?;
@@ -30,7 +30,7 @@ pub fn save(figure: &impl Drawing, folder: &Path, stem: &str) -> Result<(), Comm
 }
 
 /// Writes `STEM.png` alone: for figures of so many cells that an SVG would be larger than its pixels.
-pub fn save_bitmap(figure: &impl Drawing, folder: &Path, stem: &str) -> Result<(), CommandError> {
+pub fn save_bitmap(figure: &impl Plot, folder: &Path, stem: &str) -> Result<(), CommandError> {
     ready(folder)?;
     let (width, height) = figure.size();
     let mut pixels = vec![0; (3 * width * height) as usize];
@@ -70,7 +70,7 @@ fn undrawn(stem: &str, error: &dyn std::fmt::Display) -> CommandError {
     CommandError::Usage(format!("can't draw {stem}: {error}"))
 }
 
-fn on_white<B: DrawingBackend>(figure: &impl Drawing, backend: B) -> DrawingResult<B> {
+fn on_white<B: DrawingBackend>(figure: &impl Plot, backend: B) -> DrawingResult<B> {
     let area = backend.into_drawing_area();
     area.fill(&WHITE)?;
     figure.draw(&area)?;

@@ -1,7 +1,7 @@
 //! `apertura layouts`: the two ends compared with as many elements at random places, and with other layouts.
 
 use super::arguments::whole;
-use super::figure::{Drawing, DrawingResult, save};
+use super::figure::{DrawingResult, Plot, save};
 use super::{CommandError, print};
 use crate::bounds::{Lobes, cut, lobes};
 use crate::evaluate::{Estimate, Roc, squared_error};
@@ -167,7 +167,7 @@ struct CutFigure<'a> {
     rows: &'a [Row],
 }
 
-impl Drawing for CutFigure<'_> {
+impl Plot for CutFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 40 + 200 * self.rows.len().max(1) as u32)
     }

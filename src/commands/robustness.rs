@@ -1,7 +1,7 @@
 //! `apertura robustness`: each method's error over the size of the elements' errors.
 
 use super::arguments::{FloorArgs, real, seed, whole};
-use super::figure::{Drawing, DrawingResult, save, save_numbers, tick};
+use super::figure::{DrawingResult, Plot, save, save_numbers, tick};
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
 use crate::evaluate::{Estimate, Robustness, RobustnessRow};
@@ -197,7 +197,7 @@ impl RobustnessFigure<'_> {
     }
 }
 
-impl Drawing for RobustnessFigure<'_> {
+impl Plot for RobustnessFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (900, 540)
     }

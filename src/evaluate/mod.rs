@@ -25,7 +25,7 @@ pub mod worsen;
 pub use blobs::{Blobs, blobs, dip_between};
 pub use estimate::Estimate;
 pub use metrics::{Metrics, TARGET_ETA, detection_rates, eta_text, part_within, squared_doubt, squared_error};
-pub use offset::median_offset_metres;
+pub use offset::{median_bound_metres, median_offset_metres};
 pub use placement::{Placement, placement};
 pub use robustness::{Robustness, RobustnessRow};
 pub use roc::{Roc, RocPoint};

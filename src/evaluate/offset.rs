@@ -1,20 +1,48 @@
-//! How far found points lie from where they stand.
+//! How far found points lie from where they stand, and how near any unbiased estimate could be.
 
 use super::failure::{Failures, Fate};
-use crate::scene::{Object, Reflector, Scene};
+use crate::bounds::cramer_rao;
+use crate::radar::{Layout, Radar};
+use crate::scattering::Echoing;
+use crate::scene::{Object, Point, Reflector, Scene};
+use crate::signal::Floor;
+use crate::signal::floor::noise_variance;
 
 /// The median distance, in metres, of points that are found to the nearest of the `found` reflectors; `None` where no point is found, or
 /// the method names no reflectors.
 pub fn median_offset_metres(scene: &Scene, failures: &Failures, found: &[Reflector]) -> Option<f64> {
-    let points = scene.objects.iter().zip(&failures.objects).filter_map(|(object, fate)| match object {
-        Object::Point(point) if *fate == Fate::Found => Some([point.x_metres, point.y_metres]),
+    let nearest = |point: &Point| {
+        let distances = found.iter().map(|r| (r.x_metres - point.x_metres).hypot(r.y_metres - point.y_metres));
+        distances.min_by(f64::total_cmp)
+    };
+    median(found_points(scene, failures).filter_map(nearest))
+}
+
+/// The median Cramér-Rao bound, in metres, of the same points, each alone before the two ends over the noise of `floor`; `None` where no
+/// point is found or there is no noise.
+pub fn median_bound_metres(radar: &Radar, scene: &Scene, failures: &Failures, floor: Floor) -> Option<f64> {
+    let variances = noise_variance(radar, &Echoing::of(radar, scene), floor)?;
+    let variance = variances.iter().sum::<f64>() / variances.len().max(1) as f64;
+    let layout = Layout::two_ends(radar);
+    let bound = |point: &Point| {
+        let Point { x_metres, y_metres, reflectivity, .. } = *point;
+        let bounds = cramer_rao(radar, &layout, &[Reflector { x_metres, y_metres, reflectivity }], variance).ok()?;
+        bounds.first().map(|bound| bound.position_metres()).filter(|metres| metres.is_finite())
+    };
+    median(found_points(scene, failures).filter_map(bound))
+}
+
+fn found_points<'a>(scene: &'a Scene, failures: &'a Failures) -> impl Iterator<Item = &'a Point> {
+    scene.objects.iter().zip(&failures.objects).filter_map(|(object, fate)| match object {
+        Object::Point(point) if *fate == Fate::Found => Some(point),
         _ => None,
-    });
-    let nearest =
-        |[x, y]: [f64; 2]| found.iter().map(|r| (r.x_metres - x).hypot(r.y_metres - y)).min_by(|a, b| a.total_cmp(b));
-    let mut offsets: Vec<f64> = points.filter_map(nearest).collect();
-    offsets.sort_by(f64::total_cmp);
-    offsets.get(offsets.len() / 2).copied()
+    })
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 #[cfg(test)]
@@ -30,5 +58,16 @@ mod tests {
         let offset = median_offset_metres(&scene, &failures, &[reflector(0.01), reflector(4.05)]);
         assert!(offset.is_some_and(|offset| (offset - 0.05).abs() < 1e-9), "{offset:?}");
         assert_eq!(median_offset_metres(&scene, &failures, &[]), None);
+    }
+
+    #[test]
+    fn the_bound_grows_tenfold_with_20_db_more_noise() {
+        let radar = Radar { elements: 64, samples: 64, ..Radar::default() };
+        let scene = Scene::of_points([(0.0, 3.0)]);
+        let failures = Failures { objects: vec![Fate::Found], covered: vec![1.0], ghosts: Vec::new() };
+        let bound = |floor| median_bound_metres(&radar, &scene, &failures, floor);
+        let [near, far] = [40.0, 20.0].map(|db| bound(Floor::Snr(crate::radar::Decibels(db))).unwrap());
+        assert!(near > 0.0 && (far / near - 10.0).abs() < 1e-6, "{near} and {far} m");
+        assert_eq!(bound(Floor::Exact), None, "nothing limits it without noise");
     }
 }

@@ -179,15 +179,6 @@ impl Reconstructor for ExternalMethod {
         Family::Own
     }
 
-    fn knows_pairs(&self) -> bool {
-        // The question says where its radar's antennas stand.
-        true
-    }
-
-    fn finds_reflectors(&self) -> bool {
-        false
-    }
-
     fn weights(&self) -> Option<Weights> {
         self.weights.clone()
     }

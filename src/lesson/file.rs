@@ -217,7 +217,7 @@ answer = { kind = "click", map = "target", object = 1, within_columns = 30.0, wi
     }
 
     #[test]
-    fn tolerances_that_no_guess_keeps_to_are_refused_with_their_line() {
+    fn tolerances_that_no_guess_keeps_are_refused_with_their_line() {
         for (from, to, name) in [
             ("within_columns = 30.0", "within_columns = -1.0", "within_columns is -1"),
             ("within_bins = 4.0", "within_bins = nan", "within_bins is NaN"),

@@ -26,7 +26,7 @@ fn key(lesson: &str, step: usize) -> String {
 }
 
 impl Progress {
-    /// Name of who is learning now; empty for nobody in particular.
+    /// Name of who is learning now; empty where no name was given.
     pub fn learner(&self) -> &str {
         &self.learner
     }

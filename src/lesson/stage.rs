@@ -19,6 +19,8 @@ pub struct View {
     pub seed: u64,
     /// How maps are normalised.
     pub normalisation: Normalisation,
+    /// Whether all maps are drawn on one scale, so that what is weaker looks weaker.
+    pub one_scale: bool,
     /// The method whose output is shown.
     pub method: String,
     /// The detector in the place of thresholds, if one is in use.
@@ -32,6 +34,7 @@ impl Default for View {
             floor: Floor::Exact,
             seed: 0,
             normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)),
+            one_scale: false,
             method: "live".to_owned(),
             cfar: None,
         }

@@ -135,13 +135,13 @@ y_metres = 3.5
     }
 
     #[test]
-    fn a_challenge_that_is_met_from_the_start_is_refused_with_its_line() {
+    fn a_challenge_met_from_the_start_is_refused_with_its_line() {
         let message = refused("at_least = 3.0", "at_least = 1.0");
         assert!(message.starts_with("line 19: step 1: the challenge is met before"), "{message}");
     }
 
     #[test]
-    fn a_question_without_a_right_threshold_is_refused_with_its_line() {
+    fn a_question_with_no_right_threshold_is_refused_with_its_line() {
         // The weak point lies 60 dB below a strong one, whose main lobe exceeds any threshold that keeps it.
         let weak =
             "y_metres = 2.0\nreflectivity = 0.001\n[[step.object]]\nkind = \"point\"\nx_metres = 1.0\ny_metres = 2.0\n";

@@ -125,10 +125,6 @@ impl Reconstructor for ThesisMethod {
         About { name: self.name, description: self.description, told: TRAINED_ON, eta: self.eta }
     }
 
-    fn finds_reflectors(&self) -> bool {
-        false
-    }
-
     fn reads_eta(&self) -> bool {
         true
     }
@@ -205,10 +201,6 @@ impl Reconstructor for UnetMethod {
         }
     }
 
-    fn finds_reflectors(&self) -> bool {
-        false
-    }
-
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         self.trained.check(Unet::NAME, radar)
     }
@@ -227,15 +219,7 @@ impl Reconstructor for UnetMethod {
         let cartesian =
             estimate(&self.network, Unet::NAME, Unet::input(&tables, ends)?, [rows, 2 * rows], &self.device)?;
         let lambda = to_polar(radar, &cartesian);
-        Ok(Reconstruction {
-            lambda: RangeAngleMap { lambda },
-            reflectors: Vec::new(),
-            confidences: Vec::new(),
-            eta: None,
-            least_eta: None,
-            doubt: None,
-            trace: Vec::new(),
-        })
+        Ok(Reconstruction::of_map(RangeAngleMap { lambda }))
     }
 }
 

@@ -102,16 +102,13 @@ impl Detection {
 impl Reconstruction {
     /// The answer to silence: Lambda 0 everywhere, no reflector.
     pub fn silence(radar: &Radar) -> Self {
-        let lambda = RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) };
-        Reconstruction {
-            lambda,
-            reflectors: Vec::new(),
-            confidences: Vec::new(),
-            eta: None,
-            least_eta: None,
-            doubt: None,
-            trace: Vec::new(),
-        }
+        Reconstruction::of_map(RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) })
+    }
+
+    /// An answer that knows no more than its map.
+    pub fn of_map(lambda: RangeAngleMap) -> Self {
+        let (reflectors, confidences, trace) = (Vec::new(), Vec::new(), Vec::new());
+        Reconstruction { lambda, reflectors, confidences, eta: None, least_eta: None, doubt: None, trace }
     }
 
     /// Moves reflectors that were found in plane waves to `range_metres`, where they sound the same.

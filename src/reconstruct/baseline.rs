@@ -35,14 +35,6 @@ impl Reconstructor for Baseline {
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let log = channels_map(radar, ends.first.view()).log_magnitude();
-        Ok(Reconstruction {
-            lambda: log.normalise(request.normalisation),
-            reflectors: Vec::new(),
-            confidences: Vec::new(),
-            eta: None,
-            least_eta: None,
-            doubt: None,
-            trace: Vec::new(),
-        })
+        Ok(Reconstruction::of_map(log.normalise(request.normalisation)))
     }
 }

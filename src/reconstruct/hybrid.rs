@@ -3,7 +3,7 @@
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
 use super::family::Family;
-use super::judge::{blended, network_weight};
+use super::judge::{blended, darker_by, lift, network_weight};
 use super::own_threshold::own_threshold;
 use super::reconstructor::{About, Reconstructor, Weights};
 use super::search::{Found, Settings, find, find_from};
@@ -48,9 +48,14 @@ impl Hybrid {
         };
         // Both experts contradict each other over the whole range of their maps, of which a dynamic range cuts most off.
         let whole_range = Request { normalisation: Normalisation::MinMax, ..request.clone() };
-        let (whole, whole_network) = maps(&whole_range)?;
+        let (mut whole, whole_network) = maps(&whole_range)?;
+        let darker = if request.noise.is_white() { darker_by(&whole.map, &whole_network.lambda) } else { 0.0 };
+        lift(&mut whole.map, darker);
         let left = found.left_decades(radar, ends, &whole);
-        let shown = (request.normalisation != Normalisation::MinMax).then(|| maps(request)).transpose()?;
+        let mut shown = (request.normalisation != Normalisation::MinMax).then(|| maps(request)).transpose()?;
+        if let Some((expected, _)) = &mut shown {
+            lift(&mut expected.map, darker * (whole.decades / expected.decades) as f32);
+        }
         let drawn = shown.as_ref().map_or(&whole.map, |(expected, _)| &expected.map);
         let weight = network_weight(&whole.map, &whole_network.lambda, whole_network.doubt.as_ref(), &left, drawn);
         let (expected, network) = shown.unwrap_or((whole, whole_network));

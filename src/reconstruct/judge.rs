@@ -24,6 +24,10 @@ const AGREED_WEIGHT: f32 = 0.7;
 /// the network is believed alone.
 const CONTRADICTION: [f32; 2] = [1.0, 3.0];
 
+/// Lambda by which the search's map over noise may be darker than the network's in half of all cells. At twice as much it is taken to the
+/// network's scale: a reflector that is not there outshines the others, and all else is dark beside it.
+const SCALE_MARGIN: f32 = 0.02;
+
 /// Standard deviations in a doubt that nine of ten normal errors stay below.
 const DOUBT_DEVIATIONS: f32 = 1.645;
 
@@ -57,6 +61,21 @@ pub fn network_weight(
         }),
     }
     weight
+}
+
+/// How much darker than the network's map the search's is in half of all cells, beyond [`SCALE_MARGIN`]; 0 where it is brighter.
+pub fn darker_by(drawn: &RangeAngleMap, network: &RangeAngleMap) -> f32 {
+    let mut differences: Vec<f32> = network.lambda.iter().zip(&drawn.lambda).map(|(n, d)| n - d).collect();
+    let middle = differences.len() / 2;
+    let median = *differences.select_nth_unstable_by(middle, f32::total_cmp).1;
+    (2.0 * (median - SCALE_MARGIN)).clamp(0.0, median.max(0.0))
+}
+
+/// Makes a map brighter by some Lambda.
+pub fn lift(map: &mut RangeAngleMap, by: f32) {
+    if by > 0.0 {
+        map.lambda.par_mapv_inplace(|v| (v + by).min(1.0));
+    }
 }
 
 /// How far between two values another one is, 0 to 1.
@@ -132,11 +151,22 @@ mod tests {
     }
 
     #[test]
+    fn a_map_beside_a_ghost_is_lifted_to_the_networks_scale() {
+        for (median, lifted) in [(-0.1, 0.0), (0.02, 0.0), (0.03, 0.02), (0.05, 0.05)] {
+            assert!((darker_by(&flat(0.3), &flat(0.3 + median)) - lifted).abs() < 1e-6);
+        }
+        let mut map = flat(0.95);
+        lift(&mut map, 0.1);
+        assert_eq!(map.lambda[[0, 0]], 1.0);
+    }
+
+    #[test]
     fn a_scene_that_is_mostly_unexplained_is_the_networks() {
         let mut left = Array2::from_elem((40, 60), 1.0);
         left.row_mut(3).fill(-9.0);
         let weight = |shown| network_weight(&flat(0.2), &flat(0.9), Some(&flat(0.1)), &left, shown)[[3, 5]];
-        assert_eq!(weight(&flat(0.2)), 1.0);
+        let all = flat(0.2);
+        assert_eq!(weight(&all), 1.0);
         let mut cut = flat(0.0);
         cut.lambda.row_mut(3).fill(0.2);
         assert_eq!(weight(&cut), 0.0, "what is cut off says nothing");

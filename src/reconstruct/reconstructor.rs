@@ -59,7 +59,7 @@ pub trait Reconstructor: Send + Sync {
     /// Whether the method knows transmitters that stand apart from receivers: it takes ranges and amplitudes from each element's two
     /// antennas, or asks for neither.
     fn knows_pairs(&self) -> bool {
-        false
+        !matches!(self.family(), Family::Network | Family::Classical)
     }
 
     /// Whether the method makes maps of the samples of any elements ([`Request::heard`]).
@@ -202,7 +202,7 @@ pub trait Reconstructor: Send + Sync {
 
     /// Whether it looks for places of echoes, which can be listed; the others only draw a map.
     fn finds_reflectors(&self) -> bool {
-        true
+        !matches!(self.family(), Family::Own | Family::Network)
     }
 
     /// The threshold for an answer of this method: its own, or [`About::eta`].

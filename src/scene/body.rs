@@ -1,5 +1,6 @@
 //! Bodies: walls, boxes, posts and polygons. They shine where they face the radar and hide what stands behind them.
 
+use super::common::moving;
 use super::shape::{Shape, direction, doubled_area, inner_corners};
 use crate::radar::Radar;
 use serde::{Deserialize, Serialize};
@@ -25,116 +26,77 @@ pub const DIFFUSE_SPACING_METRES: f64 = 0.02;
 /// Most points that the rough surface of one body scatters from.
 pub const MAX_DIFFUSE: usize = 300;
 
-/// A straight wall without thickness; both its sides reflect.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Wall {
-    /// x of its middle, along the array's axis, metres.
-    pub x_metres: f64,
-    /// y of its middle, ahead of the array, metres.
-    pub y_metres: f64,
-    /// From end to end, metres.
-    pub length_metres: f64,
-    /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub angle_degrees: f64,
-    /// Reflection coefficient of the surface, of the amplitude: 1 for metal.
-    #[serde(default = "one")]
-    pub reflectivity: f64,
-    /// Standard deviation of the surface's height, millimetres: 0 is smooth.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub roughness_millimetres: f64,
-    /// Which of all surfaces of this roughness.
-    #[serde(default, skip_serializing_if = "is_first")]
-    pub seed: u64,
-    /// Velocity along the array's axis, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_x_metres_per_second: f64,
-    /// Velocity away from the array, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_y_metres_per_second: f64,
+/// A body: its shape, then what all surfaces have.
+macro_rules! body {
+    ($(#[$about:meta])* pub struct $name:ident { $($fields:tt)* }) => {
+        moving! {
+            $(#[$about])*
+            pub struct $name {
+                $($fields)*
+                /// Reflection coefficient of the surface, of the amplitude: 1 for metal.
+                #[serde(default = "one")]
+                pub reflectivity: f64,
+                /// Standard deviation of the surface's height, millimetres: 0 is smooth.
+                #[serde(default, skip_serializing_if = "is_zero")]
+                pub roughness_millimetres: f64,
+                /// Which of all surfaces of this roughness.
+                #[serde(default, skip_serializing_if = "is_first")]
+                pub seed: u64,
+            }
+        }
+    };
 }
 
-/// A rectangle: a car is 4.5 m by 1.8 m.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Block {
-    /// x of its middle, along the array's axis, metres.
-    pub x_metres: f64,
-    /// y of its middle, ahead of the array, metres.
-    pub y_metres: f64,
-    /// Its length, metres.
-    pub length_metres: f64,
-    /// Its width, across the length, metres.
-    pub width_metres: f64,
-    /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub angle_degrees: f64,
-    /// Reflection coefficient of the surface, of the amplitude: 1 for metal.
-    #[serde(default = "one")]
-    pub reflectivity: f64,
-    /// Standard deviation of the surface's height, millimetres: 0 is smooth.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub roughness_millimetres: f64,
-    /// Which of all surfaces of this roughness.
-    #[serde(default, skip_serializing_if = "is_first")]
-    pub seed: u64,
-    /// Velocity along the array's axis, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_x_metres_per_second: f64,
-    /// Velocity away from the array, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_y_metres_per_second: f64,
+body! {
+    /// A straight wall without thickness; both its sides reflect.
+    pub struct Wall {
+        /// x of its middle, along the array's axis, metres.
+        pub x_metres: f64,
+        /// y of its middle, ahead of the array, metres.
+        pub y_metres: f64,
+        /// From end to end, metres.
+        pub length_metres: f64,
+        /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        pub angle_degrees: f64,
+    }
 }
 
-/// A round post.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Post {
-    /// x of its middle, along the array's axis, metres.
-    pub x_metres: f64,
-    /// y of its middle, ahead of the array, metres.
-    pub y_metres: f64,
-    /// Its radius, metres.
-    pub radius_metres: f64,
-    /// Reflection coefficient of the surface, of the amplitude: 1 for metal.
-    #[serde(default = "one")]
-    pub reflectivity: f64,
-    /// Standard deviation of the surface's height, millimetres: 0 is smooth.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub roughness_millimetres: f64,
-    /// Which of all surfaces of this roughness.
-    #[serde(default, skip_serializing_if = "is_first")]
-    pub seed: u64,
-    /// Velocity along the array's axis, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_x_metres_per_second: f64,
-    /// Velocity away from the array, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_y_metres_per_second: f64,
+body! {
+    /// A rectangle: a car is 4.5 m by 1.8 m.
+    pub struct Block {
+        /// x of its middle, along the array's axis, metres.
+        pub x_metres: f64,
+        /// y of its middle, ahead of the array, metres.
+        pub y_metres: f64,
+        /// Its length, metres.
+        pub length_metres: f64,
+        /// Its width, across the length, metres.
+        pub width_metres: f64,
+        /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        pub angle_degrees: f64,
+    }
 }
 
-/// A closed outline of straight faces, convex or not.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Polygon {
-    /// Its corners in order, either way round, (x, y) in metres.
-    pub corners_metres: Vec<[f64; 2]>,
-    /// Reflection coefficient of the surface, of the amplitude: 1 for metal.
-    #[serde(default = "one")]
-    pub reflectivity: f64,
-    /// Standard deviation of the surface's height, millimetres: 0 is smooth.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub roughness_millimetres: f64,
-    /// Which of all surfaces of this roughness.
-    #[serde(default, skip_serializing_if = "is_first")]
-    pub seed: u64,
-    /// Velocity along the array's axis, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_x_metres_per_second: f64,
-    /// Velocity away from the array, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_y_metres_per_second: f64,
+body! {
+    /// A round post.
+    pub struct Post {
+        /// x of its middle, along the array's axis, metres.
+        pub x_metres: f64,
+        /// y of its middle, ahead of the array, metres.
+        pub y_metres: f64,
+        /// Its radius, metres.
+        pub radius_metres: f64,
+    }
+}
+
+body! {
+    /// A closed outline of straight faces, convex or not.
+    pub struct Polygon {
+        /// Its corners in order, either way round, (x, y) in metres.
+        pub corners_metres: Vec<[f64; 2]>,
+    }
 }
 
 /// What is read where no reflectivity is written.

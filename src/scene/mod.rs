@@ -5,6 +5,7 @@
 
 pub mod body;
 mod body_check;
+mod common;
 mod disturbances;
 pub mod file;
 pub mod generate;

@@ -1,5 +1,6 @@
 //! Objects that move: each with a constant velocity. The scene has their places at time 0.
 
+use super::common::of_each;
 use super::{Object, Scene, SceneError};
 
 /// Largest speed along either axis, metres a second. Doppler shifts are those of speeds far below that of light.
@@ -8,38 +9,12 @@ pub const MAX_SPEED_METRES_PER_SECOND: f64 = 1e4;
 impl Object {
     /// Its velocity along x and y, metres a second.
     pub fn velocity_metres_per_second(&self) -> [f64; 2] {
-        macro_rules! of {
-            ($one:expr) => {
-                [$one.velocity_x_metres_per_second, $one.velocity_y_metres_per_second]
-            };
-        }
-        match self {
-            Object::Point(o) => of!(o),
-            Object::Line(o) => of!(o),
-            Object::Gaussian(o) => of!(o),
-            Object::Wall(o) => of!(o),
-            Object::Box(o) => of!(o),
-            Object::Post(o) => of!(o),
-            Object::Polygon(o) => of!(o),
-        }
+        of_each!(self, one => [one.velocity_x_metres_per_second, one.velocity_y_metres_per_second])
     }
 
     /// The velocity along x and y, to be changed.
     pub fn velocity_mut(&mut self) -> [&mut f64; 2] {
-        macro_rules! of {
-            ($one:expr) => {
-                [&mut $one.velocity_x_metres_per_second, &mut $one.velocity_y_metres_per_second]
-            };
-        }
-        match self {
-            Object::Point(o) => of!(o),
-            Object::Line(o) => of!(o),
-            Object::Gaussian(o) => of!(o),
-            Object::Wall(o) => of!(o),
-            Object::Box(o) => of!(o),
-            Object::Post(o) => of!(o),
-            Object::Polygon(o) => of!(o),
-        }
+        of_each!(self, one => [&mut one.velocity_x_metres_per_second, &mut one.velocity_y_metres_per_second])
     }
 
     /// Whether it moves.

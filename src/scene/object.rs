@@ -2,6 +2,7 @@
 
 use super::body::{Block, Body, Polygon, Post, Wall, is_zero, one};
 use super::body_check;
+use super::common::{moving, of_each};
 use super::shape::out_of_reach;
 use super::{Reflector, SceneError};
 use rand::SeedableRng;
@@ -29,77 +30,59 @@ pub enum Object {
     Polygon(Polygon),
 }
 
-/// One reflector.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Point {
-    /// Position along the array's axis, metres.
-    pub x_metres: f64,
-    /// Position ahead of the array, metres.
-    pub y_metres: f64,
-    /// Reflectivity sigma.
-    #[serde(default = "one")]
-    pub reflectivity: f64,
-    /// Velocity along the array's axis, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_x_metres_per_second: f64,
-    /// Velocity away from the array, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_y_metres_per_second: f64,
+moving! {
+    /// One reflector.
+    pub struct Point {
+        /// Position along the array's axis, metres.
+        pub x_metres: f64,
+        /// Position ahead of the array, metres.
+        pub y_metres: f64,
+        /// Reflectivity sigma.
+        #[serde(default = "one")]
+        pub reflectivity: f64,
+    }
 }
 
-/// Reflectors at equal spacing on a straight line: the thesis' vertical line (section 3.2), or one at any slant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Line {
-    /// x of the first reflector, along the array's axis, metres.
-    pub x_metres: f64,
-    /// y of the first reflector, metres.
-    pub y_start_metres: f64,
-    /// Distance between neighbouring reflectors, metres.
-    pub spacing_metres: f64,
-    /// Where the line leads from its first reflector: 0 along +x, 90 straight ahead (+y), as where nothing is said.
-    #[serde(default = "straight_ahead", skip_serializing_if = "is_straight_ahead")]
-    pub direction_degrees: f64,
-    /// Number of reflectors.
-    pub count: usize,
-    /// Reflectivity sigma of each reflector.
-    #[serde(default = "one")]
-    pub reflectivity: f64,
-    /// Velocity along the array's axis, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_x_metres_per_second: f64,
-    /// Velocity away from the array, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_y_metres_per_second: f64,
+moving! {
+    /// Reflectors at equal spacing on a straight line: the thesis' vertical line (section 3.2), or one at any slant.
+    pub struct Line {
+        /// x of the first reflector, along the array's axis, metres.
+        pub x_metres: f64,
+        /// y of the first reflector, metres.
+        pub y_start_metres: f64,
+        /// Distance between neighbouring reflectors, metres.
+        pub spacing_metres: f64,
+        /// Where the line leads from its first reflector: 0 along +x, 90 straight ahead (+y), as where nothing is said.
+        #[serde(default = "straight_ahead", skip_serializing_if = "is_straight_ahead")]
+        pub direction_degrees: f64,
+        /// Number of reflectors.
+        pub count: usize,
+        /// Reflectivity sigma of each reflector.
+        #[serde(default = "one")]
+        pub reflectivity: f64,
+    }
 }
 
-/// Reflectors drawn from a normal distribution around a centre; the same seed gives the same cluster.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GaussianCluster {
-    /// Centre along the array's axis, metres.
-    pub x_metres: f64,
-    /// Centre ahead of the array, metres.
-    pub y_metres: f64,
-    /// Standard deviation along x, metres.
-    pub x_std_metres: f64,
-    /// Standard deviation along y, metres.
-    pub y_std_metres: f64,
-    /// Number of reflectors.
-    pub count: usize,
-    /// Seed of the offsets from the centre.
-    #[serde(default)]
-    pub seed: u64,
-    /// Reflectivity sigma of each reflector.
-    #[serde(default = "one")]
-    pub reflectivity: f64,
-    /// Velocity along the array's axis, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_x_metres_per_second: f64,
-    /// Velocity away from the array, metres a second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub velocity_y_metres_per_second: f64,
+moving! {
+    /// Reflectors drawn from a normal distribution around a centre; the same seed gives the same cluster.
+    pub struct GaussianCluster {
+        /// Centre along the array's axis, metres.
+        pub x_metres: f64,
+        /// Centre ahead of the array, metres.
+        pub y_metres: f64,
+        /// Standard deviation along x, metres.
+        pub x_std_metres: f64,
+        /// Standard deviation along y, metres.
+        pub y_std_metres: f64,
+        /// Number of reflectors.
+        pub count: usize,
+        /// Seed of the offsets from the centre.
+        #[serde(default)]
+        pub seed: u64,
+        /// Reflectivity sigma of each reflector.
+        #[serde(default = "one")]
+        pub reflectivity: f64,
+    }
 }
 
 fn straight_ahead() -> f64 {
@@ -226,15 +209,7 @@ impl Object {
 
     /// Reflectivity sigma of each of its reflectors; the reflection coefficient of a body.
     pub fn reflectivity(&self) -> f64 {
-        match self {
-            Object::Point(p) => p.reflectivity,
-            Object::Line(l) => l.reflectivity,
-            Object::Gaussian(g) => g.reflectivity,
-            Object::Wall(w) => w.reflectivity,
-            Object::Box(b) => b.reflectivity,
-            Object::Post(p) => p.reflectivity,
-            Object::Polygon(p) => p.reflectivity,
-        }
+        of_each!(self, one => one.reflectivity)
     }
 
     /// The reflectors this object stands for, in a fixed order; a body is none.
@@ -274,15 +249,7 @@ impl Object {
 
     /// Sets the reflectivity sigma of each of its reflectors, or the reflection coefficient of a body.
     pub fn set_reflectivity(&mut self, reflectivity: f64) {
-        *match self {
-            Object::Point(p) => &mut p.reflectivity,
-            Object::Line(l) => &mut l.reflectivity,
-            Object::Gaussian(g) => &mut g.reflectivity,
-            Object::Wall(w) => &mut w.reflectivity,
-            Object::Box(b) => &mut b.reflectivity,
-            Object::Post(p) => &mut p.reflectivity,
-            Object::Polygon(p) => &mut p.reflectivity,
-        } = reflectivity;
+        of_each!(self, one => one.reflectivity = reflectivity);
     }
 
     /// The numbers of its surface that can be changed; `None` for what is made of points: roughness in millimetres, and seed.

@@ -7,6 +7,10 @@
 //!
 //! Bodies give range and complex amplitude of each of their echoes ([`crate::scattering`]); [`Path::new`] takes them.
 
+mod change;
+
+pub use change::{By, PathChange};
+
 use super::double::{Double, product, sum};
 use super::simd::Lanes;
 use crate::radar::{Pair, Pattern, Radar};
@@ -209,77 +213,6 @@ pub(super) fn largest_amplitude(radar: &Radar, r: &Reflector) -> f64 {
     let ahead = r.y_metres - r.y_metres.clamp(hind, fore);
     let square = (beside * beside + ahead * ahead).max(MIN_ELEMENT_DISTANCE_METRES.powi(2));
     radar.transmit_power_watts * r.reflectivity.abs() / square
-}
-
-/// What moves when a point's echo changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum By {
-    /// The point's x, in metres.
-    X,
-    /// The point's y, in metres.
-    Y,
-    /// The point's range from the array's centre, in metres, in the same direction.
-    Range,
-    /// cos(theta) of the point as the array's centre sees it, at the same range.
-    CosTheta,
-}
-
-/// How much an echo changes for each unit of what moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PathChange {
-    /// Change of the range, metres.
-    pub range_metres: f64,
-    /// Relative change of the amplitude.
-    pub amplitude: f64,
-}
-
-impl PathChange {
-    /// How the echo of a point at (`x_metres`, `y_metres`) changes, for any reflectivity.
-    pub fn of_point(pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
-        let range_metres = x_metres.hypot(y_metres);
-        let [there, back] = pair.places_metres().map(|[antenna, ahead]| {
-            let leg = (x_metres - antenna).hypot(y_metres - ahead);
-            // Half the square of the leg is (range^2 - 2 range (cos(theta) antenna + sin(theta) ahead) + antenna^2 + ahead^2) / 2.
-            let half_square = match by {
-                By::X => x_metres - antenna,
-                By::Y => y_metres - ahead,
-                By::Range if range_metres == 0.0 => 0.0,
-                By::Range if ahead == 0.0 => range_metres - antenna * (x_metres / range_metres),
-                By::Range => range_metres - (antenna * x_metres + ahead * y_metres) / range_metres,
-                By::CosTheta if ahead == 0.0 => -range_metres * antenna,
-                By::CosTheta => range_metres * (ahead * x_metres / y_metres - antenna),
-            };
-            let change = half_square / leg;
-            [change, -change / leg]
-        });
-        PathChange { range_metres: (there[0] + back[0]) / 2.0, amplitude: there[1] + back[1] }
-    }
-
-    /// The same between elements of a pattern.
-    pub fn through(self, pattern: Option<Pattern>, pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
-        let Some(pattern) = pattern else { return self };
-        let square = x_metres * x_metres + y_metres * y_metres;
-        // The logarithm of how far the point is ahead of each antenna, and of each leg: the cosine off broadside is their quotient.
-        let of_log_y = |antenna_y: f64| {
-            let of_y = match by {
-                By::X => 0.0,
-                By::Y => 1.0,
-                By::Range => y_metres / square.sqrt(),
-                By::CosTheta => -x_metres * square.sqrt() / y_metres,
-            };
-            of_y / (y_metres - antenna_y)
-        };
-        // PathChange::amplitude is the change of minus the logarithms of both legs.
-        let of_log_cos = of_log_y(pair.transmitter_y_metres)
-            + of_log_y(pair.receiver_y_metres)
-            + PathChange::of_point(pair, [x_metres, y_metres], by).amplitude;
-        PathChange { amplitude: self.amplitude + pattern.relative_change(of_log_cos), ..self }
-    }
-
-    /// Relative change of the sample where an echo's phase turns by `turns_per_metre`.
-    pub fn of_sample(&self, turns_per_metre: f64) -> Complex64 {
-        Complex64::new(self.amplitude, TAU * turns_per_metre * self.range_metres)
-    }
 }
 
 #[cfg(test)]

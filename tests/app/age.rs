@@ -51,7 +51,7 @@ const PANELS: [Panel; 14] = [
     Panel::Found,
 ];
 
-/// What a user may do at random, whatever is shown and however often.
+/// What a user may do at random, with anything shown and any number of times.
 fn action() -> impl Strategy<Value = Command> {
     let window = prop_oneof![Just(WindowFunction::Hann), Just(WindowFunction::Hamming)];
     let floor = prop_oneof![Just(Floor::Thesis), Just(Floor::Exact)];

@@ -82,7 +82,7 @@ fn a_change_of_the_radar_is_an_edit() {
 }
 
 #[test]
-fn what_a_format_cannot_hold_is_asked_before_anything_is_written() {
+fn what_a_format_cannot_hold_is_asked_before_it_is_written() {
     let mut s = Session::start();
     let path = write(&s, "points.npz", 2);
     s.ask(DocumentCommand::OpenPath(path.clone()));
@@ -117,7 +117,7 @@ fn save_as_points_too(s: &mut Session) {
 }
 
 #[test]
-fn a_saved_scene_is_not_called_unsaved_when_a_second_format_is_written() {
+fn a_saved_scene_stays_saved_when_a_second_format_is_written() {
     let mut s = Session::start();
     // The second format holds no other radar either.
     save_as_points_too(&mut s);
@@ -127,7 +127,7 @@ fn a_saved_scene_is_not_called_unsaved_when_a_second_format_is_written() {
 }
 
 #[test]
-fn an_unsaved_scene_is_called_unsaved_when_a_second_format_is_written() {
+fn an_unsaved_scene_stays_so_when_a_second_format_is_written() {
     let mut s = Session::start();
     save_as_points_too(&mut s);
     s.ask(WindowCommand::CloseMessages);
@@ -140,7 +140,7 @@ fn an_unsaved_scene_is_called_unsaved_when_a_second_format_is_written() {
 }
 
 #[test]
-fn what_another_program_wrote_is_not_replaced_without_a_question() {
+fn what_another_program_wrote_is_replaced_after_a_question() {
     let mut s = Session::start();
     let path = s.folder.path().join("scene.toml");
     s.ask(EditCommand::Add(NewObject::Point, None));
@@ -178,7 +178,7 @@ fn what_another_program_wrote_is_not_replaced_without_a_question() {
 }
 
 #[test]
-fn a_start_with_a_file_loses_neither_the_file_nor_what_was_unsaved() {
+fn a_start_with_a_file_loses_neither_file_nor_unsaved_scene() {
     let mut s = Session::start();
     let b = write(&s, "b.toml", 5);
     s.ask(EditCommand::Add(NewObject::Point, None));
@@ -225,9 +225,9 @@ fn a_named_scene_comes_back_under_its_name() {
 }
 
 #[test]
-fn a_window_whose_scene_can_not_be_kept_closes_at_the_second_try() {
+fn a_window_with_a_scene_not_kept_closes_at_the_second_try() {
     let folder = tempfile::tempdir().unwrap();
-    // A file where the folder of the autosave would be takes no files, whoever tries.
+    // A file where the folder of the autosave would be takes no files of any user.
     std::fs::write(folder.path().join("data"), "").unwrap();
     let app = harness(folder.path(), None, vec![Arc::new(Baseline)]);
     let mut s = Session { app, folder };

@@ -1,4 +1,4 @@
-//! Figures on screen are those of the command line, bit for bit, whatever the window showed before.
+//! Figures on screen are those of the command line, bit for bit, after anything that the window showed before.
 
 use crate::session::{Session, harness, step_until};
 use apertura::app::{DocumentCommand, EditCommand, NewObject};

@@ -212,7 +212,7 @@ fn the_guess_stays_drawn_beside_the_truth() {
 }
 
 #[test]
-fn a_shown_solution_counts_as_unsolved_until_the_step_is_begun_again() {
+fn a_shown_solution_is_unsolved_until_the_step_is_begun_again() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 5);
     let is_met = |s: &Session| s.state().progress().record("range-and-bandwidth", 4).challenge_met;

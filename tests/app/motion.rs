@@ -16,7 +16,7 @@ fn moving() -> Session {
 }
 
 #[test]
-fn the_range_doppler_map_costs_nothing_while_it_is_closed_or_sends_one_chirp() {
+fn a_closed_range_doppler_map_or_one_chirp_costs_nothing() {
     let mut s = moving();
     assert_eq!(s.state().dopplers_asked(), 0, "a closed panel costs nothing");
     s.ask(WindowCommand::OpenPanel(Panel::RangeDoppler));

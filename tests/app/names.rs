@@ -1,4 +1,4 @@
-//! For whoever hears the window, or reads it at twice the size.
+//! For screen readers, and at twice the size.
 
 use crate::session::Session;
 use apertura::app::{Command, DocumentCommand, EditCommand, MapKind, Panel, RadarCommand, WindowCommand};

@@ -319,7 +319,7 @@ fn the_window_exports_what_apertura_maps_writes() {
 }
 
 #[test]
-fn open_shows_a_dialog_of_the_windows_own_where_the_system_has_none() {
+fn open_shows_the_windows_own_dialog_where_the_system_has_none() {
     let mut s = Session::start();
     s.ask(DocumentCommand::Open);
     assert!(s.app.query_all_by_label_contains("Open a scene").next().is_some());

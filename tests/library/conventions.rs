@@ -4,7 +4,7 @@ use apertura::evaluate::Metrics;
 use apertura::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap};
 use apertura::radar::{Carrier, Decibels, End, Radar};
 use apertura::reconstruct::{Baseline, Reconstructor, Request};
-use apertura::scene::{Object, Point, Scene, SceneError};
+use apertura::scene::{Object, Point, Scene};
 use apertura::signal::{Floor, exact, simulate};
 use proptest::prelude::*;
 
@@ -156,21 +156,6 @@ fn a_faint_scene_has_the_map_of_a_bright_one() {
         let worst = bright.iter().zip(&faint).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(worst < 5e-5, "{floor}: Lambda differs by {worst}");
     }
-}
-
-#[test]
-fn a_reflector_on_an_element_is_refused() {
-    let radar = Radar::default();
-    let scene = Scene::of_points([(radar.element_x_metres(3), 0.0)]);
-    let error = simulate(&radar, &scene, Floor::Exact, 0).unwrap_err();
-    assert!(matches!(error, SceneError::OnElement { object: 0, element: 3, .. }), "{error}");
-}
-
-#[test]
-fn nan_is_refused() {
-    let scene = Scene { objects: vec![Object::Point(Point::new(1.0, f64::NAN))], ..Scene::default() };
-    let error = simulate(&Radar::default(), &scene, Floor::Thesis, 0).unwrap_err();
-    assert!(matches!(error, SceneError::Value { field: "y_metres", .. }), "{error}");
 }
 
 #[test]

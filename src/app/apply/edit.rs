@@ -72,7 +72,7 @@ fn copy(state: &mut State) -> Option<Effect> {
     copied
 }
 
-/// Adds an object at `place`, or in the middle of the visible scene, beside whatever is there already.
+/// Adds an object at `place`, or in the middle of the visible scene, beside what is there already.
 fn add(state: &mut State, kind: NewObject, place: Option<Place>) {
     let (bin, view) = (state.radar().range_resolution_metres(), state.scene_view);
     let mut at = place.unwrap_or(Place::new(view.centre.x_metres, view.centre.y_metres.max(2.0)));

@@ -68,6 +68,7 @@ fn set_up(state: &mut State) {
     let Some(step) = state.lesson.as_ref().and_then(|run| run.current()).cloned() else { return };
     state.settings.floor = step.view.floor;
     state.settings.normalisation = step.view.normalisation;
+    state.settings.one_scale = step.view.one_scale;
     state.settings.method.clone_from(&step.view.method);
     state.settings.detect_by(step.view.cfar);
     let name = state.lesson.as_ref().map_or_else(String::new, |run| run.lesson.title.clone());

@@ -22,7 +22,7 @@ pub fn copy(state: &mut State, jobs: &Jobs, kind: MapKind) -> Option<ColorImage>
     }
 }
 
-/// A map's picture as it hangs on screen, the farthest range on top; cell by cell, whatever part of it is in sight.
+/// A map's picture as it hangs on screen, the farthest range on top; cell by cell, all of it.
 fn picture(state: &State, jobs: &Jobs, kind: MapKind) -> Result<ColorImage, String> {
     if state.is_predicting() {
         return Err("it is hidden until you have predicted".to_owned());

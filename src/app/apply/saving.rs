@@ -1,4 +1,4 @@
-//! Writing the scene to a file, and the question before one that can't hold all of it or that somebody else has written to.
+//! Writing the scene to a file, and the question before one that can't hold all of it or that another program has written to.
 
 use crate::app::jobs::{Jobs, Purpose};
 use crate::app::state::{Doubt, SaveAnswer, SaveQuestion, State};

@@ -15,7 +15,7 @@ const LEAST_HEIGHT: f32 = 260.0;
 /// Height of a panel's title, points.
 const TITLE: f32 = 20.0;
 
-/// The open panels from above: tools that somebody opened, then the scene, what a method makes of it and what there is to see, then the rest.
+/// The open panels from above: tools that were opened, then the scene, what a method makes of it and what there is to see, then the rest.
 pub fn order(arrangement: &Arrangement) -> Vec<Panel> {
     let first = [Panel::Scene, Panel::Map(MapKind::Output), Panel::Map(MapKind::Target), Panel::Controls];
     let (tools, rest): (Vec<Panel>, Vec<Panel>) = Panel::tiles().into_iter().partition(|panel| panel.is_tool());

@@ -7,7 +7,7 @@ use eframe::egui::{Button, Context, Id, Key, Label, Modifiers, RichText, ScrollA
 use std::path::{Path, PathBuf};
 
 /// Most entries of a folder that are listed.
-const MOST: usize = 5000;
+const MAX_LISTED: usize = 5000;
 
 /// An entry of a folder.
 struct Entry {
@@ -31,13 +31,13 @@ pub struct Browser {
     /// The folder as it is being typed.
     typed: String,
     name: String,
-    /// The name where nobody typed another.
+    /// The name where no other was typed.
     usual: String,
     /// Whether hidden files and those of other kinds are listed.
     all: bool,
     entries: Vec<Entry>,
     problem: Option<String>,
-    /// Whether the name's field has had the focus: whoever opens the dialog can type at once.
+    /// Whether the name's field has had the focus, so that a name can be typed at once.
     was_focused: bool,
 }
 
@@ -81,7 +81,7 @@ impl Browser {
             let fits = self.all || (!name.starts_with('.') && (is_folder || of_kind(&path)));
             fits.then_some(Entry { name, is_folder })
         };
-        let mut entries: Vec<Entry> = read.filter_map(Result::ok).filter_map(listed).take(MOST).collect();
+        let mut entries: Vec<Entry> = read.filter_map(Result::ok).filter_map(listed).take(MAX_LISTED).collect();
         entries.sort_by_cached_key(|entry| (!entry.is_folder, entry.name.to_lowercase()));
         (self.entries, self.problem) = (entries, None);
         true

@@ -9,13 +9,13 @@ use std::path::{Path, PathBuf};
 
 /// What is asked for, if anything is.
 #[derive(Default)]
-pub struct Memory {
+pub struct FileDialogMemory {
     dialog: Option<(Purpose, Browser)>,
     /// A file that is there already, and would be replaced.
     replace: Option<(Purpose, PathBuf)>,
 }
 
-impl Memory {
+impl FileDialogMemory {
     /// Whether it is on screen.
     pub fn is_open(&self) -> bool {
         self.dialog.is_some() || self.replace.is_some()
@@ -37,7 +37,7 @@ impl Memory {
 }
 
 /// Draws the dialog, if it is open.
-pub fn show(ctx: &Context, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ctx: &Context, memory: &mut FileDialogMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     if let Some((purpose, browser)) = &mut memory.dialog
         && let Some(answer) = browser.show(ctx)
@@ -80,12 +80,12 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    fn panel(question: Question) -> Harness<'static, (Memory, Vec<Command>)> {
-        let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+    fn panel(question: Question) -> Harness<'static, (FileDialogMemory, Vec<Command>)> {
+        let draw = |ui: &mut Ui, state: &mut (FileDialogMemory, Vec<Command>)| {
             let commands = show(ui.ctx(), &mut state.0);
             state.1.extend(commands);
         };
-        let mut memory = Memory::default();
+        let mut memory = FileDialogMemory::default();
         memory.ask(question);
         let mut dialog = Harness::builder().with_size([700.0, 500.0]).build_ui_state(draw, (memory, Vec::new()));
         dialog.run_steps(3);

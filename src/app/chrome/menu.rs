@@ -58,23 +58,23 @@ struct Listed {
 }
 
 /// The presets, read once.
-pub struct Memory {
+pub struct MenuMemory {
     presets: Vec<Listed>,
 }
 
-impl Default for Memory {
+impl Default for MenuMemory {
     fn default() -> Self {
         let listed = |preset: &presets::Preset| {
             let scene = preset.load().map(|f| f.scene).unwrap_or_default();
             let name = if scene.name.is_empty() { preset.id.to_owned() } else { scene.name };
             Listed { name, is_failure: preset.is_failure(), notes: scene.notes }
         };
-        Memory { presets: presets::ALL.iter().map(listed).collect() }
+        MenuMemory { presets: presets::ALL.iter().map(listed).collect() }
     }
 }
 
 /// Draws the bar.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut MenuMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Panel::top("menu").show(ui, |ui| {
         let width = ui.available_width();
@@ -225,7 +225,7 @@ fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.add_enabled_ui(input.selected, |ui| ui.menu_button("Arrange", |ui| arrange(ui, asked)));
 }
 
-fn scene(ui: &mut Ui, random: (u64, u32), memory: &Memory, asked: &mut Vec<Command>) {
+fn scene(ui: &mut Ui, random: (u64, u32), memory: &MenuMemory, asked: &mut Vec<Command>) {
     ui.set_min_width(260.0);
     entries(ui, NewObject::ALL.map(|kind| Command::Edit(EditCommand::Add(kind, None))), asked);
     ui.separator();
@@ -263,7 +263,7 @@ fn random_scenes(ui: &mut Ui, random: (u64, u32), asked: &mut Vec<Command>) {
 }
 
 /// The presets on which a method fails, or the others.
-fn presets_of(ui: &mut Ui, memory: &Memory, failures: bool, asked: &mut Vec<Command>) {
+fn presets_of(ui: &mut Ui, memory: &MenuMemory, failures: bool, asked: &mut Vec<Command>) {
     let listed = memory.presets.iter().enumerate().filter(|(_, preset)| preset.is_failure == failures);
     for (index, preset) in listed {
         if ui.button(&preset.name).on_hover_text(&preset.notes).clicked() {
@@ -314,7 +314,7 @@ fn panels(ui: &mut Ui, panels: impl IntoIterator<Item = Panel>, input: &Input<'_
 const HELP: [Panel; 2] = [Panel::Guide, Panel::Lesson];
 
 /// Tools and what belongs to them; those for research in a menu of their own.
-fn tools(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Command>) {
+fn tools(ui: &mut Ui, input: &Input<'_>, memory: &MenuMemory, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
     let tools = Panel::tiles().into_iter().filter(|panel| panel.is_tool() && !HELP.contains(panel));
     let (of_developers, tools): (Vec<Panel>, Vec<Panel>) = tools.partition(|panel| panel.is_developer());
@@ -360,6 +360,7 @@ fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let of_maps = [
         ViewCommand::ToggleProjection,
         ViewCommand::ToggleUnits,
+        ViewCommand::ToggleOneScale,
         ViewCommand::ToggleFieldsOfView,
         ViewCommand::ResetMaps,
         ViewCommand::NextMethod,

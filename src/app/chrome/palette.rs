@@ -18,7 +18,7 @@ pub struct Input<'a> {
 
 /// State of the palette.
 #[derive(Default)]
-pub struct Memory {
+pub struct PaletteMemory {
     open: bool,
     text: String,
     chosen: usize,
@@ -30,7 +30,7 @@ pub struct Memory {
 /// How many commands it remembers.
 const RECENT: usize = 8;
 
-impl Memory {
+impl PaletteMemory {
     /// Whether it is on screen.
     pub fn is_open(&self) -> bool {
         self.open
@@ -39,12 +39,12 @@ impl Memory {
     /// Opens it afresh, or closes it.
     pub fn toggle(&mut self) {
         let recent = std::mem::take(&mut self.recent);
-        *self = Memory { open: !self.open, just_opened: !self.open, recent, ..Memory::default() };
+        *self = PaletteMemory { open: !self.open, just_opened: !self.open, recent, ..PaletteMemory::default() };
     }
 
     /// One that remembers these commands, the latest first.
-    pub fn remembering(recent: Vec<String>) -> Memory {
-        Memory { recent, ..Memory::default() }
+    pub fn remembering(recent: Vec<String>) -> PaletteMemory {
+        PaletteMemory { recent, ..PaletteMemory::default() }
     }
 
     /// Names of the commands that were run last, the latest first.
@@ -91,7 +91,7 @@ impl Keys {
     }
 }
 
-/// Whether every word of `text` is in `name`, whatever the case.
+/// Whether every word of `text` is in `name`, in either case.
 fn matches(name: &str, text: &str) -> bool {
     let name = name.to_lowercase();
     text.to_lowercase().split_whitespace().all(|word| name.contains(word))
@@ -164,7 +164,7 @@ fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<
 }
 
 /// Draws the palette, if it is open.
-pub fn show(ctx: &Context, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ctx: &Context, input: Input<'_>, memory: &mut PaletteMemory) -> Vec<Command> {
     if !memory.open {
         return Vec::new();
     }
@@ -188,7 +188,7 @@ pub fn show(ctx: &Context, input: Input<'_>, memory: &mut Memory) -> Vec<Command
 }
 
 /// The text first, then what matches it as it is now: Enter may come in the same frame as the last letter.
-fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, keys: &Keys) -> Option<Found> {
+fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut PaletteMemory, keys: &Keys) -> Option<Found> {
     let before = memory.text.clone();
     if memory.just_opened {
         // The field has no focus yet, but letters may have come already.
@@ -307,7 +307,7 @@ mod tests {
         // What is called by the word comes before what is found by another word for it.
         let found = names("undo", &["Export maps…"]);
         assert_eq!(found[0], "Undo");
-        let mut memory = Memory::remembering(vec!["Redo".to_owned()]);
+        let mut memory = PaletteMemory::remembering(vec!["Redo".to_owned()]);
         memory.remember("Undo".to_owned());
         memory.remember("Redo".to_owned());
         assert_eq!(memory.recent(), ["Redo", "Undo"]);
@@ -318,11 +318,11 @@ mod tests {
     #[test]
     fn enter_runs_what_the_text_says_even_in_the_same_frame() {
         let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline)];
-        let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+        let draw = |ui: &mut Ui, state: &mut (PaletteMemory, Vec<Command>)| {
             let commands = show(ui.ctx(), Input { methods: &methods }, &mut state.0);
             state.1.extend(commands);
         };
-        let mut palette = Harness::new_ui_state(draw, (Memory::default(), Vec::new()));
+        let mut palette = Harness::new_ui_state(draw, (PaletteMemory::default(), Vec::new()));
         palette.step();
         for (text, frames_before_enter) in [("add line", 0), ("method: baseline", 2)] {
             palette.state_mut().0.toggle();

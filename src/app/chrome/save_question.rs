@@ -1,4 +1,4 @@
-//! Asks before a scene is written to a file that can't hold all of it, or that somebody else has written to.
+//! Asks before a scene is written to a file that can't hold all of it, or that another program has written to.
 
 use crate::app::state::{Command, DocumentCommand, Doubt, SaveAnswer, SaveQuestion};
 use eframe::egui::{Context, Id, Modal, Ui};

@@ -9,7 +9,7 @@ use eframe::egui::{TextStyle, Ui, WidgetText, vec2};
 use egui_tiles::{SimplificationOptions, TileId, Tiles, UiResponse};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Whoever knows what the panels show.
+/// Draws what stands in the tiles.
 pub trait Draw {
     /// Draws a panel.
     fn draw(&mut self, ui: &mut Ui, panel: Panel);
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn every_tab_is_in_sight_in_a_small_window_however_long_the_caption() {
+    fn every_tab_is_in_sight_in_a_small_window_with_long_captions() {
         let mut window = window();
         window.run_steps(3);
         for title in ["Output > η", "ROC", "Target > η'", "Cuts", "Output", "Difference"] {

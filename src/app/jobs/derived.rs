@@ -198,7 +198,7 @@ mod tests {
         }
     }
 
-    /// Waits for whatever is computed.
+    /// Waits until nothing is computed.
     fn rest(squares: &mut Derived<Square>) -> Option<String> {
         let deadline = Instant::now() + Duration::from_secs(20);
         while squares.is_busy() {

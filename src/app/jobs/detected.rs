@@ -20,7 +20,7 @@ pub struct Detected {
 }
 
 /// One map's detections, and what they belong to.
-struct Kept {
+struct KeptDetections {
     map: Arc<RangeAngleMap>,
     scale: LambdaScale,
     cfar: Cfar,
@@ -30,7 +30,7 @@ struct Kept {
 /// Detects, and keeps what it found last: target, then both outputs.
 #[derive(Default)]
 pub struct Detector {
-    kept: [Option<Kept>; 3],
+    kept: [Option<KeptDetections>; 3],
 }
 
 impl Detector {
@@ -73,7 +73,7 @@ impl Detector {
             return Ok(kept.detected.clone());
         }
         let detected = Arc::new(cfar.detect_lambda(map, scale).map_err(|e| sentence(&e.to_string()))?.as_map());
-        self.kept[slot] = Some(Kept { map: map.clone(), scale, cfar, detected: detected.clone() });
+        self.kept[slot] = Some(KeptDetections { map: map.clone(), scale, cfar, detected: detected.clone() });
         Ok(detected)
     }
 }

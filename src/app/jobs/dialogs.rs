@@ -1,4 +1,4 @@
-//! Which file? The system's dialogs, off the UI thread; what is chosen comes back as a command. Where the system has none, whoever asks
+//! Which file? The system's dialogs, off the UI thread; what is chosen comes back as a command. Where the system has none, the user who asks
 //! is told, so that the window shows its own.
 
 use crate::app::state::{Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WorkCommand};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
-/// A dialog that ended sooner than this was never on screen: nobody is so quick to close it.
+/// A dialog that ended sooner than this was never on screen: no user closes it so quickly.
 const NEVER_SHOWN: Duration = Duration::from_millis(250);
 
 /// What a file is asked for.
@@ -119,7 +119,7 @@ impl Purpose {
         format!("{}: nothing is written with this ending; expected {}", path.display(), endings.join(" or "))
     }
 
-    /// Name of the file where nobody chooses another.
+    /// Name of the file where no other is chosen.
     pub fn name(self) -> &'static str {
         match self {
             Purpose::Open | Purpose::OpenLog | Purpose::OpenLesson | Purpose::OpenRows | Purpose::OwnScenes => "",
@@ -141,7 +141,7 @@ pub struct Question {
     pub purpose: Purpose,
     /// Where to look first.
     pub folder: Option<PathBuf>,
-    /// Name of the file where nobody chooses another.
+    /// Name of the file where no other is chosen.
     pub name: String,
 }
 
@@ -304,7 +304,7 @@ fn command_of_dropped(path: PathBuf) -> Command {
 }
 
 /// Whether there can be a dialog at all: a portal is asked over the session's bus, and `zenity` is a program. Without either the system's
-/// answer comes too late to tell it from somebody who closed a dialog.
+/// answer comes too late to tell it from a dialog that was closed.
 fn may_have_dialogs(bus: Option<OsString>, runtime: Option<OsString>, path: Option<OsString>) -> bool {
     let has_bus = bus.is_some_and(|b| !b.is_empty()) || runtime.is_some_and(|r| Path::new(&r).join("bus").exists());
     has_bus || path.is_some_and(|p| std::env::split_paths(&p).any(|folder| folder.join("zenity").exists()))
@@ -317,7 +317,7 @@ mod tests {
     fn answer(dialogs: &mut Dialogs, question: Question) -> (Vec<Command>, Option<&'static str>) {
         let (wake, woken) = channel();
         dialogs.ask(question, move || wake.send(()).unwrap()).unwrap();
-        // Nobody wakes for a dialog that was closed, and nobody needs to for one of the window.
+        // A dialog that was closed wakes nothing, and one of the window need not.
         let _closed = woken.recv_timeout(Duration::from_secs(2));
         let (chosen, _, told) = dialogs.poll();
         (chosen, told)
@@ -398,7 +398,7 @@ mod tests {
         assert_eq!(told, [Some(APOLOGY), None]);
     }
 
-    /// What follows a question where somebody closes every dialog but that of a scene to open.
+    /// What follows a question where every dialog is closed but that of a scene to open.
     fn answered(purpose: Purpose) -> (Vec<Command>, Option<&'static str>, Option<Question>) {
         let slow: System = Arc::new(|question, reply| {
             std::thread::sleep(NEVER_SHOWN + Duration::from_millis(50));

@@ -9,8 +9,10 @@ use crate::app::state::{MethodSlot, Panel, State};
 use crate::evaluate::failure::{CellIndex, Failures, Footprints};
 #[cfg(test)]
 use crate::evaluate::failure::{Fate, Ghost};
+use crate::evaluate::median_bound_metres;
 use crate::maps::RangeAngleMap;
 use crate::scene::Scene;
+use crate::signal::Floor;
 use crate::task::Task;
 
 /// An output, and the threshold that says what of it is detected.
@@ -26,6 +28,7 @@ struct Output {
 #[derive(Clone, PartialEq)]
 pub struct KindsQuery {
     truth: Truth,
+    floor: Floor,
     outputs: [Option<Output>; 2],
 }
 
@@ -51,6 +54,8 @@ pub struct Fates {
     pub verdicts: Vec<Verdict>,
     /// The threshold that was judged at.
     pub eta: f32,
+    /// How near to its place any unbiased estimate could put a found point, metres: the median of all, where there is noise.
+    pub bound_metres: Option<f64>,
     output: Shared<RangeAngleMap>,
     target: Shared<RangeAngleMap>,
 }
@@ -91,7 +96,7 @@ impl KindsQuery {
             Some(Output { lambda: pair.output.clone(), judged: judged.into(), eta })
         };
         let outputs = MethodSlot::BOTH.map(output);
-        Some(KindsQuery { outputs, truth })
+        Some(KindsQuery { outputs, truth, floor: state.settings.floor })
     }
 }
 
@@ -127,7 +132,7 @@ pub fn fates_of<'a>(
 }
 
 fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
-    let Truth { source: Source { scene, .. }, target, .. } = &request.truth;
+    let Truth { source: Source { radar, scene, .. }, target, .. } = &request.truth;
     let fates = |output: &Output| {
         let failures = footprints.judge_cells(target, &output.lambda, &output.judged.above(output.eta));
         let brightest = |cells: &[CellIndex]| {
@@ -139,7 +144,8 @@ fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
         let ghosts = failures.ghosts.iter().map(|ghost| verdict(None, &ghost.cells));
         let verdicts = objects.chain(ghosts).collect();
         let (scene, target) = (scene.clone(), target.clone());
-        Fates { scene, verdicts, failures, eta: output.eta, output: output.lambda.clone(), target }
+        let bound_metres = median_bound_metres(radar, &scene, &failures, request.floor);
+        Fates { scene, verdicts, failures, eta: output.eta, bound_metres, output: output.lambda.clone(), target }
     };
     request.outputs.each_ref().map(|output| output.as_ref().map(fates))
 }
@@ -157,7 +163,15 @@ impl Fates {
             ghosts: ghosts.iter().map(|at| Ghost { cells: vec![*at; 12] }).collect(),
         };
         let verdicts = (0..fates.len()).map(object).chain(ghosts.iter().map(ghost)).collect();
-        Fates { scene: Shared::new(scene), failures, verdicts, eta: 0.8, output: nothing(), target: nothing() }
+        Fates {
+            scene: Shared::new(scene),
+            failures,
+            verdicts,
+            eta: 0.8,
+            bound_metres: None,
+            output: nothing(),
+            target: nothing(),
+        }
     }
 }
 
@@ -185,7 +199,11 @@ mod tests {
         output.lambda.slice_mut(ndarray::s![400..404, 200..210]).fill(0.95);
         output.lambda[[402, 205]] = 1.0;
         let judged = Shared::new(output.clone());
-        let request = KindsQuery { truth, outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None] };
+        let request = KindsQuery {
+            floor: Floor::Exact,
+            truth,
+            outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None],
+        };
         let Truth { source: Source { radar, scene, .. }, target, scale } = &request.truth;
         let footprints = Footprints::new(radar, scene, target, *scale);
         let [Some(fates), None] = judge(&footprints, &request) else { panic!("of the first alone") };

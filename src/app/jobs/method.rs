@@ -29,7 +29,7 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// What a method gets of a scene; `None` where nobody wanted its ends.
+    /// What a method gets of a scene; `None` where its ends were not wanted.
     pub fn of(result: &MapsResult) -> Option<Basis> {
         let MapsRequest { source: Source { radar, recording, .. }, wanted, .. } = &result.request;
         Some(Basis {
@@ -140,16 +140,16 @@ type Answer = (Reconstruction, Option<Vec<Detection>>);
 type MethodReply = (MethodRequest, Result<Answer, ReconstructError>);
 
 /// What the worker keeps from one request to the next.
-struct Kept {
+struct MethodWorker {
     /// Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
     threads: Option<rayon::ThreadPool>,
     /// The method asked last, and the same with a memory.
     follower: Option<(Shared<dyn Reconstructor>, Shared<dyn Reconstructor>)>,
 }
 
-impl Kept {
-    fn new(thread: &'static str) -> Kept {
-        Kept { threads: platform::pool(thread), follower: None }
+impl MethodWorker {
+    fn new(thread: &'static str) -> MethodWorker {
+        MethodWorker { threads: platform::pool(thread), follower: None }
     }
 
     fn work(&mut self, q: MethodRequest, task: &Task) -> MethodReply {
@@ -175,7 +175,7 @@ pub struct MethodJob {
     was_drawn: bool,
     output: Option<MethodResult>,
     refusal: Option<Refusal>,
-    /// A time that nobody has taken yet: for which radar, of which method.
+    /// A time that was not taken yet: for which radar, of which method.
     time: Option<(Radar, &'static str, Duration)>,
 }
 
@@ -185,8 +185,8 @@ impl MethodJob {
     /// # Errors
     /// When the system can't start a thread.
     pub fn start(thread: &'static str, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<MethodJob> {
-        let work = |kept: &mut Kept, q: MethodRequest, task: &Task| kept.work(q, task);
-        let worker = Worker::spawn(thread, move || Kept::new(thread), work, wake)?;
+        let work = |kept: &mut MethodWorker, q: MethodRequest, task: &Task| kept.work(q, task);
+        let worker = Worker::spawn(thread, move || MethodWorker::new(thread), work, wake)?;
         Ok(MethodJob { worker, asked: None, outdated: None, was_drawn: false, output: None, refusal: None, time: None })
     }
 
@@ -223,7 +223,7 @@ impl MethodJob {
         latest: Option<&MapsResult>,
     ) {
         let MethodRequest { document, source, basis, target, method, at_rest, .. } = request;
-        // A method with a memory is faster than the same from scratch, which is what somebody chooses by.
+        // A method with a memory is faster than the same from scratch, by which methods are chosen.
         if at_rest || method.following().is_none() {
             self.time = Some((basis.radar.clone(), method.name(), took));
         }
@@ -297,7 +297,7 @@ impl MethodJob {
         self.refusal = Some(Refusal { method, reason });
     }
 
-    /// Stops what runs, since nobody looks at it any more; it is asked for again when somebody does.
+    /// Stops what runs, since it is out of sight; it is asked for again once it is in sight.
     pub fn rest(&mut self) {
         if self.worker.is_busy() {
             self.worker.cancel();

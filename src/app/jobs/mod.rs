@@ -19,6 +19,7 @@ mod lessons;
 mod maps;
 mod method;
 mod method_times;
+mod one_scale;
 mod painter;
 mod phasors;
 mod pipeline;
@@ -182,7 +183,7 @@ impl Jobs {
             state.notices.info(kept.told);
             chosen.push(ViewCommand::SetMethodEta(kept.method, Some(kept.eta)).into());
         }
-        // What was found takes the place of what it was looked for near, but not of what somebody made of that meanwhile.
+        // What was found takes the place of what it was looked for near, but not of what was edited meanwhile.
         if found && self.failures.search.is_about(state.editor.scene()) {
             chosen.push(RowsCommand::TakeFinding.into());
         }

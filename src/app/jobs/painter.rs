@@ -23,7 +23,7 @@ pub struct Picture {
     pub end: f32,
     /// Over which coordinates it is.
     pub projection: Projection,
-    /// What it shows, for whoever can't see it.
+    /// What it shows, for screen readers.
     pub sentence: Arc<str>,
 }
 
@@ -79,7 +79,7 @@ impl Painter {
         picture
     }
 
-    /// Forgets pictures that nobody looks at.
+    /// Forgets pictures that are out of sight.
     pub fn keep(&mut self, shown: impl Fn(MapKind) -> bool) {
         self.cache.retain(|kind, _| shown(*kind));
     }

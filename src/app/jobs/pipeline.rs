@@ -70,7 +70,7 @@ impl Pipeline {
         }
     }
 
-    /// What a method gets of the scene on screen, where somebody wants an output.
+    /// What a method gets of the scene on screen, where an output is wanted.
     pub fn basis(&self) -> Option<Basis> {
         Basis::of(self.maps.result()?)
     }
@@ -100,13 +100,18 @@ impl Pipeline {
         let all = looked_at.wants.every_map;
         let output = looked_at.outputs.contains(&true);
         let settings = &state.settings;
+        let on_one_scale = settings.one_scale && (map(MapKind::Input0) || map(MapKind::Input1) || all);
         let wanted = MapRequest {
             floor: settings.floor,
             seed: state.editor.scene().noise_seed,
             normalisation: settings.normalisation,
             first: map(MapKind::Input0) || all,
             last: map(MapKind::Input1) || all,
-            full: map(MapKind::Target) || map(MapKind::TargetAbove) || output || map(MapKind::Unexplained),
+            full: on_one_scale
+                || map(MapKind::Target)
+                || map(MapKind::TargetAbove)
+                || output
+                || map(MapKind::Unexplained),
             ends: output,
         };
         let is_read = |slot: MethodSlot| looked_at.outputs[slot as usize];
@@ -124,6 +129,7 @@ impl Pipeline {
             pairs: MethodSlot::BOTH.map(pair),
             colours: settings.colours,
             projection: settings.projection,
+            one_scale: settings.one_scale,
             difference: settings.difference,
             dark: state.dark,
             target_eta: settings.target_eta,
@@ -139,7 +145,7 @@ impl Pipeline {
     fn ask_method(&mut self, state: &State, slot: MethodSlot, listed: bool) {
         let latest = self.maps.result().and_then(|r| {
             let (target, about) = (r.target(), (r.request.at_rest, r.request.document, r.request.source.clone()));
-            // A recording of the two ends has none; a scene has one as soon as somebody wants it.
+            // A recording of the two ends has none; a scene has one as soon as it is wanted.
             (target.is_some() || r.request.source.recording.is_some()).then_some((Basis::of(r)?, target, about))
         });
         let Some(((basis, target, (at_rest, document, source)), method)) =
@@ -223,7 +229,7 @@ impl Pipeline {
         Some(20.0 * (scale.peak - scale.floor))
     }
 
-    /// What the reflectors on screen leave of the recording, where somebody looks at it.
+    /// What the reflectors on screen leave of the recording, where it is in sight.
     pub fn unexplained(&self) -> Option<&Unexplained> {
         self.maps.result()?.unexplained.as_ref()?.as_ref().ok()
     }

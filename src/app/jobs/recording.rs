@@ -130,7 +130,7 @@ impl Recorder {
         Ok(said)
     }
 
-    /// Gives up whatever is recorded or drawn. Returns what to tell.
+    /// Gives up what is recorded or drawn. Returns what to tell.
     pub fn cancel(&mut self) -> Option<String> {
         let drawing = self.steps.is_busy();
         self.steps.cancel();

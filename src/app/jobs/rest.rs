@@ -21,7 +21,7 @@ struct Still {
 /// Whether the scene rests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Motion {
-    /// Somebody holds something of it.
+    /// Something of it is held.
     #[default]
     Held,
     /// It rests unless something changes within this time.

@@ -1,6 +1,7 @@
 //! The maps of a scene, their pictures and their figures: what the maps worker is asked for, and what it makes.
 
 use super::detected::{DETECTED, Detected, Detector};
+use super::one_scale::{OneScale, Rescaled};
 use super::painter::{Painter, Picture, largest_difference};
 use super::recorded::{RecordedMaps, Unexplained};
 use super::source::Source;
@@ -18,7 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// An output and the target it aimed for: figures are always of such a pair, whatever has changed since.
+/// An output and the target it aimed for: figures are always of such a pair, even where the scene has changed since.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
     /// Where the samples come from that both are made of.
@@ -42,7 +43,7 @@ pub struct MapsRequest {
     pub wanted: MapRequest,
     /// Whether the scene rests: its maps are then those of the command line, bit for bit.
     pub at_rest: bool,
-    /// Maps that somebody looks at.
+    /// Maps in sight.
     pub pictures: BTreeSet<MapKind>,
     /// The latest output of either method, if there is one, with its target.
     pub pairs: [Option<Pair>; 2],
@@ -50,6 +51,8 @@ pub struct MapsRequest {
     pub colours: ColourMap,
     /// Coordinates.
     pub projection: Projection,
+    /// Whether inputs, target and output are drawn on one scale.
+    pub one_scale: bool,
     /// How the difference is drawn.
     pub difference: DifferenceView,
     /// Whether the window is dark.
@@ -84,10 +87,12 @@ pub struct MapsResult {
     pub request: MapsRequest,
     /// The maps.
     pub frame: EngineFrame,
-    /// What the scene leaves of a recording, where somebody looks at it, or why it can't be fitted.
+    /// What the scene leaves of a recording, where it is in sight, or why it can't be fitted.
     pub unexplained: Option<Result<Unexplained, String>>,
     /// What a detector finds in them, where one is in use.
     pub detected: Detected,
+    /// Those that are drawn on one scale, where they are.
+    pub on_one_scale: BTreeMap<MapKind, Rescaled>,
     /// Their pictures.
     pub pictures: BTreeMap<MapKind, Picture>,
     /// Figures of the pairs that were asked about.
@@ -124,6 +129,7 @@ pub struct MapsState {
     engine: Option<Engine>,
     recorded: Option<RecordedMaps>,
     painter: Painter,
+    one_scale: OneScale,
     detector: Detector,
     scores: [Option<ScoresOf>; 2],
     roc: Option<RocOf>,
@@ -156,9 +162,14 @@ impl MapsState {
         let outputs = [output(0, MapKind::OutputAbove), output(1, MapKind::SecondAbove)];
         let needs_target = outputs.iter().any(Option::is_some) || shows(MapKind::TargetAbove);
         let detected = self.detector.detect(request.cfar, &frame, needs_target, outputs);
+        let outputs = request.pairs.each_ref().map(|pair| pair.as_ref().map(|pair| &pair.output));
+        let on_one_scale = if request.one_scale { self.one_scale.of(&frame, outputs) } else { BTreeMap::new() };
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
-            if let Some(subject) = subject(&frame, unexplained.as_ref(), &request, &detected, kind) {
+            if let Some(mut subject) = subject(&frame, unexplained.as_ref(), &request, &detected, kind) {
+                if let Some(rescaled) = on_one_scale.get(&kind) {
+                    subject.map = rescaled.map.clone();
+                }
                 pictures.insert(kind, self.painter.paint(&request.source.radar, kind, &subject));
             }
         }
@@ -177,7 +188,7 @@ impl MapsState {
         let roc = request.pairs[0].as_ref().filter(|_| request.roc).and_then(|pair| self.roc(is_silent, pair));
         let painted = self.painter.painted;
         let took = Duration::ZERO;
-        Ok(MapsResult { request, frame, unexplained, detected, pictures, scores, roc, painted, took })
+        Ok(MapsResult { request, frame, unexplained, detected, on_one_scale, pictures, scores, roc, painted, took })
     }
 
     /// The maps of the scene, or of the recording that stands in its place, and what the scene leaves of it.

@@ -1,4 +1,4 @@
-//! What a map shows in one sentence, for whoever can't see it.
+//! What a map shows in one sentence, for screen readers.
 
 use super::subject::{Paint, Subject};
 use crate::app::state::Cursor;

@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_training_that_was_stopped_before_its_first_line_is_not_looked_for() {
+    fn a_training_stopped_before_its_first_line_is_not_looked_for() {
         let (wake, woken) = std::sync::mpsc::channel();
         let mut training = Training::start(move || wake.send(()).unwrap()).unwrap();
         let missing = PathBuf::from("/there/is/no/log.csv");

@@ -32,7 +32,7 @@ pub struct Input<'a> {
 
 /// The picture on the graphics card.
 #[derive(Default)]
-pub struct Memory {
+pub struct BoundsMemory {
     texture: Texture,
 }
 
@@ -41,7 +41,7 @@ pub struct BoundsPanel;
 
 impl Content for BoundsPanel {
     type Asks = BoundsRequest;
-    type Memory = Memory;
+    type Remembers = BoundsMemory;
     const TELLS_ANSWERS: bool = true;
 
     fn asks(state: &State, _: &Jobs) -> Option<BoundsRequest> {
@@ -61,7 +61,7 @@ impl Content for BoundsPanel {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut BoundsMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     if !input.has_subject {
         ui.centered_and_justified(|ui| ui.weak("Place a reflector ahead of the array to see its bounds."));
@@ -294,7 +294,7 @@ mod tests {
 
     #[test]
     fn another_choice_of_elements_is_asked_for() {
-        let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+        let draw = |ui: &mut Ui, state: &mut (BoundsMemory, Vec<Command>)| {
             let settings = BoundsSettings::default();
             let input = Input { settings, elements: 64, has_subject: true, result: None };
             let commands = show(ui, input, &mut state.0);
@@ -310,7 +310,7 @@ mod tests {
     }
 
     /// The panel with the bounds of one point.
-    fn panel(size: [f32; 2]) -> Harness<'static, Memory> {
+    fn panel(size: [f32; 2]) -> Harness<'static, BoundsMemory> {
         let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
         let reflector = Reflector { x_metres: 1.5, y_metres: 9.0, reflectivity: 1.0 };
         let request = BoundsRequest {
@@ -324,12 +324,12 @@ mod tests {
             bins: 4.0,
         };
         let result = crate::app::jobs::bounds_of(request);
-        let draw = move |ui: &mut Ui, memory: &mut Memory| {
+        let draw = move |ui: &mut Ui, memory: &mut BoundsMemory| {
             let (settings, result) = (BoundsSettings::default(), result.as_ref().ok());
             let input = Input { settings, elements: 64, has_subject: true, result: result.map(Ok) };
             _ = show(ui, input, memory);
         };
-        Harness::builder().with_size(size).build_ui_state(draw, Memory::default())
+        Harness::builder().with_size(size).build_ui_state(draw, BoundsMemory::default())
     }
 
     #[test]

@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn another_scene_of_a_point_with_a_line_asks_to_drag_any_reflector() {
+    fn another_scene_of_point_and_line_asks_to_drag_any_reflector() {
         let mut other = presets::default_scene().scene;
         other.objects.retain(|object| matches!(object, Object::Line(_) | Object::Point(_)));
         let plain = Hint { text: "Drag a reflector: every map follows".to_owned(), way: Vec::new() };

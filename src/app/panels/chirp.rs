@@ -44,7 +44,7 @@ pub struct Input<'a> {
     pub scene: &'a Scene,
     /// Which element.
     pub settings: ChirpSettings,
-    /// Whether a recording stands in the place of the scene: its radar is what it was, and nobody knows what stood where.
+    /// Whether a recording stands in the place of the scene: its radar is what it was, and what stood where is unknown.
     pub is_recorded: bool,
     /// The beat, or why there is none; nothing before the first.
     pub result: Option<Result<&'a ChirpResult, &'a str>>,
@@ -55,7 +55,7 @@ pub struct ChirpPanel;
 
 impl Content for ChirpPanel {
     type Asks = ChirpQuery;
-    type Memory = ();
+    type Remembers = ();
     const TELLS_ANSWERS: bool = true;
 
     fn asks(state: &State, _: &Jobs) -> Option<ChirpQuery> {

@@ -42,7 +42,7 @@ pub struct ComparePanel;
 
 impl Content for ComparePanel {
     type Asks = Nothing;
-    type Memory = MapMemory;
+    type Remembers = MapMemory;
     const WANTS: Wants = Wants { second: true, ..Wants::OUTPUT };
     const MARKS_AGE: bool = true;
 
@@ -102,7 +102,7 @@ fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map::Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map::HandMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(6, 4)).show(ui, |ui| {
         choices(ui, &input, &mut asked);
@@ -245,7 +245,7 @@ mod tests {
     fn panel(layout: Layout) -> Harness<'static, Held> {
         let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
         let (radar, scene, selection) = (Radar::default(), Scene::default(), Selection::default());
-        let (mut view, mut memory) = (MapView::default(), map::Memory::default());
+        let (mut view, mut memory) = (MapView::default(), map::HandMemory::default());
         let draw = move |ui: &mut Ui, held: &mut Held| {
             let titled = |kind: MapKind| {
                 let refused = held.refused && kind == MapKind::Second;

@@ -7,7 +7,7 @@ mod false_alarms;
 mod maps;
 
 use crate::app::content::{Content, Cx, Nothing, offered};
-pub use false_alarms::{Memory, Search};
+pub use false_alarms::{FalseAlarmsMemory, Search};
 
 use crate::app::jobs::{Refusal, Scores};
 use crate::app::state::{Command, MethodSlot, Settings, Units, ViewCommand, WorkCommand};
@@ -78,7 +78,7 @@ pub struct ControlsPanel;
 
 impl Content for ControlsPanel {
     type Asks = Nothing;
-    type Memory = Memory;
+    type Remembers = FalseAlarmsMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, jobs) = (&*cx.state, cx.jobs);
@@ -111,7 +111,7 @@ impl Content for ControlsPanel {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut FalseAlarmsMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     let settings = input.settings;
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
@@ -130,7 +130,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
     asked
 }
 
-fn reconstruction(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn reconstruction(ui: &mut Ui, input: &Input<'_>, memory: &mut FalseAlarmsMemory, asked: &mut Vec<Command>) {
     let Some(method) = input.method else {
         ui.weak("This build has no reconstruction method.");
         return;
@@ -153,7 +153,7 @@ fn thresholds(
     ui: &mut Ui,
     input: &Input<'_>,
     method: Option<&dyn Reconstructor>,
-    memory: &mut Memory,
+    memory: &mut FalseAlarmsMemory,
     asked: &mut Vec<Command>,
 ) {
     detector::choice(ui, input.settings, asked);

@@ -1,4 +1,4 @@
-//! What disturbs the scene: somebody else's radar, and a wall that mirrors.
+//! What disturbs the scene: another radar, and a wall that mirrors.
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
@@ -23,7 +23,7 @@ pub struct DisturbancesPanel;
 
 impl Content for DisturbancesPanel {
     type Asks = Nothing;
-    type Memory = ();
+    type Remembers = ();
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let document = cx.state.editor.document();

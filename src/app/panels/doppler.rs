@@ -50,7 +50,7 @@ pub struct Input<'a> {
 
 /// What the panel keeps from frame to frame.
 #[derive(Default)]
-pub struct Memory {
+pub struct DopplerMemory {
     texture: Texture,
 }
 
@@ -59,7 +59,7 @@ pub struct DopplerPanel;
 
 impl Content for DopplerPanel {
     type Asks = DopplerQuery;
-    type Memory = Memory;
+    type Remembers = DopplerMemory;
     const TELLS_ANSWERS: bool = true;
 
     fn asks(state: &State, _: &Jobs) -> Option<DopplerQuery> {
@@ -84,7 +84,7 @@ impl Content for DopplerPanel {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
         chirps(ui, &input, &mut asked);
@@ -294,7 +294,7 @@ mod tests {
     #[test]
     fn a_recording_shows_the_loops_of_its_frame() {
         let texts = |result: Option<DopplerResult>| {
-            let (radar, scene, mut memory) = (radar(1), Scene::default(), Memory::default());
+            let (radar, scene, mut memory) = (radar(1), Scene::default(), DopplerMemory::default());
             let panel = Harness::builder().with_size([700.0, 420.0]).build_ui(move |ui| {
                 let input = Input {
                     radar: &radar,
@@ -321,7 +321,7 @@ mod tests {
         let radar = radar(chirps);
         let point = Point { velocity_y_metres_per_second: velocity, ..Point::new(0.0, 1.0) };
         let scene = Scene { objects: vec![Object::Point(point)], ..Scene::default() };
-        let (result, mut memory) = (result(&radar), Memory::default());
+        let (result, mut memory) = (result(&radar), DopplerMemory::default());
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
             let input = Input {
                 radar: &radar,

@@ -25,18 +25,18 @@ pub struct Input<'a> {
 }
 
 /// What the panel remembers.
-pub struct Memory {
+pub struct ElementsMemory {
     /// The element whose numbers are shown.
     chosen: usize,
     tolerances: Tolerances,
     seed: u64,
-    list: list::Memory,
+    list: list::ElementListMemory,
 }
 
-impl Default for Memory {
+impl Default for ElementsMemory {
     fn default() -> Self {
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.0 };
-        Memory { chosen: 0, tolerances, seed: 0, list: list::Memory::default() }
+        ElementsMemory { chosen: 0, tolerances, seed: 0, list: list::ElementListMemory::default() }
     }
 }
 
@@ -45,7 +45,7 @@ pub struct ElementsPanel;
 
 impl Content for ElementsPanel {
     type Asks = CalibrationQuery;
-    type Memory = Memory;
+    type Remembers = ElementsMemory;
 
     fn asks(state: &State, _: &Jobs) -> Option<CalibrationQuery> {
         CalibrationQuery::of(state)
@@ -62,7 +62,7 @@ impl Content for ElementsPanel {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ElementsMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     memory.chosen = memory.chosen.min(input.radar.elements - 1);
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
@@ -146,7 +146,7 @@ fn number(ui: &mut Ui, name: &str, unit: &str, value: f64, most: f64, speed: f64
 }
 
 /// Numbers of the chosen element.
-fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
     let n = memory.chosen;
     let error = input.elements.element(n);
     ui.horizontal_wrapped(|ui| {
@@ -173,7 +173,7 @@ fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Comm
 }
 
 /// Errors of all elements at once, from a seed.
-fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let Tolerances { gain, phase_degrees, position_millimetres } = &mut memory.tolerances;
         for (name, value, unit, most) in [
@@ -239,7 +239,7 @@ mod tests {
 
     struct Panel {
         elements: Arc<BuiltArray>,
-        memory: Memory,
+        memory: ElementsMemory,
         asked: usize,
         calibrated: Option<Calibrated>,
     }
@@ -259,7 +259,7 @@ mod tests {
                 state.asked += 1;
             }
         };
-        let state = Panel { elements: Arc::new(elements), memory: Memory::default(), asked: 0, calibrated };
+        let state = Panel { elements: Arc::new(elements), memory: ElementsMemory::default(), asked: 0, calibrated };
         let mut panel = Harness::builder().with_size([640.0, 360.0]).build_ui_state(draw, state);
         panel.run();
         panel
@@ -306,7 +306,7 @@ mod tests {
     #[test]
     fn a_bent_line_can_be_drawn() {
         let mut panel = panel(BuiltArray::default(), None);
-        panel.state_mut().memory.list = list::Memory::back_by(5.0);
+        panel.state_mut().memory.list = list::ElementListMemory::back_by(5.0);
         panel.run();
         panel.get_by_label("Bend").click();
         panel.run();
@@ -350,13 +350,13 @@ mod tests {
         let mut panel = panel(BuiltArray::default(), None);
         panel.get_by_label("Draw").click();
         panel.run();
-        let tolerances = Memory::default().tolerances;
+        let tolerances = ElementsMemory::default().tolerances;
         assert_eq!(*panel.state().elements, tolerances.build(&radar(), 0));
     }
 
     #[test]
     fn errors_are_taken_back() {
-        let mut panel = panel(Memory::default().tolerances.build(&radar(), 0), None);
+        let mut panel = panel(ElementsMemory::default().tolerances.build(&radar(), 0), None);
         assert!(!panel.state().elements.is_ideal());
         panel.get_by_label("Ideal array").click();
         panel.run();

@@ -27,7 +27,7 @@ const SETS: [&str; 3] = ["one point", "3 to 6 points", "points and lines"];
 pub struct Input<'a> {
     /// The methods to choose from.
     pub methods: Offered<'a>,
-    /// The method in use: evaluated where nobody chose others.
+    /// The method in use: evaluated where no others are chosen.
     pub method: Option<&'static str>,
     /// The radar of what was found, or else of what would be.
     pub radar: &'a Radar,
@@ -40,16 +40,16 @@ pub struct Input<'a> {
 }
 
 /// What is chosen.
-pub struct Memory {
+pub struct EvaluationMemory {
     methods: BTreeSet<&'static str>,
     sets: [bool; 3],
     count: u32,
     seed: u64,
 }
 
-impl Default for Memory {
+impl Default for EvaluationMemory {
     fn default() -> Self {
-        Memory { methods: BTreeSet::new(), sets: [true; 3], count: 10, seed: 0 }
+        EvaluationMemory { methods: BTreeSet::new(), sets: [true; 3], count: 10, seed: 0 }
     }
 }
 
@@ -58,7 +58,7 @@ pub struct EvaluationPanel;
 
 impl Content for EvaluationPanel {
     type Asks = Nothing;
-    type Memory = Memory;
+    type Remembers = EvaluationMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, job) = (&*cx.state, &cx.jobs.evaluation);
@@ -75,7 +75,7 @@ impl Content for EvaluationPanel {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut EvaluationMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
         ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
@@ -109,7 +109,7 @@ fn unlike_the_thesis(radar: &Radar) -> Option<String> {
     Some(format!("With {what}: the printed figures are of table 3.1 and don't compare."))
 }
 
-fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
+fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut EvaluationMemory) {
     let known = |name: &&'static str| input.methods.all.iter().any(|m| m.name() == *name);
     memory.methods.retain(known);
     if memory.methods.is_empty() {
@@ -129,7 +129,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
     });
 }
 
-fn buttons(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Command>) {
+fn buttons(ui: &mut Ui, input: &Input<'_>, memory: &EvaluationMemory, asked: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let sets: Vec<usize> = (1..=3).filter(|set| memory.sets[set - 1]).collect();
         let ready = !sets.is_empty() && !memory.methods.is_empty();
@@ -240,7 +240,7 @@ mod tests {
     fn what_is_chosen_is_asked_for() {
         let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
         let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
-        let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+        let draw = |ui: &mut Ui, state: &mut (EvaluationMemory, Vec<Command>)| {
             let method = Some("capon");
             let input = Input {
                 methods: Offered::untimed(&methods),
@@ -285,7 +285,7 @@ mod tests {
             let rows = std::slice::from_ref(&row);
             let input =
                 Input { methods: Offered::untimed(&[]), method: None, radar: &radar, progress: None, rows, note: None };
-            _ = show(ui, input, &mut Memory::default());
+            _ = show(ui, input, &mut EvaluationMemory::default());
         });
         seen::assert_readable(evaluation.output());
         let texts = seen::texts(evaluation.output());

@@ -48,7 +48,7 @@ pub struct FoundPanel;
 
 impl Content for FoundPanel {
     type Asks = Nothing;
-    type Memory = ();
+    type Remembers = ();
     const WANTS: Wants = Wants { listed: true, ..Wants::OUTPUT };
     const MARKS_AGE: bool = true;
 

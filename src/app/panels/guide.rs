@@ -178,7 +178,7 @@ fn heading(chapter: &str) -> &str {
 
 /// What the guide remembers from frame to frame.
 #[derive(Default)]
-pub struct Memory {
+pub struct GuideMemory {
     cache: CommonMarkCache,
     /// The chapter that is open, from 0.
     open: usize,
@@ -189,7 +189,7 @@ pub struct GuidePanel;
 
 impl Content for GuidePanel {
     type Asks = Nothing;
-    type Memory = Memory;
+    type Remembers = GuideMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         show(ui, cx.memory)
@@ -197,7 +197,7 @@ impl Content for GuidePanel {
 }
 
 /// Draws the panel: one chapter, and the way to the others.
-pub fn show(ui: &mut Ui, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, memory: &mut GuideMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
         turn(ui, &mut memory.open);
@@ -254,7 +254,7 @@ mod tests {
 
     #[test]
     fn a_button_asks_for_its_preset_and_its_conventions() {
-        let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+        let draw = |ui: &mut Ui, state: &mut (GuideMemory, Vec<Command>)| {
             let commands = show(ui, &mut state.0);
             state.1.extend(commands);
         };
@@ -269,9 +269,9 @@ mod tests {
 
     #[test]
     fn previous_next_and_contents_lead_to_every_chapter() {
-        let draw = |ui: &mut Ui, memory: &mut Memory| _ = show(ui, memory);
-        let mut guide = Harness::builder().with_size([360.0, 600.0]).build_ui_state(draw, Memory::default());
-        let button = |guide: &mut Harness<'_, Memory>, name: &str| {
+        let draw = |ui: &mut Ui, memory: &mut GuideMemory| _ = show(ui, memory);
+        let mut guide = Harness::builder().with_size([360.0, 600.0]).build_ui_state(draw, GuideMemory::default());
+        let button = |guide: &mut Harness<'_, GuideMemory>, name: &str| {
             guide.get_by_role_and_label(egui::accesskit::Role::Button, name).click();
             guide.run();
         };

@@ -33,7 +33,7 @@ pub struct InspectorPanel;
 
 impl Content for InspectorPanel {
     type Asks = Nothing;
-    type Memory = ();
+    type Remembers = ();
     const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn a_length_has_as_many_digits_as_a_point_of_the_canvas_is_worth() {
+    fn a_length_has_the_digits_that_a_point_of_the_canvas_is_worth() {
         let y = look(Field::Y);
         let shown = |metres_per_point| rounded(3.041_35, &y, metres_per_point);
         assert_eq!([0.1, 0.05, 0.004].map(shown), ["3.0 m", "3.04 m", "3.041 m"].map(|t| Some(t.to_owned())));

@@ -17,7 +17,7 @@ use eframe::egui;
 use eframe::egui::{ScrollArea, TextureId, TextureOptions, Ui};
 use large::{LARGE, large};
 use list::list;
-pub use memory::Memory;
+pub use memory::LessonMemory;
 
 /// What is shown.
 pub struct Input<'a> {
@@ -36,7 +36,7 @@ pub struct LessonPanel;
 
 impl Content for LessonPanel {
     type Asks = Nothing;
-    type Memory = Memory;
+    type Remembers = LessonMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let hidden = cx.jobs.lessons.hidden();
@@ -52,7 +52,7 @@ impl Content for LessonPanel {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut LessonMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     if input.presenting {
         // Read from the last row of a lecture hall, as long as there is room.
@@ -96,7 +96,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
 }
 
 /// The question at the foot of the panel, in view however long the text above is.
-fn pinned_question(ui: &mut Ui, run: &LessonRun, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn pinned_question(ui: &mut Ui, run: &LessonRun, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
     let Some(question) = run.current().and_then(|step| step.predict.as_ref()) else { return };
     let most = MOST_OF_HEIGHT * ui.available_height();
     let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 6));
@@ -119,7 +119,7 @@ fn step(
     run: &LessonRun,
     input: &Input<'_>,
     is_pinned: bool,
-    memory: &mut Memory,
+    memory: &mut LessonMemory,
     asked: &mut Vec<Command>,
 ) {
     let Some(step) = run.current() else { return };

@@ -23,7 +23,7 @@ pub struct Input<'a> {
 
 /// What the list remembers from frame to frame.
 #[derive(Default)]
-pub struct Memory {
+pub struct ObjectsMemory {
     /// The object that was picked last, when it was last drawn.
     latest: Option<usize>,
     /// Whether a row was clicked, so that the list is to have the keys.
@@ -37,7 +37,7 @@ pub struct ObjectsPanel;
 
 impl Content for ObjectsPanel {
     type Asks = Nothing;
-    type Memory = Memory;
+    type Remembers = ObjectsMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (editor, coordinates) = (&cx.state.editor, cx.state.settings.coordinates);
@@ -47,7 +47,7 @@ impl Content for ObjectsPanel {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ObjectsMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     if input.scene.objects.is_empty() {
         egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| ui.weak("The scene is empty."));
@@ -132,7 +132,7 @@ fn cells(ui: &Ui, rect: Rect, texts: [String; 4], ink: egui::Color32) {
     }
 }
 
-fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut ObjectsMemory, asked: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     let latest = input.selection.latest();
     let mut area = ScrollArea::vertical().auto_shrink([false, false]);
@@ -204,7 +204,7 @@ mod tests {
     struct Held {
         scene: Scene,
         selection: Selection,
-        memory: Memory,
+        memory: ObjectsMemory,
     }
 
     fn panel(points: usize) -> Harness<'static, Held> {
@@ -216,7 +216,7 @@ mod tests {
             }
         };
         let scene = Scene::of_points((0..points).map(|i| (i as f64, 5.0)));
-        let held = Held { scene, selection: Selection::default(), memory: Memory::default() };
+        let held = Held { scene, selection: Selection::default(), memory: ObjectsMemory::default() };
         let mut list = Harness::builder().with_size([300.0, 200.0]).build_ui_state(draw, held);
         list.step();
         list

@@ -32,7 +32,7 @@ pub struct Input<'a> {
 
 /// How far the chain is drawn.
 #[derive(Default)]
-pub struct Memory {
+pub struct PhasorsMemory {
     /// The part of the elements that is drawn; all where `None`.
     part: Option<f32>,
     is_playing: bool,
@@ -43,7 +43,7 @@ pub struct PhasorsPanel;
 
 impl Content for PhasorsPanel {
     type Asks = PhasorsQuery;
-    type Memory = Memory;
+    type Remembers = PhasorsMemory;
     const TELLS_ANSWERS: bool = true;
 
     fn asks(state: &State, jobs: &Jobs) -> Option<PhasorsQuery> {
@@ -64,7 +64,7 @@ impl Content for PhasorsPanel {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut PhasorsMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
         let mut settings = input.settings;
@@ -109,7 +109,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, settings: &mut PhasorSettings) {
 }
 
 /// How many elements are drawn: a slider, and a button that moves it.
-fn play(ui: &mut Ui, result: &PhasorsResult, memory: &mut Memory) {
+fn play(ui: &mut Ui, result: &PhasorsResult, memory: &mut PhasorsMemory) {
     let count = result.measured.contributions.len();
     ui.horizontal(|ui| {
         let label = if memory.is_playing { "Pause" } else { "Play" };
@@ -298,9 +298,9 @@ mod tests {
         }
     }
 
-    fn panel(result: Option<Result<PhasorsResult, &'static str>>) -> Harness<'static, (Memory, Vec<Command>)> {
+    fn panel(result: Option<Result<PhasorsResult, &'static str>>) -> Harness<'static, (PhasorsMemory, Vec<Command>)> {
         let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
-        let draw = move |ui: &mut Ui, (memory, asked): &mut (Memory, Vec<Command>)| {
+        let draw = move |ui: &mut Ui, (memory, asked): &mut (PhasorsMemory, Vec<Command>)| {
             let input = Input {
                 radar: &radar,
                 settings: PhasorSettings::default(),
@@ -310,7 +310,7 @@ mod tests {
             };
             asked.extend(show(ui, input, memory));
         };
-        Harness::builder().with_size([420.0, 360.0]).build_ui_state(draw, (Memory::default(), Vec::new()))
+        Harness::builder().with_size([420.0, 360.0]).build_ui_state(draw, (PhasorsMemory::default(), Vec::new()))
     }
 
     #[test]

@@ -53,7 +53,7 @@ pub struct RadarPanel;
 
 impl Content for RadarPanel {
     type Asks = Nothing;
-    type Memory = ();
+    type Remembers = ();
     const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {

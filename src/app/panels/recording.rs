@@ -22,7 +22,7 @@ pub struct RecordingPanel;
 
 impl Content for RecordingPanel {
     type Asks = Nothing;
-    type Memory = ();
+    type Remembers = ();
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let recording = cx.state.editor.document().recording().cloned();

@@ -41,7 +41,7 @@ pub struct RocPanel;
 
 impl Content for RocPanel {
     type Asks = Nothing;
-    type Memory = ();
+    type Remembers = ();
     const WANTS: Wants = Wants { roc: true, ..Wants::OUTPUT };
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {

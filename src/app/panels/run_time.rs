@@ -30,16 +30,16 @@ pub struct Input<'a> {
 }
 
 /// What is chosen.
-pub struct Memory {
+pub struct RunTimeMemory {
     thorough: bool,
     task: FrontTask,
     /// Number of reflectors whose rows are drawn; all where `None`.
     reflectors: Option<usize>,
 }
 
-impl Default for Memory {
+impl Default for RunTimeMemory {
     fn default() -> Self {
-        Memory { thorough: false, task: FrontTask::Scratch, reflectors: None }
+        RunTimeMemory { thorough: false, task: FrontTask::Scratch, reflectors: None }
     }
 }
 
@@ -48,7 +48,7 @@ pub struct RunTimePanel;
 
 impl Content for RunTimePanel {
     type Asks = Nothing;
-    type Memory = Memory;
+    type Remembers = RunTimeMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let job = &cx.jobs.run_time;
@@ -64,7 +64,7 @@ impl Content for RunTimePanel {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
@@ -102,7 +102,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> 
 }
 
 /// Which rows are drawn.
-fn filter(ui: &mut Ui, rows: &[FrontRow], memory: &mut Memory) {
+fn filter(ui: &mut Ui, rows: &[FrontRow], memory: &mut RunTimeMemory) {
     let counts: BTreeSet<usize> = rows.iter().map(|r| r.reflectors).collect();
     ui.horizontal_wrapped(|ui| {
         let text = |count: Option<usize>| match count {
@@ -147,7 +147,7 @@ struct Series {
 }
 
 /// What is drawn, algorithm by algorithm.
-fn series(rows: &[FrontRow], memory: &Memory, dark: bool) -> Vec<Series> {
+fn series(rows: &[FrontRow], memory: &RunTimeMemory, dark: bool) -> Vec<Series> {
     let drawn = |r: &&FrontRow| r.task == memory.task && memory.reflectors.is_none_or(|count| count == r.reflectors);
     let shown: Vec<&FrontRow> = rows.iter().filter(drawn).collect();
     let place = |r: &&&FrontRow| [r.signal_error.max(SMALLEST_ERROR).log10(), r.median_ms.log10()];
@@ -166,7 +166,7 @@ fn series(rows: &[FrontRow], memory: &Memory, dark: bool) -> Vec<Series> {
     each.map(of).filter(|series| !series.places.is_empty()).collect()
 }
 
-fn plot(ui: &mut Ui, input: &Input<'_>, memory: &Memory) {
+fn plot(ui: &mut Ui, input: &Input<'_>, memory: &RunTimeMemory) {
     let drawn = series(input.rows, memory, ui.visuals().dark_mode);
     legend::row(ui, &drawn.iter().map(|series| series.entry.clone()).collect::<Vec<_>>());
     let powers = |mark: GridMark| match (mark.value - mark.value.round()).abs() < 1e-6 {
@@ -216,7 +216,7 @@ mod tests {
     /// What clicks on these labels ask for while a measurement has come this far.
     fn asked(progress: Option<f32>, labels: &[&str]) -> Vec<Command> {
         let radar = Radar { elements: 128, ..Radar::default() };
-        let draw = |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+        let draw = |ui: &mut Ui, state: &mut (RunTimeMemory, Vec<Command>)| {
             let input = Input { radar: &radar, progress, rows: &[], bare_fft_ms: None, note: None };
             let commands = show(ui, input, &mut state.0);
             state.1.extend(commands);

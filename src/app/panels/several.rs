@@ -26,7 +26,7 @@ pub struct Input<'a> {
 
 /// Pictures on the graphics card.
 #[derive(Default)]
-pub struct Memory {
+pub struct SeveralMemory {
     textures: Vec<Texture>,
 }
 
@@ -38,7 +38,7 @@ pub struct SeveralPanel;
 
 impl Content for SeveralPanel {
     type Asks = Nothing;
-    type Memory = Memory;
+    type Remembers = SeveralMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let state = &*cx.state;
@@ -54,7 +54,7 @@ impl Content for SeveralPanel {
 }
 
 /// Draws the panel. A click on a map puts its value before the scene.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut SeveralMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(8, 6)).show(ui, |ui| {
         choices(ui, &input, &mut asked);
@@ -126,7 +126,7 @@ fn numbers(ui: &mut Ui, several: &mut Several, unit: &str) {
     value(ui, "from", &mut several.low);
     value(ui, "to", &mut several.high);
     let label = ui.label("maps");
-    ui.add(NumberField::new(&mut several.count).range(2..=crate::app::state::MOST_AT_ONCE).speed(0.05))
+    ui.add(NumberField::new(&mut several.count).range(2..=crate::app::state::MAX_MAPS_AT_ONCE).speed(0.05))
         .labelled_by(label.id);
 }
 
@@ -197,7 +197,7 @@ fn tile(
 fn take(variant: &Variant, parameter: Parameter) -> Option<Command> {
     Some(match parameter {
         Parameter::Window => Command::Radar(RadarCommand::SetWindow(variant.radar.window)),
-        Parameter::Snr => Command::View(ViewCommand::SetFloor(variant.floor)),
+        Parameter::Snr | Parameter::Floor => Command::View(ViewCommand::SetFloor(variant.floor)),
         Parameter::Method => Command::View(ViewCommand::Method(variant.method.as_ref()?.name())),
         _ => Command::Radar(RadarCommand::Set(Box::new(variant.radar.clone()))),
     })
@@ -214,7 +214,7 @@ mod tests {
     struct Drawn {
         several: Several,
         veiled: bool,
-        memory: Memory,
+        memory: SeveralMemory,
         asked: Vec<Command>,
     }
 
@@ -241,7 +241,7 @@ mod tests {
             drawn.asked.extend(asked);
         };
         let several = Several::default().with(parameter, &Radar::default());
-        let drawn = Drawn { several, veiled, memory: Memory::default(), asked: Vec::new() };
+        let drawn = Drawn { several, veiled, memory: SeveralMemory::default(), asked: Vec::new() };
         Harness::builder().with_size([900.0, 500.0]).build_ui_state(draw, drawn)
     }
 

@@ -32,7 +32,7 @@ pub struct TimingPanel;
 
 impl Content for TimingPanel {
     type Asks = Nothing;
-    type Memory = ();
+    type Remembers = ();
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let pipeline = &cx.jobs.pipeline;

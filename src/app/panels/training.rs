@@ -31,23 +31,23 @@ struct Listed {
 }
 
 /// The recipes, read once.
-pub struct Memory {
+pub struct TrainingMemory {
     recipes: Vec<Listed>,
 }
 
-impl Default for Memory {
+impl Default for TrainingMemory {
     #[cfg(feature = "network")]
     fn default() -> Self {
         use crate::network::recipe::{Recipe, SHIPPED};
         let read = |(name, text): &(&'static str, &'static str)| {
             Recipe::parse(name, text).ok().map(|recipe| Listed { name, description: recipe.description })
         };
-        Memory { recipes: SHIPPED.iter().filter_map(read).collect() }
+        TrainingMemory { recipes: SHIPPED.iter().filter_map(read).collect() }
     }
 
     #[cfg(not(feature = "network"))]
     fn default() -> Self {
-        Memory { recipes: Vec::new() }
+        TrainingMemory { recipes: Vec::new() }
     }
 }
 
@@ -56,7 +56,7 @@ pub struct TrainingPanel;
 
 impl Content for TrainingPanel {
     type Asks = Nothing;
-    type Memory = Memory;
+    type Remembers = TrainingMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let job = &cx.jobs.training;
@@ -66,7 +66,7 @@ impl Content for TrainingPanel {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut TrainingMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
@@ -134,7 +134,7 @@ fn short(value: f64) -> String {
 }
 
 /// A menu of the recipes that can be started.
-fn start(ui: &mut Ui, memory: &Memory, asked: &mut Vec<Command>) {
+fn start(ui: &mut Ui, memory: &TrainingMemory, asked: &mut Vec<Command>) {
     if memory.recipes.is_empty() {
         ui.weak("This build can't train.");
         return;
@@ -157,8 +157,8 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    fn panel(note: Option<&'static str>, running: Option<f32>) -> Harness<'static, (Memory, Vec<Command>)> {
-        let draw = move |ui: &mut Ui, state: &mut (Memory, Vec<Command>)| {
+    fn panel(note: Option<&'static str>, running: Option<f32>) -> Harness<'static, (TrainingMemory, Vec<Command>)> {
+        let draw = move |ui: &mut Ui, state: &mut (TrainingMemory, Vec<Command>)| {
             let input = Input { path: Some(Path::new("log.csv")), log: None, note, running };
             let commands = show(ui, input, &mut state.0);
             state.1.extend(commands);

@@ -52,7 +52,7 @@ pub struct ValuesPanel;
 
 impl Content for ValuesPanel {
     type Asks = Nothing;
-    type Memory = ();
+    type Remembers = ();
     const WANTS: Wants = Wants { every_map: true, ..Wants::OUTPUT };
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {

@@ -7,11 +7,11 @@ use std::sync::Arc;
 /// Methods that work for any radar and any scene, where the one preferred for the radar doesn't.
 const ROBUST: [&str; 2] = ["capon", "baseline"];
 
-/// Every method, in order, and which is shown where nobody chose one.
+/// Every method, in order, and which is shown where none was chosen.
 pub struct Methods {
     /// Every method, in order.
     pub all: Vec<Arc<dyn Reconstructor>>,
-    /// Name of the method that is used where nobody chose one.
+    /// Name of the method that is used where none was chosen.
     preferred: &'static str,
 }
 

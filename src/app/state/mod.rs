@@ -50,7 +50,7 @@ pub use panel::{MapKind, MethodSlot, Panel};
 pub use phasor_settings::{PhasorMap, PhasorSettings};
 pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
 pub use settings::{Brightness, DifferenceView, Directions, Projection, Settings, Units};
-pub use several::{MOST as MOST_AT_ONCE, Parameter, Several, Variant};
+pub use several::{MAX_MAPS as MAX_MAPS_AT_ONCE, Parameter, Several, Variant};
 pub use synonyms::{menu_path, synonyms};
 pub use task_layouts::Task;
 pub use timeline::{TIMELINE_SECONDS, Timeline};
@@ -200,7 +200,7 @@ impl State {
         }
     }
 
-    /// Gives the scene and the maps the whole screen, in large type, or ends whatever has it.
+    /// Gives the scene and the maps the whole screen, in large type, or takes it from what has it.
     pub fn present(&mut self) {
         match self.is_presenting() {
             true => self.stop_presenting(),

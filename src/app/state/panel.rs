@@ -35,7 +35,7 @@ struct SharedTile {
     help: &'static str,
 }
 
-const SHARED: [SharedTile; 4] = [
+const SHARED: [SharedTile; 5] = [
     SharedTile {
         tile: Panel::Radar,
         title: "Radar",
@@ -53,6 +53,12 @@ const SHARED: [SharedTile; 4] = [
         title: "Waveform",
         view: "Chirp",
         help: "What is sent and what returns, the beat, and range against radial velocity",
+    },
+    SharedTile {
+        tile: Panel::Compare,
+        title: "Compare",
+        view: "Methods",
+        help: "What two methods make of this scene, or what a window, a floor or a radar does to its maps",
     },
     SharedTile {
         tile: Panel::Failures,
@@ -171,7 +177,10 @@ impl Panel {
 
     /// Its name among the views of its tile.
     pub fn view_title(self) -> &'static str {
-        self.shared().filter(|shared| shared.tile == self).map_or_else(|| self.title(), |shared| shared.view)
+        match self {
+            Panel::Several => "Settings",
+            _ => self.shared().filter(|shared| shared.tile == self).map_or_else(|| self.title(), |shared| shared.view),
+        }
     }
 
     /// What its tile is for.

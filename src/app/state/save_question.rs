@@ -17,7 +17,7 @@ pub struct SaveQuestion {
 pub enum Doubt {
     /// It would not give these back.
     Losses(Vec<FileLoss>),
-    /// Somebody else has written something else to it.
+    /// Another program has written something else to it.
     Changed,
 }
 

@@ -71,7 +71,7 @@ pub enum Directions {
 pub struct DifferenceView {
     /// Its absolute value; output minus target where not.
     pub absolute: bool,
-    /// On a scale that reaches 1 whatever the difference; one that just holds it where not.
+    /// On a scale that reaches 1 for any difference; one that just holds it where not.
     pub whole: bool,
 }
 
@@ -107,6 +107,8 @@ pub struct Settings {
     pub units: Units,
     /// What the axis of directions counts.
     pub directions: Directions,
+    /// Whether inputs, target and output are drawn on one scale; each on its own where not.
+    pub one_scale: bool,
     /// How the difference is drawn.
     pub difference: DifferenceView,
     /// eta', the threshold of the target.
@@ -172,7 +174,7 @@ impl Settings {
         }
     }
 
-    /// Where the guide changed a setting from `before` to `after` and nobody changed it since, puts back what it was.
+    /// Where the guide changed a setting from `before` to `after` and it was not changed since, puts back what it was.
     pub fn take_back(&mut self, before: &Settings, after: &Settings) {
         macro_rules! take_back {
             ($($field:ident),*) => {
@@ -182,7 +184,7 @@ impl Settings {
             };
         }
         take_back!(floor, snr, level, target_eta, cfar, last_cfar, method_eta, normalisation, projection, method);
-        take_back!(show_reflectors, show_kinds);
+        take_back!(show_reflectors, show_kinds, one_scale);
     }
 }
 
@@ -197,6 +199,7 @@ impl Default for Settings {
             projection: Projection::default(),
             units: Units::default(),
             directions: Directions::default(),
+            one_scale: false,
             difference: DifferenceView::default(),
             target_eta: crate::evaluate::TARGET_ETA,
             cfar: None,

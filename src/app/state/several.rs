@@ -2,7 +2,7 @@
 
 use super::panel::MapKind;
 use crate::app::shared::Shared;
-use crate::radar::{Decibels, Radar, WindowFunction};
+use crate::radar::{Decibels, Radar, WindowFunction, presets};
 use crate::reconstruct::Reconstructor;
 use crate::signal::Floor;
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,15 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Most maps at once.
-pub const MOST: usize = 8;
+pub const MAX_MAPS: usize = 8;
+
+/// The floors that are compared.
+const FLOORS: [(&str, Floor); 4] = [
+    ("thesis", Floor::Thesis),
+    ("exact", Floor::Exact),
+    ("SNR 40 dB", Floor::Snr(Decibels(40.0))),
+    ("SNR 20 dB", Floor::Snr(Decibels(20.0))),
+];
 
 /// What differs from map to map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -24,20 +32,26 @@ pub enum Parameter {
     EndElements,
     /// Distance between elements, wavelengths.
     Spacing,
+    /// What lies beneath the reflectors.
+    Floor,
     /// Signal-to-noise ratio of a sample, dB.
     Snr,
+    /// One of the radars that come with the program.
+    Radar,
     /// The reconstruction method.
     Method,
 }
 
 impl Parameter {
     /// All of them, in the order they are offered.
-    pub const ALL: [Parameter; 6] = [
+    pub const ALL: [Parameter; 8] = [
         Parameter::Window,
         Parameter::Bandwidth,
         Parameter::EndElements,
         Parameter::Spacing,
+        Parameter::Floor,
         Parameter::Snr,
+        Parameter::Radar,
         Parameter::Method,
     ];
 
@@ -48,7 +62,9 @@ impl Parameter {
             Parameter::Bandwidth => "bandwidth",
             Parameter::EndElements => "elements of an end",
             Parameter::Spacing => "element spacing",
+            Parameter::Floor => "floor",
             Parameter::Snr => "SNR",
+            Parameter::Radar => "radar",
             Parameter::Method => "method",
         }
     }
@@ -56,7 +72,7 @@ impl Parameter {
     /// Unit of its numbers, where it has numbers.
     pub fn unit(self) -> Option<&'static str> {
         match self {
-            Parameter::Window | Parameter::Method => None,
+            Parameter::Window | Parameter::Method | Parameter::Floor | Parameter::Radar => None,
             Parameter::Bandwidth => Some(" GHz"),
             Parameter::EndElements => Some(" elements"),
             Parameter::Spacing => Some(" λ"),
@@ -64,11 +80,11 @@ impl Parameter {
         }
     }
 
-    /// From where to where it goes unless somebody says otherwise, around what the radar has.
+    /// From where to where it goes at first, around what the radar has.
     pub fn usual(self, radar: &Radar) -> [f64; 2] {
         let spacing = radar.element_spacing_metres / radar.wavelength_metres();
         match self {
-            Parameter::Window | Parameter::Method => [0.0, 0.0],
+            Parameter::Window | Parameter::Method | Parameter::Floor | Parameter::Radar => [0.0, 0.0],
             Parameter::Bandwidth => [radar.bandwidth_hz / 8e9, radar.bandwidth_hz / 1e9 * 2.0],
             Parameter::EndElements => [3.0, (radar.elements / 4).clamp(3, 96) as f64],
             Parameter::Spacing => [spacing / 2.0, spacing * 4.0],
@@ -107,7 +123,14 @@ pub struct Several {
 impl Default for Several {
     fn default() -> Self {
         let parameter = Parameter::default();
-        Several { parameter, map: parameter.usual_map(), low: 0.0, high: 0.0, count: MOST, methods: BTreeSet::new() }
+        Several {
+            parameter,
+            map: parameter.usual_map(),
+            low: 0.0,
+            high: 0.0,
+            count: MAX_MAPS,
+            methods: BTreeSet::new(),
+        }
     }
 }
 
@@ -131,7 +154,7 @@ impl Several {
         Several { parameter, map: parameter.usual_map(), low, high, ..self.clone() }
     }
 
-    /// The maps to make of a scene before `radar` over `floor`; at most [`MOST`], and none whose radar is not valid.
+    /// The maps to make of a scene before `radar` over `floor`; at most [`MAX_MAPS`], and none whose radar is not valid.
     pub fn variants(
         &self,
         radar: &Radar,
@@ -150,6 +173,10 @@ impl Several {
                 .into_iter()
                 .map(|window| like(window.name().to_owned(), Radar { window, ..radar.clone() }, floor))
                 .collect(),
+            Parameter::Floor => FLOORS.map(|(name, floor)| like(name.to_owned(), radar.clone(), floor)).to_vec(),
+            Parameter::Radar => {
+                presets::ALL.iter().map(|preset| like(preset.id.to_owned(), preset.radar.clone(), floor)).collect()
+            }
             Parameter::Method => {
                 let chosen = |m: &&Arc<dyn Reconstructor>| self.methods.is_empty() || self.methods.contains(m.name());
                 let named = |m: &Arc<dyn Reconstructor>| Variant {
@@ -171,13 +198,13 @@ impl Several {
         // Rounded values may give one map twice.
         let map = |v: &Variant| (v.radar.clone(), v.floor, v.method.clone());
         variants.dedup_by(|a, b| map(a) == map(b));
-        variants.truncate(MOST);
+        variants.truncate(MAX_MAPS);
         variants
     }
 
     /// The values of a number: decibels in even steps, all others in even ratios.
     fn values(&self) -> Vec<f64> {
-        let count = self.count.clamp(2, MOST);
+        let count = self.count.clamp(2, MAX_MAPS);
         let part = |i: usize| i as f64 / (count - 1) as f64;
         let even = |i: usize| self.low + (self.high - self.low) * part(i);
         let ratio = |i: usize| self.low * (self.high / self.low).powf(part(i));
@@ -237,8 +264,10 @@ mod tests {
             let variants = variants(&several);
             let expected = match parameter {
                 Parameter::Window => WindowFunction::ALL.len(),
+                Parameter::Floor => FLOORS.len(),
+                Parameter::Radar => presets::ALL.len().min(MAX_MAPS),
                 Parameter::Method => 1,
-                _ => MOST,
+                _ => MAX_MAPS,
             };
             assert_eq!(variants.len(), expected, "{parameter:?}");
             assert!(variants.windows(2).all(|v| v[0] != v[1] && v[0].label != v[1].label), "{parameter:?}");

@@ -1,4 +1,4 @@
-//! Other words that somebody may type in the palette, and where menus have what is found.
+//! Other words that may be typed in the palette, and where menus have what is found.
 
 use super::command::{Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, ViewCommand, WindowCommand};
 use super::panel::Panel;
@@ -48,6 +48,7 @@ fn view_words(command: &ViewCommand) -> &'static str {
         ViewCommand::Colours(_) => "colormap colourmap color palette gray heat",
         ViewCommand::ToggleProjection | ViewCommand::SetProjection(_) => "polar xy coordinates morph bend projection",
         ViewCommand::ToggleUnits | ViewCommand::SetUnits(_) => "decibel lambda scale logarithmic units",
+        ViewCommand::ToggleOneScale => "level weaker stronger common absolute",
         ViewCommand::Normalise(_) => "dynamic range contrast normalize",
         ViewCommand::Detect(_) => "cfar constant false alarm rate threshold guard training rohling",
         ViewCommand::SetFloor(_) => "noise snr thermal",

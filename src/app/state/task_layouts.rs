@@ -5,7 +5,7 @@ use eframe::egui;
 use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
-/// What somebody is at: each task has an arrangement of panels of its own, kept as the user leaves it.
+/// What the window is used for: each task has an arrangement of panels of its own, kept as the user leaves it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Task {
     /// The scene, its settings and all maps.
@@ -77,7 +77,7 @@ fn explore() -> Tree<Panel> {
     let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
     let [guide, lesson, recording, radar] =
         [Panel::Guide, Panel::Lesson, Panel::Recording, Panel::Radar].map(&mut pane);
-    let of_results = [Panel::Found, Panel::Bounds, Panel::Phasors, Panel::Chirp, Panel::Training, Panel::Several];
+    let of_results = [Panel::Found, Panel::Bounds, Panel::Phasors, Panel::Chirp, Panel::Training];
     let tools = of_results.map(pane);
     for closed in [timing, guide, lesson, recording, radar, doubt, unexplained].iter().chain(&tools) {
         tiles.set_visible(*closed, false);

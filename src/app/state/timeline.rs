@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_plays_stops_at_the_end_with_the_next_play_at_the_beginning() {
+    fn what_plays_stops_at_the_end_and_plays_from_the_beginning() {
         let (document, mut timeline) = (scene(), Timeline::default());
         timeline.play(&document, true);
         timeline.set(&document, 99.0);

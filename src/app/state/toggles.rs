@@ -15,6 +15,7 @@ impl State {
                 ViewCommand::ToggleUnits => Some(settings.units == Units::Decibels),
                 ViewCommand::SetUnits(units) => Some(settings.units == *units),
                 ViewCommand::SetDirections(directions) => Some(settings.directions == *directions),
+                ViewCommand::ToggleOneScale => Some(settings.one_scale),
                 ViewCommand::ToggleAbsoluteDifference => Some(settings.difference.absolute),
                 ViewCommand::ToggleWholeDifference => Some(!settings.difference.whole),
                 ViewCommand::Colours(colours) => Some(settings.colours == *colours),

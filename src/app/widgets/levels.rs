@@ -12,7 +12,7 @@ pub fn lowest_db(range_db: f64) -> f64 {
 }
 
 /// A level relative to the map's peak, of a map whose Λ spans `range_db`: "−23.4", "≤ −200" at the floor or beneath what is told, "no echo"
-/// where nothing was heard at all. Whoever shows it adds "dB" with [`with_unit`].
+/// where nothing was heard at all. The caller adds "dB" with [`with_unit`].
 pub fn level(db: f64, range_db: f64) -> String {
     let lowest = lowest_db(range_db);
     match () {

@@ -32,7 +32,7 @@ pub fn colour_behind(visuals: &Visuals, response: &Response, is_selected: bool) 
     }
 }
 
-/// Gives `list` the keys once the click on one of its rows is over, if one `was_clicked`. Not at once: egui takes the focus from whatever
+/// Gives `list` the keys once the click on one of its rows is over, if one `was_clicked`. Not at once: egui takes the focus from what
 /// a click did not hit, once more in a frame that is laid out anew, and what the click brings up may have moved the rows away.
 pub fn focus_after_click(list: &Response, was_clicked: &mut bool) {
     if *was_clicked {

@@ -290,7 +290,7 @@ fn keep(ui: &Ui, id: Id, kept: f64, before: Option<Wrong>, reading: Reading, res
     let wrong = match reading.wrong {
         Some((text, message)) => {
             if entered {
-                // Whatever is typed next is meant for the field.
+                // What is typed next is meant for the field.
                 response.request_focus();
             }
             Some(Wrong { text, message, kept, drawn })

@@ -3,7 +3,7 @@
 use eframe::egui::{Button, ProgressBar, Ui, vec2};
 
 /// What is shown at the most: a bar that stands says that the work goes on.
-const MOST: f32 = 0.99;
+const MAX_PART: f32 = 0.99;
 
 /// What was pressed of a button that starts work, and that stops it while it runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,14 +32,14 @@ pub fn start_or_cancel(ui: &mut Ui, start: &str, runs: bool, is_ready: bool, tip
 /// The bar alone.
 pub fn bar(ui: &mut Ui, part: f32, width: f32) {
     let bar = if part > 0.0 {
-        ProgressBar::new(part.min(MOST)).show_percentage()
+        ProgressBar::new(part.min(MAX_PART)).show_percentage()
     } else {
         ProgressBar::new(0.0).animate(true)
     };
     ui.add(bar.desired_width(width));
 }
 
-/// Draws both; whether the button was pressed. `part` is from 0 to 1; 0 says that nobody knows yet. It never reads 100 %: who draws it knows
+/// Draws both; whether the button was pressed. `part` is from 0 to 1; 0 says that it is not known yet. It never reads 100 %: who draws it knows
 /// that there is more to come.
 pub fn progress(ui: &mut Ui, part: f32, width: f32, cancel_tooltip: &str) -> bool {
     ui.horizontal(|ui| {

@@ -3,7 +3,7 @@
 use crate::benchmark::bodies::{self, BodyCase, BodyRow, BodyTimes};
 use crate::benchmark::faces::{self, FaceFormula, FaceRow};
 use crate::benchmark::front::MapConvention;
-use crate::commands::figure::{Drawing, DrawingResult, save, save_numbers, tick};
+use crate::commands::figure::{DrawingResult, Plot, save, save_numbers, tick};
 use crate::commands::{CommandError, print};
 use crate::radar::{Radar, counted};
 use plotters::coord::Shift;
@@ -109,7 +109,7 @@ impl Chart {
     }
 }
 
-impl Drawing for Chart {
+impl Plot for Chart {
     fn size(&self) -> (u32, u32) {
         (1000, 640)
     }
@@ -153,7 +153,7 @@ struct FaceChart {
     rows: Vec<FaceRow>,
 }
 
-impl Drawing for FaceChart {
+impl Plot for FaceChart {
     fn size(&self) -> (u32, u32) {
         (1000, 640)
     }

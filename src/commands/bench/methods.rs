@@ -5,7 +5,7 @@ use super::following::{self, Followed};
 #[cfg(feature = "network")]
 use super::left_out::{self, LeftOut};
 use crate::commands::CommandError;
-use crate::commands::figure::{Drawing, DrawingResult, save, save_numbers, tick};
+use crate::commands::figure::{DrawingResult, Plot, save, save_numbers, tick};
 use crate::commands::print;
 use crate::evaluate::Estimate;
 use crate::evaluate::campaign::Campaign;
@@ -205,7 +205,7 @@ impl Spot {
     }
 }
 
-impl Drawing for Report {
+impl Plot for Report {
     fn size(&self) -> (u32, u32) {
         (1000, 640)
     }

@@ -2,7 +2,7 @@
 
 use super::report::{Bound, BoundRow, BoundsReport, columns_to_cos};
 use crate::bounds::Ambiguity;
-use crate::commands::figure::{Drawing, DrawingResult, tick};
+use crate::commands::figure::{DrawingResult, Plot, tick};
 use crate::evaluate::Placement;
 use crate::picture::ColourMap;
 use crate::radar::{Polar, Radar, counted};
@@ -67,7 +67,7 @@ fn legend<'a, B: DrawingBackend + 'a>(chart: &mut ErrorChart<'a, B>) -> DrawingR
 /// Bound over signal-to-noise ratio, a line a layout.
 pub struct BoundsFigure<'a>(pub &'a BoundsReport);
 
-impl Drawing for BoundsFigure<'_> {
+impl Plot for BoundsFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 600)
     }
@@ -104,7 +104,7 @@ impl Drawing for BoundsFigure<'_> {
 /// Error of the Newton search over signal-to-noise ratio, beside the bound.
 pub struct PlacementFigure<'a>(pub &'a [Placement]);
 
-impl Drawing for PlacementFigure<'_> {
+impl Plot for PlacementFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 600)
     }
@@ -146,7 +146,7 @@ pub struct AmbiguityFigure<'a> {
 /// Decibels below the reflector's own that are black.
 const RANGE_DB: f64 = 30.0;
 
-impl Drawing for AmbiguityFigure<'_> {
+impl Plot for AmbiguityFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 60 + 230 * self.patches.len().max(1) as u32)
     }

@@ -25,15 +25,7 @@ impl Reconstructor for ShortSighted {
         if peak.0 > 32 {
             lambda = RangeAngleMap { lambda: lambda.lambda.mapv(|_| 0.0) };
         }
-        Ok(Reconstruction {
-            lambda,
-            reflectors: Vec::new(),
-            confidences: Vec::new(),
-            eta: None,
-            least_eta: None,
-            doubt: None,
-            trace: Vec::new(),
-        })
+        Ok(Reconstruction::of_map(lambda))
     }
 }
 

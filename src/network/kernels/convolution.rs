@@ -3,9 +3,7 @@
 //! The loop is written once over a small vector trait and compiled for AVX-512, for AVX2 with FMA, and without either; which one
 //! runs is [`Simd::chosen`]'s decision, as for every other kernel.
 
-#[cfg(target_arch = "x86_64")]
-use super::vector::x86;
-use super::vector::{LANES, Portable, Vector};
+use super::vector::{LANES, Loop, Vector, run};
 use crate::signal::simd::Simd;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -155,19 +153,31 @@ struct Block<'a> {
     lanes: usize,
 }
 
-#[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "there is no choice of instructions"))]
+/// One line for one block of output channels.
+struct Line<'a, 'b> {
+    job: &'a Job<'b>,
+    block: Block<'a>,
+    out: &'a mut [f32],
+}
+
+impl Loop for Line<'_, '_> {
+    #[inline(always)]
+    unsafe fn run<V: Vector>(self) {
+        let Line { job, block, out } = self;
+        // SAFETY: `dispatch` checked the slices; the caller promises the features.
+        unsafe {
+            match V::TILE {
+                [8, 2] => line::<V, 8, 2>(job, block, out),
+                [6, 1] => line::<V, 6, 1>(job, block, out),
+                _ => line::<V, 2, 1>(job, block, out),
+            }
+        }
+    }
+}
+
 fn dispatch(simd: Simd, job: &Job, block: Block, out: &mut [f32]) {
     job.check(&block, out);
-    #[cfg(target_arch = "x86_64")]
-    match simd.min(Simd::best()) {
-        // SAFETY: `Simd::best` has found the features on this machine; the slices were checked.
-        Simd::Avx512 => return unsafe { line_avx512(job, block, out) },
-        // SAFETY: as above.
-        Simd::Avx2 => return unsafe { line_avx2(job, block, out) },
-        Simd::Portable => {}
-    }
-    // SAFETY: needs no feature; the slices were checked.
-    unsafe { line::<Portable, 2, 1>(job, block, out) };
+    run(simd, Line { job, block, out });
 }
 
 impl Job<'_> {
@@ -184,21 +194,7 @@ impl Job<'_> {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f")]
-unsafe fn line_avx512(job: &Job, block: Block, out: &mut [f32]) {
-    // SAFETY: the caller's promise.
-    unsafe { line::<x86::Avx512, 8, 2>(job, block, out) };
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-unsafe fn line_avx2(job: &Job, block: Block, out: &mut [f32]) {
-    // SAFETY: the caller's promise.
-    unsafe { line::<x86::Avx2, 6, 1>(job, block, out) };
-}
-
-/// A line in tiles of `CELLS` cells times `VECTORS` vectors: as many sums as the registers hold beside the weights and one value.
+/// A line in tiles of `CELLS` cells times `VECTORS` vectors, [`Vector::TILE`].
 /// # Safety
 /// [`Job::check`] must have passed, and the CPU must have the vector's features.
 #[inline(always)]

@@ -7,6 +7,8 @@ pub const LANES: usize = 16;
 
 /// Sixteen numbers in registers. Every method must be inlined into a function that has the vector's CPU features.
 pub trait Vector: Copy {
+    /// Cells and vectors of a tile whose sums fit the registers, beside the weights and one value.
+    const TILE: [usize; 2];
     /// # Safety
     /// `from` must hold 16 values, and the CPU must have the features.
     unsafe fn load(from: *const f32) -> Self;
@@ -59,6 +61,7 @@ pub fn run<L: Loop>(simd: Simd, of: L) {
 pub struct Portable([f32; LANES]);
 
 impl Vector for Portable {
+    const TILE: [usize; 2] = [2, 1];
     #[inline(always)]
     unsafe fn load(from: *const f32) -> Self {
         // SAFETY: the caller's promise.
@@ -97,6 +100,7 @@ pub mod x86 {
     pub struct Avx512(__m512);
 
     impl Vector for Avx512 {
+        const TILE: [usize; 2] = [8, 2];
         #[inline(always)]
         unsafe fn load(from: *const f32) -> Self {
             // SAFETY: the caller's promise, here and below.
@@ -129,6 +133,7 @@ pub mod x86 {
     pub struct Avx2(__m256, __m256);
 
     impl Vector for Avx2 {
+        const TILE: [usize; 2] = [6, 1];
         #[inline(always)]
         unsafe fn load(from: *const f32) -> Self {
             unsafe { Avx2(_mm256_loadu_ps(from), _mm256_loadu_ps(from.add(8))) }

@@ -54,15 +54,15 @@ impl Context {
 
 /// Residual block of two convolutions, with row and column context where it has any.
 #[derive(Module, Debug)]
-pub struct Block {
+pub struct ResidualBlock {
     conv1: WrapConv,
     conv2: WrapConv,
     context: Option<Context>,
 }
 
-impl Block {
+impl ResidualBlock {
     pub(super) fn new(channels: usize, context: bool, device: &Device) -> Self {
-        Block {
+        ResidualBlock {
             conv1: WrapConv::new(channels, channels, device),
             conv2: WrapConv::new(channels, channels, device).zeroed(),
             context: context.then(|| Context::new(channels, device)),
@@ -78,11 +78,11 @@ impl Block {
     }
 }
 
-pub(super) fn blocks(count: usize, channels: usize, context: bool, device: &Device) -> Vec<Block> {
-    (0..count).map(|_| Block::new(channels, context, device)).collect()
+pub(super) fn blocks(count: usize, channels: usize, context: bool, device: &Device) -> Vec<ResidualBlock> {
+    (0..count).map(|_| ResidualBlock::new(channels, context, device)).collect()
 }
 
-pub(super) fn through(blocks: &[Block], x: Tensor<4>) -> Tensor<4> {
+pub(super) fn through(blocks: &[ResidualBlock], x: Tensor<4>) -> Tensor<4> {
     blocks.iter().fold(x, |x, block| block.forward(x))
 }
 

@@ -173,10 +173,6 @@ impl Reconstructor for LiveMethod {
         }
     }
 
-    fn finds_reflectors(&self) -> bool {
-        false
-    }
-
     fn reads_eta(&self) -> bool {
         true
     }

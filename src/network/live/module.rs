@@ -5,7 +5,7 @@ use super::config::{DECODER_CHANNELS, FOLD, LiveConfig, WIDE};
 use super::constants::{SPACING_AT, WINDOWS, WINDOWS_AT};
 use super::features::LiveInput;
 use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
-use super::layers::{Block, WrapConv, blocks, small, through, zeroed};
+use super::layers::{ResidualBlock, WrapConv, blocks, small, through, zeroed};
 use crate::network::weights::WeightFile;
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -18,19 +18,19 @@ use std::f64::consts::LN_10;
 #[derive(Module, Debug)]
 pub struct LiveNetwork {
     stem: WrapConv,
-    enc0: Vec<Block>,
+    enc0: Vec<ResidualBlock>,
     down1: Conv2d,
-    enc1: Vec<Block>,
+    enc1: Vec<ResidualBlock>,
     down2: Conv2d,
-    enc2: Vec<Block>,
+    enc2: Vec<ResidualBlock>,
     down3: Conv2d,
-    enc3: Vec<Block>,
+    enc3: Vec<ResidualBlock>,
     up2: Conv2d,
-    dec2: Vec<Block>,
+    dec2: Vec<ResidualBlock>,
     up1: Conv2d,
-    dec1: Vec<Block>,
+    dec1: Vec<ResidualBlock>,
     up0: Conv2d,
-    dec0: Vec<Block>,
+    dec0: Vec<ResidualBlock>,
     widen: WrapConv,
     fine1: WrapConv,
     fine2: Conv2d,

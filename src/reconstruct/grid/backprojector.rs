@@ -8,7 +8,7 @@
 use super::cells::GridCells;
 use crate::maps::centred_spectrum;
 use crate::radar::{End, Radar, hann};
-use crate::reconstruct::seen::seen_by;
+use crate::reconstruct::seen::{seen_by, too_many_folds};
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Axis, Zip, s};
 use num_complex::Complex64;
@@ -77,9 +77,13 @@ fn blocks(radar: &Radar) -> Vec<Range<usize>> {
     (0..count).map(|i| edge(i)..edge(i + 1)).collect()
 }
 
-/// Why the tables can't be made for `radar`, where they would fill too much memory.
-pub(super) fn too_large(radar: &Radar, cells: &GridCells<'_>) -> Option<String> {
-    let (bins, directions) = cells.dim();
+/// Why the tables can't be made for `radar`: a column stands for too many directions, or they would fill too much memory.
+pub(super) fn no_tables(radar: &Radar) -> Option<String> {
+    too_many_folds(radar).or_else(|| too_large(radar))
+}
+
+fn too_large(radar: &Radar) -> Option<String> {
+    let (bins, directions) = GridCells::new(radar).dim();
     let bytes = 2 * blocks(radar).len() * bins * directions * size_of::<Place>();
     (bytes > MOST_TABLE_BYTES).then(|| {
         format!("its tables for {bins} range bins and {directions} directions would fill {bytes} bytes; at most {MOST_TABLE_BYTES}")

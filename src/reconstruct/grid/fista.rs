@@ -1,6 +1,6 @@
 //! Sparse reconstruction with an l1 penalty, by FISTA.
 
-use super::backprojector::{Backprojector, RangeWindow, too_large};
+use super::backprojector::{Backprojector, RangeWindow, no_tables};
 use super::cells::{GridCell, GridCells};
 use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
@@ -9,7 +9,6 @@ use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
-use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
 use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::{Array2, Zip};
@@ -241,13 +240,8 @@ impl Reconstructor for Fista {
         }
     }
 
-    fn knows_pairs(&self) -> bool {
-        true
-    }
-
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        let why = too_many_folds(radar).or_else(|| too_large(radar, &GridCells::new(radar)));
-        why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
+        no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

@@ -1,6 +1,6 @@
 //! The near-field matched filter of both ends.
 
-use super::backprojector::{Backprojector, RangeWindow, too_large};
+use super::backprojector::{Backprojector, RangeWindow, no_tables};
 use super::cells::GridCells;
 use super::layout_filter::layout_matched_filter;
 use crate::radar::{Layout, Radar};
@@ -9,7 +9,6 @@ use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::power::{focused_gain, of_power};
 use crate::reconstruct::reconstructor::{About, Reconstructor};
-use crate::reconstruct::seen::too_many_folds;
 use crate::signal::TwoEnds;
 use ndarray::Zip;
 
@@ -49,8 +48,7 @@ impl Reconstructor for MatchedFilter {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        let why = too_many_folds(radar).or_else(|| too_large(radar, &GridCells::new(radar)));
-        why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
+        no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn hears_layouts(&self) -> bool {

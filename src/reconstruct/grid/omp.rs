@@ -1,6 +1,6 @@
 //! Orthogonal matching pursuit on the near-field polar grid.
 
-use super::backprojector::{Backprojector, RangeWindow, too_large};
+use super::backprojector::{Backprojector, RangeWindow, no_tables};
 use super::cells::GridCells;
 use super::pursuit::{MOST_RELAXED, Pick, Pursuit, energy, unit_gains};
 use crate::radar::Radar;
@@ -10,7 +10,6 @@ use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::reconstructor::{About, Reconstructor};
-use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Zip, s};
@@ -149,13 +148,8 @@ impl Reconstructor for Omp {
         }
     }
 
-    fn knows_pairs(&self) -> bool {
-        true
-    }
-
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        let why = too_many_folds(radar).or_else(|| too_large(radar, &GridCells::new(radar)));
-        why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
+        no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

@@ -51,23 +51,13 @@ fn directions(row: &RowSnapshot) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::row::with_waves;
     use super::*;
-    use crate::maps::Spectrum;
 
     #[test]
     fn directions_of_two_waves_within_a_beamwidth_are_exact() {
         let turns = [0.12345, 0.15]; // a third of a beamwidth apart
-        let wave = |t: f64, n: usize| Complex64::cis(std::f64::consts::TAU * t * n as f64);
-        let own: Vec<Complex64> = (0..12).map(|n| wave(turns[0], n) + 0.7 * wave(turns[1], n)).collect();
-        let silent = vec![Complex64::default(); 12];
-        let plan = Spectrum::new(1024);
-        let row = RowSnapshot {
-            snapshots: [&silent, &own, &silent],
-            noise_variance: 1e-20,
-            not_plane: 1e-10,
-            spectrum: &plan,
-        };
-        let mut found = directions(&row).unwrap();
+        let mut found = with_waves(&[(turns[0], 1.0), (turns[1], 0.7)], directions).unwrap();
         found.sort_by(f64::total_cmp);
         assert_eq!(found.len(), 2);
         assert!(found.iter().zip(turns).all(|(f, t)| (f - t).abs() < 1e-6), "{found:?}");

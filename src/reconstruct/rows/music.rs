@@ -39,6 +39,7 @@ fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::row::with_waves;
     use super::*;
     use crate::maps::Spectrum;
     use num_complex::Complex64;
@@ -58,18 +59,10 @@ mod tests {
     #[test]
     fn resolves_two_reflectors_within_a_beamwidth() {
         // Twelve elements have a beam of 1024/12 = 85 columns; these two are 30 apart.
-        let wave = |column: f64, n: usize| Complex64::cis(TAU * column * n as f64 / 1024.0);
-        let own: Vec<Complex64> = (0..12).map(|n| wave(100.0, n) + wave(130.0, n)).collect();
-        let silent = vec![Complex64::default(); 12];
-        let plan = Spectrum::new(1024);
-        let row = RowSnapshot {
-            snapshots: [&silent, &own, &silent],
-            noise_variance: 1e-20,
-            not_plane: 1e-10,
-            spectrum: &plan,
-        };
-        assert_eq!(peaks(&row.bartlett()).len(), 1, "plain beams see one");
-        assert_eq!(peaks(&spectrum(&row).unwrap()), [100, 130]);
+        with_waves(&[(100.0 / 1024.0, 1.0), (130.0 / 1024.0, 1.0)], |row| {
+            assert_eq!(peaks(&row.bartlett()).len(), 1, "plain beams see one");
+            assert_eq!(peaks(&spectrum(row).unwrap()), [100, 130]);
+        });
     }
 
     #[test]

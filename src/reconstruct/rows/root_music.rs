@@ -68,8 +68,8 @@ fn continued(row: &RowSnapshot) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::row::with_waves;
     use super::*;
-    use crate::maps::Spectrum;
 
     #[test]
     fn roots_of_a_known_polynomial() {
@@ -84,23 +84,14 @@ mod tests {
     #[test]
     fn directions_need_no_grid() {
         let turns = [0.12345, 0.15]; // a third of a beamwidth apart
-        let wave = |t: f64, n: usize| Complex64::cis(std::f64::consts::TAU * t * n as f64);
-        let own: Vec<Complex64> = (0..12).map(|n| wave(turns[0], n) + 0.7 * wave(turns[1], n)).collect();
-        let silent = vec![Complex64::default(); 12];
-        let plan = Spectrum::new(1024);
-        let row = RowSnapshot {
-            snapshots: [&silent, &own, &silent],
-            noise_variance: 1e-20,
-            not_plane: 1e-10,
-            spectrum: &plan,
-        };
-        let mut found = directions(&row).unwrap();
+        let waves = [(turns[0], 1.0), (turns[1], 0.7)];
+        let mut found = with_waves(&waves, directions).unwrap();
         found.sort_by(f64::total_cmp);
         assert_eq!(found.len(), 2);
         for (f, t) in found.iter().zip(turns) {
             assert!((f - t).abs() < 1e-6, "{found:?}");
         }
-        let power = continued(&row).unwrap();
+        let power = with_waves(&waves, continued).unwrap();
         let strongest = (0..1024).max_by(|a, b| power[*a].total_cmp(&power[*b])).unwrap();
         assert_eq!(strongest, (turns[0] * 1024.0f64).round() as usize);
     }

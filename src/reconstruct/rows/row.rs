@@ -67,3 +67,13 @@ impl RowSnapshot<'_> {
         Some(self.spectrum.of(windowed).into_iter().map(|v| v.norm_sqr()).collect())
     }
 }
+
+/// Calls `look` with twelve elements that hear waves of these turns an element and amplitudes, almost without noise.
+#[cfg(test)]
+pub(super) fn with_waves<T>(waves: &[(f64, f64)], look: impl FnOnce(&RowSnapshot<'_>) -> T) -> T {
+    let heard = |n: usize| waves.iter().map(|(t, a)| a * Complex64::cis(std::f64::consts::TAU * t * n as f64)).sum();
+    let own: Vec<Complex64> = (0..12).map(heard).collect();
+    let silent = vec![Complex64::default(); 12];
+    let snapshots: [&[Complex64]; 3] = [&silent, &own, &silent];
+    look(&RowSnapshot { snapshots, noise_variance: 1e-20, not_plane: 1e-10, spectrum: &Spectrum::new(1024) })
+}

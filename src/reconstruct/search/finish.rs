@@ -36,6 +36,9 @@ const NOISE_RIDGE: f64 = 0.02;
 /// Energy of an object over all that is heard at its range, as a ratio, from which on it is loud: noise adds a little to an echo alone.
 const LOUD_ENERGY_RATIO: f64 = 1.5;
 
+/// Range bins and columns below which two points over white noise are one.
+const SAME_PLACE: [f64; 2] = [0.25, 1.0];
+
 /// Energy that tied gains may leave over what each end's own leave, as a ratio.
 const TIED_COST_RATIO: f64 = 4.0;
 
@@ -117,7 +120,10 @@ pub(super) fn finish(
     let apart = if flat_bench.is_some() { bench.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
     let is_tied = complete && !settings.lacks(Part::Tied);
     let best = if is_tied { tied(bench, samples, apart, request.noise.is_white(), settings) } else { apart };
-    let best = if request.noise.is_white() { quieted(radar, bench, samples, best) } else { best };
+    let best = match request.noise.is_white() {
+        true => quieted(radar, bench, samples, merged(radar, bench, samples, best)),
+        false => best,
+    };
     request.task.check()?;
     let residual = best.residual.flat(&bench.sensor);
     let noise_variance = hearing.noise_variance(radar, &residual);
@@ -140,10 +146,41 @@ pub(super) fn finish(
     })
 }
 
+/// `fit` without the weaker of two points that no end tells apart.
+fn merged(radar: &Radar, bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
+    let places: Vec<Option<[f64; 2]>> = fit
+        .atoms
+        .iter()
+        .map(|atom| match atom {
+            Atom::Point { x_metres: x, y_metres: y } => {
+                let range = x.hypot(*y).max(f64::MIN_POSITIVE);
+                Some([radar.bin_of_range(range), radar.column_of_cos(x / range)])
+            }
+            _ => None,
+        })
+        .collect();
+    let strength = |i: usize| fit.gains[i].iter().map(Complex64::norm_sqr).sum::<f64>();
+    let is_same = |i: usize, j: usize| match (places[i], places[j]) {
+        (Some(a), Some(b)) => (0..2).all(|k| (a[k] - b[k]).abs() < SAME_PLACE[k]),
+        _ => false,
+    };
+    let n = places.len();
+    let is_weaker = |i: usize, j: usize| (strength(i), j) < (strength(j), i);
+    let kept: Vec<usize> = (0..n).filter(|&i| !(0..n).any(|j| j != i && is_same(i, j) && is_weaker(i, j))).collect();
+    if kept.len() == n {
+        return fit;
+    }
+    bench.solve(samples, kept.into_iter().map(|i| fit.atoms[i]).collect(), tie_of(&fit), 0.0)
+}
+
+/// Whether the gains of a fit are tied.
+fn tie_of(fit: &Fit) -> Tie {
+    if fit.gains.iter().all(|g| g[0] == g[1]) { Tie::Both } else { Tie::PerEnd }
+}
+
 /// `fit` with a ridge on its gains that grows until no object is loud.
 fn quieted(radar: &Radar, bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
-    let are_tied = fit.gains.iter().all(|g| g[0] == g[1]);
-    let tie = if are_tied { Tie::Both } else { Tie::PerEnd };
+    let tie = tie_of(&fit);
     for factor in [1.0, 3.0, 10.0, 30.0] {
         if !are_loud(radar, bench, &fit).contains(&true) {
             break;

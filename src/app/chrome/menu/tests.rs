@@ -2,8 +2,8 @@ use super::*;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'static, (Memory, Vec<Command>)> {
-    let draw = move |ui: &mut Ui, asked: &mut (Memory, Vec<Command>)| {
+fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'static, (MenuMemory, Vec<Command>)> {
+    let draw = move |ui: &mut Ui, asked: &mut (MenuMemory, Vec<Command>)| {
         let input = Input {
             presents: false,
             can_undo: true,
@@ -27,18 +27,18 @@ fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'stat
         let commands = show(ui, input, &mut asked.0);
         asked.1.extend(commands);
     };
-    Harness::builder().with_size([width, 800.0]).build_ui_state(draw, (Memory::default(), vec![]))
+    Harness::builder().with_size([width, 800.0]).build_ui_state(draw, (MenuMemory::default(), vec![]))
 }
 
-fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (Memory, Vec<Command>)> {
+fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (MenuMemory, Vec<Command>)> {
     bar_for(width, finds_reflectors, true)
 }
 
-fn bar(width: f32) -> Harness<'static, (Memory, Vec<Command>)> {
+fn bar(width: f32) -> Harness<'static, (MenuMemory, Vec<Command>)> {
     bar_of(width, true)
 }
 
-fn open(menu: &mut Harness<'_, (Memory, Vec<Command>)>, labels: &[&str]) {
+fn open(menu: &mut Harness<'_, (MenuMemory, Vec<Command>)>, labels: &[&str]) {
     for label in labels {
         menu.get_by_label(label).click();
         menu.run();

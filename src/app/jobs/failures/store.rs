@@ -15,7 +15,7 @@ use std::sync::Arc;
 const MAX_CONDITIONS_BYTES: u64 = 64 << 10;
 
 /// Rows, and how they were made.
-pub type Kept = (Vec<Row>, Conditions);
+pub type KeptRows = (Vec<Row>, Conditions);
 
 /// The file beside `rows` that says how they were made.
 fn beside(rows: &Path) -> PathBuf {
@@ -46,7 +46,7 @@ pub fn write(path: &Path, rows: &[Row], conditions: &Conditions) -> Result<(), S
 ///
 /// # Errors
 /// The file, the line and what was expected there.
-pub fn read(path: &Path) -> Result<Kept, String> {
+pub fn read(path: &Path) -> Result<KeptRows, String> {
     let file = File::open(path).map_err(|e| format!("{}: {e}", path.display()))?;
     let rows = read_rows(file).map_err(|e| format!("{}: {e}", path.display()))?;
     if rows.array_windows().any(|[a, b]| a.version != b.version) {
@@ -86,7 +86,7 @@ fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
             radar.carrier = carrier;
         }
         let floor = match &found {
-            // It has that floor whatever the others have.
+            // It has that floor with any floor of the others.
             Some(found) if row.has_own_floor() => found.floor,
             _ => floor,
         };
@@ -125,14 +125,14 @@ enum Request {
 /// What came of it.
 #[expect(clippy::large_enum_variant, reason = "one answer at a time is under way")]
 pub enum Done {
-    /// The rows of a file that somebody opened, or of the last session (`own`).
+    /// The rows of a file that was opened, or of the last session (`own`).
     Read {
         /// The file.
         path: PathBuf,
         /// Whether it is the app's own.
         own: bool,
         /// The rows.
-        kept: Result<Kept, String>,
+        kept: Result<KeptRows, String>,
     },
     /// The app's own file holds the rows of this version.
     Wrote(u64),

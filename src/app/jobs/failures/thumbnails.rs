@@ -19,7 +19,7 @@ pub const WIDTH: usize = 96;
 /// Rows of a thumbnail.
 pub const HEIGHT: usize = 48;
 /// Most thumbnails that are kept: some 5 MB.
-const MOST: usize = 512;
+const MAX_THUMBNAILS: usize = 512;
 
 /// Lambda of a map, 0 to 255, row by row from the smallest range and left to right; each cell the largest of those that it stands for.
 pub type Bytes = Box<[u8]>;
@@ -80,17 +80,17 @@ impl Cache {
     fn insert(&mut self, key: (u64, RowKey), made: Made) {
         self.clock += 1;
         self.made.insert(key, (made, self.clock));
-        if self.made.len() > MOST {
+        if self.made.len() > MAX_THUMBNAILS {
             // A quarter at once, so that this is rare.
             let mut used: Vec<u64> = self.made.values().map(|(_, used)| *used).collect();
             used.sort_unstable();
-            let oldest = used[MOST / 4];
+            let oldest = used[MAX_THUMBNAILS / 4];
             self.made.retain(|_, (_, used)| *used > oldest);
         }
     }
 }
 
-/// The thumbnails of one table, shared with whoever makes them.
+/// The thumbnails of one table, shared with the thread that makes them.
 #[derive(Clone, Default)]
 pub struct Album(Arc<Mutex<Cache>>);
 
@@ -258,7 +258,7 @@ mod tests {
         for index in 0..10_000 {
             album.insert(1, &some_row(index, "live"), Ok(thumbnail.clone()));
         }
-        assert!(album.len() <= MOST);
+        assert!(album.len() <= MAX_THUMBNAILS);
         assert!(album.get(1, &some_row(9999, "live")).is_some(), "the latest stay");
         assert!(album.get(2, &some_row(9999, "live")).is_none(), "another table's are others");
     }

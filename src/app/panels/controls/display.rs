@@ -21,6 +21,11 @@ pub(super) fn show(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec
     row_of(ui, "Scale", "What colour bars, cuts, readouts and thresholds are told in (D)", |ui| {
         let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];
         choices(ui, settings.units, of, ViewCommand::SetUnits, asked);
+        let mut is_one = settings.one_scale;
+        let tip = "Inputs, target and output on the scale of the strongest: what is weaker looks weaker";
+        if ui.checkbox(&mut is_one, "one for all").on_hover_text(tip).changed() {
+            asked.push(ViewCommand::ToggleOneScale.into());
+        }
     });
     row_of(ui, "Colours", "Colours of Λ", |ui| {
         let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));

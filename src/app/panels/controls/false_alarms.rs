@@ -21,16 +21,16 @@ pub struct Search<'a> {
 }
 
 /// What is chosen.
-pub struct Memory {
+pub struct FalseAlarmsMemory {
     percent: f64,
     kinds: BTreeSet<Kind>,
     count: u32,
 }
 
-impl Default for Memory {
+impl Default for FalseAlarmsMemory {
     fn default() -> Self {
         let ThresholdSearch { false_alarm_percent, kinds, count, .. } = ThresholdSearch::default();
-        Memory { percent: false_alarm_percent, kinds: kinds.into_iter().collect(), count }
+        FalseAlarmsMemory { percent: false_alarm_percent, kinds: kinds.into_iter().collect(), count }
     }
 }
 
@@ -39,7 +39,7 @@ const KEEP: &str = "Part of the target's dark cells that may exceed η, on avera
     with the validation scenes that η was tried on, that is, drawn alike, of the same kinds, with the same radar, floor and normalisation. In a \
     single scene P_FA may be higher.";
 
-impl Memory {
+impl FalseAlarmsMemory {
     fn choice(&self) -> ThresholdChoice {
         ThresholdChoice {
             false_alarm_percent: self.percent,
@@ -71,7 +71,7 @@ impl Memory {
 }
 
 /// Draws the fields and the button, folded away at first.
-pub fn show(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &mut FalseAlarmsMemory, asked: &mut Vec<Command>) {
     rarely(ui, "η by false alarms", |ui| {
         ui.add_enabled_ui(search.progress.is_none(), |ui| choose(ui, memory));
         row_of(ui, "", "", |ui| start(ui, method, search, memory, asked));
@@ -86,7 +86,7 @@ pub fn show(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &mut Memory,
     });
 }
 
-fn choose(ui: &mut Ui, memory: &mut Memory) {
+fn choose(ui: &mut Ui, memory: &mut FalseAlarmsMemory) {
     row(ui, "Keep below", KEEP, |ui| {
         ui.add(NumberField::new(&mut memory.percent).range(0.01..=50.0).speed(0.02).suffix(" %"))
     });
@@ -103,7 +103,7 @@ fn choose(ui: &mut Ui, memory: &mut Memory) {
 }
 
 /// Find η, or in its place Cancel.
-fn start(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &Memory, asked: &mut Vec<Command>) {
+fn start(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &FalseAlarmsMemory, asked: &mut Vec<Command>) {
     let problem = memory.problem();
     let scenes = counted(memory.count as usize * memory.kinds.len(), "validation scene", "validation scenes");
     let tip = format!(
@@ -134,11 +134,11 @@ mod tests {
     /// What is drawn, and what was asked for.
     struct Drawn {
         search: Search<'static>,
-        memory: Memory,
+        memory: FalseAlarmsMemory,
         asked: Vec<Command>,
     }
 
-    fn fields(memory: Memory) -> Harness<'static, Drawn> {
+    fn fields(memory: FalseAlarmsMemory) -> Harness<'static, Drawn> {
         let draw = |ui: &mut Ui, drawn: &mut Drawn| {
             show(ui, "capon", &drawn.search, &mut drawn.memory, &mut drawn.asked);
         };
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn the_search_is_one_command() {
-        let mut fields = fields(Memory { percent: 0.5, count: 80, ..Memory::default() });
+        let mut fields = fields(FalseAlarmsMemory { percent: 0.5, count: 80, ..FalseAlarmsMemory::default() });
         seen::assert_readable(fields.output());
         fields.get_by_label("Find η").click();
         fields.run();
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_search_that_runs_can_be_cancelled() {
-        let mut fields = fields(Memory::default());
+        let mut fields = fields(FalseAlarmsMemory::default());
         fields.state_mut().search.progress = Some(0.4);
         fields.step();
         fields.get_by_label("Cancel").click();
@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn the_condition_stands_beside_the_rate() {
-        let mut fields = fields(Memory::default());
+        let mut fields = fields(FalseAlarmsMemory::default());
         fields.get_by_label("Keep below").hover();
         fields.run_steps(40);
         let told = fields.query_by_label_contains("exchangeable with the validation scenes");
@@ -181,15 +181,15 @@ mod tests {
 
     #[test]
     fn the_price_of_few_scenes_stands_beside_their_number() {
-        let price = Memory::default().price();
+        let price = FalseAlarmsMemory::default().price();
         assert!(price.contains("P_FA on 300 scenes may be 0.670 %") && price.contains("from 990 scenes on"), "{price}");
-        let too_few = Memory { count: 20, ..Memory::default() }.price();
+        let too_few = FalseAlarmsMemory { count: 20, ..FalseAlarmsMemory::default() }.price();
         assert!(too_few.ends_with("give a lower η"), "{too_few}");
     }
 
     #[test]
     fn too_few_scenes_begin_no_search() {
-        let mut fields = fields(Memory { count: 20, ..Memory::default() });
+        let mut fields = fields(FalseAlarmsMemory { count: 20, ..FalseAlarmsMemory::default() });
         let _told = fields.get_by_label("60 scenes can't keep a rate of 1 %; take 99 scenes or more");
         fields.get_by_label("Find η").click();
         fields.run();
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn a_search_without_a_threshold_is_told() {
-        let mut fields = fields(Memory { count: 33, ..Memory::default() });
+        let mut fields = fields(FalseAlarmsMemory { count: 33, ..FalseAlarmsMemory::default() });
         fields.state_mut().search.note = Some("no threshold keeps 1 % on these scenes");
         fields.run();
         let _told = fields.get_by_label("no threshold keeps 1 % on these scenes");
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn scenes_are_asked_for_where_none_is_chosen() {
-        let mut fields = fields(Memory::default());
+        let mut fields = fields(FalseAlarmsMemory::default());
         fields.state_mut().memory.kinds.clear();
         fields.run();
         let _told = fields.get_by_label("Choose scenes first.");

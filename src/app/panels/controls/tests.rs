@@ -32,7 +32,7 @@ fn panel_for(uses: Uses, run: impl Fn() -> Run<'static> + 'static) -> Harness<'s
             run: run(),
             uses,
         };
-        asked.extend(show(ui, input, &mut Memory::default()));
+        asked.extend(show(ui, input, &mut FalseAlarmsMemory::default()));
     };
     Harness::builder().with_size([420.0, 780.0]).build_ui_state(draw, Vec::new())
 }
@@ -85,7 +85,7 @@ fn thresholds_are_told_in_decibels_where_these_are_chosen() {
             run,
             uses,
         };
-        asked.extend(show(ui, input, &mut Memory::default()));
+        asked.extend(show(ui, input, &mut FalseAlarmsMemory::default()));
     };
     let controls = Harness::builder().with_size([420.0, 780.0]).build_ui_state(draw, Vec::new());
     let _told = ["−60.0 dB", "−30.0 dB"].map(|text| controls.get_by_label(text));
@@ -136,7 +136,7 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
             run,
             uses,
         };
-        asked.extend(show(ui, input, &mut Memory::default()));
+        asked.extend(show(ui, input, &mut FalseAlarmsMemory::default()));
     };
     let mut controls = Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new());
     for _ in 0..30 {
@@ -202,7 +202,7 @@ fn no_choice_leaves_a_narrow_panel() {
             run,
             uses: Uses::ALL,
         };
-        asked.extend(show(ui, input, &mut Memory::default()));
+        asked.extend(show(ui, input, &mut FalseAlarmsMemory::default()));
     };
     let mut controls = Harness::builder().with_size([260.0, 1100.0]).build_ui_state(draw, Vec::new());
     seen::assert_readable(controls.output());
@@ -259,7 +259,7 @@ fn detecting(cfar: Option<Cfar>, error: Option<&'static str>) -> Harness<'static
             run: Run { detector_error: error, ..Run::default() },
             uses: Uses::ALL,
         };
-        asked.extend(show(ui, input, &mut Memory::default()));
+        asked.extend(show(ui, input, &mut FalseAlarmsMemory::default()));
     };
     Harness::builder().with_size([300.0, 900.0]).build_ui_state(draw, Vec::new())
 }

@@ -37,7 +37,7 @@ pub struct Input<'a> {
 
 /// What is looked at, and measured.
 #[derive(Default)]
-pub struct Memory {
+pub struct CutsMemory {
     hidden: BTreeSet<MapKind>,
     /// The line that the markers read: of a map, of a pinned cut or of the one at the cursor.
     read: Option<Line>,
@@ -72,7 +72,7 @@ pub struct CutsPanel;
 
 impl Content for CutsPanel {
     type Asks = Nothing;
-    type Memory = Memory;
+    type Remembers = CutsMemory;
     const WANTS: Wants = Wants { every_map: true, ..Wants::OUTPUT };
     const TELLS_ANSWERS: bool = true;
 
@@ -93,7 +93,7 @@ impl Content for CutsPanel {
 }
 
 /// Draws the panel: angle cut above (or left), range profile below (or right).
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CutsMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     let frame = egui::Frame::NONE.inner_margin(egui::Margin { left: 8, right: 8, top: 4, bottom: 0 });
     frame.show(ui, |ui| {
@@ -129,7 +129,7 @@ fn lines(input: &Input<'_>, hidden: &BTreeSet<MapKind>) -> Vec<Line> {
 }
 
 /// What is drawn, in its colours; units; pinned cuts.
-fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         for map in input.maps {
             let kind = map.kind;
@@ -164,8 +164,8 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Com
     });
 }
 
-/// The markers as numbers, for whoever doesn't click, and the line they read.
-fn marks(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
+/// The markers as numbers, for the keyboard, and the line they read.
+fn marks(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory) {
     if memory.views.values().all(|view| view.markers.is_empty()) {
         let tip = "Two places to measure between; a click in a cut places one, too, and they can be dragged";
         if ui.button("Markers").on_hover_text(tip).clicked() {
@@ -220,7 +220,7 @@ fn dash(kind: MapKind) -> Dash {
 }
 
 /// One cut: its chart, and what its markers read beneath.
-fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut Memory, cut: Cut) {
+fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut CutsMemory, cut: Cut) {
     let traces = traces(input, &memory.hidden, cut);
     let whole = cut.whole(input.radar);
     let mut view = memory.views.get(&cut).copied().unwrap_or_default();

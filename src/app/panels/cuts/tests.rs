@@ -9,7 +9,7 @@ use ndarray::Array2;
 use std::sync::Arc;
 
 struct Held {
-    memory: Memory,
+    memory: CutsMemory,
     asked: Vec<Command>,
     pins: Vec<PinnedCut>,
     units: Units,
@@ -46,7 +46,7 @@ fn panel(size: [f32; 2]) -> Harness<'static, Held> {
         held.asked.extend(commands);
     };
     let held =
-        Held { memory: Memory::default(), asked: Vec::new(), pins: Vec::new(), units: Units::Lambda, bin: 300.0 };
+        Held { memory: CutsMemory::default(), asked: Vec::new(), pins: Vec::new(), units: Units::Lambda, bin: 300.0 };
     let mut panel = Harness::builder().with_size(size).with_step_dt(0.02).build_ui_state(draw, held);
     panel.run_steps(2);
     panel
@@ -211,7 +211,7 @@ fn a_cut_has_several_labels_none_cut_off_at_any_size() {
     }
 }
 
-/// Whoever sees no difference between their hues still tells the inputs and the target apart.
+/// Inputs and target differ by more than their hues.
 #[test]
 fn lines_differ_by_dash() {
     let dashes = [MapKind::Input0, MapKind::Input1, MapKind::Target].map(dash);

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// What the list remembers.
 #[derive(Default)]
-pub(super) struct Memory {
+pub(super) struct ElementListMemory {
     /// What was pasted.
     text: String,
     /// How far the ends stand back, millimetres.
@@ -16,9 +16,9 @@ pub(super) struct Memory {
 }
 
 #[cfg(test)]
-impl Memory {
+impl ElementListMemory {
     pub(super) fn back_by(back_millimetres: f64) -> Self {
-        Memory { back_millimetres, ..Memory::default() }
+        ElementListMemory { back_millimetres, ..ElementListMemory::default() }
     }
 }
 
@@ -26,7 +26,13 @@ impl Memory {
 const EXAMPLE: &str = "place mm, forward mm, gain dB, phase °";
 
 /// Draws the bend and the list.
-pub(super) fn show(ui: &mut Ui, radar: &Radar, elements: &BuiltArray, memory: &mut Memory, asked: &mut Vec<Command>) {
+pub(super) fn show(
+    ui: &mut Ui,
+    radar: &Radar,
+    elements: &BuiltArray,
+    memory: &mut ElementListMemory,
+    asked: &mut Vec<Command>,
+) {
     bend(ui, radar, elements, memory, asked);
     let tooltip = "One line an element from the leftmost, as a spreadsheet copies it. Missing numbers are 0";
     CollapsingHeader::new("From a list").id_salt("elements from a list").show(ui, |ui| {
@@ -50,7 +56,7 @@ fn problem_ink(ui: &Ui) -> Color32 {
 }
 
 /// Elements on a bent bumper.
-fn bend(ui: &mut Ui, radar: &Radar, elements: &BuiltArray, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn bend(ui: &mut Ui, radar: &Radar, elements: &BuiltArray, memory: &mut ElementListMemory, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let label = ui.label("ends back by").on_hover_text("How far the ends of a bent line stand behind its middle");
         let field = NumberField::new(&mut memory.back_millimetres).range(-1000.0..=1000.0).speed(0.05);

@@ -54,7 +54,7 @@ pub struct Input<'a> {
 }
 
 /// What was chosen, and what was worked out.
-pub struct Memory {
+pub struct ChartsMemory {
     /// Which chart.
     pub view: View,
     x: Column,
@@ -67,12 +67,12 @@ pub struct Memory {
     boxes: u64,
 }
 
-impl Default for Memory {
+impl Default for ChartsMemory {
     fn default() -> Self {
         let (x, y) = (Column::NearestPairColumns, Column::SquaredError);
         let view = View::default();
         let (methods, grouping) = Default::default();
-        Memory { view, x, y, methods, grouping, made: None, mesh: None, start: None, boxes: 0 }
+        ChartsMemory { view, x, y, methods, grouping, made: None, mesh: None, start: None, boxes: 0 }
     }
 }
 
@@ -95,7 +95,7 @@ const FEW: usize = 500;
 const NEAR: f32 = 10.0;
 
 /// Which chart, and of what.
-pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut Memory) {
+pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
     for (view, name, tip) in View::ALL {
         ui.selectable_value(&mut memory.view, view, name).on_hover_text(tip);
     }
@@ -160,7 +160,7 @@ fn groups(ui: &mut Ui, points: &Points, grouping: Grouping) {
 }
 
 /// Draws the chart that was chosen.
-pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut Memory) -> Answer {
+pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut ChartsMemory) -> Answer {
     let Some((subject, titles)) = subject(memory) else { return Answer::default() };
     let (stamp, grouping) = (input.order.stamp(), memory.grouping);
     let subject = (subject, grouping);
@@ -213,7 +213,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut 
     answer
 }
 
-fn subject(memory: &Memory) -> Option<(Subject, [String; 2])> {
+fn subject(memory: &ChartsMemory) -> Option<(Subject, [String; 2])> {
     let (x, y) = (memory.x, memory.y);
     let [a, b] = &memory.methods;
     Some(match memory.view {

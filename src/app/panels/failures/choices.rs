@@ -14,7 +14,7 @@ use eframe::egui::Ui;
 use std::collections::BTreeSet;
 
 /// What is chosen.
-pub struct Memory {
+pub struct ChoicesMemory {
     methods: BTreeSet<&'static str>,
     kinds: BTreeSet<Kind>,
     own: bool,
@@ -22,14 +22,14 @@ pub struct Memory {
     seed: u64,
 }
 
-impl Default for Memory {
+impl Default for ChoicesMemory {
     fn default() -> Self {
-        Memory { methods: BTreeSet::new(), kinds: BTreeSet::from([Kind::Set2]), own: false, count: 20, seed: 0 }
+        ChoicesMemory { methods: BTreeSet::new(), kinds: BTreeSet::from([Kind::Set2]), own: false, count: 20, seed: 0 }
     }
 }
 
 /// Draws them.
-pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mut Vec<Command>) {
     memory.methods.retain(|name| input.methods.all.iter().any(|m| m.name() == *name));
     if memory.methods.is_empty() {
         memory.methods.extend(input.method);
@@ -58,7 +58,7 @@ fn unfit(ui: &mut Ui, unfit: &[Unfit]) {
     }
 }
 
-fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mut Vec<Command>) {
     method_menu(ui, input.methods, &mut memory.methods, "Methods to try");
     let menu = ticking_menu(ui, &format!("Scenes: {}", sets(memory)), |ui| {
         kind_boxes(ui, Kind::all(), &mut memory.kinds);
@@ -78,7 +78,7 @@ fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<C
 }
 
 /// Try, or in its place Cancel.
-fn start(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Command>) {
+fn start(ui: &mut Ui, input: &Input<'_>, memory: &ChoicesMemory, asked: &mut Vec<Command>) {
     let ready = !memory.methods.is_empty() && (memory.own || !memory.kinds.is_empty());
     let tip = "Try the methods on the scenes, in the background, with the floor, normalisation and radar in use. Rows made with \
                the same stay; those made with others make room";
@@ -99,7 +99,7 @@ fn start(ui: &mut Ui, input: &Input<'_>, memory: &Memory, asked: &mut Vec<Comman
     }
 }
 
-fn sets(memory: &Memory) -> String {
+fn sets(memory: &ChoicesMemory) -> String {
     kind_names(&memory.kinds, memory.own.then_some("own"))
 }
 

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 
 /// What was typed, and what it means.
 #[derive(Default)]
-pub struct Memory {
+pub struct FilterMemory {
     /// The expression.
     pub text: String,
     read: Option<(String, usize)>,
@@ -20,7 +20,7 @@ pub struct Memory {
     stamp: u64,
 }
 
-impl Memory {
+impl FilterMemory {
     /// The last expression that meant something; all rows where `None`.
     pub fn filter(&self) -> Option<&Filter> {
         self.filter.as_ref()
@@ -49,7 +49,7 @@ impl Memory {
             _ => Filter::parse(&self.text, &names).map(Some),
         };
         match read {
-            // While somebody types, the rows stay as they were.
+            // While a rule is typed, the rows stay as they were.
             Err(error) => self.error = Some(error),
             Ok(filter) => {
                 self.error = None;
@@ -62,7 +62,7 @@ impl Memory {
 }
 
 /// Draws the field; `methods` are those that expressions may name.
-pub fn show(ui: &mut Ui, methods: &BTreeSet<&str>, memory: &mut Memory) {
+pub fn show(ui: &mut Ui, methods: &BTreeSet<&str>, memory: &mut FilterMemory) {
     let names: Vec<&str> = methods.iter().copied().collect();
     let edit = ui.horizontal(|ui| {
         let label = ui.label("Filter");
@@ -82,7 +82,7 @@ pub fn show(ui: &mut Ui, methods: &BTreeSet<&str>, memory: &mut Memory) {
 }
 
 /// Says what is wrong with the expression, if anything is.
-pub fn problem(ui: &mut Ui, memory: &Memory) {
+pub fn problem(ui: &mut Ui, memory: &FilterMemory) {
     if let Some(error) = &memory.error {
         ui.add(Label::new(RichText::new(error.to_string()).color(ui.visuals().error_fg_color)).wrap());
     }
@@ -125,15 +125,15 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    fn field() -> Harness<'static, Memory> {
-        let draw = |ui: &mut Ui, memory: &mut Memory| {
+    fn field() -> Harness<'static, FilterMemory> {
+        let draw = |ui: &mut Ui, memory: &mut FilterMemory| {
             show(ui, &BTreeSet::from(["live", "nomp"]), memory);
             problem(ui, memory);
         };
-        Harness::builder().with_size([500.0, 300.0]).build_ui_state(draw, Memory::default())
+        Harness::builder().with_size([500.0, 300.0]).build_ui_state(draw, FilterMemory::default())
     }
 
-    fn write(field: &mut Harness<'_, Memory>, text: &str) {
+    fn write(field: &mut Harness<'_, FilterMemory>, text: &str) {
         field.get_by_label("Filter").focus();
         field.step();
         field.get_by_label("Filter").type_text(text);

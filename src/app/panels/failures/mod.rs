@@ -26,20 +26,20 @@ use std::collections::BTreeSet;
 
 /// What the panel remembers from frame to frame.
 #[derive(Default)]
-pub struct Memory {
-    choices: choices::Memory,
-    filter: filter::Memory,
+pub struct FailuresMemory {
+    choices: choices::ChoicesMemory,
+    filter: filter::FilterMemory,
     sort: Option<Sort>,
     order: Order,
     boxed: Option<Boxed>,
-    charts: charts::Memory,
-    shared: shared::Memory,
-    table: table::Memory,
-    opened: opened::Memory,
+    charts: charts::ChartsMemory,
+    shared: shared::SharedRulesMemory,
+    table: table::TableMemory,
+    opened: opened::OpenedMemory,
     in_sight: Vec<usize>,
 }
 
-impl Memory {
+impl FailuresMemory {
     /// Indices of the rows in sight, from top to bottom.
     pub fn in_sight(&self) -> &[usize] {
         &self.in_sight
@@ -51,7 +51,7 @@ pub struct FailuresPanel;
 
 impl Content for FailuresPanel {
     type Asks = Nothing;
-    type Memory = Memory;
+    type Remembers = FailuresMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, jobs) = (&*cx.state, cx.jobs);
@@ -100,7 +100,7 @@ fn live<'a>(state: &'a State, jobs: &Jobs) -> Option<Live<'a>> {
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     Frame::NONE.inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         choices::show(ui, input, &mut memory.choices, &mut asked);
@@ -142,7 +142,7 @@ fn beside_or_below(room: Vec2) -> egui::Panel {
 }
 
 /// Puts the rows in order, if something changed.
-fn update(ui: &Ui, input: &Input<'_>, memory: &mut Memory) {
+fn update(ui: &Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
     memory.boxed.take_if(|boxed| boxed.generation != input.table.generation());
     let wanted = Wanted {
         table: input.table,
@@ -157,7 +157,7 @@ fn update(ui: &Ui, input: &Input<'_>, memory: &mut Memory) {
 }
 
 /// How many rows are shown, and what else is.
-fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
+fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
     ui.horizontal_wrapped(|ui| {
         let (shown, all) = (memory.order.shown().len(), input.table.rows().len());
         let rows = counted(all, "row", "rows");
@@ -170,12 +170,12 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) {
         }
         ui.separator();
         charts::choices(ui, input.table, &mut memory.charts);
-        // Beside what is always there, so that nothing moves while somebody types.
+        // Beside what is always there, so that nothing moves while a rule is typed.
         filter::problem(ui, &memory.filter);
     });
 }
 
-fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory, asked: &mut Vec<Command>) {
     if memory.charts.view == View::Shared {
         if let Some(rule) = shared::show(ui, input.table, &mut memory.shared) {
             memory.filter.set(rule);
@@ -193,7 +193,7 @@ fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Co
     }
 }
 
-fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory, asked: &mut Vec<Command>) {
     let of = table::Input {
         table: input.table,
         album: input.album,

@@ -11,22 +11,22 @@ use crate::evaluate::worsen::{Aim, WorseningMeasure, WorseningSearch};
 use eframe::egui::{Button, ComboBox, Grid, TextEdit, Ui};
 
 /// What is chosen, and what was written.
-pub struct Memory {
+pub struct OpenedMemory {
     measure: WorseningMeasure,
     within_metres: f64,
     tries: u32,
     note: String,
 }
 
-impl Default for Memory {
+impl Default for OpenedMemory {
     fn default() -> Self {
         let WorseningSearch { measure, within_metres, tries, .. } = WorseningSearch::default();
-        Memory { measure, within_metres, tries, note: String::new() }
+        OpenedMemory { measure, within_metres, tries, note: String::new() }
     }
 }
 
 /// Draws it.
-pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut Vec<Command>) {
     if let Some(live) = &input.on_screen {
         figures(ui, live);
     }
@@ -89,7 +89,7 @@ fn fates(row: &Row) -> String {
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut Memory, asked: &mut Vec<Command>) {
+fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut OpenedMemory, asked: &mut Vec<Command>) {
     if let Some(part) = searched.progress {
         if progress(ui, part, 140.0, "Stop looking; what was found stays") {
             asked.push(RowsCommand::CancelSearch.into());
@@ -112,7 +112,7 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut Memory, asked: &mut
         let repair = "Look for the smallest move of its objects after which the method in use is right";
         for (title, tip, aim) in [("Worse", worse, Aim::Worsen), ("Repair", repair, Aim::Repair)] {
             if ui.button(title).on_hover_text(tip).clicked() {
-                let Memory { measure, within_metres, tries, .. } = *memory;
+                let OpenedMemory { measure, within_metres, tries, .. } = *memory;
                 asked.push(RowsCommand::Search(SearchChoice { aim, measure, within_metres, tries }).into());
             }
         }

@@ -15,20 +15,20 @@ const EVERY: Duration = Duration::from_secs(2);
 const MOST_ROWS: usize = 20_000;
 
 /// What was typed, and what was found.
-pub struct Memory {
+pub struct SharedRulesMemory {
     bad: String,
     of: Option<(u64, String)>,
     when: Option<Instant>,
     found: Option<Result<SharedTrait, String>>,
 }
 
-impl Default for Memory {
+impl Default for SharedRulesMemory {
     fn default() -> Self {
-        Memory { bad: USUALLY_BAD.to_owned(), of: None, when: None, found: None }
+        SharedRulesMemory { bad: USUALLY_BAD.to_owned(), of: None, when: None, found: None }
     }
 }
 
-impl Memory {
+impl SharedRulesMemory {
     /// Looks for rules, if the rows or what is bad changed.
     fn update(&mut self, ui: &Ui, table: &RowTable) {
         let key = (table.version(), self.bad.clone());
@@ -53,7 +53,7 @@ fn chosen(rows: &[Row]) -> Vec<Row> {
 }
 
 /// Draws it; the filter to apply, if a rule was clicked.
-pub fn show(ui: &mut Ui, table: &RowTable, memory: &mut Memory) -> Option<String> {
+pub fn show(ui: &mut Ui, table: &RowTable, memory: &mut SharedRulesMemory) -> Option<String> {
     ui.horizontal(|ui| {
         let label = ui.label("Bad is");
         let tip = "A filter: which rows are bad. Rules speak of what is known before a method answers.";

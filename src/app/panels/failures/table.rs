@@ -53,7 +53,7 @@ struct Picture {
 
 /// What the table remembers from frame to frame.
 #[derive(Default)]
-pub struct Memory {
+pub struct TableMemory {
     /// Pictures of the rows in sight.
     pictures: HashMap<(u64, usize), Picture>,
     /// The row that was opened last, when it was last drawn.
@@ -66,7 +66,7 @@ pub struct Memory {
     room: [f32; 2],
 }
 
-impl Memory {
+impl TableMemory {
     /// Pictures on the graphics card.
     #[cfg(test)]
     pub fn pictures(&self) -> usize {
@@ -80,7 +80,7 @@ const TITLE: f32 = 34.0;
 const MAP: Vec2 = vec2(72.0, 36.0);
 
 /// Draws it.
-pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut Memory) -> Answer {
+pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut TableMemory) -> Answer {
     let mut answer = Answer::default();
     // Not by its place: what is told of an opened row comes before it, and the focus must stay.
     let id = Id::unique("rows of failures");
@@ -155,7 +155,7 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>, room: f32) -> Option<usize>
 }
 
 /// Draws a row; whether it was clicked.
-fn row(drawn: &mut TableRow<'_, '_>, input: &Input<'_>, index: usize, memory: &mut Memory) -> bool {
+fn row(drawn: &mut TableRow<'_, '_>, input: &Input<'_>, index: usize, memory: &mut TableMemory) -> bool {
     let Some(row) = input.table.rows().get(index) else { return false };
     let is_selected = input.opened == Some(index);
     drawn.set_selected(is_selected);
@@ -188,7 +188,7 @@ fn texture(
     input: &Input<'_>,
     index: usize,
     row: &Row,
-    memory: &mut Memory,
+    memory: &mut TableMemory,
 ) -> Result<(), String> {
     let generation = input.table.generation();
     let made = input.album.get(generation, row);

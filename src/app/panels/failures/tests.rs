@@ -19,7 +19,7 @@ use std::time::Duration;
 struct Drawn {
     table: RowTable,
     album: Album,
-    memory: Memory,
+    memory: FailuresMemory,
     asked: Vec<Command>,
     opened: Option<usize>,
 }
@@ -53,7 +53,8 @@ fn panel_of(rows: Vec<Row>, size: Vec2) -> Harness<'static, Drawn> {
     };
     let mut table = RowTable::default();
     table.replace(rows, Conditions::default());
-    let drawn = Drawn { table, album: Album::default(), memory: Memory::default(), asked: Vec::new(), opened: None };
+    let drawn =
+        Drawn { table, album: Album::default(), memory: FailuresMemory::default(), asked: Vec::new(), opened: None };
     let mut panel = Harness::builder().with_size(size).build_ui_state(draw, drawn);
     panel.run_steps(3);
     panel

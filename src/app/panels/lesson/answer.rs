@@ -1,7 +1,7 @@
 //! A question, what it is answered with, and what the answer was worth.
 
 use super::large::{LARGE, large};
-use super::memory::Memory;
+use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand, LessonRun};
 use crate::app::widgets::inline::inline;
 use crate::app::widgets::number_field::{NumberField, Wanted};
@@ -12,7 +12,7 @@ use eframe::egui;
 use eframe::egui::{Color32, Id, Sense, Slider, Stroke, TextEdit, Ui, Vec2, pos2, vec2};
 
 /// What an open question is answered with.
-pub fn answer(ui: &mut Ui, question: &Question, memory: &mut Memory, asked: &mut Vec<Command>) {
+pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
     match &question.answer {
         Answer::Click { map, .. } => {
             ui.label(format!("Click in {}. The maps are hidden until you do.", map.words()));

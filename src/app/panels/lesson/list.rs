@@ -1,6 +1,6 @@
 //! The list of lessons, with how far each was taken.
 
-use super::memory::Memory;
+use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand};
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Lesson, Progress};
@@ -19,7 +19,7 @@ fn shipped() -> &'static [(&'static Shipped, Lesson)] {
 }
 
 /// Draws the list.
-pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut Memory, asked: &mut Vec<Command>) {
+pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
     ui.label(
         "Each step asks a question before it shows the maps. Guess: a wrong guess teaches as much as a right one.",
     );

@@ -5,7 +5,7 @@ use crate::app::widgets::textures::Texture;
 
 /// What was typed but not answered yet.
 #[derive(Default)]
-pub struct Memory {
+pub struct LessonMemory {
     /// The picture that a challenge hides.
     pub(super) hidden: Texture,
     pub(super) number: String,
@@ -21,14 +21,14 @@ pub struct Memory {
     pub(super) of: Option<(String, usize)>,
 }
 
-impl Memory {
+impl LessonMemory {
     /// Forgets what belongs to another step; whether a step begins.
     pub(super) fn begin(&mut self, run: &LessonRun) -> bool {
         let of = Some((run.id.clone(), run.step));
         let begins = self.of != of;
         if begins {
             let (learner, hidden) = (std::mem::take(&mut self.learner), std::mem::take(&mut self.hidden));
-            *self = Memory { of, eta: 0.5, learner, hidden, ..Memory::default() };
+            *self = LessonMemory { of, eta: 0.5, learner, hidden, ..LessonMemory::default() };
         }
         begins
     }

@@ -20,7 +20,7 @@ fn run(lesson: &str, step: usize) -> LessonRun {
     run
 }
 
-type Drawn = (Option<LessonRun>, Memory, Vec<Command>);
+type Drawn = (Option<LessonRun>, LessonMemory, Vec<Command>);
 
 fn harness(run: Option<LessonRun>) -> Harness<'static, Drawn> {
     let draw = |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
@@ -30,7 +30,7 @@ fn harness(run: Option<LessonRun>) -> Harness<'static, Drawn> {
             memory,
         ));
     };
-    Harness::builder().with_size([640.0, 1600.0]).build_ui_state(draw, (run, Memory::default(), Vec::new()))
+    Harness::builder().with_size([640.0, 1600.0]).build_ui_state(draw, (run, LessonMemory::default(), Vec::new()))
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn the_question_is_in_view_however_little_room_there_is() {
                 let input = Input { run: run.as_ref(), progress: &progress, hidden: None, presenting: true };
                 asked.extend(show(ui, input, memory));
             };
-            let state = (Some(self::run(lesson, step)), Memory::default(), Vec::new());
+            let state = (Some(self::run(lesson, step)), LessonMemory::default(), Vec::new());
             let mut panel = Harness::builder().with_size(size).build_ui_state(draw, state);
             panel.run_steps(3);
             let step = panel.state().0.as_ref().and_then(LessonRun::current).unwrap().clone();
@@ -218,7 +218,7 @@ fn with_progress(progress: Progress) -> Harness<'static, Drawn> {
         let input = Input { run: run.as_ref(), progress: &progress, hidden: None, presenting: false };
         asked.extend(show(ui, input, memory));
     };
-    Harness::builder().with_size([640.0, 1600.0]).build_ui_state(draw, (None, Memory::default(), Vec::new()))
+    Harness::builder().with_size([640.0, 1600.0]).build_ui_state(draw, (None, LessonMemory::default(), Vec::new()))
 }
 
 #[test]

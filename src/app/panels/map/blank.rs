@@ -4,7 +4,7 @@ use crate::app::state::{Command, ViewCommand};
 use crate::app::widgets::theme::Inks;
 use eframe::egui::{self, Align2, Painter, Rect, Ui, vec2};
 
-/// A map that is hidden until somebody has predicted what it shows.
+/// A map that is hidden until the learner has predicted what it shows.
 #[derive(Clone, Copy)]
 pub struct Veil {
     /// Whether the prediction is a click in this map.

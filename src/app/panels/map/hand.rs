@@ -21,7 +21,7 @@ struct Held {
 
 /// What the maps remember from frame to frame.
 #[derive(Default)]
-pub struct Memory {
+pub struct HandMemory {
     /// The blob that is held, and in which map.
     held: Option<(MapKind, Held)>,
 }
@@ -33,7 +33,7 @@ pub fn work(
     scene: &Scene,
     frame: Frame<'_>,
     response: &Response,
-    memory: &mut Memory,
+    memory: &mut HandMemory,
     asked: &mut Vec<Command>,
 ) -> bool {
     let (origin, now, modifiers) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos(), i.modifiers));
@@ -90,7 +90,7 @@ mod tests {
         editor: Editor,
         snap: Snap,
         view: MapView,
-        memory: Memory,
+        memory: HandMemory,
         asked: Vec<Command>,
     }
 
@@ -112,7 +112,7 @@ mod tests {
             }
         };
         let editor = Editor::new(Scene::of_points(points.iter().copied()));
-        let (view, memory) = (MapView::default(), Memory::default());
+        let (view, memory) = (MapView::default(), HandMemory::default());
         let desk = Desk { editor, snap: Snap::Off, view, memory, asked: Vec::new() };
         let mut map = Harness::builder().with_size([700.0, 420.0]).with_step_dt(0.05).build_ui_state(draw, desk);
         map.step();

@@ -22,7 +22,7 @@ pub use answer::Places;
 pub use blank::{Problem, Veil};
 pub use caption::{Caption, caption};
 pub use frame::{Cells, Marks};
-pub use hand::Memory;
+pub use hand::HandMemory;
 pub use hatch::ToldApart;
 pub use kinds::Kinds;
 pub use swipe::Over;
@@ -77,7 +77,7 @@ pub struct Input<'a> {
     pub pictured: Projection,
     /// Where the scale of that picture ends, Lambda.
     pub end: f32,
-    /// What it shows, for whoever can't see it.
+    /// What it shows, for screen readers.
     pub sentence: Option<&'a str>,
     /// Whether the picture is of an earlier scene, and has been for long enough to be told.
     pub stale: bool,
@@ -178,7 +178,7 @@ impl<'a> Input<'a> {
 pub const EARLIER_SCENE: &str = "Previous scene; updating…";
 
 /// Draws a map.
-pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Memory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut HandMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     let area = ui.available_rect_before_wrap();
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);

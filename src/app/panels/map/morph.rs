@@ -66,7 +66,7 @@ mod tests {
     use eframe::egui::Pos2;
 
     #[test]
-    fn a_place_moves_in_a_straight_line_from_one_kind_of_map_to_the_other() {
+    fn a_place_moves_in_a_straight_line_between_kinds_of_maps() {
         let radar = Radar::default();
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 300.0));
         let frame = |projection, morph| Frame { morph, ..Frame::of(rect, MapView::default(), &radar, projection, 0.0) };
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_in_either_coordinates_has_its_cells_where_the_map_has_them() {
+    fn a_picture_in_either_coordinates_has_the_cells_of_the_map() {
         let radar = Radar::default();
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 300.0));
         let frame = Frame::of(rect, MapView::default(), &radar, Projection::RangeAngle, 0.0);

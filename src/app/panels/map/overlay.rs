@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn a_selected_cluster_has_one_outline_however_many_reflectors_it_has() {
+    fn a_selected_cluster_of_many_reflectors_has_one_outline() {
         let blobs: Vec<Pos2> = (0..40).map(|i| Pos2::new((i * 7 % 23) as f32, (i * 5 % 17) as f32)).collect();
         assert_eq!(around(blobs.clone(), 300.0).len(), 1);
         let mut wrapped = blobs;

@@ -22,7 +22,7 @@ fn input<'a>(radar: &'a Radar, error: Option<Problem<'a>>) -> Input<'a> {
 fn draw(ui: &mut Ui, error: Option<Problem<'_>>, asked: &mut Vec<Command>) {
     let radar = Radar::default();
     let input = Input { cursor: Some(Cursor::at_cell(&radar, 200.0, 500.0)), ..input(&radar, error) };
-    asked.extend(show(ui, input, &mut MapView::default(), &mut Memory::default()));
+    asked.extend(show(ui, input, &mut MapView::default(), &mut HandMemory::default()));
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn every_label_of_a_map_is_inside_its_panel_whatever_is_counted() {
                 let cells = Some(Cells { map: &lambda, minus: None, scale });
                 let texture = Some(TextureId::default());
                 let input = Input { kind, units, cells, texture, end: 0.05, ..input(&radar, None) };
-                _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+                _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
             });
             seen::assert_readable(map.output());
             let texts = seen::texts(map.output());
@@ -104,7 +104,7 @@ fn every_map_has_the_same_margins_whatever_stands_beside_it() {
                 let told_apart = told_apart.filter(|_| kind == MapKind::OutputAbove);
                 let texture = Some(TextureId::default());
                 let input = Input { kind, units, projection, texture, told_apart, ..input(&radar, None) };
-                _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+                _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
             });
             seen::assert_readable(map.output());
             let has_one = seen::texts(map.output()).iter().any(|t| t.text == "1.0");
@@ -128,7 +128,7 @@ fn maps_beside_each_other_stay_aligned_while_objects_are_marked() {
             let kinds = Some(Kinds { fates: &fates, current: true }).filter(|_| kind == MapKind::Output);
             let shown = Shown { kinds: true, ..Shown::default() };
             let input = Input { kind, kinds, shown, texture: Some(TextureId::default()), ..input(&radar, None) };
-            _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+            _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
         });
         map.get_by_label(&format!("{} map", kind.title())).rect()
     };
@@ -139,7 +139,7 @@ fn maps_beside_each_other_stay_aligned_while_objects_are_marked() {
 fn directions_rise_from_left_to_right_with_either_carrier() {
     let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
     let map = Harness::builder().with_size([450.0, 270.0]).build_ui(move |ui| {
-        _ = show(ui, input(&radar, None), &mut MapView::default(), &mut Memory::default());
+        _ = show(ui, input(&radar, None), &mut MapView::default(), &mut HandMemory::default());
     });
     let texts = seen::texts(map.output());
     let left = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.left());
@@ -152,7 +152,7 @@ fn directions_rise_from_left_to_right_with_either_carrier() {
 fn a_map_that_was_never_there_is_not_of_an_earlier_scene() {
     let radar = Radar::default();
     let map = Harness::builder().build_ui(move |ui| {
-        _ = show(ui, Input { stale: true, ..input(&radar, None) }, &mut MapView::default(), &mut Memory::default());
+        _ = show(ui, Input { stale: true, ..input(&radar, None) }, &mut MapView::default(), &mut HandMemory::default());
     });
     let texts = seen::texts(map.output());
     assert!(texts.iter().any(|t| t.text == "computing…"));
@@ -166,7 +166,7 @@ fn a_map_of_an_earlier_scene_says_so() {
         let radar = radar.clone();
         let map = Harness::builder().build_ui(move |ui| {
             let input = Input { stale, texture: Some(TextureId::default()), ..input(&radar, None) };
-            _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+            _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
         });
         seen::texts(map.output()).iter().any(|t| t.text.contains("Previous scene"))
     };
@@ -182,7 +182,7 @@ fn judged(size: [f32; 2]) -> Harness<'static> {
         let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9] });
         let shown = Shown { kinds: true, ..Shown::default() };
         let input = Input { kinds, texture, told_apart, shown, kind: MapKind::OutputAbove, ..input(&radar, None) };
-        _ = show(ui, input, &mut MapView::default(), &mut Memory::default());
+        _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
     });
     map.step();
     seen::assert_readable(map.output());

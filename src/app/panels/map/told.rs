@@ -2,7 +2,7 @@
 
 use super::frame::{Cells, Marked, Marks};
 use super::{
-    Caption, EARLIER_SCENE, Input, Kinds, Memory, Places, Problem, Shown, Theory, ToldApart, Veil, caption, show,
+    Caption, EARLIER_SCENE, HandMemory, Input, Kinds, Places, Problem, Shown, Theory, ToldApart, Veil, caption, show,
 };
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, TheoryResult, fates_of};
@@ -23,7 +23,7 @@ use std::sync::Arc;
 pub struct MapMemory {
     textures: BTreeMap<MapKind, Texture>,
     /// What the pointer holds.
-    pub hand: Memory,
+    pub hand: HandMemory,
 }
 
 impl MapMemory {
@@ -41,7 +41,7 @@ pub struct MapPanel;
 
 impl Content for MapPanel {
     type Asks = Nothing;
-    type Memory = MapMemory;
+    type Remembers = MapMemory;
     const MARKS_AGE: bool = true;
 
     fn caption(state: &State, jobs: &Jobs, panel: Panel) -> Option<String> {
@@ -192,7 +192,7 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     })
 }
 
-/// What became of the objects in a method's output, as far as that is known of the one on screen: "5 of 5 found, 0 false, 3 cm off".
+/// What became of the objects in a method's output, as far as that is known of the one on screen: "5 of 5 found, 0 false, 3 cm off (bound 1 cm)".
 pub fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<String> {
     let (fates, current) = fates_of(&jobs.kinds, slot, &jobs.pipeline)?;
     if !current || state.is_predicting() || fates.scene.objects.is_empty() {
@@ -200,16 +200,18 @@ pub fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<String> {
     }
     let output = jobs.pipeline.method(slot).output()?;
     let offset = median_offset_metres(&fates.scene, &fates.failures, &output.reflectors);
-    let off = offset.map_or_else(String::new, |metres| format!(", {}", off_text(metres)));
+    let bound = fates.bound_metres.map_or_else(String::new, |metres| format!(" (bound {})", length(metres)));
+    let off = offset.map_or_else(String::new, |metres| format!(", {} off{bound}", length(metres)));
     Some(format!("{}{off}", fates.failures.verdict()))
 }
 
 /// A distance in the unit in which it has one to three digits before the point.
-fn off_text(metres: f64) -> String {
+fn length(metres: f64) -> String {
     match metres {
-        m if m < 0.0095 => format!("{:.0} mm off", 1e3 * m),
-        m if m < 0.995 => format!("{:.0} cm off", 1e2 * m),
-        m => format!("{m:.1} m off"),
+        m if m < 0.0005 => "below 1 mm".to_owned(),
+        m if m < 0.0095 => format!("{:.0} mm", 1e3 * m),
+        m if m < 0.995 => format!("{:.0} cm", 1e2 * m),
+        m => format!("{m:.1} m"),
     }
 }
 
@@ -221,7 +223,11 @@ pub fn is_updating(jobs: &Jobs, kind: MapKind) -> bool {
 
 /// The numbers behind a map's picture.
 pub fn cells(jobs: &Jobs, kind: MapKind) -> Option<Cells<'_>> {
-    let frame = &jobs.pipeline.maps.result()?.frame;
+    let result = jobs.pipeline.maps.result()?;
+    if let Some(rescaled) = result.on_one_scale.get(&kind) {
+        return Some(Cells { map: &rescaled.map, minus: None, scale: Some(rescaled.scale) });
+    }
+    let frame = &result.frame;
     let pair = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| &o.pair);
     let scale = frame.full.as_ref().map(|m| m.scale);
     match kind {
@@ -306,7 +312,7 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>
         return Some(Problem { reason, instead: None });
     }
     if is_recorded && (matches!(kind, MapKind::Target | MapKind::TargetAbove) || kind.is_difference()) {
-        // Where there is a target, there is a picture, and nobody reads this.
+        // Where there is a target, there is a picture, and this is not read.
         let reason = "The recording has the samples of the two ends alone: nobody knows what all elements would see.";
         return Some(Problem { reason, instead: None });
     }

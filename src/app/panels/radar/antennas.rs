@@ -8,7 +8,7 @@ use eframe::egui::{Id, Ui};
 pub(super) const NAME: &str = "antennas";
 
 /// Most transmitters, and most receivers, that the panel offers.
-const MOST: usize = 64;
+const MAX_ANTENNAS: usize = 64;
 
 /// The range for which the panel says what midpoints cost, metres.
 const NEAR_METRES: f64 = 2.0;
@@ -70,7 +70,7 @@ fn counts(ui: &mut Ui, radar: &mut Radar) {
     for (name, count) in [("transmitters", &mut transmitters), ("receivers", &mut receivers)] {
         ui.horizontal(|ui| {
             let mut value = *count as f64;
-            let field = NumberField::new(&mut value).range(1.0..=MOST as f64).speed(0.1).max_decimals(0);
+            let field = NumberField::new(&mut value).range(1.0..=MAX_ANTENNAS as f64).speed(0.1).max_decimals(0);
             let field = ui.add(field);
             let label = ui.label(name);
             if field.labelled_by(label.id).changed() {
@@ -92,7 +92,7 @@ fn set(radar: &mut Radar, transmitters: usize, receivers: usize) {
 
 /// The largest number up to the root of `elements` that divides it: as many transmitters as keep the antennas fewest.
 fn divisor(elements: usize) -> usize {
-    (1..=MOST).take_while(|n| n * n <= elements).filter(|n| elements.is_multiple_of(*n)).last().unwrap_or(1)
+    (1..=MAX_ANTENNAS).take_while(|n| n * n <= elements).filter(|n| elements.is_multiple_of(*n)).last().unwrap_or(1)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::scene::Scene;
 use eframe::egui::{self, Id, Painter, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
 /// Most objects whose mirror images are drawn.
-const MOST: usize = 100;
+const MAX_OBJECTS_BEHIND: usize = 100;
 
 /// Radius of a mirror image, points.
 const RADIUS: f32 = 4.5;
@@ -17,7 +17,7 @@ pub fn mirror(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> 
     let behind: Vec<(usize, [f64; 2])> = centres.filter(|(_, [_, y])| *y < 0.0).collect();
     let stroke = Stroke::new(1.0, canvas.inks.grid_text);
     let name = |index: usize| format!("{} {}", scene.objects[index].noun(), index + 1);
-    for (index, [x, y]) in behind.iter().copied().take(MOST) {
+    for (index, [x, y]) in behind.iter().copied().take(MAX_OBJECTS_BEHIND) {
         let (from, to) = (canvas.at(Place::new(x, y)), canvas.at(Place::new(x, -y)));
         painter.extend(Shape::dashed_line(&[from, to + vec2(0.0, RADIUS)], stroke, 2.0, 4.0));
         painter.circle_stroke(to, RADIUS, stroke);

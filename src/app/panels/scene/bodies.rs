@@ -9,7 +9,7 @@ use eframe::egui::{Shape as Drawn, epaint::PathShape};
 use std::f64::consts::TAU;
 
 /// Most bodies whose shadows and glints are drawn.
-const MOST: usize = 60;
+const MAX_BODIES: usize = 60;
 
 /// Corners that a circle is drawn with.
 const ROUND: usize = 40;
@@ -66,7 +66,7 @@ pub fn shadows(
     }
     for (end, colour) in End::BOTH.into_iter().zip(colours) {
         let from = [radar.end_centre_metres(end), 0.0];
-        for body in scene.objects.iter().filter_map(|o| o.body()).take(MOST) {
+        for body in scene.objects.iter().filter_map(|o| o.body()).take(MAX_BODIES) {
             if let Some(shadow) = behind(from, &body.shape(), far_metres) {
                 let shadow = shadow.map(|c| at(c.into())).to_vec();
                 painter.add(Drawn::convex_polygon(shadow, colour.gamma_multiply(0.10), Stroke::NONE));
@@ -103,7 +103,7 @@ fn behind(from: [f64; 2], shape: &Shape, far_metres: f64) -> Option<[[f64; 2]; 4
 /// Where each end of the array sees bodies shine, in that end's colour; paler where something stands before it.
 pub fn glints(painter: &Painter, at: &dyn Fn(Place) -> Pos2, radar: &Radar, scene: &Scene, colours: [Color32; 2]) {
     let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();
-    if bodies == 0 || bodies > MOST {
+    if bodies == 0 || bodies > MAX_BODIES {
         return;
     }
     let seen = SeenObject::all(radar, scene);

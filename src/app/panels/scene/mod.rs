@@ -203,7 +203,7 @@ fn extent_metres(radar: &Radar, snapshot_range_metres: Option<f64>) -> f64 {
     snapshot_range_metres.map_or(radar.max_range_metres(), |range| 1.25 * range)
 }
 
-/// Shows everything the radar can see, and whatever else the scene holds nearby.
+/// Shows everything the radar can see, and what else the scene holds nearby.
 fn fit(extent: f64, editor: &Editor, view: &mut SceneView, rect: Rect) {
     let resized = view.fitted.is_some_and(|size| size != rect.size()) && editor.dragged().is_none();
     if !(view.fit || resized) || rect.width() < 40.0 || rect.height() < 40.0 {
@@ -329,7 +329,7 @@ fn handles(bin_metres: f64, editor: &mut Editor, view: SceneView, ui: &Ui, rect:
             if !rect.contains(at) {
                 continue;
             }
-            // The body moves with the arrow keys whatever has the focus.
+            // The body moves with the arrow keys wherever the focus is.
             let sense = if g.grip == Grip::Body { Sense::hover() } else { Sense::focusable_noninteractive() };
             let place = Rect::from_center_size(at, vec2(18.0, 18.0));
             let response = ui.interact(place, Id::unique(("handle", index, g.grip)), sense);

@@ -11,7 +11,7 @@ pub struct ScenePanel;
 
 impl Content for ScenePanel {
     type Asks = Nothing;
-    type Memory = ();
+    type Remembers = ();
     const MARKS_AGE: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {

@@ -130,7 +130,7 @@ fn every_task_keeps_its_panels_as_the_user_left_them() {
 }
 
 #[test]
-fn the_guide_opens_beside_the_settings_even_where_an_older_layout_had_it_over_them() {
+fn the_guide_opens_beside_the_settings_in_an_older_layout_too() {
     let mut arrangement = Arrangement::default();
     let controls = tabs_of(&arrangement, Panel::Controls).unwrap();
     assert_ne!(tabs_of(&arrangement, Panel::Guide), Some(controls));

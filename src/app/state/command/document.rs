@@ -30,7 +30,7 @@ pub enum DocumentCommand {
     SaveAs,
     /// Save the scene in this file.
     SaveTo(PathBuf),
-    /// Whether the scene is saved in a file that can't hold all of it, or that somebody else has written to.
+    /// Whether the scene is saved in a file that can't hold all of it, or that another program has written to.
     AnswerSave(SaveAnswer),
     /// Put this unsaved document, which another took the place of, on screen again.
     Recover(u64),

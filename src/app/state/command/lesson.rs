@@ -30,7 +30,7 @@ pub enum LessonCommand {
     Present,
     /// End the lesson; scene and settings come back.
     Leave,
-    /// Somebody else learns now.
+    /// Another learner takes over.
     SetLearner(String),
     /// Forget what the learner did.
     ForgetProgress,

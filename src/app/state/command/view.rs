@@ -27,11 +27,13 @@ pub enum ViewCommand {
     SetUnits(Units),
     /// cos θ or degrees along the axis of directions.
     SetDirections(Directions),
+    /// Inputs, target and output on one scale or each on its own, the other way round.
+    ToggleOneScale,
     /// The difference with its sign or without, the other way round.
     ToggleAbsoluteDifference,
     /// The difference on a scale that just holds it or on one up to 1, the other way round.
     ToggleWholeDifference,
-    /// Keep the cuts that are shown, whatever the cursor does.
+    /// Keep the cuts that are shown while the cursor moves.
     PinCuts,
     /// Let the pinned cuts of this number go.
     Unpin(usize),

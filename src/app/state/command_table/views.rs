@@ -87,6 +87,12 @@ pub(super) const COMMANDS: &[Entry] = {
             None,
         ),
         entry(
+            View(ViewCommand::ToggleOneScale),
+            "One scale for all maps",
+            "Draw inputs, target and output on the scale of the strongest: what is weaker looks weaker",
+            None,
+        ),
+        entry(
             View(ViewCommand::ToggleAbsoluteDifference),
             "|Difference|",
             "Draw the difference with its sign or without",

@@ -1,0 +1,81 @@
+//! Maps of one frame on one scale, so that what is weaker looks weaker.
+
+use crate::app::shared::Shared;
+use crate::app::state::MapKind;
+use crate::engine::{EngineFrame, ReadyMap};
+use crate::maps::{LambdaScale, RangeAngleMap};
+use std::collections::BTreeMap;
+
+/// A map on a scale that it shares with others.
+#[derive(Clone)]
+pub struct Rescaled {
+    /// The map on its own scale.
+    of: Shared<RangeAngleMap>,
+    own: LambdaScale,
+    /// The map on the common scale.
+    pub map: Shared<RangeAngleMap>,
+    /// The common scale.
+    pub scale: LambdaScale,
+}
+
+/// The maps that were put on one scale last.
+#[derive(Default)]
+pub struct OneScale(BTreeMap<MapKind, Rescaled>);
+
+impl OneScale {
+    /// The inputs, the target and the outputs on the scale of the strongest of inputs and target, which spans as many decibels as the widest.
+    /// An output's own scale is the target's.
+    pub fn of(
+        &mut self,
+        frame: &EngineFrame,
+        outputs: [Option<&Shared<RangeAngleMap>>; 2],
+    ) -> BTreeMap<MapKind, Rescaled> {
+        let ready = |map: &ReadyMap| (Shared::from(&map.lambda), map.scale);
+        let of_frame =
+            [(MapKind::Input0, &frame.first), (MapKind::Input1, &frame.last), (MapKind::Target, &frame.full)];
+        let of_frame = of_frame.into_iter().filter_map(|(kind, map)| Some((kind, ready(map.as_ref()?))));
+        let scale = frame.full.as_ref().map(|full| full.scale);
+        let of_methods = [MapKind::Output, MapKind::Second].into_iter().zip(outputs);
+        let of_methods = of_methods.filter_map(|(kind, map)| Some((kind, (map?.clone(), scale?))));
+        let common = common([&frame.first, &frame.last, &frame.full].into_iter().flatten().map(|map| map.scale));
+        let kept = std::mem::take(&mut self.0);
+        self.0 = of_frame
+            .chain(of_methods)
+            .map(|(kind, (map, own))| (kind, rescaled(kept.get(&kind), map, own, common)))
+            .collect();
+        self.0.clone()
+    }
+}
+
+/// The scale that ends at the highest peak and spans as much as the widest of all.
+fn common(scales: impl Iterator<Item = LambdaScale> + Clone) -> LambdaScale {
+    let peak = scales.clone().map(|scale| scale.peak).fold(f64::NEG_INFINITY, f64::max);
+    let span = scales.map(|scale| scale.peak - scale.floor).fold(0.0, f64::max);
+    LambdaScale { peak, floor: peak - span }
+}
+
+fn rescaled(kept: Option<&Rescaled>, of: Shared<RangeAngleMap>, own: LambdaScale, scale: LambdaScale) -> Rescaled {
+    if let Some(kept) = kept.filter(|kept| kept.of == of && (kept.own, kept.scale) == (own, scale)) {
+        return kept.clone();
+    }
+    let decades = |lambda: f32| own.floor + f64::from(lambda) * (own.peak - own.floor);
+    let lambda = of.lambda.mapv(|lambda| scale.lambda(decades(lambda)) as f32);
+    Rescaled { map: Shared::new(RangeAngleMap { lambda }), of, own, scale }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn a_weaker_map_is_darker_on_one_scale() {
+        let [strong, weak] = [2.0, 1.0].map(|peak| LambdaScale { peak, floor: peak - 4.0 });
+        let scale = common([weak, strong].into_iter());
+        let map = Shared::new(RangeAngleMap { lambda: array![[1.0f32, 0.5, 0.0]] });
+        let [of_strong, of_weak] = [strong, weak].map(|own| rescaled(None, map.clone(), own, scale));
+        assert_eq!(of_strong.map.lambda, map.lambda, "the strongest stays as it is");
+        assert_eq!(of_weak.map.lambda, array![[0.75f32, 0.25, 0.0]], "20 dB of 80 dB");
+        assert_eq!(rescaled(Some(&of_weak), map, weak, scale).map, of_weak.map, "made once");
+    }
+}

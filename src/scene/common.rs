@@ -1,0 +1,36 @@
+//! What all kinds of objects have: fields of files, and a match over the kinds.
+
+/// An object: what is its own, then what every object has.
+macro_rules! moving {
+    ($(#[$about:meta])* pub struct $name:ident { $($fields:tt)* }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name {
+            $($fields)*
+            /// Velocity along the array's axis, metres a second.
+            #[serde(default, skip_serializing_if = "is_zero")]
+            pub velocity_x_metres_per_second: f64,
+            /// Velocity away from the array, metres a second.
+            #[serde(default, skip_serializing_if = "is_zero")]
+            pub velocity_y_metres_per_second: f64,
+        }
+    };
+}
+pub(super) use moving;
+
+/// The same of an object of any kind.
+macro_rules! of_each {
+    ($object:expr, $one:ident => $what:expr) => {
+        match $object {
+            Object::Point($one) => $what,
+            Object::Line($one) => $what,
+            Object::Gaussian($one) => $what,
+            Object::Wall($one) => $what,
+            Object::Box($one) => $what,
+            Object::Post($one) => $what,
+            Object::Polygon($one) => $what,
+        }
+    };
+}
+pub(super) use of_each;
