@@ -4,7 +4,7 @@ use super::input::{load_board, print_doubts};
 use super::{CommandError, print};
 use crate::reconstruct::found::reconstruct_and_find;
 use crate::reconstruct::{IAA, NoisePrior, Request};
-use crate::recording::packets::{CardFrame, Counts, Packets};
+use crate::recording::packets::{CardFrame, PacketCounts, Packets};
 use crate::recording::{Origin, raw};
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -117,12 +117,12 @@ struct Receiver {
 struct Summary {
     frames: u64,
     dropped: u64,
-    packets: Counts,
+    packets: PacketCounts,
 }
 
 impl Summary {
     fn sentence(&self) -> String {
-        let Counts { packets, strange, late, lost_bytes, lost_frames, restarts } = self.packets;
+        let PacketCounts { packets, strange, late, lost_bytes, lost_frames, restarts } = self.packets;
         format!(
             "{} frames of {packets} packets; dropped, since the one before was still looked at: {}; bytes lost: {lost_bytes}; frames lost: \
              {lost_frames}; packets late or twice: {late}; no packets of a card: {strange}; times the card began anew: {restarts}",

@@ -28,7 +28,7 @@ pub struct CardFrame {
 
 /// What became of the packets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
+pub struct PacketCounts {
     /// Packets that were taken.
     pub packets: u64,
     /// Packets that are none: shorter than their header, or longer than any.
@@ -55,17 +55,17 @@ pub struct Packets {
     open: VecDeque<Open>,
     /// The frame after the last that was given away, once there was one.
     next: Option<u64>,
-    counts: Counts,
+    counts: PacketCounts,
 }
 
 impl Packets {
     /// For frames of so many bytes, at least one.
     pub fn new(frame_bytes: usize) -> Self {
-        Packets { frame_bytes: frame_bytes.max(1), open: VecDeque::new(), next: None, counts: Counts::default() }
+        Packets { frame_bytes: frame_bytes.max(1), open: VecDeque::new(), next: None, counts: PacketCounts::default() }
     }
 
     /// What became of the packets so far.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> PacketCounts {
         self.counts
     }
 

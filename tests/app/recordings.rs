@@ -249,7 +249,7 @@ fn a_selected_point_calibrates_the_elements() {
 /// bin 11.
 fn captured(s: &Session) -> PathBuf {
     let sample = |n: usize| {
-        let turns = std::f64::consts::TAU * 11.0 * (n % 64) as f64 / 64.0;
+        let turns = std::f64::consts::TAU * (11.0 * (n % 64) as f64 / 64.0 + 0.15 * (n / 64 % 4) as f64);
         let noise = |of: usize| ((n * of) % 23) as f64 / 4.0;
         [(900.0 * turns.cos() + noise(7)) as i16, (900.0 * turns.sin() + noise(13)) as i16]
     };

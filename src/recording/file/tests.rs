@@ -65,7 +65,7 @@ fn a_long_list_of_missing_elements_takes_no_time() {
 }
 
 #[test]
-fn missing_elements_are_silent_whether_the_file_has_rows_for_them_or_not() {
+fn missing_elements_are_silent_with_rows_in_the_file_or_without() {
     let without: Vec<usize> = (0..8).filter(|n| ![2, 6].contains(n)).collect();
     let fewer = all().select(Axis(0), &without);
     for rows in [all(), fewer] {

@@ -13,11 +13,14 @@ const LINE_NUMBERS: usize = 1 << 12;
 /// Least chirps of one transmitter that tell whether they are the same.
 const LEAST_IN_TURN: usize = 4;
 /// Log-odds of a `.cfg` that says a count, and of one that says another.
-const SAID: f64 = 8.0;
+const OF_SAID_COUNT: f64 = 8.0;
 /// Log-odds of an axis along which all is the same that it counts chirps; and of a sharp spectrum that it counts samples, for each decibel.
 const OF_SAME: f64 = 6.0;
 const OF_SHARP_DB: f64 = 0.5;
 const MOST_SHARP_DB: f64 = 12.0;
+
+/// Log-odds of an axis of two real numbers that they are real and imaginary part.
+const OF_PARTS: f64 = 5.0;
 
 /// Kinds that the axes of an array may count together, by how many axes there are.
 const TOGETHER: [&[AxisKind]; 6] = [
@@ -85,7 +88,7 @@ pub(super) fn readings(numbers: &Numbers, profile: Option<&RadarProfile>) -> Vec
             let mut reading = judged(&kinds, &lengths, &looks, profile);
             if let Some(iq) = iq {
                 reading.kinds.insert(iq, Iq);
-                reading.log_odds += if iq + 1 == shape.len() { 4.0 } else { 2.0 };
+                reading.log_odds += OF_PARTS;
             }
             all.push(reading);
         }
@@ -135,7 +138,7 @@ fn judged(kinds: &[AxisKind], lengths: &[usize], looks: &[Look], profile: Option
         if let Some(profile) = profile
             && let Some(agrees) = said(*kind, *len, profile, kinds.contains(&Transmitter))
         {
-            log_odds += if agrees { SAID } else { -SAID };
+            log_odds += if agrees { OF_SAID_COUNT } else { -OF_SAID_COUNT };
             reasons.extend(agrees.then(|| format!("The .cfg says {len} {kind}s.")));
         }
     }
