@@ -36,7 +36,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             let Some(recording) = input.recording else {
-                ui.weak("No recording is on screen. Drop a capture, an array or the TOML of a recording on the window.");
+                ui.weak(
+                    "No recording is on screen. Drop a capture, an array or the TOML of a recording on the window.",
+                );
                 return;
             };
             ui.strong(&recording.name);
@@ -65,7 +67,11 @@ fn layouts(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
     let best = origin.offers.first().map_or(0.0, |offer| offer.log_odds);
     for (n, offer) in origin.offers.iter().enumerate() {
         ui.horizontal(|ui| {
-            let less = if n > 0 { format!("\nlog-odds {:.1} less than the best", best - offer.log_odds) } else { String::new() };
+            let less = if n > 0 {
+                format!("\nlog-odds {:.1} less than the best", best - offer.log_odds)
+            } else {
+                String::new()
+            };
             let tooltip = format!("Read the file so: range profile, {SHOWN_DB} dB{less}");
             let is_taken = n == origin.taken;
             let clicked = profile(ui, offer, is_taken).on_hover_text(tooltip.as_str()).clicked();
@@ -106,7 +112,8 @@ fn frames(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        let label = ui.label(format!("Frame of {}", origin.frames)).on_hover_text("Which frame of the file the maps show");
+        let label =
+            ui.label(format!("Frame of {}", origin.frames)).on_hover_text("Which frame of the file the maps show");
         let mut frame = origin.frame;
         let slider = ui.add(Slider::new(&mut frame, 0..=origin.frames - 1)).labelled_by(label.id);
         if slider.changed() && frame != origin.frame {
@@ -120,11 +127,17 @@ fn board(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        let label = ui.label("Antennas of").on_hover_text("The board whose antennas are taken; the guide of its maker says the places");
+        let label = ui
+            .label("Antennas of")
+            .on_hover_text("The board whose antennas are taken; the guide of its maker says the places");
         let taken = origin.board.unwrap_or("the .cfg");
         let shown = ComboBox::from_id_salt("board").selected_text(taken).show_ui(ui, |ui| {
             for board in boards::ALL {
-                if ui.selectable_label(origin.board == Some(board.name), board.name).on_hover_text(board.guide).clicked() {
+                if ui
+                    .selectable_label(origin.board == Some(board.name), board.name)
+                    .on_hover_text(board.guide)
+                    .clicked()
+                {
                     asked.push(Way::Board(board.name));
                 }
             }
@@ -178,7 +191,9 @@ mod tests {
     fn layouts_frames_board_and_doubts_are_shown() {
         let mut panel = panel(Some(recording()));
         let texts = seen::texts(panel.output());
-        for text in ["I Q in pairs", "Frame of 20", "xWR1642", "Antennas are taken for granted.", "One echo stands out."] {
+        for text in
+            ["I Q in pairs", "Frame of 20", "xWR1642", "Antennas are taken for granted.", "One echo stands out."]
+        {
             assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
         }
         seen::assert_readable(panel.output());
