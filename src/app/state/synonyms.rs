@@ -132,6 +132,7 @@ fn view_menus(command: &ViewCommand) -> &'static [&'static str] {
         ViewCommand::Colours(_) => &["View", "Colours"],
         ViewCommand::ToggleProjection
         | ViewCommand::ToggleUnits
+        | ViewCommand::ToggleOneScale
         | ViewCommand::ResetMaps
         | ViewCommand::ToggleFieldsOfView
         | ViewCommand::NextMethod => &["View"],

@@ -17,6 +17,13 @@ pub struct Entry {
     pub key: Option<KeyboardShortcut>,
 }
 
+/// Commands as the lines of a table: what each is, its name, its sentence for tooltips, and its key.
+macro_rules! entries {
+    ($($command:expr, $name:literal, $tooltip:literal, $key:expr;)*) => { &[$(entry($command, $name, $tooltip, $key)),*] };
+}
+
+pub(super) use entries;
+
 pub(super) const fn entry(
     command: Command,
     name: &'static str,

@@ -3,202 +3,63 @@
 use super::super::command::{
     Command, DocumentCommand, EditCommand, ExportCommand, NewObject, RowsCommand, WindowCommand, WorkCommand,
 };
-use super::entry::{Entry, command, command_shift, entry, key, shift};
+use super::entry::{Entry, command, command_shift, entries, entry, key, shift};
 use crate::interact::{Alignment, Along, Coordinates};
 use eframe::egui::Key;
 
 /// In the order in which the palette lists them.
 pub(super) const COMMANDS: &[Entry] = {
     use Command::*;
-    &[
-        entry(Edit(EditCommand::Add(NewObject::Point, None)), "Add point", "Add one reflector", key(Key::P)),
-        entry(
-            Edit(EditCommand::Add(NewObject::Line, None)),
-            "Add line",
-            "Add a vertical line of 75 reflectors",
-            key(Key::L),
-        ),
-        entry(
-            Edit(EditCommand::Add(NewObject::Cluster, None)),
-            "Add cluster",
-            "Add a Gaussian cluster of 40 reflectors",
-            key(Key::G),
-        ),
-        entry(
-            Edit(EditCommand::Add(NewObject::Wall, None)),
-            "Add wall",
-            "Add a wall of 5 m: it shines where it faces the array, and hides what stands behind it",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::Add(NewObject::Box, None)),
-            "Add box",
-            "Add a box of a car's size, 4.5 m by 1.8 m",
-            None,
-        ),
-        entry(Edit(EditCommand::Add(NewObject::Post, None)), "Add post", "Add a round post of 0.2 m radius", None),
-        entry(
-            Edit(EditCommand::Add(NewObject::Polygon, None)),
-            "Add polygon",
-            "Add an outline with an inner corner, whose corners can be dragged",
-            None,
-        ),
-        entry(
-            Document(DocumentCommand::New),
-            "New scene",
-            "Start with an empty scene; undo brings this one back",
-            command(Key::N),
-        ),
-        entry(
-            Document(DocumentCommand::Open),
-            "Open…",
-            "Open a scene (.toml or .npz) or a recording (.toml)",
-            command(Key::O),
-        ),
-        entry(Document(DocumentCommand::Save), "Save", "Save the scene as TOML", command(Key::S)),
-        entry(
-            Document(DocumentCommand::SaveAs),
-            "Save as…",
-            "Save the scene under another name (.toml or .npz)",
-            command_shift(Key::S),
-        ),
-        entry(Work(WorkCommand::OpenLog), "Open training log…", "Watch the loss of a training (its log.csv)", None),
-        entry(Rows(RowsCommand::Open), "Open rows…", "Show the rows of an evaluation (.csv of evaluate --rows)", None),
-        entry(Rows(RowsCommand::Save), "Save rows…", "Save the rows of the panel Failures as CSV", None),
-        entry(
-            Rows(RowsCommand::ChooseOwnScenes),
-            "Folder of own scenes…",
-            "Choose where Keep puts scenes: pick any scene of the folder",
-            None,
-        ),
-        entry(
-            Export(ExportCommand::Picture),
-            "Export picture…",
-            "Save the maps of this scene with scene and figures, as PNG or SVG",
-            command(Key::E),
-        ),
-        entry(Export(ExportCommand::Maps), "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None),
-        entry(
-            Export(ExportCommand::RecordDrag),
-            "Record a drag…",
-            "Record the next drag as an animation (.gif) for slides",
-            None,
-        ),
-        entry(
-            Export(ExportCommand::DrawLesson),
-            "Draw lesson…",
-            "Draw every step of the lesson as a picture (.png) for slides",
-            None,
-        ),
-        entry(
-            Export(ExportCommand::StopRecording),
-            "Stop recording",
-            "Give up what is recorded or drawn; nothing is written",
-            None,
-        ),
-        entry(Export(ExportCommand::Metrics), "Export metrics…", "Save P_D, P_FA and SE of this scene as CSV", None),
-        entry(Edit(EditCommand::Undo), "Undo", "Undo the last change of the scene", command(Key::Z)),
-        entry(Edit(EditCommand::Redo), "Redo", "Redo what was undone", command_shift(Key::Z)),
-        entry(Edit(EditCommand::Cut), "Cut", "Move the selected objects to the clipboard, as TOML", command(Key::X)),
-        entry(Edit(EditCommand::Copy), "Copy", "Copy the selected objects to the clipboard, as TOML", command(Key::C)),
-        entry(
-            Export(ExportCommand::CopyShared),
-            "Copy all as text",
-            "Copy scene, radar, view, method and lesson step as one line; paste it into another apertura, or start one with it",
-            None,
-        ),
-        entry(
-            Export(ExportCommand::CopyLink),
-            "Copy link",
-            "Copy an address that opens this page with scene, radar, view, method and lesson step",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::Paste),
-            "Paste",
-            "Add the objects on the clipboard, or open what was copied as text",
-            command(Key::V),
-        ),
-        entry(Edit(EditCommand::Duplicate), "Duplicate", "Copy the selected objects a metre aside", command(Key::D)),
-        entry(Edit(EditCommand::Delete), "Delete", "Delete the selected objects", key(Key::Delete)),
-        entry(Edit(EditCommand::SelectAll), "Select all", "Select every object", command(Key::A)),
-        entry(
-            Edit(EditCommand::SelectNext),
-            "Select next object",
-            "Select the object after the one that was picked last",
-            key(Key::O),
-        ),
-        entry(
-            Edit(EditCommand::SelectPrevious),
-            "Select previous object",
-            "Select the object before it",
-            shift(Key::O),
-        ),
-        entry(
-            Edit(EditCommand::SetCoordinates(Coordinates::Cartesian)),
-            "Places: x and y",
-            "Tell and enter places as x and y",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::SetCoordinates(Coordinates::Polar)),
-            "Places: range and angle",
-            "Tell and enter places as range and direction",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::Align(Alignment::Left)),
-            "Align left",
-            "Move the selected objects' left ends to the leftmost",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::Align(Alignment::Centre)),
-            "Align centres",
-            "Move the selected objects one behind the other",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::Align(Alignment::Right)),
-            "Align right",
-            "Move the selected objects' right ends to the rightmost",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::Align(Alignment::Near)),
-            "Align near",
-            "Move the selected objects' near ends to the nearest",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::Align(Alignment::Middle)),
-            "Align middles",
-            "Move the selected objects one beside the other",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::Align(Alignment::Far)),
-            "Align far",
-            "Move the selected objects' far ends to the farthest",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::Distribute(Along::X)),
-            "Distribute along x",
-            "The same distance in x between selected objects",
-            None,
-        ),
-        entry(
-            Edit(EditCommand::Distribute(Along::Y)),
-            "Distribute along y",
-            "The same distance in y between selected objects",
-            None,
-        ),
-        entry(
-            Window(WindowCommand::Escape),
-            "Deselect",
-            "Cancel a drag, show all panels, select nothing",
-            key(Key::Escape),
-        ),
-    ]
+    entries! {
+        Edit(EditCommand::Add(NewObject::Point, None)), "Add point", "Add one reflector", key(Key::P);
+        Edit(EditCommand::Add(NewObject::Line, None)), "Add line", "Add a vertical line of 75 reflectors", key(Key::L);
+        Edit(EditCommand::Add(NewObject::Cluster, None)), "Add cluster", "Add a Gaussian cluster of 40 reflectors", key(Key::G);
+        Edit(EditCommand::Add(NewObject::Wall, None)), "Add wall",
+            "Add a wall of 5 m: it shines where it faces the array, and hides what stands behind it", None;
+        Edit(EditCommand::Add(NewObject::Box, None)), "Add box", "Add a box of a car's size, 4.5 m by 1.8 m", None;
+        Edit(EditCommand::Add(NewObject::Post, None)), "Add post", "Add a round post of 0.2 m radius", None;
+        Edit(EditCommand::Add(NewObject::Polygon, None)), "Add polygon",
+            "Add an outline with an inner corner, whose corners can be dragged", None;
+        Document(DocumentCommand::New), "New scene", "Start with an empty scene; undo brings this one back", command(Key::N);
+        Document(DocumentCommand::Open), "Open…", "Open a scene (.toml or .npz) or a recording (.toml)", command(Key::O);
+        Document(DocumentCommand::Save), "Save", "Save the scene as TOML", command(Key::S);
+        Document(DocumentCommand::SaveAs), "Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S);
+        Work(WorkCommand::OpenLog), "Open training log…", "Watch the loss of a training (its log.csv)", None;
+        Rows(RowsCommand::Open), "Open rows…", "Show the rows of an evaluation (.csv of evaluate --rows)", None;
+        Rows(RowsCommand::Save), "Save rows…", "Save the rows of the panel Failures as CSV", None;
+        Rows(RowsCommand::ChooseOwnScenes), "Folder of own scenes…", "Choose where Keep puts scenes: pick any scene of the folder", None;
+        Export(ExportCommand::Picture), "Export picture…",
+            "Save the maps of this scene with scene and figures, as PNG or SVG", command(Key::E);
+        Export(ExportCommand::Maps), "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None;
+        Export(ExportCommand::RecordDrag), "Record a drag…", "Record the next drag as an animation (.gif) for slides", None;
+        Export(ExportCommand::DrawLesson), "Draw lesson…", "Draw every step of the lesson as a picture (.png) for slides", None;
+        Export(ExportCommand::StopRecording), "Stop recording", "Give up what is recorded or drawn; nothing is written", None;
+        Export(ExportCommand::Metrics), "Export metrics…", "Save P_D, P_FA and SE of this scene as CSV", None;
+        Edit(EditCommand::Undo), "Undo", "Undo the last change of the scene", command(Key::Z);
+        Edit(EditCommand::Redo), "Redo", "Redo what was undone", command_shift(Key::Z);
+        Edit(EditCommand::Cut), "Cut", "Move the selected objects to the clipboard, as TOML", command(Key::X);
+        Edit(EditCommand::Copy), "Copy", "Copy the selected objects to the clipboard, as TOML", command(Key::C);
+        Export(ExportCommand::CopyShared), "Copy all as text",
+            "Copy scene, radar, view, method and lesson step as one line; paste it into another apertura, or start one with it", None;
+        Export(ExportCommand::CopyLink), "Copy link",
+            "Copy an address that opens this page with scene, radar, view, method and lesson step", None;
+        Edit(EditCommand::Paste), "Paste", "Add the objects on the clipboard, or open what was copied as text", command(Key::V);
+        Edit(EditCommand::Duplicate), "Duplicate", "Copy the selected objects a metre aside", command(Key::D);
+        Edit(EditCommand::Delete), "Delete", "Delete the selected objects", key(Key::Delete);
+        Edit(EditCommand::SelectAll), "Select all", "Select every object", command(Key::A);
+        Edit(EditCommand::SelectNext), "Select next object", "Select the object after the one that was picked last", key(Key::O);
+        Edit(EditCommand::SelectPrevious), "Select previous object", "Select the object before it", shift(Key::O);
+        Edit(EditCommand::SetCoordinates(Coordinates::Cartesian)), "Places: x and y", "Tell and enter places as x and y", None;
+        Edit(EditCommand::SetCoordinates(Coordinates::Polar)), "Places: range and angle",
+            "Tell and enter places as range and direction", None;
+        Edit(EditCommand::Align(Alignment::Left)), "Align left", "Move the selected objects' left ends to the leftmost", None;
+        Edit(EditCommand::Align(Alignment::Centre)), "Align centres", "Move the selected objects one behind the other", None;
+        Edit(EditCommand::Align(Alignment::Right)), "Align right", "Move the selected objects' right ends to the rightmost", None;
+        Edit(EditCommand::Align(Alignment::Near)), "Align near", "Move the selected objects' near ends to the nearest", None;
+        Edit(EditCommand::Align(Alignment::Middle)), "Align middles", "Move the selected objects one beside the other", None;
+        Edit(EditCommand::Align(Alignment::Far)), "Align far", "Move the selected objects' far ends to the farthest", None;
+        Edit(EditCommand::Distribute(Along::X)), "Distribute along x", "The same distance in x between selected objects", None;
+        Edit(EditCommand::Distribute(Along::Y)), "Distribute along y", "The same distance in y between selected objects", None;
+        Window(WindowCommand::Escape), "Deselect", "Cancel a drag, show all panels, select nothing", key(Key::Escape);
+    }
 };
