@@ -141,12 +141,11 @@ impl App {
         let asked = asked.chain(options.shared.map(|v| Command::Document(DocumentCommand::OpenShared(v))));
         let asked = asked.chain(options.commands).collect();
         let palette = palette::PaletteMemory::remembering(kept.recent_commands);
-        let memory = ChromeMemory { palette, ..ChromeMemory::default() };
         Ok(App {
             state,
             jobs,
             panels: Panels::start(platform::waker(ctx))?,
-            memory,
+            memory: ChromeMemory { palette, ..ChromeMemory::default() },
             asked,
             frame_log,
             title: String::new(),

@@ -36,7 +36,7 @@ impl Progress {
         self.learner = name.trim().to_owned();
     }
 
-    /// Everybody who has answered something.
+    /// All students who have answered something.
     pub fn learners(&self) -> impl Iterator<Item = &str> {
         self.records.keys().map(String::as_str)
     }

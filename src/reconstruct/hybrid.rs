@@ -69,7 +69,7 @@ impl Hybrid {
         About {
             name: "hybrid",
             description: "draws the exact map of the objects it finds; in cells that they don't explain it believes a network more",
-            told: super::search::TOLD,
+            told: super::search::TOLD_TO_SEARCH,
             eta: super::search::ETA,
         }
     }
@@ -139,7 +139,7 @@ impl Reconstructor for Following {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        // The lock is held for a copy only: whoever waits for it while it computes may be the one it waits for.
+        // The lock is held for a copy only: a thread that waits for it may be the one that the computation waits for.
         let last = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let settings = &self.hybrid.settings;
         let found = match last.filter(|(of, _)| request.may_follow && of == radar) {

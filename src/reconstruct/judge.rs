@@ -32,7 +32,7 @@ const SCALE_MARGIN: f32 = 0.02;
 const DOUBT_DEVIATIONS: f32 = 1.645;
 
 /// Range bins and columns to each side over which the difference of the maps is averaged: the width of a lobe of the ends' maps.
-const AROUND: [usize; 2] = [2, 8];
+const MEAN_SIDE_CELLS: [usize; 2] = [2, 8];
 
 /// Weight of `network`'s map in each cell, 0 to 1, over `drawn`, the search's; both are Lambda on one scale, `[range bins, columns]`.
 /// `left_decades` is what the search leaves ([`Found::left_decades`](super::search::Found::left_decades)), and `doubt` what nine of ten
@@ -83,9 +83,9 @@ fn between([low, high]: [f32; 2], value: f32) -> f32 {
     ((value - low) / (high - low)).clamp(0.0, 1.0)
 }
 
-/// Mean of the cells within [`AROUND`] of each; those beyond the edges count as the edges.
+/// Mean of the cells within [`MEAN_SIDE_CELLS`] of each; those beyond the edges count as the edges.
 fn mean_around(cells: &Array2<f32>) -> Array2<f32> {
-    let [rows, columns] = AROUND;
+    let [rows, columns] = MEAN_SIDE_CELLS;
     let mut along = cells.clone();
     along.axis_iter_mut(Axis(0)).into_par_iter().for_each(|mut row| {
         let mean = mean_of_window(row.view(), columns);
@@ -185,7 +185,7 @@ mod tests {
         let mut one = Array2::zeros((40, 60));
         one[[20, 30]] = 1.0;
         let mean = mean_around(&one);
-        let [rows, columns] = AROUND;
+        let [rows, columns] = MEAN_SIDE_CELLS;
         let cells = ((2 * rows + 1) * (2 * columns + 1)) as f32;
         assert!((mean[[20 + rows, 30 - columns]] - 1.0 / cells).abs() < 1e-6);
         assert!(mean[[20 + rows + 1, 30]].abs() < 1e-6 && mean[[20, 30 + columns + 1]].abs() < 1e-6);

@@ -9,7 +9,7 @@ use crate::theory::blob_cell;
 use eframe::egui::{Pos2, Vec2, pos2, vec2};
 
 /// At least so much of a map is shown around a failure, to either side: parts of its width and height.
-const LEAST: Vec2 = vec2(0.12, 0.1);
+const MIN_SHOWN_RATIO: Vec2 = vec2(0.12, 0.1);
 
 /// Shows the failure that was opened, once it is known; shows whole maps again when another document comes.
 pub fn follow(state: &mut State, jobs: &Jobs) {
@@ -48,7 +48,7 @@ fn around(radar: &Radar, fates: &Fates) -> Option<MapView> {
     let places: Vec<Pos2> = fates.verdicts.iter().filter_map(place).collect();
     let (first, rest) = places.split_first()?;
     let (low, high) = rest.iter().fold((*first, *first), |(low, high), at| (low.min(*at), high.max(*at)));
-    let half = ((high - low) / 2.0 + LEAST / 2.0).max(LEAST).min(Vec2::splat(0.5));
+    let half = ((high - low) / 2.0 + MIN_SHOWN_RATIO / 2.0).max(MIN_SHOWN_RATIO).min(Vec2::splat(0.5));
     let middle = low + (high - low) / 2.0;
     let low = (middle - half).clamp(Pos2::ZERO, pos2(1.0, 1.0) - 2.0 * half);
     Some(MapView { low, high: low + 2.0 * half })

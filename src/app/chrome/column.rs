@@ -4,7 +4,7 @@ use crate::app::state::{Arrangement, MapKind, Panel};
 use eframe::egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, vec2};
 
 /// A window narrower than this, points, has its panels in one column: beside a scene a map could not be read.
-pub const NARROW: f32 = 520.0;
+pub const MAX_COLUMN_WIDTH_POINTS: f32 = 520.0;
 
 /// Panels that fill the height of the window together.
 const AT_ONCE: f32 = 3.0;

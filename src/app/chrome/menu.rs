@@ -1,6 +1,6 @@
 //! The menu bar and the buttons beside it.
 
-use super::column::NARROW;
+use super::column::MAX_COLUMN_WIDTH_POINTS;
 use super::unsaved;
 use crate::app::state::{
     Command, DocumentCommand, EditCommand, ExportCommand, HelpPage, MapKind, NewObject, Panel, Projection, Task,
@@ -78,7 +78,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut MenuMemory) -> Vec<Comma
     let mut asked = Vec::new();
     egui::Panel::top("menu").show(ui, |ui| {
         let width = ui.available_width();
-        let is_narrow = width < NARROW;
+        let is_narrow = width < MAX_COLUMN_WIDTH_POINTS;
         egui::MenuBar::new().ui(ui, |ui| {
             ui.menu_button("File", |ui| file(ui, &input, &mut asked));
             ui.menu_button("Edit", |ui| edit(ui, &input, &mut asked));
@@ -101,7 +101,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut MenuMemory) -> Vec<Comma
 }
 
 /// Width of a window from which on every kind of body has a button of its own, points.
-const WIDE: f32 = 1150.0;
+const MIN_BUTTONS_WIDTH_POINTS: f32 = 1150.0;
 /// Width from which on they have a menu, points.
 const MEDIUM: f32 = 950.0;
 
@@ -121,7 +121,7 @@ fn buttons(ui: &mut Ui, input: &Input<'_>, width: f32, asked: &mut Vec<Command>)
     };
     ui.separator();
     add(ui, &HEAPS);
-    if width >= WIDE {
+    if width >= MIN_BUTTONS_WIDTH_POINTS {
         add(ui, &BODIES);
     } else if width >= MEDIUM {
         let of_bodies = BODIES.map(|(kind, _)| Command::Edit(EditCommand::Add(kind, None)));

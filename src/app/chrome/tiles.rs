@@ -27,7 +27,7 @@ pub trait Draw {
 pub fn show(ui: &mut Ui, arrangement: &mut Arrangement, panels: &mut dyn Draw) -> Vec<Command> {
     let views = arrangement.views().clone();
     let mut behavior = Behavior { panels, views, shown: BTreeSet::new(), asked: Vec::new() };
-    let is_narrow = ui.available_width() < column::NARROW;
+    let is_narrow = ui.available_width() < column::MAX_COLUMN_WIDTH_POINTS;
     match arrangement.maximised() {
         Some(panel) => maximised(ui, panel, &mut behavior),
         None if is_narrow => column::show(ui, &column::order(arrangement), |ui, panel| behavior.draw(ui, panel)),

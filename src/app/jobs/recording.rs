@@ -30,7 +30,7 @@ const WIDEST: u32 = 960;
 /// How long after a drag frames are still taken.
 const LINGER: Duration = Duration::from_millis(700);
 /// How long after a drag its last maps are waited for: they are the last frame.
-const LONGEST: Duration = Duration::from_secs(60);
+const LAST_MAPS_WAIT: Duration = Duration::from_secs(60);
 /// Frames that may wait to be packed; more are left out.
 const WAITING: usize = 4;
 
@@ -152,7 +152,7 @@ impl Recorder {
             recording.dragged = Some(now);
         }
         let Some(since) = recording.dragged.map(|at| now.duration_since(at)) else { return };
-        if recording.taken >= MOST_FRAMES || since > if recording.is_whole { LINGER } else { LONGEST } {
+        if recording.taken >= MOST_FRAMES || since > if recording.is_whole { LINGER } else { LAST_MAPS_WAIT } {
             // Letting the frames go ends the thread that packs them.
             self.recording = None;
             return;

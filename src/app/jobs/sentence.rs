@@ -16,7 +16,7 @@ const PLACES: usize = 3;
 const BELOW: f32 = 0.1;
 
 /// Nearer to a named peak than this part of the map's height and width there is no other.
-const APART: [f32; 2] = [1.0 / 32.0, 1.0 / 10.0];
+const PEAK_DISTANCE_RATIO: [f32; 2] = [1.0 / 32.0, 1.0 / 10.0];
 
 /// Where the peaks of a map are, how many cells are detected, or where a difference is largest.
 pub fn sentence(radar: &Radar, subject: &Subject) -> String {
@@ -69,7 +69,8 @@ fn highest(map: &Array2<f32>) -> Vec<(usize, usize)> {
     let high: Vec<((usize, usize), f32)> =
         map.indexed_iter().filter(|(_, v)| **v >= top - BELOW).map(|(at, v)| (at, *v)).collect();
     let is_near = |a: (usize, usize), b: (usize, usize)| {
-        a.0.abs_diff(b.0) as f32 <= APART[0] * rows as f32 && a.1.abs_diff(b.1) as f32 <= APART[1] * columns as f32
+        a.0.abs_diff(b.0) as f32 <= PEAK_DISTANCE_RATIO[0] * rows as f32
+            && a.1.abs_diff(b.1) as f32 <= PEAK_DISTANCE_RATIO[1] * columns as f32
     };
     let mut named: Vec<(usize, usize)> = Vec::new();
     while named.len() < PLACES {

@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// Time between two looks at the log.
-pub const EVERY: Duration = Duration::from_secs(1);
+pub const LOG_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Most points of a curve; a longer log is thinned.
 const POINTS: usize = 4000;
@@ -172,7 +172,7 @@ impl Training {
 
     /// Looks at the log again once a while; called while the panel is visible. Returns when to call again.
     pub fn look(&mut self) -> Option<Duration> {
-        let due = self.looked.is_none_or(|t| t.elapsed() >= EVERY);
+        let due = self.looked.is_none_or(|t| t.elapsed() >= LOG_INTERVAL);
         if let Some(path) = self.path.clone().filter(|_| due && !self.worker.is_busy()) {
             self.looked = Some(Instant::now());
             // A training that has just begun has no log yet, and one that was stopped at once never has.
@@ -180,7 +180,7 @@ impl Training {
                 self.worker.request(path);
             }
         }
-        self.path.as_ref().map(|_| EVERY)
+        self.path.as_ref().map(|_| LOG_INTERVAL)
     }
 
     /// Takes in what was read. Returns a message for the user.

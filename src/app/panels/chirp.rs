@@ -21,7 +21,7 @@ const DRAWN_DELAY: f64 = 0.25;
 const ECHOES: usize = 60;
 
 /// Where the beats of the first echoes are told, as parts of the time in which they are heard while the chirp is sent.
-const TOLD: [f64; 2] = [0.2, 0.65];
+const LABEL_PLACES: [f64; 2] = [0.2, 0.65];
 
 /// Radius of a handle, points.
 const HANDLE: f32 = 5.0;
@@ -219,8 +219,8 @@ impl Shown<'_> {
             let late = 1e6 * self.stretch * delay_seconds(echo.range_metres);
             let stroke = Stroke::new(1.2, inks.ends[0].gamma_multiply(0.9));
             drawn.line([[late, 0.0], [late + microseconds, giga]], stroke, None);
-            if i < TOLD.len() {
-                self.difference(&drawn, echo, [late, TOLD[i]], stroke);
+            if i < LABEL_PLACES.len() {
+                self.difference(&drawn, echo, [late, LABEL_PLACES[i]], stroke);
             }
         }
         if let Some(interferer) = self.input.scene.disturbances.interferer.filter(|_| !self.input.is_recorded) {

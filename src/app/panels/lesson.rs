@@ -15,7 +15,7 @@ use answer::{answer, answered, judgement};
 use challenge::requirements;
 use eframe::egui;
 use eframe::egui::{ScrollArea, TextureId, TextureOptions, Ui};
-use large::{LARGE, large};
+use large::{LARGE_TEXT_RATIO, large};
 use list::list;
 pub use memory::LessonMemory;
 
@@ -126,7 +126,7 @@ fn step(
     ui.heading(&run.lesson.title);
     ui.weak(format!("Step {} of {}", run.step + 1, run.lesson.steps.len()));
     ui.add_space(4.0);
-    ui.label(inline(ui, &step.text, LARGE));
+    ui.label(inline(ui, &step.text, LARGE_TEXT_RATIO));
     ui.add_space(8.0);
     if let Some(question) = step.predict.as_ref().filter(|_| !is_pinned) {
         ui.label(large(ui, &question.ask).strong());

@@ -14,7 +14,7 @@ use eframe::egui;
 use eframe::egui::{Sense, Stroke, Ui};
 
 /// P_FA below this is drawn at this: a logarithmic axis has no zero.
-const SMALLEST: f64 = 1e-5;
+const MIN_DRAWN_P_FA: f64 = 1e-5;
 
 /// Marks of P_FA: powers of ten.
 const POWERS: [(f64, &str); 6] =
@@ -64,7 +64,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         ui.centered_and_justified(|ui| ui.weak(input.refusal.unwrap_or("No ROC: the target has no cell above 0.9.")));
         return Vec::new();
     };
-    let place = |p: &RocPoint| [p.false_alarm.max(SMALLEST).log10(), 100.0 * p.detection];
+    let place = |p: &RocPoint| [p.false_alarm.max(MIN_DRAWN_P_FA).log10(), 100.0 * p.detection];
     let nearest = |eta: f32| roc.iter().min_by(|a, b| (a.eta - eta).abs().total_cmp(&(b.eta - eta).abs()));
     let at_eta = |m: Metrics| Some(RocPoint { eta: input.eta, detection: m.detection?, false_alarm: m.false_alarm });
     let at_threshold = || nearest(input.eta).copied().filter(|_| input.cfar.is_none());
@@ -83,7 +83,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         legend::row(ui, &entries);
     });
     let ticks = POWERS.map(|(value, text)| Tick { value, text: text.to_owned() });
-    let x = Axis { ticks: Some(&ticks), ..Axis::new(SMALLEST.log10(), 0.0, "P_FA, %") };
+    let x = Axis { ticks: Some(&ticks), ..Axis::new(MIN_DRAWN_P_FA.log10(), 0.0, "P_FA, %") };
     let chart = Chart { name: "Receiver operating characteristic", x, y: Axis::new(0.0, 102.0, "P_D, %") };
     let area = ui.available_rect_before_wrap();
     let drawn = chart.show(ui, area, Sense::hover());

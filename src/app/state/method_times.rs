@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
 /// So many of the latest times of a method are kept.
-const KEPT: usize = 5;
+const KEPT_TIMES: usize = 5;
 
 /// Elements and samples: what decides most of a method's time.
 type Shape = (usize, usize);
@@ -33,7 +33,7 @@ impl MethodTimes {
         });
         let times = &mut of_method[index].1;
         times.push_back(took.as_secs_f64() * 1e3);
-        while times.len() > KEPT {
+        while times.len() > KEPT_TIMES {
             times.pop_front();
         }
     }

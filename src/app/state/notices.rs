@@ -1,7 +1,7 @@
 //! Messages on screen: what was done, and what could not be done.
 
 /// Most messages on screen; the oldest make room.
-const LIMIT: usize = 5;
+const MAX_NOTICES: usize = 5;
 
 /// What a message is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl Notices {
             None => {
                 self.count += 1;
                 self.list.push(Notice { number: self.count, kind, text, until: None });
-                let excess = self.list.len().saturating_sub(LIMIT);
+                let excess = self.list.len().saturating_sub(MAX_NOTICES);
                 self.list.drain(..excess);
             }
         }
@@ -91,7 +91,7 @@ mod tests {
         for i in 0..9 {
             notices.add(NoticeKind::Info, i.to_string());
         }
-        assert_eq!(notices.len(), LIMIT);
+        assert_eq!(notices.len(), MAX_NOTICES);
         assert_eq!(notices.list.last().unwrap().text, "8");
     }
 }

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use std::ops::RangeInclusive;
 use std::rc::Rc;
 
-/// Beyond this a bound of a range is no news to anybody, and is not told.
+/// Beyond this a bound of a range tells nothing, and is not told.
 const LARGEST_TOLD: f64 = 1e15;
 
 /// What a field takes.

@@ -28,7 +28,7 @@ const LOOKS: usize = 4;
 const MOST_SECTORS: f64 = 1000.0;
 
 /// What every coherent method is told.
-pub(super) const TOLD: &str = "nothing about the scene or the floor; it measures the noise itself";
+pub(super) const TOLD_TO_COHERENT: &str = "nothing about the scene or the floor; it measures the noise itself";
 
 /// A method that finds the powers of steering vectors of both ends together.
 #[derive(Debug, Clone, Copy)]
@@ -104,7 +104,7 @@ pub(in crate::reconstruct) fn explained(
     settled.found(ends)
 }
 
-/// `settled` after all looks; `first` are the peaks of the first one, which are the same for whoever starts from the same samples. Progress
+/// `settled` after all looks; `first` are the peaks of the first one, which are the same for the same samples. Progress
 /// goes on from `from`.
 fn looked<'a>(
     mut settled: Settled<'a>,

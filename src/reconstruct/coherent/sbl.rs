@@ -1,6 +1,6 @@
 //! Sparse Bayesian learning.
 
-use super::method::{CoherentMethod, TOLD};
+use super::method::{CoherentMethod, TOLD_TO_COHERENT};
 use super::model::Update;
 use crate::reconstruct::reconstructor::About;
 
@@ -14,7 +14,7 @@ pub const SBL: CoherentMethod = CoherentMethod {
     about: About {
         name: "sbl",
         description: "the fewest directions that explain what both ends heard as one aperture, and the exact map of them",
-        told: TOLD,
+        told: TOLD_TO_COHERENT,
         eta: 0.782, // by examples/choose_eta.rs
     },
     update: Update {

@@ -343,7 +343,7 @@ mod tests {
     use crate::signal::floor::unit_noise;
 
     #[test]
-    fn many_reflectors_together_leave_what_they_leave_a_few_at_a_time() {
+    fn many_reflectors_together_leave_what_few_at_a_time_leave() {
         let radar = Radar::default();
         let sensor = Sensor::new(&radar);
         let squared: Vec<f64> = hann(radar.samples).iter().map(|w| w * w).collect();
@@ -360,7 +360,7 @@ mod tests {
         for (a, b) in together.residual.flat(&sensor).iter().zip(left.flat(&sensor)) {
             assert!((a - b).norm() < 1e-11, "{a} {b}");
         }
-        // In the order of the reflectors, whoever computed them.
+        // In the order of the reflectors, whichever thread computed them.
         for ((reflector, _), found) in reflectors.iter().zip(&together.products) {
             let alone = remainder(&sensor, &squared, &left, &[(*reflector, [Complex64::default(); 2])], Asked::Slopes);
             for (a, b) in found.zeroth.iter().zip(&alone.products[0].zeroth) {

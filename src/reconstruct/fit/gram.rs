@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn the_closed_form_is_the_product_of_columns_formed_by_differences() {
+    fn the_closed_form_is_the_product_of_columns_by_differences() {
         let radar = Radar::default();
         let sensor = Sensor::new(&radar);
         let atoms = [

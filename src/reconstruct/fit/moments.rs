@@ -16,7 +16,7 @@ const NODES_PER_BIN: usize = 8;
 
 /// Terms of the Taylor series around each node, and how far from it, in range bins, they reach: the last ones are below 1e-14 of the first there.
 const TERMS: usize = 18;
-const FARTHEST: f64 = 0.3;
+const MAX_SERIES_ARGUMENT: f64 = 0.3;
 
 /// Bins beyond which echoes under a Hann window count as orthogonal: the square of the window falls by 180 dB there.
 const HANN_REACH_BINS: f64 = 12.0;
@@ -97,7 +97,7 @@ impl Moments {
         // Channels of an end differ by parts of a bin: mostly one node serves all.
         let (node, line, sign) = self.node(bins.0[W / 2]);
         let gaps = bins - Lanes::splat(node / NODES_PER_BIN as f64);
-        if gaps.0.iter().all(|gap| gap.abs() <= FARTHEST) {
+        if gaps.0.iter().all(|gap| gap.abs() <= MAX_SERIES_ARGUMENT) {
             return taylor::<ALL, FMA>(gaps, Lanes::splat(sign), |term| Lanes::splat(line[term]));
         }
         let nodes = bins.0.map(|bins| self.node(bins));

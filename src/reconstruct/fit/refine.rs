@@ -174,7 +174,7 @@ impl<'a> Workbench<'a> {
         self.settled(state, samples)
     }
 
-    /// One accepted step, with whatever damping it takes; `None` at a minimum, where no step gains `least_gain` of the energy.
+    /// One accepted step, with the damping that it takes; `None` at a minimum, where no step gains `least_gain` of the energy.
     fn step(
         &self,
         samples: &Samples,
@@ -216,7 +216,7 @@ impl<'a> Workbench<'a> {
         let squared = |atom: &Atom, k: usize| matches!(atom, Atom::Point { .. }) && k == 1;
         let most = |atom: &Atom, k: usize| match squared(atom, k) {
             true => FARTHEST_SQUARE * self.max_range_metres.powi(2),
-            false => FARTHEST * self.max_range_metres,
+            false => MAX_STEP_RATIO * self.max_range_metres,
         };
         let parameters = atoms.iter().flat_map(|atom| (0..atom.parameters()).map(move |k| (atom, k)));
         parameters.zip(step).all(|((atom, k), v)| v.abs() < most(atom, k))
@@ -329,7 +329,7 @@ impl<'a> Workbench<'a> {
 }
 
 /// A step longer than this part of the maximum range is none.
-const FARTHEST: f64 = 26.0;
+const MAX_STEP_RATIO: f64 = 26.0;
 
 /// The same of a square of a distance, as a part of the maximum range's.
 const FARTHEST_SQUARE: f64 = 0.68;

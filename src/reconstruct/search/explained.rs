@@ -14,7 +14,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Rows and beams to each side over which powers are averaged.
-const AROUND: usize = 2;
+const MEAN_SIDE_CELLS: usize = 2;
 
 /// Power of a residual, over that of the noise that was measured in it, up to which it is noise: averaged so, white noise exceeds it in one
 /// cell of 300 at most.
@@ -77,12 +77,13 @@ fn strongest_cell(map: &Array2<f32>) -> [usize; 2] {
 /// Means over neighbouring beams and rows, `[beam, range bin]`; the rows wrap.
 fn smoothed(powers: &Array2<f64>) -> Array2<f64> {
     let (beams, bins) = powers.dim();
-    let width = (2 * AROUND + 1) as f64;
+    let width = (2 * MEAN_SIDE_CELLS + 1) as f64;
     let over_rows = Array2::from_shape_fn((beams, bins), |(beam, bin)| {
-        (0..=2 * AROUND).map(|i| powers[[beam, (bin + bins + i - AROUND) % bins]]).sum::<f64>() / width
+        (0..=2 * MEAN_SIDE_CELLS).map(|i| powers[[beam, (bin + bins + i - MEAN_SIDE_CELLS) % bins]]).sum::<f64>()
+            / width
     });
     Array2::from_shape_fn((beams, bins), |(beam, bin)| {
-        let near = beam.saturating_sub(AROUND)..=(beam + AROUND).min(beams - 1);
+        let near = beam.saturating_sub(MEAN_SIDE_CELLS)..=(beam + MEAN_SIDE_CELLS).min(beams - 1);
         let count = near.clone().count() as f64;
         near.map(|b| over_rows[[b, bin]]).sum::<f64>() / count
     })

@@ -10,8 +10,8 @@ use crate::scene::{Reflector, Scene};
 use crate::signal::floor::snr_noise_variance;
 use crate::signal::{Floor, simulate};
 
-/// Most error of the search, over that of who is told the scene and the noise's variance.
-const MOST: f64 = 1.1;
+/// Most error of the search, over that of a drawing that is told the scene and the noise's variance.
+const MAX_ERROR_RATIO: f64 = 1.1;
 
 /// The error of the search on `count` scenes of each set is hardly more than that of the expected map of the true scene.
 fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
@@ -43,7 +43,7 @@ fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
                 "{kind}, {snr_db} dB: SE {searched:.0}, of the noise alone {told:.0}, ratio {:.3}",
                 searched / told
             );
-            assert!(searched < MOST * told, "{kind}, {snr_db} dB: {searched} for {told}");
+            assert!(searched < MAX_ERROR_RATIO * told, "{kind}, {snr_db} dB: {searched} for {told}");
         }
     }
 }
@@ -80,7 +80,7 @@ fn over_noise_nothing_is_three_times_louder_than_the_loudest() {
 }
 
 #[test]
-fn under_thermal_noise_the_error_is_hardly_more_than_the_noise_leaves() {
+fn under_thermal_noise_the_error_is_about_that_of_the_noise() {
     costs_hardly_more_than_the_noise(Purpose::Validation, 2);
 }
 

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_is_the_mean_logarithm_from_silence_to_far_above_the_noise() {
+    fn the_table_is_the_mean_logarithm_at_all_levels() {
         let noise = 3e-7;
         for ratio in [0.0, 1e-9, 0.003, 0.7, 5.01, 39.9, 40.1, 1e6] {
             let decades = 0.5 * f64::max(ratio * noise, 1e-40).log10();

@@ -176,7 +176,7 @@ fn what_takes_too_long_ends_where_its_work_is_spent() {
 }
 
 #[test]
-fn an_array_too_small_to_see_curvature_puts_nothing_beyond_the_maximum_range() {
+fn a_small_array_puts_nothing_beyond_the_maximum_range() {
     let radar = Radar {
         carrier_hz: 24.125e9,
         bandwidth_hz: 250e6,
@@ -200,7 +200,7 @@ fn an_array_too_small_to_see_curvature_puts_nothing_beyond_the_maximum_range() {
 }
 
 #[test]
-fn what_stands_beyond_the_maximum_range_of_a_wide_array_is_found_there() {
+fn a_wide_array_finds_what_stands_beyond_the_maximum_range() {
     let radar = Radar::default();
     let scene = Scene::of_points([(4.8, 47.8), (-46.8, 22.7), (8.0, 18.3), (50.0, 12.0)]);
     let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();

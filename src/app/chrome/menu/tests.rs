@@ -178,7 +178,7 @@ fn no_button_stands_over_another_at_any_width() {
         let menu = bar(width as f32);
         let right = |label| menu.query_by_label(label).map(|node| node.rect().right());
         // In a narrow window the buttons are left to the menus.
-        assert!(right("Lessons").is_some() || (width as f32) < 1.1 * NARROW, "no Lessons at {width}");
+        assert!(right("Lessons").is_some() || (width as f32) < 1.1 * MAX_COLUMN_WIDTH_POINTS, "no Lessons at {width}");
         let Some(lessons) = right("Lessons").or(right("Help")) else { panic!("no menu at {width}") };
         for label in ["Commands", "Cartesian", "Range–angle"] {
             let Some(node) = menu.query_by_label(label) else { continue };

@@ -30,7 +30,7 @@ use store::{Done, Store};
 use thumbnails::Thumbnails;
 
 /// While rows come, those there are go to disk so often.
-const EVERY: Duration = Duration::from_secs(10);
+const SAVE_INTERVAL: Duration = Duration::from_secs(10);
 
 /// Name of the file that rows are kept in from start to start.
 const FILE: &str = "failures.csv";
@@ -272,7 +272,7 @@ impl Failures {
         if self.is_kept() || self.store.is_busy() {
             return None;
         }
-        let wait = self.written.filter(|_| runs).and_then(|when| EVERY.checked_sub(when.elapsed()));
+        let wait = self.written.filter(|_| runs).and_then(|when| SAVE_INTERVAL.checked_sub(when.elapsed()));
         if wait.is_none() {
             let (rows, conditions) = (self.table.rows().clone(), self.table.conditions().clone());
             self.store.write(file.clone(), rows, conditions, self.table.version());

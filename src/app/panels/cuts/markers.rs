@@ -12,7 +12,7 @@ use crate::radar::Radar;
 use eframe::egui::{Align2, Color32, CursorIcon, Stroke, Ui, pos2, vec2};
 
 /// How near the pointer must be to a marker to drag it, points.
-const NEAR: f32 = 7.0;
+const MARKER_REACH_POINTS: f32 = 7.0;
 
 /// Names of the two.
 pub const NAMES: [&str; 2] = ["A", "B"];
@@ -52,7 +52,7 @@ impl Markers {
         let x_of = |place: f64| drawn.at([place, 0.0]).x;
         let under = |at: f32| {
             let away = |i: &usize| self.places[*i].map_or(f32::INFINITY, |place| (x_of(place) - at).abs());
-            (0..2).min_by(|a, b| away(a).total_cmp(&away(b))).filter(|i| away(i) <= NEAR)
+            (0..2).min_by(|a, b| away(a).total_cmp(&away(b))).filter(|i| away(i) <= MARKER_REACH_POINTS)
         };
         let response = &drawn.response;
         let hovered = response.hover_pos().and_then(|pos| under(pos.x));

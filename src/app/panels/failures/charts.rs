@@ -89,10 +89,10 @@ pub struct Answer {
 }
 
 /// Fewer dots are drawn larger.
-const FEW: usize = 500;
+const FEW_DOTS: usize = 500;
 
 /// How near to a dot a click must be, points.
-const NEAR: f32 = 10.0;
+const DOT_REACH_POINTS: f32 = 10.0;
 
 /// Which chart, and of what.
 pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
@@ -282,7 +282,7 @@ fn dots(
     let key = (stamp, drawn.rect, boxed.map(|b| b.stamp), inks.ends[0], grouping);
     if !kept.as_ref().is_some_and(|(of, _)| *of == key) {
         let mut mesh = Mesh::default();
-        let size = Vec2::splat(if points.dots.len() < FEW { 5.0 } else { 3.0 });
+        let size = Vec2::splat(if points.dots.len() < FEW_DOTS { 5.0 } else { 3.0 });
         for dot in &points.dots {
             let chosen = boxed.is_some_and(|b| dot.rows.iter().any(|row| b.rows.contains(row)));
             let colour = colour_of(ui, dot.group, points.groups.len()).gamma_multiply(0.8);
@@ -299,7 +299,7 @@ fn dots(
 fn nearest(drawn: &Drawn<'_>, points: &Points, at: Pos2) -> Option<Dot> {
     let away = |dot: &&Dot| drawn.at(dot.at).distance(at);
     let nearest = points.dots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
-    (points.bars.is_none() && away(&nearest) <= NEAR).then_some(*nearest)
+    (points.bars.is_none() && away(&nearest) <= DOT_REACH_POINTS).then_some(*nearest)
 }
 
 fn clicked(drawn: &Drawn<'_>, points: &Points) -> Option<usize> {

@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use std::time::Duration;
 
 /// While rows come, they are put in order so often.
-const EVERY: Duration = Duration::from_millis(250);
+const ORDER_INTERVAL: Duration = Duration::from_millis(250);
 
 /// By which column rows are sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,7 +104,8 @@ impl Order {
             return None;
         }
         let only_rows = self.of.as_ref().is_some_and(|of| Key { version: key.version, ..of.clone() } == key);
-        if let Some(wait) = self.when.filter(|_| only_rows).and_then(|when| EVERY.checked_sub(when.elapsed())) {
+        if let Some(wait) = self.when.filter(|_| only_rows).and_then(|when| ORDER_INTERVAL.checked_sub(when.elapsed()))
+        {
             return Some(wait);
         }
         let rows = table.rows();

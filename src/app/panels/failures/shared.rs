@@ -9,7 +9,7 @@ use eframe::egui::{Label, RichText, ScrollArea, TextEdit, Ui};
 use std::time::Duration;
 
 /// While rows come, rules are looked for so often.
-const EVERY: Duration = Duration::from_secs(2);
+const RULES_INTERVAL: Duration = Duration::from_secs(2);
 
 /// Of more rows only those of evenly chosen scenes are looked at, so that no frame waits.
 const MOST_ROWS: usize = 20_000;
@@ -36,7 +36,8 @@ impl SharedRulesMemory {
             return;
         }
         let only_rows = self.of.as_ref().is_some_and(|(_, bad)| *bad == self.bad);
-        if let Some(wait) = self.when.filter(|_| only_rows).and_then(|when| EVERY.checked_sub(when.elapsed())) {
+        if let Some(wait) = self.when.filter(|_| only_rows).and_then(|when| RULES_INTERVAL.checked_sub(when.elapsed()))
+        {
             ui.request_repaint_after(wait);
             return;
         }

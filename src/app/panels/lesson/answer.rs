@@ -1,6 +1,6 @@
 //! A question, what it is answered with, and what the answer was worth.
 
-use super::large::{LARGE, large};
+use super::large::{LARGE_TEXT_RATIO, large};
 use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand, LessonRun};
 use crate::app::widgets::inline::inline;
@@ -139,7 +139,7 @@ pub fn judgement(ui: &mut Ui, run: &LessonRun, told: &mut bool) {
         Some(Err(reason)) => _ = ui.label(format!("This can't be judged: {reason}")),
         Some(Ok(judged)) => {
             verdict(ui, judged.is_right, &judged.distance);
-            let sentence = ui.label(inline(ui, &judged.sentence, LARGE));
+            let sentence = ui.label(inline(ui, &judged.sentence, LARGE_TEXT_RATIO));
             if !std::mem::replace(told, true) {
                 sentence.scroll_to_me(None);
             }

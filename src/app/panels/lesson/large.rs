@@ -3,9 +3,9 @@
 use eframe::egui::{RichText, TextStyle, Ui};
 
 /// Text that is to be read first is this much larger than the rest.
-pub const LARGE: f32 = 1.15;
+pub const LARGE_TEXT_RATIO: f32 = 1.15;
 
 /// Such a text.
 pub fn large(ui: &Ui, text: impl Into<String>) -> RichText {
-    RichText::new(text).size(LARGE * TextStyle::Body.resolve(ui.style()).size)
+    RichText::new(text).size(LARGE_TEXT_RATIO * TextStyle::Body.resolve(ui.style()).size)
 }

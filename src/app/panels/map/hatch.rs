@@ -6,7 +6,7 @@ use crate::picture::CellVerdict;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
 /// The least height of a cell that hatches are drawn in, points.
-const LEAST: f32 = 4.0;
+const MIN_CELL_POINTS: f32 = 4.0;
 
 /// Between two lines of a hatch, points.
 const STEP: f32 = 7.0;
@@ -53,7 +53,7 @@ impl ToldApart<'_> {
     /// Draws them over what is shown of the map: misses lean to the right, false alarms to the left, hits have none.
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>, dark: bool) {
         let rect = frame.rect.intersect(painter.clip_rect());
-        if frame.cell_height() < LEAST {
+        if frame.cell_height() < MIN_CELL_POINTS {
             return;
         }
         let [across, up] = [rect.width(), rect.height()].map(|side| (side / STEP).ceil() as usize);

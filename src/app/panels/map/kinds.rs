@@ -13,7 +13,7 @@ use crate::theory::{MapPlace, blob_cell};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 
 /// How near the pointer must be to a mark to be told of it, points.
-const NEAR: f32 = 10.0;
+const MARK_REACH_POINTS: f32 = 10.0;
 
 /// Most marks that are drawn.
 const MARKS: usize = 400;
@@ -137,7 +137,7 @@ impl Kinds<'_> {
             let Some(at) = self.place(frame, verdict) else { continue };
             self.draw_one(painter, frame, verdict, at);
             let distance = pointer.map_or(f32::INFINITY, |p| p.distance(at));
-            if distance < nearest.map_or(NEAR, |(_, d)| d) {
+            if distance < nearest.map_or(MARK_REACH_POINTS, |(_, d)| d) {
                 nearest = Some((verdict, distance));
             }
         }

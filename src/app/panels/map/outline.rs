@@ -4,7 +4,7 @@ use eframe::egui::{Pos2, Vec2, vec2};
 use std::f32::consts::PI;
 
 /// Points of a half circle at each end.
-const ROUND: usize = 8;
+const HALF_CIRCLE_CORNERS: usize = 8;
 
 /// What lies `radius` from a path, along one side of it and back along the other, round at the ends.
 pub fn outline(path: &[Pos2], radius: f32) -> Vec<Pos2> {
@@ -17,8 +17,8 @@ pub fn outline(path: &[Pos2], radius: f32) -> Vec<Pos2> {
     };
     let aside = |i: usize, sign: f32| path[i] + sign * radius * direction(i).rot90();
     let cap = |at: Pos2, way: Vec2, sign: f32| {
-        (1..ROUND).map(move |i| {
-            let (sin, cos) = (PI * i as f32 / ROUND as f32).sin_cos();
+        (1..HALF_CIRCLE_CORNERS).map(move |i| {
+            let (sin, cos) = (PI * i as f32 / HALF_CIRCLE_CORNERS as f32).sin_cos();
             at + radius * (sign * cos * way.rot90() + sign * sin * way)
         })
     };
@@ -32,8 +32,9 @@ pub fn outline(path: &[Pos2], radius: f32) -> Vec<Pos2> {
 
 /// The convex outline `radius` around places.
 pub fn hull(places: &[Pos2], radius: f32) -> Vec<Pos2> {
-    let corner = |at: Pos2, i: usize| at + radius * Vec2::angled(PI * i as f32 / ROUND as f32);
-    let mut points: Vec<Pos2> = places.iter().flat_map(|at| (0..2 * ROUND).map(move |i| corner(*at, i))).collect();
+    let corner = |at: Pos2, i: usize| at + radius * Vec2::angled(PI * i as f32 / HALF_CIRCLE_CORNERS as f32);
+    let mut points: Vec<Pos2> =
+        places.iter().flat_map(|at| (0..2 * HALF_CIRCLE_CORNERS).map(move |i| corner(*at, i))).collect();
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let turns_left = |a: Pos2, b: Pos2, c: Pos2| (b - a).x * (c - a).y - (b - a).y * (c - a).x > 0.0;
     let half = |points: &mut dyn Iterator<Item = Pos2>| {
@@ -78,7 +79,7 @@ mod tests {
 
     #[test]
     fn the_outline_of_one_point_is_a_circle() {
-        assert_eq!(outline(&[Pos2::ZERO], 6.0).len(), 2 + 2 * (ROUND - 1));
+        assert_eq!(outline(&[Pos2::ZERO], 6.0).len(), 2 + 2 * (HALF_CIRCLE_CORNERS - 1));
     }
 
     #[test]

@@ -18,7 +18,7 @@ const MARKS: usize = 4000;
 const RADIUS: f32 = 6.0;
 
 /// How near the pointer must be to a ring to be told the true direction.
-const NEAR: f32 = 9.0;
+const RING_REACH_POINTS: f32 = 9.0;
 
 /// Those that the method found, as crosses; paler where they are those of an `old` scene.
 pub fn found(painter: &Painter, frame: Frame<'_>, found: &[Reflector], old: bool) {
@@ -46,7 +46,7 @@ pub fn marks(painter: &Painter, frame: Frame<'_>, objects: &[Marked], pointer: O
         }
         for (reflector, at) in reflectors.iter().zip(blobs) {
             let distance = pointer.map_or(f32::INFINITY, |p| p.distance(at));
-            if distance < nearest.map_or(NEAR, |(_, d)| d) {
+            if distance < nearest.map_or(RING_REACH_POINTS, |(_, d)| d) {
                 nearest = Some((reflector, distance));
             }
         }

@@ -41,11 +41,11 @@ fn every_consequence_is_in_sight_in_a_panel_beside_the_maps() {
 }
 
 /// Widths of the panel in a window of 1280 by 720 points: among the settings, and with the guide beside it.
-const NARROW: [f32; 2] = [438.0, 342.0];
+const PANEL_WIDTHS_POINTS: [f32; 2] = [438.0, 342.0];
 
 #[test]
 fn every_consequence_can_be_read_in_a_small_window() {
-    for width in NARROW.into_iter().chain([600.0]) {
+    for width in PANEL_WIDTHS_POINTS.into_iter().chain([600.0]) {
         let draw =
             |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None, selected: None });
         let panel = Harness::builder().with_size([width, 900.0]).build_ui_state(draw, ());
@@ -60,7 +60,7 @@ fn every_consequence_can_be_read_in_a_small_window() {
 
 #[test]
 fn the_table_stays_where_it_is_when_the_preset_goes() {
-    for width in NARROW.into_iter().chain([640.0]) {
+    for width in PANEL_WIDTHS_POINTS.into_iter().chain([640.0]) {
         let place = |radar: Radar| {
             let draw = |ui: &mut Ui, radar: &mut Radar| _ = show(ui, Input { radar, measured: None, selected: None });
             let panel = Harness::builder().with_size([width, 900.0]).build_ui_state(draw, radar);

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 const MAX_BODIES: usize = 60;
 
 /// Corners that a circle is drawn with.
-const ROUND: usize = 40;
+const CIRCLE_CORNERS: usize = 40;
 
 /// The outline of a body, filled.
 pub fn outline(painter: &Painter, at: &dyn Fn(Place) -> Pos2, shape: &Shape, colour: Color32, halo: Color32) {
@@ -44,9 +44,9 @@ fn corners(shape: &Shape) -> Vec<[f64; 2]> {
     match shape {
         Shape::Wall(ends) => ends.to_vec(),
         Shape::Outline(corners) => corners.clone(),
-        Shape::Circle { centre_metres: [x, y], radius_metres } => (0..ROUND)
+        Shape::Circle { centre_metres: [x, y], radius_metres } => (0..CIRCLE_CORNERS)
             .map(|i| {
-                let (sin, cos) = (TAU * i as f64 / ROUND as f64).sin_cos();
+                let (sin, cos) = (TAU * i as f64 / CIRCLE_CORNERS as f64).sin_cos();
                 [x + radius_metres * cos, y + radius_metres * sin]
             })
             .collect(),

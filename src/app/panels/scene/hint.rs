@@ -15,7 +15,7 @@ pub struct Hint {
 }
 
 /// Where the arrow begins and ends beside what it leads from and to, points.
-const APART: f32 = 12.0;
+const ARROW_GAP_POINTS: f32 = 12.0;
 
 /// Length of the arrow's head, points.
 const HEAD: f32 = 11.0;
@@ -37,7 +37,7 @@ impl Hint {
 /// An arrow along a curve, without what lies near its ends; none where the curve is short.
 fn arrow(painter: &Painter, way: &[Pos2], stroke: Stroke) {
     let (Some(first), Some(last)) = (way.first(), way.last()) else { return };
-    let is_free = |at: &&Pos2| at.distance(*first) > APART && at.distance(*last) > APART;
+    let is_free = |at: &&Pos2| at.distance(*first) > ARROW_GAP_POINTS && at.distance(*last) > ARROW_GAP_POINTS;
     let curve: Vec<Pos2> = way.iter().filter(is_free).copied().collect();
     let [.., before, tip] = curve[..] else { return };
     let along = HEAD * (tip - before).normalized();

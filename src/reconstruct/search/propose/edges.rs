@@ -42,7 +42,7 @@ pub const LEAST_STEP_METRES: f64 = 0.03;
 const PITCH_WAVELENGTHS: f64 = 0.5;
 
 /// Rows of one look that are tried over twice as many reflectors, and those that are followed.
-const KEPT: [usize; 2] = [40, 4];
+const KEPT_ROWS: [usize; 2] = [40, 4];
 
 /// Points, those first on which the ends agree best, that a wall may begin at alone.
 const MOST_EDGES: usize = 24;
@@ -208,13 +208,13 @@ impl Kernel for Scan<'_> {
         for (at, part) in parts.iter_mut().enumerate() {
             *part = beams.part_adding_up::<FMA>(&fan.row(at), &mut heard[..FIRST]);
         }
-        let mut longer: Vec<(f64, Row)> = Vec::with_capacity(KEPT[0]);
-        for at in summits(&parts, fan.lengths, KEPT[0]) {
+        let mut longer: Vec<(f64, Row)> = Vec::with_capacity(KEPT_ROWS[0]);
+        for at in summits(&parts, fan.lengths, KEPT_ROWS[0]) {
             let row = fan.row(at);
             longer.push((beams.part_adding_up::<FMA>(&row, &mut heard), row));
         }
         longer.sort_by(|a, b| b.0.total_cmp(&a.0));
-        longer.truncate(KEPT[1]);
+        longer.truncate(KEPT_ROWS[1]);
         longer.into_iter().map(|(_, row)| row).collect()
     }
 }
@@ -227,7 +227,7 @@ mod tests {
     use crate::signal::{Floor, simulate};
 
     #[test]
-    fn a_wall_is_found_from_its_last_reflector_where_another_hides_the_first() {
+    fn a_wall_whose_first_reflector_is_hidden_is_found_from_its_last() {
         let radar = Radar::default();
         let wall = Line::vertical(-7.3, 8.8, 0.1397, 90);
         let point = Point::new(4.0, 8.0);

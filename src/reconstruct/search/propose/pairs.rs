@@ -39,7 +39,7 @@ const MOST_GUESSES: usize = 2;
 
 /// A place beyond the maximum range is not looked at where all that speaks for or against it differs by less than this, as a part of what is
 /// allowed, from what does for the place within: the array is too small to see curvature there.
-const ALIKE: f64 = 1.0;
+const ALIKE_ERRORS: f64 = 1.0;
 
 /// Most rounds in which directions and the tones of the neighbouring element are brought together.
 const ROUNDS: usize = 4;
@@ -91,7 +91,7 @@ impl Pair {
     /// Whether the same tones speak for `other` as they do for this.
     fn sounds_like(&self, other: &Self) -> bool {
         let differences = self.disagreements.iter().zip(other.disagreements).map(|(own, other)| (own - other).abs());
-        self.last == other.last && differences.sum::<f64>() < ALIKE
+        self.last == other.last && differences.sum::<f64>() < ALIKE_ERRORS
     }
 }
 

@@ -197,7 +197,7 @@ pub struct AddedUp {
     pub sum: Complex64,
     /// Of the weights. The square of the sum over them is the power that a row of one gain has.
     pub weight: f64,
-    /// Power of all echoes, whatever their phases.
+    /// Sum of the powers of all echoes.
     pub power: f64,
 }
 

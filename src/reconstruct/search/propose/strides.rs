@@ -34,7 +34,7 @@ const REACH: [i32; 2] = [7, 9];
 const PITCH_WAVELENGTHS: f64 = 0.7;
 
 /// Steps of a pair that are followed further.
-const KEPT: usize = 4;
+const KEPT_STEPS: usize = 4;
 
 /// Grids whose best rows are followed further.
 const MOST_GRIDS: usize = 48;
@@ -200,7 +200,7 @@ impl Kernel for Glance<'_> {
             *part = self.beams.part_adding_up::<FMA>(&row, &mut heard);
         }
         let row = |at: usize| self.grid.at((at / columns) as i32 - REACH[0], (at % columns) as i32 - REACH[1]);
-        summits(&parts, rows, KEPT).into_iter().map(|at| (row(at), parts[at])).collect()
+        summits(&parts, rows, KEPT_STEPS).into_iter().map(|at| (row(at), parts[at])).collect()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Ranges from a single chirp of a single element.
 //!
-//! One element hears every reflector at one distance: its chirp is a sum of as many pure tones, whatever the near field does across
+//! One element hears every reflector at one distance: its chirp is a sum of as many pure tones, for any near field across
 //! the array. ESPRIT (R. Roy and T. Kailath, "ESPRIT: estimation of signal parameters via rotational invariance techniques", 1989) on
 //! the Hankel matrix of the chirp tells them apart without a grid and without a search, as finely as the noise lets it. The signal
 //! subspace comes from a random projection (N. Halko, P. G. Martinsson, J. A. Tropp, "Finding structure with randomness", 2011), which
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn tones_far_below_a_bin_apart_and_ten_decades_below_the_strongest_are_told_apart() {
+    fn close_tones_ten_decades_below_the_strongest_are_told_apart() {
         let sizes = [[10.0, 1.0], [10.2, 0.5], [10.45, -0.7], [300.25, 1e-6], [511.9, 0.1]];
         let found = tones(&chirp(&sizes, 1e-13), 1e-26).unwrap();
         assert_eq!(found.len(), sizes.len(), "{found:?}");

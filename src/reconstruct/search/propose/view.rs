@@ -109,15 +109,18 @@ mod tests {
     use crate::radar::presets::RadarPreset;
 
     /// A place that is near enough for the middle of an end to be a bad stand-in for its pairs.
-    const NEAR: [f64; 2] = [0.7, 1.6];
+    const NEAR_PLACE_METRES: [f64; 2] = [0.7, 1.6];
 
     #[test]
-    fn elements_that_hear_themselves_see_from_the_middle_of_their_end() {
+    fn pairs_of_one_element_see_from_the_middle_of_their_end() {
         let radar = Radar::default();
         let view = View::of(&radar, End::Last);
-        let (range, cos) = view.of_place(NEAR, 1e-3);
-        let dx = NEAR[0] - radar.end_centre_metres(End::Last);
-        assert!((range - dx.hypot(NEAR[1])).abs() < 1e-12 && (cos - dx / range).abs() < 1e-12, "{range}, {cos}");
+        let (range, cos) = view.of_place(NEAR_PLACE_METRES, 1e-3);
+        let dx = NEAR_PLACE_METRES[0] - radar.end_centre_metres(End::Last);
+        assert!(
+            (range - dx.hypot(NEAR_PLACE_METRES[1])).abs() < 1e-12 && (cos - dx / range).abs() < 1e-12,
+            "{range}, {cos}"
+        );
     }
 
     #[test]
@@ -125,14 +128,15 @@ mod tests {
         let radar = &RadarPreset::by_id("cascade-12x16").expect("a preset").radar;
         for end in End::BOTH {
             let view = View::of(radar, end);
-            let (range, cos) = view.of_place(NEAR, 1e-3);
-            let of_element = |n: usize| radar.pair(n).range_metres(NEAR[0], NEAR[1]);
+            let (range, cos) = view.of_place(NEAR_PLACE_METRES, 1e-3);
+            let of_element = |n: usize| radar.pair(n).range_metres(NEAR_PLACE_METRES[0], NEAR_PLACE_METRES[1]);
             let elements = radar.end_range(end);
             let mean = elements.clone().map(of_element).sum::<f64>() / elements.len() as f64;
             assert!((range - mean).abs() < 1e-4, "{range} m; the elements' mean is {mean} m");
             let step = (of_element(elements.start) - of_element(elements.start + 1)) / radar.element_spacing_metres;
             assert!((cos - step).abs() < 0.02, "{cos}; from one element to the next {step}");
-            let from_middle = (NEAR[0] - view.centre_metres) / (NEAR[0] - view.centre_metres).hypot(NEAR[1]);
+            let from_middle = (NEAR_PLACE_METRES[0] - view.centre_metres)
+                / (NEAR_PLACE_METRES[0] - view.centre_metres).hypot(NEAR_PLACE_METRES[1]);
             assert!((cos - from_middle).abs() > 0.02, "the pairs' directions count: {cos}, {from_middle}");
         }
     }
@@ -143,8 +147,8 @@ mod tests {
             let view = View::of(radar, End::First);
             let range = |x: f64, y: f64| view.of_place([x, y], 1e-3).0;
             let by = 1e-5;
-            let [x, y] = NEAR;
-            let slope = view.slope(NEAR, 1e-3);
+            let [x, y] = NEAR_PLACE_METRES;
+            let slope = view.slope(NEAR_PLACE_METRES, 1e-3);
             assert!((slope[0] - (range(x + by, y) - range(x - by, y)) / (2.0 * by)).abs() < 1e-6, "{slope:?}");
             assert!((slope[1] - (range(x, y + by) - range(x, y - by)) / (2.0 * by)).abs() < 1e-6, "{slope:?}");
         }
