@@ -57,9 +57,12 @@ pub trait Plan: Send + Sync + 'static {
     fn run(&self, teller: &Teller<'_, Self::Row>) -> Result<Self::End, Stopped>;
 }
 
+/// A plan to carry out, and where its rows go.
+type Asked<P> = (Arc<P>, Sender<<P as Plan>::Row>);
+
 /// The worker of one kind of plan, and what it has found so far.
 pub struct RowJob<P: Plan> {
-    worker: Worker<(Arc<P>, Sender<P::Row>), Result<P::End, Stopped>>,
+    worker: Worker<Asked<P>, Result<P::End, Stopped>>,
     plan: Option<Arc<P>>,
     arriving: Option<Receiver<P::Row>>,
     rows: Vec<P::Row>,

@@ -173,7 +173,9 @@ fn row(drawn: &mut TableRow<'_, '_>, input: &Input<'_>, index: usize, memory: &m
             });
         });
     }
-    let response = drawn.response();
+    let mut response = drawn.response();
+    // A screen reader is told of the part that is in sight: a row may be wider than the panel.
+    response.rect = response.interact_rect;
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::ListBoxOption, true, is_selected, cells::name(row)));
     let is_clicked = response.clicked();
     if let Err(problem) = made {

@@ -26,7 +26,7 @@ pub(super) const COMMANDS: &[Entry] = {
         Document(DocumentCommand::SaveAs), "Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S);
         Work(WorkCommand::OpenLog), "Open training log…", "Watch the loss of a training (its log.csv)", None;
         Rows(RowsCommand::Open), "Open rows…", "Show the rows of an evaluation (.csv of evaluate --rows)", None;
-        Rows(RowsCommand::Save), "Save rows…", "Save the rows of the panel Failures as CSV", None;
+        Rows(RowsCommand::Save), "Save rows…", "Save the rows of the panel Evaluate as CSV", None;
         Rows(RowsCommand::ChooseOwnScenes), "Folder of own scenes…", "Choose where Keep puts scenes: pick any scene of the folder", None;
         Export(ExportCommand::Picture), "Export picture…",
             "Save the maps of this scene with scene and figures, as PNG or SVG", command(Key::E);
