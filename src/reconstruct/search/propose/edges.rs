@@ -227,7 +227,7 @@ mod tests {
     use crate::signal::{Floor, simulate};
 
     #[test]
-    fn a_wall_whose_first_reflector_is_hidden_is_found_from_its_last() {
+    fn a_wall_with_a_hidden_first_reflector_is_found_from_its_last() {
         let radar = Radar::default();
         let wall = Line::vertical(-7.3, 8.8, 0.1397, 90);
         let point = Point::new(4.0, 8.0);
