@@ -49,13 +49,13 @@ impl Hybrid {
         // Both experts contradict each other over the whole range of their maps, of which a dynamic range cuts most off.
         let whole_range = Request { normalisation: Normalisation::MinMax, ..request.clone() };
         let (mut whole, whole_network) = maps(&whole_range)?;
-        let darker = if request.noise.is_white() { darker_by(&whole.map, &whole_network.lambda) } else { 0.0 };
+        let is_whole = request.normalisation == Normalisation::MinMax;
+        // A dynamic range cuts off the dark cells, which alone would tell of another scale.
+        let darker =
+            if is_whole && request.noise.is_white() { darker_by(&whole.map, &whole_network.lambda) } else { 0.0 };
         lift(&mut whole.map, darker);
         let left = found.left_decades(radar, ends, &whole);
-        let mut shown = (request.normalisation != Normalisation::MinMax).then(|| maps(request)).transpose()?;
-        if let Some((expected, _)) = &mut shown {
-            lift(&mut expected.map, darker * (whole.decades / expected.decades) as f32);
-        }
+        let shown = (!is_whole).then(|| maps(request)).transpose()?;
         let drawn = shown.as_ref().map_or(&whole.map, |(expected, _)| &expected.map);
         let weight = network_weight(&whole.map, &whole_network.lambda, whole_network.doubt.as_ref(), &left, drawn);
         let (expected, network) = shown.unwrap_or((whole, whole_network));
