@@ -75,10 +75,11 @@ pub fn preferred() -> Arc<dyn Reconstructor> {
     by_name("live").unwrap_or_else(|_| Arc::new(Baseline))
 }
 
-/// The method whose output is shown for samples of `radar` by default: the networks know one radar only.
+/// The method whose output is shown for samples of `radar` by default: the preferred one where it takes them.
 pub fn preferred_for(radar: &Radar) -> Arc<dyn Reconstructor> {
-    if radar.of_one_chirp() == Radar::default() {
-        return preferred();
+    let preferred = preferred();
+    if preferred.check_array(radar).is_ok() {
+        return preferred;
     }
     by_name("iaa").unwrap_or_else(|_| Arc::new(MatchedFilter::Incoherent))
 }

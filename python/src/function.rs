@@ -137,7 +137,7 @@ impl Reconstructor for Function {
         true
     }
 
-    fn weights(&self) -> Option<Weights> {
+    fn weights(&self, _radar: &Radar) -> Option<Weights> {
         self.weights.clone()
     }
 

@@ -236,7 +236,7 @@ impl Method {
     /// Hexadecimal digits that tell its weights from others, as rows hold them; "" where it has none, or doesn't say.
     #[getter]
     fn weights(&self) -> String {
-        self.inner.weights().unwrap_or_default().sha256
+        self.inner.weights(&apertura::radar::Radar::default()).unwrap_or_default().sha256
     }
 
     /// Threshold of its output, chosen on validation scenes.

@@ -21,9 +21,15 @@ needs_entries = pytest.mark.skipif(not ENTRIES, reason="the entries are in the r
 
 
 @pytest.fixture(scope="module")
-def entry():
-    """A part of the benchmark by a method that refuses the physical radar."""
-    return benchmark.entry(ap.method("live"), scenes=2, suites=SUITES)
+def one_radar():
+    """The live network with the weights for table 3.1 alone: it refuses the physical radar."""
+    return ap.method("live", weights=Path(__file__).parents[2] / "assets" / "weights" / "live.safetensors", called="one-radar")
+
+
+@pytest.fixture(scope="module")
+def entry(one_radar):
+    """A part of the benchmark by a method that refuses a suite."""
+    return benchmark.entry(one_radar, scenes=2, suites=SUITES)
 
 
 @pytest.fixture
@@ -101,11 +107,11 @@ def test_nothing_is_detected_in_noise_alone():
     assert noise["detection"] is None and noise["detection_at_rate"] is None and noise["false_alarm"] == [0, 0]
 
 
-def test_a_refused_suite_stands_with_its_reason(entry):
+def test_a_refused_suite_stands_with_its_reason(entry, one_radar):
     [refused] = [row for row in entry["first"]["suites"] if "refused" in row]
-    assert refused["suite"] == "street, physical radar" and refused["refused"].startswith("live: ")
+    assert refused["suite"] == "street, physical radar" and refused["refused"].startswith("one-radar: ")
     with pytest.raises(ValueError) as told:
-        ap.method("live").reconstruct(next(NAMED[refused["suite"]].scenes(1, 1)).simulate(floor="thermal").ends, NAMED[refused["suite"]].radar)
+        one_radar.reconstruct(next(NAMED[refused["suite"]].scenes(1, 1)).simulate(floor="thermal").ends, NAMED[refused["suite"]].radar)
     assert str(told.value) == refused["refused"]
     assert refused["refused"] in benchmark.table(entry)
     scored = row(refused["suite"], squared_error=[1.0], false_alarm=[0.0])
@@ -208,22 +214,22 @@ def test_one_z_pools_the_suites():
     assert benchmark.pooled_z([other, refused], [one, refused]) == pytest.approx(2**0.5)
 
 
-def test_a_check_draws_scenes_of_its_own(small, monkeypatch):
+def test_a_check_draws_scenes_of_its_own(small, one_radar, monkeypatch):
     monkeypatch.setattr(benchmark, "LIMIT", 99.0)
-    told = benchmark.check(small(), ap.method("live"), "", scenes=2, seed=77)
+    told = benchmark.check(small(), one_radar, "", scenes=2, seed=77)
     assert "the figures are those of the entry" in told and "seed 77" in told
-    drawn = [benchmark.check(small(), ap.method("live"), "", scenes=2).split("seed ")[1] for _ in range(2)]
+    drawn = [benchmark.check(small(), one_radar, "", scenes=2).split("seed ")[1] for _ in range(2)]
     assert drawn[0] != drawn[1]
     monkeypatch.setattr(benchmark, "pooled_z", lambda *draws: 2.4)
     monkeypatch.setattr(benchmark, "LIMIT", 2.33)
     with pytest.raises(ValueError, match="was tuned on the scenes of its draws"):
-        benchmark.check(small(), ap.method("live"), "", scenes=2, seed=77)
+        benchmark.check(small(), one_radar, "", scenes=2, seed=77)
 
 
-def test_a_check_is_of_the_same_method(small):
-    for name, method, weights in (("name", "baseline", ""), ("weights", "live", "0f")):
+def test_a_check_is_of_the_same_method(small, one_radar):
+    for name, method, weights in (("name", ap.method("baseline"), ""), ("weights", one_radar, "0f")):
         with pytest.raises(ValueError, match=f"whose {name} is"):
-            benchmark.check(small(), ap.method(method), weights, scenes=2)
+            benchmark.check(small(), method, weights, scenes=2)
 
 
 @needs_entries

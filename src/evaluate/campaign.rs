@@ -181,7 +181,7 @@ impl Campaign {
                 },
             };
             let of_method = |method: &&dyn Reconstructor| {
-                let Weights { sha256, optimiser } = method.weights().unwrap_or_default();
+                let Weights { sha256, optimiser } = method.weights(&self.radar).unwrap_or_default();
                 let method = method.name().into();
                 Row { method, weights: sha256.into(), optimiser: optimiser.into(), ..of_set.clone() }
             };

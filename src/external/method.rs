@@ -179,7 +179,7 @@ impl Reconstructor for ExternalMethod {
         Family::Own
     }
 
-    fn weights(&self) -> Option<Weights> {
+    fn weights(&self, _radar: &Radar) -> Option<Weights> {
         self.weights.clone()
     }
 
@@ -257,7 +257,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let method = of(folder.path(), "cat 1.bin 2.bin 3.bin; cat > /dev/null");
         assert_eq!((method.name(), method.eta(), method.description()), ("mine", 0.25, "for tests"));
-        assert_eq!(method.weights().unwrap().sha256, "0f");
+        assert_eq!(method.weights(&Radar::default()).unwrap().sha256, "0f");
         for id in 1..=3 {
             assert_eq!(ask(&method, &Request::default()).unwrap().lambda.lambda[[3, 7]], 0.25 * id as f32);
         }

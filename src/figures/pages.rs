@@ -4,6 +4,7 @@ use super::Figure;
 use crate::evaluate::campaign::{Campaign, CampaignError};
 use crate::evaluate::sets::SceneSet;
 use crate::evaluate::tables::{PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};
+use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::Kind;
 use crate::task::Task;
@@ -33,7 +34,7 @@ pub fn tables(methods: &[&dyn Reconstructor], scenes: u32) -> Result<String, Cam
     let campaign = Campaign { count: scenes, ..Campaign::default() };
     let mut text = String::from("## Tables 4.1 to 4.3\n\n");
     let _ = writeln!(text, "{scenes} test scenes a set, seed 0; P_D and P_FA at each method's own threshold.");
-    let _ = writeln!(text, "Tables and figures are made over the thesis' floor, with {}.\n", weights(methods));
+    let _ = writeln!(text, "Tables and figures are made over the thesis' floor, with {}.\n", weights(methods, &campaign.radar));
     let sets = Kind::TEST_SETS.map(SceneSet::Generated);
     let rows = campaign.run(&sets, methods, &Task::default(), |_| ())?;
     for (set, scenes) in sets.iter().enumerate() {
@@ -53,8 +54,8 @@ pub fn tables(methods: &[&dyn Reconstructor], scenes: u32) -> Result<String, Cam
     Ok(text)
 }
 
-fn weights(methods: &[&dyn Reconstructor]) -> String {
-    let named = methods.iter().filter_map(|m| Some(format!("`{}` {}", m.name(), m.weights()?.sha256)));
+fn weights(methods: &[&dyn Reconstructor], radar: &Radar) -> String {
+    let named = methods.iter().filter_map(|m| Some(format!("`{}` {}", m.name(), m.weights(radar)?.sha256)));
     let named: Vec<String> = named.collect();
     if named.is_empty() { "no weights".to_owned() } else { format!("the weights {}", named.join(", ")) }
 }

@@ -66,10 +66,18 @@ use std::sync::{Arc, LazyLock};
 use weights::{WeightFile, WeightsError};
 
 const LIVE_FILE: &str = "assets/weights/live.safetensors";
+const ANY_FILE: &str = "assets/weights/live-any.safetensors";
 
-/// The live network whose weights are part of the program, by itself; `None`, with a warning in the log, where they can't be used.
+/// The live network whose weights are part of the program, by itself: those for the radar of table 3.1, and those for others. `None`, with a
+/// warning in the log, where the first can't be used.
 pub fn live() -> Option<LiveMethod> {
-    usable(WeightFile::parse(LIVE_FILE, &platform::live_weights()).and_then(LiveMethod::new))
+    let [table_3_1, any] = platform::live_weights();
+    let of = |name, bytes: &[u8]| usable(WeightFile::parse(name, bytes).and_then(LiveMethod::new));
+    let live = of(LIVE_FILE, &table_3_1)?;
+    Some(match of(ANY_FILE, &any) {
+        Some(any) => live.with_other_radars(any),
+        None => live,
+    })
 }
 
 const MAX_LIVE_BYTES: u64 = 256 << 20;

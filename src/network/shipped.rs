@@ -8,8 +8,7 @@ use super::thesis::Thesis;
 use super::thesis_method::{ThesisMethod, UnetMethod};
 use super::unet::Unet;
 use super::weights::{WeightFile, WeightsError};
-use super::{LIVE_FILE, usable};
-use crate::platform;
+use super::usable;
 use crate::reconstruct::Reconstructor;
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
@@ -30,16 +29,15 @@ fn load_shipped(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
     let unet: &[u8] = include_bytes!("../../assets/weights/unet.safetensors");
     let thesis: &[u8] = include_bytes!("../../assets/weights/thesis.safetensors");
     let thesis_1: &[u8] = include_bytes!("../../assets/weights/thesis-1.safetensors");
-    let live = platform::live_weights();
-    [
-        (LIVE_FILE, live.as_ref()),
+    let live = super::live().map(|live| Arc::new(live) as Arc<dyn Reconstructor>);
+    let others = [
         ("assets/weights/thesis.safetensors", thesis),
         ("assets/weights/thesis-1.safetensors", thesis_1),
         ("assets/weights/unet.safetensors", unet),
     ]
     .into_iter()
-    .filter_map(|(name, bytes)| usable(WeightFile::parse(name, bytes).and_then(|file| method_of(file, backend))))
-    .collect()
+    .filter_map(|(name, bytes)| usable(WeightFile::parse(name, bytes).and_then(|file| method_of(file, backend))));
+    live.into_iter().chain(others).collect()
 }
 
 /// The network whose weights the file at `path` holds: safetensors, or a PyTorch checkpoint of the thesis' or the live network.

@@ -129,7 +129,7 @@ impl Reconstructor for ThesisMethod {
         true
     }
 
-    fn weights(&self) -> Option<Weights> {
+    fn weights(&self, _radar: &Radar) -> Option<Weights> {
         Some(self.weights.clone())
     }
 
@@ -205,7 +205,7 @@ impl Reconstructor for UnetMethod {
         self.trained.check(Unet::NAME, radar)
     }
 
-    fn weights(&self) -> Option<Weights> {
+    fn weights(&self, _radar: &Radar) -> Option<Weights> {
         Some(self.weights.clone())
     }
 

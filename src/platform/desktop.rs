@@ -13,8 +13,10 @@ pub fn page_address() -> Option<String> {
 }
 
 #[cfg(feature = "live")]
-pub(crate) fn live_weights() -> std::borrow::Cow<'static, [u8]> {
-    include_bytes!("../../assets/weights/live.safetensors").as_slice().into()
+pub(crate) fn live_weights() -> [std::borrow::Cow<'static, [u8]>; 2] {
+    let table_3_1 = include_bytes!("../../assets/weights/live.safetensors").as_slice();
+    let any = include_bytes!("../../assets/weights/live-any.safetensors").as_slice();
+    [table_3_1.into(), any.into()]
 }
 
 /// Whether the window is a page in a browser.

@@ -177,8 +177,8 @@ export function pageAddress() {
   return location.origin + location.pathname;
 }
 
-export function fetchedWeights() {
-  return globalThis.aperturaWeights ?? new Uint8Array();
+export function fetchedWeights(index) {
+  return globalThis.aperturaWeights?.[index] ?? new Uint8Array();
 }
 
 export function tell(sentence) {

@@ -40,7 +40,7 @@ extern "C" {
     fn page_address_here() -> String;
     #[cfg(feature = "live")]
     #[wasm_bindgen(js_name = fetchedWeights)]
-    fn fetched_weights() -> Vec<u8>;
+    fn fetched_weights(index: usize) -> Vec<u8>;
     /// Shows a sentence in place of the window.
     pub fn tell(sentence: &str);
 }
@@ -51,8 +51,8 @@ pub fn page_address() -> Option<String> {
 }
 
 #[cfg(feature = "live")]
-pub(crate) fn live_weights() -> std::borrow::Cow<'static, [u8]> {
-    fetched_weights().into()
+pub(crate) fn live_weights() -> [std::borrow::Cow<'static, [u8]>; 2] {
+    [0, 1].map(|index| fetched_weights(index).into())
 }
 
 /// Whether the window is a page in a browser.

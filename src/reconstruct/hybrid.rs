@@ -7,8 +7,8 @@ use super::judge::{blended, darker_by, lift, network_weight};
 use super::own_threshold::own_threshold;
 use super::reconstructor::{About, Reconstructor, Weights};
 use super::search::{Found, Settings, find, find_from};
-use crate::maps::Normalisation;
-use crate::radar::Radar;
+use crate::maps::{Normalisation, RangeAngleMap};
+use crate::radar::{Decibels, Radar};
 use crate::signal::TwoEnds;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -43,25 +43,20 @@ impl Hybrid {
         if is_certain || found.atoms.is_empty() || self.network.check_array(radar).is_err() {
             return Ok(found.reconstruction(radar, request));
         }
-        let maps = |request: &Request| -> Result<_, ReconstructError> {
-            Ok((found.expected(radar, request), self.network.reconstruct(radar, ends, request)?))
-        };
-        // Both experts contradict each other over the whole range of their maps, of which a dynamic range cuts most off.
-        let whole_range = Request { normalisation: Normalisation::MinMax, ..request.clone() };
-        let (mut whole, whole_network) = maps(&whole_range)?;
-        let is_whole = request.normalisation == Normalisation::MinMax;
-        // A dynamic range cuts off the dark cells, which alone would tell of another scale.
-        let darker =
-            if is_whole && request.noise.is_white() { darker_by(&whole.map, &whole_network.lambda) } else { 0.0 };
-        lift(&mut whole.map, darker);
-        let left = found.left_decades(radar, ends, &whole);
-        let shown = (!is_whole).then(|| maps(request)).transpose()?;
-        let drawn = shown.as_ref().map_or(&whole.map, |(expected, _)| &expected.map);
-        let weight = network_weight(&whole.map, &whole_network.lambda, whole_network.doubt.as_ref(), &left, drawn);
-        let (expected, network) = shown.unwrap_or((whole, whole_network));
+        // A dynamic range counts from the peak of the judged map, so the experts' maps are joined on a scale that cuts off nothing.
+        let shown = Shown::of(request.normalisation);
+        let whole = Request { normalisation: shown.whole, ..request.clone() };
+        let (mut expected, network) = (found.expected(radar, &whole), self.network.reconstruct(radar, ends, &whole)?);
+        if request.noise.is_white() {
+            let darker = darker_by(&expected.map, &network.lambda, shown.part);
+            lift(&mut expected.map, darker);
+        }
+        let left = found.left_decades(radar, ends, &expected);
+        let weight = network_weight(&expected.map, &network.lambda, network.doubt.as_ref(), &left, shown.part);
         let least_eta = network.least_eta.unwrap_or(0.0).max(expected.least_eta);
-        let lambda = blended(expected.map, &network.lambda, &weight);
-        let eta = own_threshold(&lambda, network.doubt.as_ref());
+        let mut lambda = blended(expected.map, &network.lambda, &weight);
+        let least_eta = shown.cut(&mut lambda, least_eta);
+        let eta = own_threshold(&lambda, network.doubt.map(|doubt| shown.doubt(doubt)).as_ref());
         Ok(Reconstruction { eta: Some(eta), ..found.as_drawn(lambda, Some(least_eta)) })
     }
 
@@ -101,12 +96,52 @@ impl Reconstructor for Hybrid {
         self.judged(&found, radar, ends, request)
     }
 
-    fn weights(&self) -> Option<Weights> {
-        self.network.weights()
+    fn weights(&self, radar: &Radar) -> Option<Weights> {
+        self.network.weights(radar)
     }
 
     fn following(&self) -> Option<Arc<dyn Reconstructor>> {
         Some(Arc::new(Following { hybrid: self.clone(), last: Mutex::new(None) }))
+    }
+}
+
+/// Dynamic range without a cell beyond it, decibels: rounding in f64 lies some 320 below the peak.
+const WHOLE_RANGE: Decibels = Decibels(400.0);
+
+/// The range of brightness that was asked for, as the upper part of a whole one.
+#[derive(Debug, Clone, Copy)]
+struct Shown {
+    /// The whole range.
+    whole: Normalisation,
+    /// The part of it that is shown.
+    part: f32,
+}
+
+impl Shown {
+    fn of(asked: Normalisation) -> Self {
+        match asked {
+            Normalisation::MinMax => Shown { whole: asked, part: 1.0 },
+            Normalisation::DynamicRange(range) => {
+                Shown { whole: Normalisation::DynamicRange(WHOLE_RANGE), part: (range.0 / WHOLE_RANGE.0) as f32 }
+            }
+        }
+    }
+
+    /// Cuts the shown part, counted from the peak, out of a map of the whole range; `eta` as a Lambda of what is left.
+    fn cut(self, map: &mut RangeAngleMap, eta: f32) -> f32 {
+        if self.whole == Normalisation::MinMax {
+            return eta;
+        }
+        let peak = map.lambda.iter().fold(0.0f32, |most, v| most.max(*v));
+        let of = |v: f32| (1.0 - (peak - v) / self.part).clamp(0.0, 1.0);
+        map.lambda.par_mapv_inplace(of);
+        of(eta)
+    }
+
+    /// Errors of the whole range as those of the shown part.
+    fn doubt(self, mut doubt: RangeAngleMap) -> RangeAngleMap {
+        doubt.lambda.par_mapv_inplace(|v| (v / self.part).min(1.0));
+        doubt
     }
 }
 
@@ -134,8 +169,8 @@ impl Reconstructor for Following {
         self.hybrid.knows_pairs()
     }
 
-    fn weights(&self) -> Option<Weights> {
-        self.hybrid.weights()
+    fn weights(&self, radar: &Radar) -> Option<Weights> {
+        self.hybrid.weights(radar)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

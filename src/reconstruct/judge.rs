@@ -36,16 +36,16 @@ const MEAN_SIDE_CELLS: [usize; 2] = [2, 8];
 
 /// Weight of `network`'s map in each cell, 0 to 1, over `drawn`, the search's; both are Lambda on one scale, `[range bins, columns]`.
 /// `left_decades` is what the search leaves ([`Found::left_decades`](super::search::Found::left_decades)), and `doubt` what nine of ten
-/// errors of the network stay below. A network without doubt is believed wherever something is left. `shown` is the search's map in the
-/// range that was asked for: its cells at 0 are cut off.
+/// errors of the network stay below. A network without doubt is believed wherever something is left. Cells whose Lambda lies deeper below 1
+/// than `shown_part` are cut off in what is shown.
 pub fn network_weight(
     drawn: &RangeAngleMap,
     network: &RangeAngleMap,
     doubt: Option<&RangeAngleMap>,
     left_decades: &Array2<f32>,
-    shown: &RangeAngleMap,
+    shown_part: f32,
 ) -> Array2<f32> {
-    let shown = || left_decades.iter().zip(&shown.lambda).filter(|(_, shown)| **shown > 0.0);
+    let shown = || left_decades.iter().zip(&drawn.lambda).filter(|(_, drawn)| **drawn > 1.0 - shown_part);
     let more_left = shown().filter(|(left, _)| **left > 0.0).count() as f32 / shown().count().max(1) as f32;
     let nowhere = between(UNEXPLAINED_PART, more_left);
     let mut square = &drawn.lambda - &network.lambda;
@@ -63,12 +63,17 @@ pub fn network_weight(
     weight
 }
 
-/// How much darker than the network's map the search's is in half of all cells, beyond [`SCALE_MARGIN`]; 0 where it is brighter.
-pub fn darker_by(drawn: &RangeAngleMap, network: &RangeAngleMap) -> f32 {
-    let mut differences: Vec<f32> = network.lambda.iter().zip(&drawn.lambda).map(|(n, d)| n - d).collect();
+/// How much darker than the network's map the search's is in half of the cells that the network shows within `shown_part` of the peak, beyond
+/// [`SCALE_MARGIN`] of that part; 0 where it is brighter.
+pub fn darker_by(drawn: &RangeAngleMap, network: &RangeAngleMap, shown_part: f32) -> f32 {
+    let cells = network.lambda.iter().zip(&drawn.lambda).filter(|(network, _)| **network >= 1.0 - shown_part);
+    let mut differences: Vec<f32> = cells.map(|(network, drawn)| network - drawn).collect();
+    if differences.is_empty() {
+        return 0.0;
+    }
     let middle = differences.len() / 2;
     let median = *differences.select_nth_unstable_by(middle, f32::total_cmp).1;
-    (2.0 * (median - SCALE_MARGIN)).clamp(0.0, median.max(0.0))
+    (2.0 * (median - SCALE_MARGIN * shown_part)).clamp(0.0, median.max(0.0))
 }
 
 /// Makes a map brighter by some Lambda.
@@ -133,7 +138,7 @@ mod tests {
 
     fn weight(drawn: f32, network: f32, doubt: f32, left: f32) -> f32 {
         let left = Array2::from_elem((40, 60), left);
-        network_weight(&flat(drawn), &flat(network), Some(&flat(doubt)), &left, &flat(drawn))[[20, 30]]
+        network_weight(&flat(drawn), &flat(network), Some(&flat(doubt)), &left, 1.0)[[20, 30]]
     }
 
     #[test]
@@ -153,7 +158,7 @@ mod tests {
     #[test]
     fn a_map_beside_a_ghost_is_lifted_to_the_networks_scale() {
         for (median, lifted) in [(-0.1, 0.0), (0.02, 0.0), (0.03, 0.02), (0.05, 0.05)] {
-            assert!((darker_by(&flat(0.3), &flat(0.3 + median)) - lifted).abs() < 1e-6);
+            assert!((darker_by(&flat(0.3), &flat(0.3 + median), 1.0) - lifted).abs() < 1e-6);
         }
         let mut map = flat(0.95);
         lift(&mut map, 0.1);
@@ -164,18 +169,17 @@ mod tests {
     fn a_scene_that_is_mostly_unexplained_is_the_networks() {
         let mut left = Array2::from_elem((40, 60), 1.0);
         left.row_mut(3).fill(-9.0);
-        let weight = |shown| network_weight(&flat(0.2), &flat(0.9), Some(&flat(0.1)), &left, shown)[[3, 5]];
-        let all = flat(0.2);
-        assert_eq!(weight(&all), 1.0);
-        let mut cut = flat(0.0);
-        cut.lambda.row_mut(3).fill(0.2);
-        assert_eq!(weight(&cut), 0.0, "what is cut off says nothing");
+        let mut drawn = flat(0.2);
+        drawn.lambda.row_mut(3).fill(0.6);
+        let weight = |part| network_weight(&drawn, &flat(0.9), Some(&flat(0.1)), &left, part)[[3, 5]];
+        assert_eq!(weight(1.0), 1.0);
+        assert_eq!(weight(0.5), 0.0, "what is cut off says nothing");
     }
 
     #[test]
     fn a_network_without_doubt_is_believed_where_something_is_left() {
         let left = Array2::from_elem((40, 60), -2.0);
-        let weight = network_weight(&flat(0.2), &flat(0.9), None, &left, &flat(0.2));
+        let weight = network_weight(&flat(0.2), &flat(0.9), None, &left, 1.0);
         assert!((weight[[1, 1]] - 0.5).abs() < 1e-6);
         assert!((blended(flat(0.2), &flat(0.9), &weight).lambda[[1, 1]] - 0.55).abs() < 1e-6);
     }

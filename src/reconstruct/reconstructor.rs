@@ -146,8 +146,8 @@ pub trait Reconstructor: Send + Sync {
         None
     }
 
-    /// The learned weights that its answers depend on, if any.
-    fn weights(&self) -> Option<Weights> {
+    /// The learned weights that its answers to samples of `radar` depend on, if any.
+    fn weights(&self, _radar: &Radar) -> Option<Weights> {
         None
     }
 

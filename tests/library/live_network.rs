@@ -4,7 +4,7 @@ use apertura::evaluate::campaign::Campaign;
 use apertura::evaluate::sets::SceneSet;
 use apertura::evaluate::tables::Tally;
 use apertura::methods;
-use apertura::radar::{Carrier, Decibels, Radar};
+use apertura::radar::{Carrier, Convention, Decibels, Radar, WindowFunction};
 use apertura::reconstruct::Request;
 use apertura::scene::generate::{Kind, Purpose};
 use apertura::scene::{Reflector, Scene};
@@ -12,6 +12,9 @@ use apertura::signal::{Floor, TwoEnds, simulate};
 use apertura::task::Task;
 use rayon::prelude::*;
 use std::time::Duration;
+
+/// SE on a radar that is not table 3.1's.
+const OTHER_RADARS_ERROR: f64 = 900.0;
 
 fn tally(kind: Kind, count: u32) -> Tally {
     tally_over(Floor::Thesis, kind, count)
@@ -33,6 +36,36 @@ fn is_as_good_on_every_set_as_when_it_was_trained() {
         assert!(error < at_most, "{kind:?}: SE {error}");
         assert!(tally.detection().mean > 0.97, "{kind:?}: P_D {}", tally.detection().mean);
     }
+}
+
+/// Radars of as many elements and samples that are not that of table 3.1.
+fn other_radars() -> [(&'static str, Radar); 4] {
+    let radar = Radar::default;
+    [
+        ("1 GHz", Radar { bandwidth_hz: 1e9, ..radar() }),
+        ("24 GHz", Radar { carrier_hz: 24e9, bandwidth_hz: 250e6, ..radar() }.in_convention(Convention::Thesis)),
+        ("physical", radar().in_convention(Convention::Physical)),
+        ("rectangular window", Radar { window: WindowFunction::Rectangular, ..radar() }),
+    ]
+}
+
+#[test]
+fn other_radars_have_weights_of_their_own() {
+    let live = methods::by_name("live").unwrap();
+    for (name, radar) in other_radars() {
+        assert!(live.check_array(&radar).is_ok(), "{name}");
+        assert_ne!(live.weights(&radar), live.weights(&Radar::default()), "{name}");
+        let campaign = Campaign { purpose: Purpose::Validation, seed: 77, count: 3, radar, ..Campaign::default() };
+        let sets = [SceneSet::Generated(Kind::Set2)];
+        let rows = campaign.run(&sets, &[live.as_ref()], &Task::default(), |_| ()).unwrap();
+        let tally = Tally::of(&rows);
+        let error = tally.squared_error().mean;
+        assert!(error < OTHER_RADARS_ERROR && tally.detection().mean > 0.97, "{name}: SE {error}");
+        assert_eq!(rows[0].weights.to_string(), live.weights(&campaign.radar).unwrap().sha256);
+    }
+    let wide = Radar { bandwidth_hz: 8e9, ..Radar::default() };
+    let refused = live.check_array(&wide).unwrap_err().to_string();
+    assert!(refused.contains("0.1 to 6 GHz of bandwidth"), "{refused}");
 }
 
 #[test]

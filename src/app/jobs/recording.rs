@@ -272,7 +272,7 @@ fn draw_step(
     let draw = |method: &dyn crate::reconstruct::Reconstructor| {
         compose(&step.radar, &scene, &signal, method, &style, PictureFormat::Png).map_err(|e| e.to_string())
     };
-    // A network that knows another radar draws nothing: any radar has the method of `preferred_for`.
+    // A network draws nothing for a radar that it doesn't know: any radar has the method of `preferred_for`.
     draw(method.as_ref()).or_else(|_| draw(methods::preferred_for(&step.radar).as_ref()))
 }
 

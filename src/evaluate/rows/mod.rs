@@ -122,7 +122,7 @@ columns! {
         radar: Text = Radar,
         /// The fingerprint of a folder's files.
         scenes: Text = Scenes,
-        /// The fingerprint of the method's weights; empty for a method that learns nothing.
+        /// The fingerprint of the method's weights for the campaign's radar; empty for a method that learns nothing.
         weights: Text = Weights,
         /// The optimisers that trained them.
         optimiser: Text = Optimiser,
