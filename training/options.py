@@ -47,6 +47,7 @@ def live(arguments=None):
     ap.add_argument("--mixture", default="world", metavar="KINDS", help="kinds of training scenes with their shares, as in 2=1,walls=3")
     ap.add_argument("--radar", default="random", metavar="random|thesis|FILE",
                     help="what sees them: radars drawn at random, that of table 3.1, or that of a .toml with a table [radar], whose shape the network gets")
+    ap.add_argument("--windows", metavar="NAMES", help="with --pool: of radars drawn at random only those with these windows, as in hann,blackman")
     ap.add_argument("--tiny", action="store_true", help="a network of a few thousand weights, to try the program with")
     ap.add_argument("--snr-share", type=float, default=0.5, help="part of the scenes over thermal noise")
     ap.add_argument("--snr", type=float, nargs=2, default=(10.0, 100.0), metavar="DB", help="lowest and highest ratio of that noise")
@@ -65,6 +66,8 @@ def live(arguments=None):
             ap.error(f"--{name} is for one process; leave torchrun away, or --{name}")
     if args.radar not in ("random", "thesis") and not os.path.isfile(args.radar):
         ap.error(f"--radar {args.radar}: there is no such file; expected random, thesis, or a .toml with a table [radar]")
+    if args.windows and not (args.pool and args.radar == "random"):
+        ap.error(f"--windows {args.windows} chooses among radars drawn at random and kept in a pool; expected --pool N and --radar random beside it")
     if args.pool and (args.pool < args.batch or args.uses <= 0):
         ap.error(f"--pool {args.pool} --uses {args.uses}: expected at least --batch ({args.batch}) scenes, and uses above 0")
     if args.log_every < 1:

@@ -15,12 +15,12 @@ class Pool:
     """An endless iterator of batches.
 
     The last `size` scenes stay on `device`, large tensors as 16-bit floats. A batch is drawn from them at random. On average a scene is drawn
-    `uses` times at most: the iterator waits for new scenes where training is faster.
+    `uses` times at most: the iterator waits for new scenes where training is faster. Scenes of which `wanted` is False are not kept.
     """
 
-    def __init__(self, data, first, batch, device, size, uses, seed):
+    def __init__(self, data, first, batch, device, size, uses, seed, wanted=None):
         self.first, self.batch, self.device, self.size, self.uses = first, batch, device, size, uses
-        self.arrived, self.used, self.kept = 0, 0, {}
+        self.arrived, self.used, self.kept, self.wanted, self.made_until = 0, 0, {}, wanted, first
         self.random = random.Random(seed)
         self.made = queue.Queue(maxsize=2 * MAKERS)
         self.on_gpu = device.type == "cuda"
@@ -33,7 +33,7 @@ class Pool:
     @property
     def drawn(self):
         """Number of the first scene that no batch can hold."""
-        return self.first + self.arrived
+        return self.made_until
 
     def _make(self, data):
         """Makes scenes until `close`. An error ends the thread, and reaches `__next__`."""
@@ -45,7 +45,7 @@ class Pool:
                     start = next(self.numbers)
                 examples = data.__getitems__(range(start, start + CHUNK))
                 with torch.cuda.stream(stream):
-                    scenes = [self._moved(example) for example in examples]
+                    scenes = [self._moved(example) for example in examples if self.wanted is None or self.wanted(example)]
                 if stream:
                     stream.synchronize()
                 self.made.put((start, scenes))
@@ -85,6 +85,7 @@ class Pool:
             if start is None:
                 raise scenes
             self._keep(scenes)
+            self.made_until = max(self.made_until, start + CHUNK)
         self.used += self.batch
         places = torch.tensor(self.random.sample(range(min(self.arrived, self.size)), self.batch))
         if self.on_gpu:

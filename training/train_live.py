@@ -41,7 +41,7 @@ import apertura as ap
 import provenance
 from common import LEARNED, TARGET, Clock, export, figures, fill, light, loaded, save, tensors_of, unit, validation_scenes
 from graph import Replayed
-from apertura.live import DOUBT, Doubt, Doubting, Live, expected_error, normalise, parted, size_of, widened, widened_cells
+from apertura.live import DOUBT, WINDOWS, WINDOWS_AT, Doubt, Doubting, Live, expected_error, normalise, parted, size_of, widened, widened_cells
 from pool import Pool
 from team import Log, Team, batches
 
@@ -193,7 +193,7 @@ class Run:
         self.optimizer = torch.optim.AdamW([*self.model.parameters(), *self.doubt.parameters()], weight_decay=1e-4, betas=(0.9, 0.99), **kept)
         self.step, self.drawn, self.parts, initial = 0, 0, [], None
         #: The radars that the last part trained for.
-        self.domain = training_scenes(args).domain
+        self.domain = domain_of(args)
         maps = None
         if os.path.exists(self.path):
             keys = ("model", "doubt", "average", "optimizer", "step", "drawn", "parts")
@@ -253,10 +253,28 @@ class Run:
                          "step": self.step, "size": json.dumps(self.size), "domain": self.domain, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
 
 
+def has_window(names):
+    """Whether the radar of an example has one of these windows, as a function of the example."""
+    of = dict(zip(WINDOWS, torch.cat([torch.zeros(1, len(WINDOWS) - 1), torch.eye(len(WINDOWS) - 1)])))
+    unknown = [name for name in names if name not in of]
+    if unknown:
+        raise SystemExit(f"--windows {unknown[0]} is no window; expected {', '.join(of)}")
+    return lambda example: any(torch.equal(example["constants"][WINDOWS_AT : WINDOWS_AT + len(WINDOWS) - 1], of[name]) for name in names)
+
+
+def domain_of(args):
+    """The radars that the run trains for, as JSON."""
+    domain = json.loads(training_scenes(args).domain)
+    if args.windows:
+        domain["limits"]["windows"] = args.windows.split(",")
+    return json.dumps(domain)
+
+
 def scenes_of(args, first, team):
     """Batches of training scenes from number `first` on."""
     if args.pool:
-        return Pool(training_scenes(args), first, args.batch, team.device, args.pool, args.uses, first)
+        wanted = has_window(args.windows.split(",")) if args.windows else None
+        return Pool(training_scenes(args), first, args.batch, team.device, args.pool, args.uses, first, wanted)
     return batches(training_scenes(args), first, args.batch, team, args.loaders)
 
 

@@ -47,8 +47,9 @@ impl Hybrid {
         let shown = Shown::of(request.normalisation);
         let whole = Request { normalisation: shown.whole, ..request.clone() };
         let (mut expected, network) = (found.expected(radar, &whole), self.network.reconstruct(radar, ends, &whole)?);
-        if request.noise.is_white() {
-            let darker = darker_by(&expected.map, &network.lambda, shown.part);
+        // Dark cells, which tell of another scale, are cut off by a dynamic range.
+        if request.noise.is_white() && shown.part == 1.0 {
+            let darker = darker_by(&expected.map, &network.lambda);
             lift(&mut expected.map, darker);
         }
         let left = found.left_decades(radar, ends, &expected);

@@ -12,6 +12,9 @@ use rayon::prelude::*;
 /// than the network: a tenth of the power is half a decibel of the cell.
 const LEFT_DECADES: [f32; 2] = [-3.0, -1.0];
 
+/// The same where a dynamic range cuts off the dark cells. In bright ones the network draws narrow lobes 10 to 20 dB too dark.
+const BRIGHT_LEFT_DECADES: [f32; 2] = [0.0, 1.0];
+
 /// Part of the shown cells with more left than drawn, between which the search isn't believed anywhere: such a scene is not made of what it
 /// looks for. Cells that a dynamic range cuts off say nothing of it.
 const UNEXPLAINED_PART: [f32; 2] = [0.7, 0.9];
@@ -19,6 +22,9 @@ const UNEXPLAINED_PART: [f32; 2] = [0.7, 0.9];
 /// Weight of the network where the search leaves something and the two don't contradict each other. Their errors differ, so that the mean is
 /// better than either, and the network's is the smaller one there.
 const AGREED_WEIGHT: f32 = 0.7;
+
+/// The same where a dynamic range cuts off the dark cells.
+const BRIGHT_AGREED_WEIGHT: f32 = 0.3;
 
 /// Mean square of the difference, over that of the network's expected error, from which on the two contradict each other, and from which on
 /// the network is believed alone.
@@ -51,8 +57,12 @@ pub fn network_weight(
     let mut square = &drawn.lambda - &network.lambda;
     square.par_mapv_inplace(|v| v * v);
     let mut weight = mean_around(&square);
-    let unexplained = |left: f32| between(LEFT_DECADES, left).max(nowhere);
-    let agreed = |contradiction: f32| AGREED_WEIGHT + (1.0 - AGREED_WEIGHT) * contradiction;
+    let (left_bounds, agreed_weight) = match shown_part < 1.0 {
+        true => (BRIGHT_LEFT_DECADES, BRIGHT_AGREED_WEIGHT),
+        false => (LEFT_DECADES, AGREED_WEIGHT),
+    };
+    let unexplained = |left: f32| between(left_bounds, left).max(nowhere);
+    let agreed = |contradiction: f32| agreed_weight + (1.0 - agreed_weight) * contradiction;
     match doubt {
         None => Zip::from(&mut weight).and(left_decades).par_for_each(|w, left| *w = unexplained(*left)),
         Some(doubt) => Zip::from(&mut weight).and(left_decades).and(&doubt.lambda).par_for_each(|w, left, doubt| {
@@ -63,17 +73,12 @@ pub fn network_weight(
     weight
 }
 
-/// How much darker than the network's map the search's is in half of the cells that the network shows within `shown_part` of the peak, beyond
-/// [`SCALE_MARGIN`] of that part; 0 where it is brighter.
-pub fn darker_by(drawn: &RangeAngleMap, network: &RangeAngleMap, shown_part: f32) -> f32 {
-    let cells = network.lambda.iter().zip(&drawn.lambda).filter(|(network, _)| **network >= 1.0 - shown_part);
-    let mut differences: Vec<f32> = cells.map(|(network, drawn)| network - drawn).collect();
-    if differences.is_empty() {
-        return 0.0;
-    }
+/// How much darker than the network's map the search's is in half of all cells, beyond [`SCALE_MARGIN`]; 0 where it is brighter.
+pub fn darker_by(drawn: &RangeAngleMap, network: &RangeAngleMap) -> f32 {
+    let mut differences: Vec<f32> = network.lambda.iter().zip(&drawn.lambda).map(|(n, d)| n - d).collect();
     let middle = differences.len() / 2;
     let median = *differences.select_nth_unstable_by(middle, f32::total_cmp).1;
-    (2.0 * (median - SCALE_MARGIN * shown_part)).clamp(0.0, median.max(0.0))
+    (2.0 * (median - SCALE_MARGIN)).clamp(0.0, median.max(0.0))
 }
 
 /// Makes a map brighter by some Lambda.
@@ -158,7 +163,7 @@ mod tests {
     #[test]
     fn a_map_beside_a_ghost_is_lifted_to_the_networks_scale() {
         for (median, lifted) in [(-0.1, 0.0), (0.02, 0.0), (0.03, 0.02), (0.05, 0.05)] {
-            assert!((darker_by(&flat(0.3), &flat(0.3 + median), 1.0) - lifted).abs() < 1e-6);
+            assert!((darker_by(&flat(0.3), &flat(0.3 + median)) - lifted).abs() < 1e-6);
         }
         let mut map = flat(0.95);
         lift(&mut map, 0.1);
@@ -174,6 +179,15 @@ mod tests {
         let weight = |part| network_weight(&drawn, &flat(0.9), Some(&flat(0.1)), &left, part)[[3, 5]];
         assert_eq!(weight(1.0), 1.0);
         assert_eq!(weight(0.5), 0.0, "what is cut off says nothing");
+    }
+
+    #[test]
+    fn bright_cells_are_the_searchs_until_as_much_is_left() {
+        let of = |left: f32, part| {
+            let left = Array2::from_elem((40, 60), left);
+            network_weight(&flat(0.9), &flat(0.95), Some(&flat(0.2)), &left, part)[[20, 30]]
+        };
+        assert_eq!([of(-0.5, 1.0), of(-0.5, 0.5), of(1.0, 0.5)], [AGREED_WEIGHT, 0.0, BRIGHT_AGREED_WEIGHT]);
     }
 
     #[test]
