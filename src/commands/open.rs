@@ -25,6 +25,12 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
 
+    /// Weights of the live network, as training/train_live.py writes them: a method called "live-" and the file's name without its ending.
+    /// Several files are several methods
+    #[cfg(feature = "live")]
+    #[arg(long, value_name = "FILE")]
+    weights: Vec<PathBuf>,
+
     #[command(flatten)]
     own: OwnMethodArgs,
 
@@ -40,7 +46,11 @@ impl Args {
     /// Opens the app; without one, or without a display, says so and draws the scene's panels to a picture.
     pub fn run(mut self) -> Result<(), CommandError> {
         let started = Instant::now();
-        let own = self.own.start()?;
+        let mut own = self.own.start()?;
+        #[cfg(feature = "live")]
+        for path in &self.weights {
+            own.push(methods::add_weights(path).map_err(CommandError::failed)?.name());
+        }
         self.method = self.method.or_else(|| own.first().map(|name| (*name).to_owned()));
         let input = match &self.scene {
             Some(path) => InputArgs::load(path)?,

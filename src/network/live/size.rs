@@ -6,7 +6,7 @@ use super::grid::{COARSE, COLUMNS, FINE, ROWS};
 use crate::network::domain::Domain;
 use crate::network::kernels::convolution::padded;
 use crate::network::weights::{WeightFile, WeightsError};
-use crate::radar::Bytes;
+use crate::radar::{Bytes, Radar};
 use serde::Deserialize;
 use std::ops::RangeInclusive;
 
@@ -20,6 +20,11 @@ pub const ROWS_STEP: usize = 8;
 
 /// Most memory that a network may take for its weights and one pass, bytes.
 const MAX_BYTES: u64 = 1 << 30;
+/// Channels of networks for radars of at most half as many cells as table 3.1's.
+const SMALL_CHANNELS: [usize; 4] = [12, 24, 44, 60];
+/// Seconds a map of 512 samples, of the shipped widths and of these.
+const MAP_SECONDS: f64 = 1.0 / 3.85;
+const SMALL_MAP_SECONDS: f64 = 1.0 / 3.85;
 const CHANNELS: RangeInclusive<usize> = 1..=512;
 const BLOCKS: RangeInclusive<usize> = 1..=16;
 const ELEMENTS: RangeInclusive<usize> = 2..=65_536;
@@ -85,6 +90,21 @@ impl LiveSize {
         Ok(size)
     }
 
+    /// That of a network which `training/train_live.py` makes for `radar`.
+    /// # Errors
+    /// A sentence without its full stop, where there can be none.
+    pub fn for_radar(radar: &Radar) -> Result<Self, String> {
+        if radar.end_elements < 2 {
+            return Err("an end of one element sees no direction".to_owned());
+        }
+        let shipped = LiveSize::default();
+        let is_small = 2 * radar.samples * radar.elements <= ROWS * COLUMNS;
+        let channels = if is_small { SMALL_CHANNELS } else { shipped.config.channels };
+        let config = LiveConfig { channels, ..shipped.config };
+        let size = LiveSize { config, rows: radar.samples, columns: radar.elements };
+        size.check().map(|()| size).map_err(|why| format!("its network {why}"))
+    }
+
     /// Checks that the radars of a weight file called `name` have this shape.
     /// # Errors
     /// [`WeightsError::Store`] with both shapes.
@@ -121,6 +141,13 @@ impl LiveSize {
         Ok(())
     }
 
+    /// Maps that `training/train_live.py` sees in an hour on two slow cores: its pictures have as many rows as the radar has samples, and as many
+    /// columns for any radar.
+    pub fn training_maps_an_hour(&self) -> f64 {
+        let seconds = if self.config.channels == SMALL_CHANNELS { SMALL_MAP_SECONDS } else { MAP_SECONDS };
+        3600.0 / (seconds * self.rows as f64 / ROWS as f64)
+    }
+
     /// Upper bound on the bytes of the weights as they are packed, and of a pass' pictures and maps.
     pub fn memory_bytes(&self) -> u64 {
         let LiveConfig { channels, blocks, fine } = &self.config;
@@ -143,7 +170,7 @@ mod tests {
     use crate::network::live::LiveMethod;
     use crate::network::live::engine::LiveScratch;
     use crate::network::live::features::FeatureExtractor;
-    use crate::radar::{Convention, Radar};
+    use crate::radar::Convention;
     use crate::reconstruct::{Reconstructor, Request};
     use crate::scene::Reflector;
     use crate::signal::exact;
