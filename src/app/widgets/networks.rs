@@ -33,7 +33,10 @@ pub fn networks(ui: &mut Ui, offered: Offered<'_>, asked: &mut Vec<Command>) {
 fn training(ui: &mut Ui, radar: &Radar) {
     let size = match LiveSize::for_radar(radar) {
         Ok(size) => size,
-        Err(why) => return _ = ui.weak(format!("None can be trained: {why}.")),
+        Err(why) => {
+            ui.weak(format!("None can be trained: {why}."));
+            return;
+        }
     };
     let hours = TOLD_MAPS / size.training_maps_an_hour();
     let time = match hours {

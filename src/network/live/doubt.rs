@@ -94,9 +94,9 @@ fn mean(numbers: impl ExactSizeIterator<Item = f32>) -> f64 {
 mod tests {
     use super::*;
     use crate::network::live::LiveConfig;
-    use crate::network::live::grid::ROWS;
     use crate::network::live::engine::{LiveEngine, LiveScratch};
     use crate::network::live::features::FeatureExtractor;
+    use crate::network::live::grid::ROWS;
     use crate::radar::Radar;
     use crate::scene::Reflector;
     use crate::signal::exact;

@@ -312,7 +312,8 @@ fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mu
     whole_row[ROW_CHANNELS..GRID_AT - ROWS_AT].copy_from_slice(scalars);
     let range = row as f32;
     whole_row[CONSTANTS_AT - ROWS_AT..].copy_from_slice(&input.constants);
-    whole_row[GRID_AT - ROWS_AT..][..2].copy_from_slice(&[range / (rows / 2) as f32 - 1.0, (range + 4.0).log10() - 2.0]);
+    whole_row[GRID_AT - ROWS_AT..][..2]
+        .copy_from_slice(&[range / (rows / 2) as f32 - 1.0, (range + 4.0).log10() - 2.0]);
     let half = (COARSE / 2) as f32;
     for (k, cell) in line.chunks_exact_mut(INPUT_CHANNELS).enumerate() {
         for (to, plane) in cell.chunks_exact_mut(FOLD).zip(&fine) {
