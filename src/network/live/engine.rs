@@ -180,7 +180,10 @@ impl LiveEngine {
         // Weights without kernels for this window were not trained for it.
         let kernels = self.lobes.get(window_of(&input.constants)).unwrap_or(&self.lobes[0]);
         let (map, computed) = decode(kernels, &s.heads, &s.sources, floor, unseen, &mut s.lobes);
-        let map = self.taps.as_ref().map_or_else(|| map, |taps| taps.rows_of(&map));
+        let map = match &self.taps {
+            None => map,
+            Some(taps) => taps.rows_of(&map),
+        };
         Decades { map, minimum: floor - 2.5 + minimum_shift, computed }
     }
 
