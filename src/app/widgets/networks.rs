@@ -10,6 +10,9 @@ use eframe::egui::{RichText, Ui};
 /// Maps of a training whose time is told: with so many the second edition of `live` was near its end (training/README.md).
 const TOLD_MAPS: f64 = 50_000.0;
 
+/// Cores whose time is told.
+const CORES: f64 = 2.0;
+
 /// Names the networks that take the radar, or shows the commands that train one.
 pub fn networks(ui: &mut Ui, offered: Offered<'_>, asked: &mut Vec<Command>) {
     let Some(radar) = offered.radar else { return };
@@ -38,7 +41,7 @@ fn training(ui: &mut Ui, radar: &Radar) {
             return;
         }
     };
-    let hours = TOLD_MAPS / size.training_maps_an_hour();
+    let hours = TOLD_MAPS * size.training_seconds_a_map() / CORES / 3600.0;
     let time = match hours {
         hours if hours < 2.0 => counted((60.0 * hours).ceil() as u32, "minute", "minutes"),
         hours => counted(hours.round() as u32, "hour", "hours"),

@@ -22,9 +22,9 @@ pub const ROWS_STEP: usize = 8;
 const MAX_BYTES: u64 = 1 << 30;
 /// Channels of networks for radars of at most half as many cells as table 3.1's.
 const SMALL_CHANNELS: [usize; 4] = [12, 24, 44, 60];
-/// Seconds a map of 512 samples, of the shipped widths and of these.
-const MAP_SECONDS: f64 = 1.0 / 3.85;
-const SMALL_MAP_SECONDS: f64 = 1.0 / 3.85;
+/// Processor seconds that a map of 512 samples takes in training, of the shipped widths and of the small ones (training/README.md).
+const MAP_SECONDS: f64 = 0.52;
+const SMALL_MAP_SECONDS: f64 = 0.33;
 const CHANNELS: RangeInclusive<usize> = 1..=512;
 const BLOCKS: RangeInclusive<usize> = 1..=16;
 const ELEMENTS: RangeInclusive<usize> = 2..=65_536;
@@ -141,11 +141,11 @@ impl LiveSize {
         Ok(())
     }
 
-    /// Maps that `training/train_live.py` sees in an hour on two slow cores: its pictures have as many rows as the radar has samples, and as many
-    /// columns for any radar.
-    pub fn training_maps_an_hour(&self) -> f64 {
+    /// Processor seconds that a map takes in `training/train_live.py`: its pictures have as many rows as the radar has samples, and as many columns
+    /// for any radar.
+    pub fn training_seconds_a_map(&self) -> f64 {
         let seconds = if self.config.channels == SMALL_CHANNELS { SMALL_MAP_SECONDS } else { MAP_SECONDS };
-        3600.0 / (seconds * self.rows as f64 / ROWS as f64)
+        seconds * self.rows as f64 / ROWS as f64
     }
 
     /// Upper bound on the bytes of the weights as they are packed, and of a pass' pictures and maps.
