@@ -46,11 +46,9 @@ impl Args {
     /// Opens the app; without one, or without a display, says so and draws the scene's panels to a picture.
     pub fn run(mut self) -> Result<(), CommandError> {
         let started = Instant::now();
-        let mut own = self.own.start()?;
+        let own = self.own.start()?;
         #[cfg(feature = "live")]
-        for path in &self.weights {
-            own.push(methods::add_weights(path).map_err(CommandError::failed)?.name());
-        }
+        let own = own.into_iter().chain(self.networks()?).collect::<Vec<_>>();
         self.method = self.method.or_else(|| own.first().map(|name| (*name).to_owned()));
         let input = match &self.scene {
             Some(path) => InputArgs::load(path)?,
@@ -66,6 +64,13 @@ impl Args {
         let reason = shortened(&reason);
         console::say(&format!("apertura: {reason}; drawing its panels to a picture instead"));
         draw_instead(&input, method)
+    }
+
+    /// Adds the networks of --weights to the methods; their names.
+    #[cfg(feature = "live")]
+    fn networks(&self) -> Result<Vec<&'static str>, CommandError> {
+        let name = |path: &PathBuf| methods::add_weights(path).map(|method| method.name());
+        self.weights.iter().map(name).collect::<Result<_, _>>().map_err(CommandError::failed)
     }
 
     #[cfg(feature = "app")]

@@ -22,6 +22,7 @@ impl Methods {
     }
 
     /// Offers `method` too, in place of one of its name.
+    #[cfg(feature = "live")]
     pub fn add(&mut self, method: Arc<dyn Reconstructor>) {
         self.all.retain(|other| other.name() != method.name());
         self.all.push(method);

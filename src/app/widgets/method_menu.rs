@@ -27,7 +27,7 @@ pub struct Offered<'a> {
     /// Every method.
     pub all: &'a [Arc<dyn Reconstructor>],
     /// The radar of the scene on screen, where there is one.
-    #[cfg_attr(not(feature = "live"), expect(dead_code, reason = "the networks for it are listed"))]
+    #[cfg_attr(not(feature = "live"), allow(dead_code, reason = "the networks for it are listed"))]
     pub radar: Option<&'a Radar>,
     /// How long each takes on this machine.
     pub times: Times<'a>,
