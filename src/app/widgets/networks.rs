@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn networks_that_take_the_radar_are_named() {
         let mut menu = menu(Radar::default());
-        assert!(says(&menu, "live, ") && !says(&menu, "train_live.py"), "{:?}", seen::texts(menu.output()));
+        assert!(says(&menu, "live") && !says(&menu, "train_live.py"), "{:?}", seen::texts(menu.output()));
         menu.get_by_label("Open weights…").click();
         menu.run();
         assert_eq!(menu.state(), &[Command::from(DocumentCommand::Open)]);
