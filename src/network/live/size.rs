@@ -148,19 +148,25 @@ impl LiveSize {
         seconds * self.rows as f64 / ROWS as f64
     }
 
-    /// Upper bound on the bytes of the weights as they are packed, and of a pass' pictures and maps.
+    /// Upper bound on the bytes of the weights as they are packed, and of the tables, pictures and maps of one pass.
     pub fn memory_bytes(&self) -> u64 {
         let LiveConfig { channels, blocks, fine } = &self.config;
-        let widths = channels.map(padded);
+        let wide = |count: usize| padded(count) as u64;
         // A 3x3 convolution is kept as 36 products.
-        let conv = |input: usize, output: usize| 36 * input * padded(output);
-        let levels: usize =
-            widths.iter().zip(blocks).map(|(c, blocks)| 2 * blocks * (2 * conv(*c, *c) + 4 * c * c)).sum();
-        let steps: usize = widths.windows(2).map(|pair| 8 * pair[0] * pair[1]).sum();
-        let heads = conv(INPUT_CHANNELS, widths[0]) + conv(widths[0], 4 * DECODER_CHANNELS) + conv(12, *fine);
-        let kernels = WINDOWS * (self.rows * self.rows + WIDE_COLUMNS * WIDE_COLUMNS);
-        let pictures = COARSE * (3 * widths.iter().sum::<usize>() + 32) + FINE * 24 + 4 * COLUMNS + 3 * self.columns;
-        4 * (levels + steps + heads + kernels + self.rows * pictures) as u64
+        let conv = |input: usize, output: usize| 36 * wide(input) * wide(output);
+        let levels: u64 = channels
+            .iter()
+            .zip(blocks)
+            .map(|(c, blocks)| 2 * *blocks as u64 * (2 * conv(*c, *c) + 4 * wide(*c) * wide(*c)))
+            .sum();
+        let steps: u64 = channels.windows(2).map(|pair| 8 * wide(pair[0]) * wide(pair[1])).sum();
+        let heads = conv(INPUT_CHANNELS, channels[0]) + conv(channels[0], 4 * DECODER_CHANNELS) + conv(12, *fine);
+        let [rows, columns] = [self.rows, self.columns].map(|n| n as u64);
+        let kernels = WINDOWS as u64 * (rows * rows + (WIDE_COLUMNS * WIDE_COLUMNS) as u64);
+        // Of a row: a level, what is convolved and what comes from below; heads and features; maps.
+        let of_levels: u64 = channels.iter().enumerate().map(|(level, c)| 3 * (wide(*c) >> (2 * level))).sum();
+        let pictures = COARSE as u64 * (of_levels + 64) + FINE as u64 * 32 + 2 * COLUMNS as u64 + 3 * columns;
+        4 * (levels + steps + heads + kernels + rows * pictures)
     }
 }
 
@@ -187,6 +193,7 @@ mod tests {
         assert_eq!(of("{}"), Ok(LiveSize::default()));
         let small = of(r#"{"c": [12, 24, 44, 60], "rows": 128, "columns": 192}"#).unwrap();
         assert_eq!((small.rows, small.columns, small.config.channels), (128, 192, [12, 24, 44, 60]));
+        assert_eq!(of(r#"{"rows": 4096}"#).unwrap().rows, MAX_ROWS);
         assert_eq!(small.config.blocks, LiveConfig::default().blocks);
     }
 
