@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn a_size_out_of_bounds_is_named_with_file_and_entry() {
         for (entry, told) in [
-            ("[]", "is no size of a network"),
+            ("7", "is no size of a network"),
             (r#"{"depth": 3}"#, "unknown field `depth`"),
             (r#"{"rows": 100}"#, "rows of 100; expected a multiple of 8 up to 4096"),
             (r#"{"rows": 4104}"#, "rows of 4104; expected a multiple of 8 up to 4096"),
