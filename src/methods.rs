@@ -31,6 +31,18 @@ pub fn add(method: Arc<dyn Reconstructor>) -> Result<(), NameTaken> {
     Ok(())
 }
 
+/// Adds the live network with the weights of the file at `path` to [`all`], under a name of its own.
+/// # Errors
+/// A sentence with the file: it can't be read, is damaged or another network's, or its name is another method's.
+#[cfg(feature = "live")]
+pub fn add_weights(path: &std::path::Path) -> Result<Arc<dyn Reconstructor>, String> {
+    let name = crate::network::name_of_weights(path);
+    let method: Arc<dyn Reconstructor> =
+        Arc::new(crate::network::live_from_file(path, &name).map_err(|error| error.to_string())?);
+    add(method.clone()).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok(method)
+}
+
 /// A method's name that another method has.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("a method of this program is called \"{name}\"; expected another name")]

@@ -1,7 +1,8 @@
 """The live network in PyTorch: the twin of `src/network/live/module.rs`, with the same layer names and shapes. Needs `torch` and `safetensors`.
 
-`Estimator` makes a method of any weights that `training/train_live.py` wrote, those for radars of other shapes included, which the program's own engine
-can't read. `python -m apertura.live FILE` is that method for the program: `apertura --method-command "python -m apertura.live FILE"`.
+`Estimator` makes a method of any weights that `training/train_live.py` wrote, those for radars of other shapes included. The program's own engine answers
+the same, and faster (`apertura.method("live", weights=FILE)`). `python -m apertura.live FILE` serves this one to the program:
+`apertura --method-command "python -m apertura.live FILE"`.
 """
 
 from __future__ import annotations

@@ -66,11 +66,7 @@ fn by_name(name: &str) -> PyResult<Arc<dyn Reconstructor>> {
 
 /// The live network with the weights of a file, under a name of its own.
 fn of_weights(path: PathBuf, called: Option<&str>) -> PyResult<Method> {
-    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let plain: String =
-        stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
-    let usual = if plain.starts_with("live-") { plain } else { format!("live-{plain}") };
-    let name = called.map_or_else(|| usual.chars().take(40).collect(), str::to_owned);
+    let name = called.map_or_else(|| apertura::network::name_of_weights(&path), str::to_owned);
     if !is_name(&name) || apertura::methods::by_name(&name).is_ok() {
         return Err(value(format!(
             "called is \"{name}\"; expected 1 to 40 letters, digits, \"-\", \"_\" or \".\", and no name of another method"

@@ -201,8 +201,10 @@ def test_a_radar_of_another_shape_trains_a_network_of_its_shape(tmp_path):
     assert found.returncode == 0, found.stderr
     estimator = Estimator(path)
     assert estimator.radar == radar and estimator.__name__ == "live-own"
-    rows = ap.evaluate([estimator, "baseline"], ["2"], count=1, radar=radar)
-    assert [row["method"] for row in rows] == ["live-own", "baseline"] and rows[0]["squared_error"] > 0
+    engine = ap.method("live", weights=path, called="engine")
+    rows = ap.evaluate([estimator, engine, "baseline"], ["2"], count=1, radar=radar)
+    assert [row["method"] for row in rows] == ["live-own", "engine", "baseline"]
+    assert rows[0]["squared_error"] == pytest.approx(rows[1]["squared_error"], rel=1e-2), "the program's engine answers the same"
     with pytest.raises(ValueError, match="the weights are for"):
         ap.evaluate([estimator], ["2"], count=1, radar=radar.replace(carrier_hz=76e9))
     method = ap.Method.of_command(f'"{sys.executable}" -m apertura.live "{path}"')

@@ -25,6 +25,12 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
 
+    /// Weights of the live network, as training/train_live.py writes them: a method called "live-" and the file's name without its ending.
+    /// Several files are several methods
+    #[cfg(feature = "live")]
+    #[arg(long, value_name = "FILE")]
+    weights: Vec<PathBuf>,
+
     #[command(flatten)]
     own: OwnMethodArgs,
 
@@ -41,6 +47,8 @@ impl Args {
     pub fn run(mut self) -> Result<(), CommandError> {
         let started = Instant::now();
         let own = self.own.start()?;
+        #[cfg(feature = "live")]
+        let own = own.into_iter().chain(self.networks()?).collect::<Vec<_>>();
         self.method = self.method.or_else(|| own.first().map(|name| (*name).to_owned()));
         let input = match &self.scene {
             Some(path) => InputArgs::load(path)?,
@@ -56,6 +64,13 @@ impl Args {
         let reason = shortened(&reason);
         console::say(&format!("apertura: {reason}; drawing its panels to a picture instead"));
         draw_instead(&input, method)
+    }
+
+    /// Adds the networks of --weights to the methods; their names.
+    #[cfg(feature = "live")]
+    fn networks(&self) -> Result<Vec<&'static str>, CommandError> {
+        let name = |path: &PathBuf| methods::add_weights(path).map(|method| method.name());
+        self.weights.iter().map(name).collect::<Result<_, _>>().map_err(CommandError::failed)
     }
 
     #[cfg(feature = "app")]

@@ -34,7 +34,11 @@ pub fn tables(methods: &[&dyn Reconstructor], scenes: u32) -> Result<String, Cam
     let campaign = Campaign { count: scenes, ..Campaign::default() };
     let mut text = String::from("## Tables 4.1 to 4.3\n\n");
     let _ = writeln!(text, "{scenes} test scenes a set, seed 0; P_D and P_FA at each method's own threshold.");
-    let _ = writeln!(text, "Tables and figures are made over the thesis' floor, with {}.\n", weights(methods, &campaign.radar));
+    let _ = writeln!(
+        text,
+        "Tables and figures are made over the thesis' floor, with {}.\n",
+        weights(methods, &campaign.radar)
+    );
     let sets = Kind::TEST_SETS.map(SceneSet::Generated);
     let rows = campaign.run(&sets, methods, &Task::default(), |_| ())?;
     for (set, scenes) in sets.iter().enumerate() {

@@ -64,6 +64,14 @@ impl Domain {
         refused(method, &self.differences(radar))
     }
 
+    /// Samples and elements of its radars.
+    pub(super) fn shape(&self) -> [usize; 2] {
+        match self {
+            Domain::Radar(radar) => [radar.samples, radar.elements],
+            Domain::Limits(limits) => [limits.samples, limits.elements],
+        }
+    }
+
     fn differences(&self, radar: &Radar) -> Vec<Difference> {
         match self {
             Domain::Radar(trained) => differences(trained, radar),

@@ -80,6 +80,16 @@ pub fn live() -> Option<LiveMethod> {
     })
 }
 
+/// Name of the live network with the weights of the file at `path`, beside the shipped ones: "live-" and the file's name without its ending, at
+/// most 40 characters.
+pub fn name_of_weights(path: &Path) -> String {
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let plain: String =
+        stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
+    let named = if plain.starts_with("live-") { plain } else { format!("live-{plain}") };
+    named.chars().take(40).collect()
+}
+
 const MAX_LIVE_BYTES: u64 = 256 << 20;
 
 /// The live network with the weights that the safetensors file at `path` holds, as a method called `name`.

@@ -4,14 +4,12 @@ use crate::session::Session;
 use apertura::app::{DocumentCommand, MapKind, Panel, RadarCommand, ViewCommand, WindowCommand};
 use apertura::maps::Normalisation;
 use apertura::methods;
-use apertura::radar::{Carrier, Decibels, Radar, SPEED_OF_LIGHT, presets};
+use apertura::radar::{Carrier, Convention, Decibels, Radar, SPEED_OF_LIGHT, presets};
+use apertura::reconstruct::Family;
 use apertura::recording::Recording;
 use apertura::scene::Scene;
 use apertura::signal::{Floor, simulate};
 use std::path::PathBuf;
-
-/// Methods that know one radar only.
-const NETWORKS: [&str; 4] = ["live", "thesis", "thesis-1", "unet"];
 
 fn array(elements: usize, end_elements: usize, carrier_hz: f64, wavelengths: f64) -> Radar {
     let element_spacing_metres = wavelengths * SPEED_OF_LIGHT / carrier_hz;
@@ -51,7 +49,7 @@ fn recorded(s: &Session, radar: &Radar) -> PathBuf {
 
 #[test]
 fn every_model_based_method_works_on_five_radars() {
-    let model_based = methods::all().into_iter().filter(|m| !NETWORKS.contains(&m.name()));
+    let model_based = methods::all().into_iter().filter(|m| m.family() != Family::Network);
     let mut s = Session::with_methods(model_based.collect());
     s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(40.0))));
     for (what, radar) in radars() {
@@ -60,7 +58,7 @@ fn every_model_based_method_works_on_five_radars() {
         assert_eq!(s.state().radar(), &radar, "{what}");
         s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::Unexplained)));
         let mut works = 0;
-        for method in methods::all().into_iter().filter(|m| !NETWORKS.contains(&m.name())) {
+        for method in methods::all().into_iter().filter(|m| m.family() != Family::Network) {
             let name = method.name();
             s.ask(ViewCommand::Method(name));
             let shown = s.state().pictures();
@@ -97,4 +95,22 @@ fn every_map_follows_the_chosen_radar() {
         assert_eq!(s.state().radar(), &preset.radar);
         assert!(s.state().refusal().is_none() && s.state().metrics().is_some());
     }
+}
+
+#[test]
+fn opened_weights_are_the_method_of_their_radar() {
+    let mut s = Session::start();
+    let weights = || DocumentCommand::OpenPath("tests/data/shape_reference_weights.safetensors".into());
+    let usual = s.state().shown_method();
+    s.ask(weights());
+    assert_eq!(s.state().shown_method(), usual, "they are for another radar");
+    let shape = Radar { elements: 86, end_elements: 8, samples: 72, ..Radar::default() };
+    s.ask(RadarCommand::Set(Box::new(shape.in_convention(Convention::Physical))));
+    s.ask(weights());
+    assert_eq!(s.state().shown_method(), Some("live-shape_reference_weights"), "{:?}", s.state().refusal());
+    assert!(s.state().metrics().is_some() && s.state().pictures().contains(&MapKind::Output));
+    let damaged = s.folder.path().join("damaged.safetensors");
+    std::fs::write(&damaged, b"no weights").unwrap();
+    s.ask(DocumentCommand::OpenPath(damaged));
+    assert_eq!(s.state().shown_method(), Some("live-shape_reference_weights"), "what was used stays");
 }

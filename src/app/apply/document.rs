@@ -4,6 +4,8 @@ use super::{saving, shared};
 use crate::app::jobs::{Jobs, Purpose};
 use crate::app::state::{DocumentCommand, MapKind, Panel, Settings, State, Way};
 use crate::interact::Document;
+#[cfg(feature = "live")]
+use crate::methods;
 use crate::recording::raw::boards;
 use crate::recording::{self, raw};
 use crate::scene::Scene;
@@ -41,8 +43,30 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) {
 
 /// Opens a scene file or a recording; on any error the scene on screen stays.
 fn open(state: &mut State, path: PathBuf) {
+    #[cfg(feature = "live")]
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("safetensors")) {
+        return open_weights(state, &path);
+    }
     if let Some(document) = read(state, &path) {
         show(state, "open", document);
+    }
+}
+
+/// Adds the live network with the weights of a file, and takes it where it is for the radar on screen.
+#[cfg(feature = "live")]
+fn open_weights(state: &mut State, path: &Path) {
+    let method = match methods::add_weights(path) {
+        Ok(method) => method,
+        Err(error) => return state.notices.error(error),
+    };
+    let name = method.name();
+    state.methods.add(method.clone());
+    match method.check_array(state.radar()) {
+        Ok(()) => {
+            state.settings.method = name.to_owned();
+            state.notices.info(format!("{name} is used: the live network with the weights of {}.", path.display()));
+        }
+        Err(error) => state.notices.info(format!("{name} is one of the methods now. {error}.")),
     }
 }
 

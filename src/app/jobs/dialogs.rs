@@ -13,6 +13,9 @@ use std::time::Duration;
 /// A dialog that ended sooner than this was never on screen: no user closes it so quickly.
 const NEVER_SHOWN: Duration = Duration::from_millis(250);
 
+/// How the names of files to open may end.
+const OPENED_ENDINGS: &[&str] = &["toml", "npz", "bin", "dat", "raw", "cfg", "npy", "mat", "safetensors"];
+
 /// What a file is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
@@ -88,7 +91,7 @@ impl Purpose {
     /// How the file's name may end, and what such files are.
     pub fn kind(self) -> (&'static str, &'static [&'static str]) {
         match self {
-            Purpose::Open => ("Scenes and recordings", &["toml", "npz", "bin", "dat", "raw", "cfg", "npy", "mat"]),
+            Purpose::Open => ("Scenes, recordings and weights", OPENED_ENDINGS),
             Purpose::SaveScene | Purpose::OwnScenes => ("Scenes", &["toml", "npz"]),
             Purpose::OpenLesson => ("Lessons", &["toml"]),
             Purpose::OpenLog | Purpose::ExportMetrics | Purpose::OpenRows | Purpose::SaveRows => ("Table", &["csv"]),

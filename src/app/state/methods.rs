@@ -21,6 +21,13 @@ impl Methods {
         Methods { all, preferred: crate::methods::preferred().name() }
     }
 
+    /// Offers `method` too, in place of one of its name.
+    #[cfg(feature = "live")]
+    pub fn add(&mut self, method: Arc<dyn Reconstructor>) {
+        self.all.retain(|other| other.name() != method.name());
+        self.all.push(method);
+    }
+
     /// The method called `name`, or else the preferred one, or else the first.
     pub fn named(&self, name: &str) -> Option<&Arc<dyn Reconstructor>> {
         let named = |name: &str| self.all.iter().find(|m| m.name() == name);

@@ -3,6 +3,7 @@
 use super::kind_boxes::ticking_menu;
 use super::numbers::significant;
 use crate::app::state::{Command, Times, WorkCommand};
+use crate::radar::Radar;
 use crate::reconstruct::{Family, Reconstructor};
 use eframe::egui::{Align, Grid, Label, Layout, Response, RichText, Sense, Ui};
 use std::collections::BTreeSet;
@@ -25,6 +26,9 @@ const MOST_NAMED: usize = 2;
 pub struct Offered<'a> {
     /// Every method.
     pub all: &'a [Arc<dyn Reconstructor>],
+    /// The radar of the scene on screen, where there is one.
+    #[cfg_attr(not(feature = "live"), allow(dead_code, reason = "the networks for it are listed"))]
+    pub radar: Option<&'a Radar>,
     /// How long each takes on this machine.
     pub times: Times<'a>,
     /// Progress of timing them, while that goes on.
@@ -35,7 +39,7 @@ impl<'a> Offered<'a> {
     /// These methods, of whose times nothing is known.
     #[cfg(test)]
     pub fn untimed(all: &'a [Arc<dyn Reconstructor>]) -> Self {
-        Offered { all, times: Times::default(), timing: None }
+        Offered { all, radar: None, times: Times::default(), timing: None }
     }
 }
 
@@ -83,6 +87,8 @@ pub fn method_list(
         }
         response
     });
+    #[cfg(feature = "live")]
+    super::networks::networks(ui, offered, asked);
     times_footer(ui, offered, asked);
     if let Some(name) = clicked.or(described) {
         ui.close();
@@ -176,7 +182,6 @@ mod tests {
     use super::*;
     use crate::app::state::{MethodTimes, ViewCommand};
     use crate::app::widgets::seen;
-    use crate::radar::Radar;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use std::time::Duration;
@@ -192,7 +197,7 @@ mod tests {
         times.record(&Radar::default(), chosen, Duration::from_millis(1240));
         let all = crate::methods::all();
         let draw = move |ui: &mut Ui, popup: &mut Popup| {
-            let offered = Offered { all: &all, times: popup.times.on(&Radar::default()), timing: None };
+            let offered = Offered { all: &all, radar: None, times: popup.times.on(&Radar::default()), timing: None };
             eframe::egui::ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
                 method_list(ui, offered, chosen, |v| ViewCommand::Method(v).into(), &mut popup.asked);
             });

@@ -14,6 +14,8 @@ pub mod legend;
 pub mod levels;
 pub mod list_rows;
 pub mod method_menu;
+#[cfg(feature = "live")]
+mod networks;
 pub mod nudge;
 pub mod number_field;
 pub mod numbers;

@@ -4,7 +4,7 @@
 //! convention needs no number. In the physical one a sample's phase is `+2 pi (f + n B / N) 2 R / c`; conjugated and read backwards, the
 //! samples are those of the thesis' convention at a carrier of `2 (f + B (N - 1) / N)`, in whose map cos(theta) rises with the column.
 
-use super::grid::{COLUMNS, CONSTANTS};
+use super::grid::CONSTANTS;
 use crate::network::domain::migration_bins;
 use crate::radar::{Carrier, Radar, WindowFunction};
 use ndarray::{Array2, ArrayViewMut2, Axis};
@@ -52,11 +52,11 @@ pub(super) fn in_thesis_convention(radar: &Radar, mut samples: Array2<Complex64>
     samples
 }
 
-/// Turns rows of [`COLUMNS`] around where cos(theta) falls with the column of `radar`'s maps: from the network's order to the map's, or back.
+/// Turns the rows of a map of the array around where cos(theta) falls with the column of `radar`'s maps: from the network's order to the map's, or back.
 pub fn turn_columns(radar: &Radar, map: &mut [f32]) {
     if radar.cos_of_column(0.0) > 0.0 {
         // The first column's direction is that of one column beyond the last.
-        map.par_chunks_mut(COLUMNS).for_each(|row| row[1..].reverse());
+        map.par_chunks_mut(radar.elements).for_each(|row| row[1..].reverse());
     }
 }
 
@@ -74,6 +74,7 @@ pub fn turn_rows(radar: &Radar, map: &mut ArrayViewMut2<'_, f32>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::live::grid::COLUMNS;
     use crate::radar::{Convention, End};
     use crate::scene::Reflector;
     use crate::signal::exact;

@@ -1,6 +1,7 @@
 //! How far off the live network expects its map to be: a small head on its picture that learned from its errors.
 
-use super::grid::{COARSE, COLUMNS, FINE, ROWS};
+use super::columns::ColumnTaps;
+use super::grid::{COARSE, COLUMNS, FINE};
 use super::planes::{Plane, rectified};
 use super::reading::LiveLayers;
 use super::winograd::{Conv3x3, Results};
@@ -49,9 +50,10 @@ impl DoubtHead {
         }))
     }
 
-    pub(super) fn read(&self, picture: &Plane) -> RangeAngleMap {
-        let lanes = self.conv2.output();
-        let mut said = vec![0.0; ROWS * COARSE * lanes];
+    /// What it says of a picture, for columns by `taps`, where they are not the network's.
+    pub(super) fn read(&self, picture: &Plane, taps: Option<&ColumnTaps>, columns: usize) -> RangeAngleMap {
+        let (rows, lanes) = (picture.h, self.conv2.output());
+        let mut said = vec![0.0; rows * COARSE * lanes];
         let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&picture.data[row * line.len()..][..line.len()]);
         let simd = Simd::chosen();
         let heads = |results: Results, out: &mut [f32]| {
@@ -59,21 +61,25 @@ impl DoubtHead {
             sums.iter_mut().for_each(|v| *v = rectified(*v));
             self.conv2.line(simd, sums, COARSE, COARSE, out);
         };
-        self.conv1.run([ROWS, COARSE], read, &mut said, heads);
+        self.conv1.run([rows, COARSE], read, &mut said, heads);
         let of_scene = mean(said.chunks_exact(lanes).map(|cell| cell[DOUBTS_PER_CELL]))
             .clamp(-SCENE_DECADES, SCENE_DECADES) as f32;
         let [least, most] = CELL_DECADES;
-        let mut error = Array2::zeros((ROWS, COLUMNS));
-        let lines = error.as_slice_mut().unwrap_or_default().par_chunks_mut(COLUMNS);
+        let mut error = Array2::zeros((rows, columns));
+        let lines = error.as_slice_mut().unwrap_or_default().par_chunks_mut(columns);
         lines.zip(said.par_chunks(COARSE * lanes)).for_each(|(line, said)| {
             let mut fine = [0.0; FINE];
             for (to, cell) in fine.chunks_exact_mut(DOUBTS_PER_CELL).zip(said.chunks_exact(lanes)) {
                 to.copy_from_slice(&cell[..DOUBTS_PER_CELL]);
             }
             each(&mut fine, |v| power_of_ten(v.clamp(least, most) + of_scene).min(1.0));
-            for (to, v) in line.chunks_exact_mut(COLUMNS_PER_DOUBT).zip(fine) {
-                to.fill(v);
-            }
+            let spread = |line: &mut [f32]| {
+                line.chunks_exact_mut(COLUMNS_PER_DOUBT).zip(fine).for_each(|(to, v)| to.fill(v));
+            };
+            let Some(taps) = taps else { return spread(line) };
+            let mut wide = [0.0; COLUMNS];
+            spread(&mut wide);
+            taps.fill(&wide, line);
         });
         RangeAngleMap { lambda: error }
     }
@@ -90,6 +96,7 @@ mod tests {
     use crate::network::live::LiveConfig;
     use crate::network::live::engine::{LiveEngine, LiveScratch};
     use crate::network::live::features::FeatureExtractor;
+    use crate::network::live::grid::ROWS;
     use crate::radar::Radar;
     use crate::scene::Reflector;
     use crate::signal::exact;
@@ -104,7 +111,7 @@ mod tests {
 
     fn doubt_of(weights: &[u8], reference: &WeightFile) -> Option<RangeAngleMap> {
         let config = LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 };
-        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &config).unwrap();
+        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &config.into()).unwrap();
         let radar = Radar::default();
         let points = reference.tensor("points", &[3, 2]).unwrap();
         let reflectors: Vec<Reflector> = points

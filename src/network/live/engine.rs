@@ -2,15 +2,16 @@
 //!
 //! [`super::module`] is what trains and what this is tested against; this is what runs during a drag.
 
-use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, LiveConfig, WIDE_COLUMNS};
+use super::columns::ColumnTaps;
+use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, WIDE_COLUMNS};
 use super::constants::{SPACING_AT, window_of};
 use super::doubt::DoubtHead;
 use super::features::LiveInput;
-use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, ROWS, SCALARS};
+use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
 use super::lobes::WindowLobes;
 use super::planes::{Plane, PlaneBlock, rectified};
-use super::range_lobes::UNSEEN;
 use super::reading::{CELLS, LiveLayers};
+use super::size::LiveSize;
 use super::winograd::{Conv3x3, Results};
 use crate::maps::RangeAngleMap;
 use crate::network::kernels::convolution::{PRODUCT_COLUMNS, Packed, convolve, product};
@@ -27,7 +28,7 @@ const COLUMNS_PER_FINE: usize = COLUMNS / FINE;
 /// What the network says about one scene, in decades above the samples' gain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decades {
-    /// log10 |Y| of the whole array, `[512, 1024]` row-major.
+    /// log10 |Y| of the whole array, `[samples, elements]` row-major.
     pub map: Vec<f32>,
     /// The smallest cell that the true map is expected to have.
     pub minimum: f32,
@@ -52,6 +53,9 @@ pub struct LiveEngine {
     scalar2: Packed,
     doubt: Option<DoubtHead>,
     channels: [usize; 4],
+    rows: usize,
+    columns: usize,
+    taps: Option<ColumnTaps>,
 }
 
 /// Buffers of one forward pass; keep them between calls.
@@ -68,10 +72,11 @@ pub struct LiveScratch {
 }
 
 impl LiveEngine {
-    /// Packs the weights of `file`, which must fit `config`.
+    /// Packs the weights of `file`, which must fit `size`.
     /// # Errors
     /// [`WeightsError`] names the tensor that is missing or of another shape.
-    pub fn new(file: &WeightFile, config: &LiveConfig) -> Result<Self, WeightsError> {
+    pub fn new(file: &WeightFile, size: &LiveSize) -> Result<Self, WeightsError> {
+        let LiveSize { config, rows, columns } = size;
         let [c0, c1, c2, c3] = config.channels;
         let [b0, b1, b2, b3] = config.blocks;
         let layers = LiveLayers { file };
@@ -98,17 +103,20 @@ impl LiveEngine {
             fine1: layers.conv("fine1.conv", [DECODER_CHANNELS + FINE_CHANNELS; 2], config.fine)?,
             fine2: layers.small("fine2", config.fine, 2 * COLUMNS_PER_FINE, 1)?,
             row_sources: layers.small("row_sources", c0, WIDE_COLUMNS / COARSE, 1)?,
-            lobes: WindowLobes::all(file)?,
+            lobes: WindowLobes::all(file, *rows)?,
             scalar1: layers.linear("scalar1", [2 * c3 + SCALARS + CONSTANTS, CONSTANTS], 64)?,
             scalar2: layers.linear("scalar2", [64, 0], 2)?,
             doubt: DoubtHead::new(file, c0)?,
             channels: config.channels,
+            rows: *rows,
+            columns: *columns,
+            taps: ColumnTaps::new(*columns),
         })
     }
 
     /// Estimates the map of one scene; what doesn't show in it is left out.
     pub fn forward(&self, input: &LiveInput, s: &mut LiveScratch) -> Decades {
-        self.forward_over(input, UNSEEN, s)
+        self.forward_over(input, self.lobes[0].columns.unseen(), s)
     }
 
     /// The same with nothing left out, to measure what that costs.
@@ -116,18 +124,20 @@ impl LiveEngine {
         self.forward_over(input, 0.0, s)
     }
 
-    /// How far off the network expects Lambda to be, `[512, 1024]`: nine of ten cells have a smaller error, on scenes and over noise like those
+    /// How far off the network expects Lambda to be, `[samples, elements]`: nine of ten cells have a smaller error, on scenes and over noise like those
     /// it was trained on. Call it after [`LiveEngine::forward`] with the same buffers. `None` where the weights have no head for it.
     pub fn doubt(&self, s: &LiveScratch) -> Option<RangeAngleMap> {
-        Some(self.doubt.as_ref()?.read(&s.level[0]))
+        Some(self.doubt.as_ref()?.read(&s.level[0], self.taps.as_ref(), self.columns))
     }
 
     fn forward_over(&self, input: &LiveInput, unseen: f32, s: &mut LiveScratch) -> Decades {
+        let rows = self.rows;
+        assert!(input.rows.len() == ROW_CHANNELS * rows, "an input of {} rows", input.rows.len() / ROW_CHANNELS);
         let scalars = input.scalars.map(|v| (v + 8.0) / 3.0);
         let LiveScratch { hidden, level, upward, .. } = s;
-        level[0].reset(ROWS, COARSE, self.stem.output());
+        level[0].reset(rows, COARSE, self.stem.output());
         let read = |row: usize, line: &mut [f32]| read_input(input, &scalars, row, line);
-        self.stem.run([ROWS, COARSE], read, &mut level[0].data, |results, out| results.put(out));
+        self.stem.run([rows, COARSE], read, &mut level[0].data, |results, out| results.put(out));
         for k in 0..4 {
             if k > 0 {
                 let (above, below) = level.split_at_mut(k);
@@ -152,12 +162,12 @@ impl LiveEngine {
         }
         let top = &mut level[0];
         top.rectify();
-        s.sources.reset(ROWS, COARSE, self.row_sources.output());
+        s.sources.reset(rows, COARSE, self.row_sources.output());
         convolve(&self.row_sources, &top.data, COARSE, COARSE, &mut s.sources.data);
-        hidden.reset(ROWS, COARSE, self.widen.output());
+        hidden.reset(rows, COARSE, self.widen.output());
         let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&top.data[row * line.len()..][..line.len()]);
-        self.widen.run([ROWS, COARSE], read, &mut hidden.data, |results, out| results.put(out));
-        s.heads.reset(ROWS, FINE, self.fine2.output());
+        self.widen.run([rows, COARSE], read, &mut hidden.data, |results, out| results.put(out));
+        s.heads.reset(rows, FINE, self.fine2.output());
         let simd = Simd::chosen();
         let heads = |results: Results, out: &mut [f32]| {
             let sums = results.sums();
@@ -165,11 +175,15 @@ impl LiveEngine {
             self.fine2.line(simd, sums, FINE, FINE, out);
         };
         let read = |row: usize, line: &mut [f32]| read_fine(&input.fine, hidden, row, line);
-        self.fine1.run([ROWS, FINE], read, &mut s.heads.data, heads);
+        self.fine1.run([rows, FINE], read, &mut s.heads.data, heads);
         let floor = input.scalars[0] + floor_shift;
         // Weights without kernels for this window were not trained for it.
         let kernels = self.lobes.get(window_of(&input.constants)).unwrap_or(&self.lobes[0]);
         let (map, computed) = decode(kernels, &s.heads, &s.sources, floor, unseen, &mut s.lobes);
+        let map = match &self.taps {
+            None => map,
+            Some(taps) => taps.rows_of(&map),
+        };
         Decades { map, minimum: floor - 2.5 + minimum_shift, computed }
     }
 
@@ -213,7 +227,7 @@ fn decode(
         }
     };
     let computed = kernels.columns.add_up(floor, unseen, read, lobes);
-    let mut map = vec![0.0; ROWS * COLUMNS];
+    let mut map = vec![0.0; heads.h * COLUMNS];
     map.par_chunks_mut(ROWS_AT_ONCE * COLUMNS).enumerate().for_each(|(chunk, lines)| {
         let mut wide = [0.0; ROWS_AT_ONCE * WIDE_COLUMNS];
         for (at, (line, wide)) in lines.chunks_exact_mut(COLUMNS).zip(wide.chunks_exact_mut(WIDE_COLUMNS)).enumerate() {
@@ -263,7 +277,7 @@ fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>
 fn fill_line(heads: &Plane, lobes: &[f32], row: usize, line: &mut [f32]) {
     spread_out(heads.data[row * FINE * heads.c..].chunks_exact(heads.c), 0..COLUMNS_PER_FINE, line);
     for (block, line) in line.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {
-        let lobes = &lobes[(block * ROWS + row) * PRODUCT_COLUMNS..][..PRODUCT_COLUMNS];
+        let lobes = &lobes[(block * heads.h + row) * PRODUCT_COLUMNS..][..PRODUCT_COLUMNS];
         line.iter_mut().zip(lobes).for_each(|(sum, lobe)| *sum += lobe);
     }
 }
@@ -275,7 +289,7 @@ fn decades_in(v: f32) -> f32 {
 /// The fine features of a row as the network takes them.
 fn fine_in(fine: &[f32], row: usize) -> [[f32; FINE]; FINE_CHANNELS] {
     std::array::from_fn(|channel| {
-        let at = (channel * ROWS + row) * FINE;
+        let at = (channel * (fine.len() / FINE_CHANNELS / FINE) + row) * FINE;
         let mut line = [0.0; FINE];
         line.iter_mut().zip(&fine[at..at + FINE]).for_each(|(to, v)| *to = decades_in(*v));
         line
@@ -289,18 +303,20 @@ fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mu
     const SCALARS_AT: usize = ROWS_AT + ROW_CHANNELS;
     const GRID_AT: usize = SCALARS_AT + SCALARS;
     const CONSTANTS_AT: usize = GRID_AT + 4;
+    let rows = input.rows.len() / ROW_CHANNELS;
     let fine = fine_in(&input.fine, row);
     let coarse: [&[f32]; COARSE_CHANNELS] =
-        std::array::from_fn(|c| &input.coarse[(c * ROWS + row) * COARSE..][..COARSE]);
+        std::array::from_fn(|c| &input.coarse[(c * rows + row) * COARSE..][..COARSE]);
     let mut whole_row = [0.0; INPUT_CHANNELS - ROWS_AT];
     for (c, v) in whole_row[..ROW_CHANNELS].iter_mut().enumerate() {
-        let of_row = input.rows[c * ROWS + row];
+        let of_row = input.rows[c * rows + row];
         *v = if c < 4 { of_row } else { decades_in(of_row) };
     }
     whole_row[ROW_CHANNELS..GRID_AT - ROWS_AT].copy_from_slice(scalars);
     let range = row as f32;
     whole_row[CONSTANTS_AT - ROWS_AT..].copy_from_slice(&input.constants);
-    whole_row[GRID_AT - ROWS_AT..][..2].copy_from_slice(&[range / 256.0 - 1.0, (range + 4.0).log10() - 2.0]);
+    whole_row[GRID_AT - ROWS_AT..][..2]
+        .copy_from_slice(&[range / (rows / 2) as f32 - 1.0, (range + 4.0).log10() - 2.0]);
     let half = (COARSE / 2) as f32;
     for (k, cell) in line.chunks_exact_mut(INPUT_CHANNELS).enumerate() {
         for (to, plane) in cell.chunks_exact_mut(FOLD).zip(&fine) {

@@ -1,8 +1,8 @@
 //! Sizes of the live network's input and output.
 
-/// Range rows of every tensor.
+/// Samples of the radars that the shipped network is for: range rows of its tensors.
 pub const ROWS: usize = 512;
-/// Columns of the map.
+/// Columns of the network's map for any radar; elements of those that the shipped network is for.
 pub const COLUMNS: usize = 1024;
 /// Columns of the fine features.
 pub const FINE: usize = 256;

@@ -2,7 +2,6 @@
 
 use super::config::WIDE_COLUMNS;
 use super::constants::WINDOWS;
-use super::grid::ROWS;
 use super::range_lobes::RangeLobes;
 use super::reading::circulant;
 use crate::network::kernels::convolution::PRODUCT_COLUMNS;
@@ -16,14 +15,14 @@ pub(super) struct WindowLobes {
 }
 
 impl WindowLobes {
-    /// Of kernels' decades over the distance in rows `[512 / 2 + 1]` and in wide columns `[128 / 2 + 1]`.
+    /// Of kernels' decades over the distance in rows `[rows / 2 + 1]` and in wide columns `[128 / 2 + 1]`.
     fn new(column: &[f32], row: &[f32]) -> Self {
         WindowLobes { columns: RangeLobes::new(column), rows: in_blocks(&circulant(row, WIDE_COLUMNS), WIDE_COLUMNS) }
     }
 
-    /// Those of `file`: of the window of Hann, and of each other one where it has them.
-    pub(super) fn all(file: &WeightFile) -> Result<Vec<Self>, WeightsError> {
-        let lengths = [ROWS / 2 + 1, WIDE_COLUMNS / 2 + 1];
+    /// Those of `file`, for so many rows: of the window of Hann, and of each other one where it has them.
+    pub(super) fn all(file: &WeightFile, rows: usize) -> Result<Vec<Self>, WeightsError> {
+        let lengths = [rows / 2 + 1, WIDE_COLUMNS / 2 + 1];
         let mut all = vec![WindowLobes::new(
             &file.tensor("col_kernel", &lengths[..1])?,
             &file.tensor("row_kernel", &lengths[1..])?,

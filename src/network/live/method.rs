@@ -1,10 +1,9 @@
 //! The live network as a reconstruction method.
 
-use super::config::LiveConfig;
 use super::constants::turn_columns;
 use super::engine::{Decades, LiveEngine, LiveScratch};
 use super::features::{FeatureExtractor, LiveInput};
-use super::grid::{COLUMNS, ROWS};
+use super::size::LiveSize;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::domain::{Domain, is_alike};
 use crate::network::weights::{Provenance, WeightFile, WeightsError};
@@ -47,7 +46,7 @@ pub struct LiveMethod {
 }
 
 impl LiveMethod {
-    /// The shipped architecture with the weights of `file`.
+    /// The network of the weights of `file`.
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile) -> Result<Self, WeightsError> {
@@ -61,14 +60,17 @@ impl LiveMethod {
         if !file.network().is_empty() {
             file.expect_network(NAME)?;
         }
+        let size = LiveSize::of(&file)?;
+        let trained = file.provenance.domain(file.name())?;
+        size.check_domain(file.name(), &trained)?;
         Ok(LiveMethod {
             name: if name == NAME { NAME } else { name.to_owned().leak() },
-            engine: LiveEngine::new(&file, &LiveConfig::default())?,
+            engine: LiveEngine::new(&file, &size)?,
             extractor: Mutex::default(),
             idle: Mutex::default(),
             eta: file.provenance.eta().unwrap_or(0.8),
             weights: file.weights(),
-            trained: file.provenance.domain(file.name())?,
+            trained,
             other_radars: None,
             provenance: file.provenance,
         })
@@ -209,8 +211,8 @@ impl Reconstructor for LiveMethod {
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
         let least_eta = scale.lambda(noise_level_decades(&map)) as f32;
         let doubt = doubt.map(|doubt| on_scale(doubt, [minimum, peak], scale));
-        map.par_chunks_mut(COLUMNS).for_each(|line| each(line, |v| scale.lambda(v.into()) as f32));
-        let lambda = Array2::from_shape_vec((ROWS, COLUMNS), map)
+        map.par_chunks_mut(radar.elements).for_each(|line| each(line, |v| scale.lambda(v.into()) as f32));
+        let lambda = Array2::from_shape_vec((radar.samples, radar.elements), map)
             .map_err(|e| ReconstructError::Unusable { method: self.name, reason: e.to_string() })?;
         let lambda = RangeAngleMap { lambda };
         let eta = own_threshold(&lambda, doubt.as_ref());

@@ -15,7 +15,7 @@
 //! | [`grid`], [`features`], [`constants`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
 //! | [`examples`], [`arrays`], [`radars`] | inputs and targets of random scenes |
 //! | [`dataset`] | the same as files |
-//! | `config` | how large the network is |
+//! | `config`, [`size`], `columns` | how large the network is; a radar of another shape has its samples as rows, and its map is resampled to its elements |
 //! | `module`, `layers` | the network as a burn module: what trains (feature `network`) |
 //! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `lobes`, `range_lobes` | the same without a framework, over [`kernels`](super::kernels): what runs during a drag |
 //! | [`doubt`] | how far off the network expects to be |
@@ -24,6 +24,7 @@
 pub mod arrays;
 mod capon;
 mod coarse;
+mod columns;
 mod config;
 pub mod constants;
 pub mod dataset;
@@ -45,6 +46,7 @@ pub mod radars;
 mod range_lobes;
 mod reading;
 mod registration;
+pub mod size;
 mod winograd;
 
 pub use config::LiveConfig;

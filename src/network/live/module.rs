@@ -315,7 +315,7 @@ mod tests {
         let weights = include_bytes!("../../../tests/data/program-0.1.0/live_reference_weights.safetensors");
         let reference = include_bytes!("../../../tests/data/program-0.1.0/live_reference.safetensors");
         let reference = WeightFile::parse("reference", reference).unwrap();
-        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &tiny()).unwrap();
+        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &tiny().into()).unwrap();
         let found = engine.forward(&input(&reference, 1.0), &mut LiveScratch::default());
         let (mean, largest) = distance(&found.map, &reference.tensor("log", &[16, 64]).unwrap(), ROWS, COLUMNS, 32, 16);
         assert!(mean < 1e-4 && largest < 1e-2, "mean {mean}, largest {largest}");
@@ -326,7 +326,7 @@ mod tests {
         let reference = WeightFile::parse("reference", REFERENCE).unwrap();
         let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
         let input = input(&reference, 1.0);
-        let engine = LiveEngine::new(&weights, &tiny()).unwrap();
+        let engine = LiveEngine::new(&weights, &tiny().into()).unwrap();
         let fast = engine.forward(&input, &mut LiveScratch::default());
         let expected = reference.tensor("log", &[16, 64]).unwrap();
         let (mean, largest) = distance(&fast.map, &expected, ROWS, COLUMNS, 32, 16);
@@ -357,7 +357,7 @@ mod tests {
     fn a_louder_receiver_changes_nothing_but_the_gain() {
         let reference = WeightFile::parse("reference", REFERENCE).unwrap();
         let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
-        let engine = LiveEngine::new(&weights, &tiny()).unwrap();
+        let engine = LiveEngine::new(&weights, &tiny().into()).unwrap();
         let (soft, loud) = (input(&reference, 1.0), input(&reference, 1e6));
         assert!((loud.gain - soft.gain - 6.0).abs() < 1e-9);
         let mut scratch = LiveScratch::default();
@@ -370,7 +370,7 @@ mod tests {
     fn a_second_pass_over_used_buffers_gives_the_same_bits() {
         let reference = WeightFile::parse("reference", REFERENCE).unwrap();
         let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
-        let engine = LiveEngine::new(&weights, &tiny()).unwrap();
+        let engine = LiveEngine::new(&weights, &tiny().into()).unwrap();
         let input = input(&reference, 1.0);
         let mut scratch = LiveScratch::default();
         assert_eq!(engine.forward(&input, &mut scratch), engine.forward(&input, &mut scratch));

@@ -3,8 +3,9 @@
 //! As a matrix product that is the dearest layer of the network. Most of it doesn't show: far from a weak source there is the floor, or a
 //! strong source's side lobe. So the product is taken apart into tiles, and those that don't show are left out.
 
-use super::grid::{COLUMNS, ROWS};
+use super::grid::COLUMNS;
 use super::reading::circulant;
+use super::size::{MAX_ROWS, ROWS_STEP};
 use crate::network::kernels::convolution::{PRODUCT_COLUMNS as BLOCK, product};
 use crate::network::kernels::vector::LANES;
 use crate::signal::simd::{Kernel, LANES_F32, Lanes, Simd};
@@ -15,23 +16,30 @@ use std::cell::RefCell;
 const FROM: usize = 8;
 const TO: usize = 16;
 
-/// What a tile may add to a cell unseen, as a part of what the cell has at least: less than a hundredth for all tiles.
-pub(super) const UNSEEN: f32 = 1.5e-4;
+const _: () = assert!(ROWS_STEP.is_multiple_of(FROM), "whole tiles of sources");
+
+/// What all tiles together may add to a cell unseen, as a part of what the cell has at least.
+const ALL_UNSEEN: f32 = 0.0096;
+
+/// Words of a bit for each tile of sources.
+const WORDS: usize = MAX_ROWS / FROM / BITS;
+const BITS: usize = u64::BITS as usize;
 
 /// A learned kernel over the rows, which wraps around, and where it is how strong.
 #[derive(Debug)]
 pub(super) struct RangeLobes {
-    /// `[512, 512]`
+    rows: usize,
+    /// `[rows, rows]`
     kernel: Vec<f32>,
-    /// `[512 / TO, 512 / FROM]`: the kernel's least and greatest value in a tile.
+    /// `[rows / TO, rows / FROM]`, the first rounded up: the kernel's least and greatest value in a tile.
     reach: Vec<[f32; 2]>,
 }
 
 #[derive(Default)]
 struct Kept {
-    /// `[512, BLOCK]`
+    /// `[rows, BLOCK]`
     sources: Vec<f32>,
-    /// `[512 / FROM, BLOCK]`
+    /// `[rows / FROM, BLOCK]`
     sums: Vec<f32>,
 }
 
@@ -40,19 +48,25 @@ thread_local! {
 }
 
 impl RangeLobes {
-    /// Takes the kernel's decades over the distance in rows, `[512 / 2 + 1]`.
+    /// Takes the kernel's decades over the distance in rows, `[rows / 2 + 1]`.
     pub(super) fn new(decades: &[f32]) -> Self {
-        let kernel = circulant(decades, ROWS);
+        let rows = 2 * (decades.len() - 1);
+        let kernel = circulant(decades, rows);
         let of_tile = |tile: usize| {
-            let (to, from) = (tile / (ROWS / FROM) * TO, tile % (ROWS / FROM) * FROM);
-            let cells = (to..to + TO).flat_map(|row| &kernel[row * ROWS + from..][..FROM]);
+            let (to, from) = (tile / (rows / FROM) * TO, tile % (rows / FROM) * FROM);
+            let cells = (to..(to + TO).min(rows)).flat_map(|row| &kernel[row * rows + from..][..FROM]);
             cells.fold([f32::INFINITY, 0.0], |[least, most]: [f32; 2], v| [least.min(*v), most.max(*v)])
         };
-        let reach = (0..ROWS / TO * (ROWS / FROM)).map(of_tile).collect();
-        RangeLobes { kernel, reach }
+        let reach = (0..rows.div_ceil(TO) * (rows / FROM)).map(of_tile).collect();
+        RangeLobes { rows, kernel, reach }
     }
 
-    /// Side lobes `[1024 / BLOCK, 512, BLOCK]` of sources, of which `read` writes those of a block of columns, over a `floor`. Neither the
+    /// What a tile may add to a cell unseen, as a part of what the cell has at least: less than a hundredth for all tiles.
+    pub(super) fn unseen(&self) -> f32 {
+        ALL_UNSEEN / (self.rows / FROM) as f32
+    }
+
+    /// Side lobes `[1024 / BLOCK, rows, BLOCK]` of sources, of which `read` writes those of a block of columns, over a `floor`. Neither the
     /// floor nor tiles that add no more than the part `unseen` of what there is at least are added. The answer is the part of all tiles that was.
     ///
     /// `read` must not use rayon: what a thread keeps is borrowed meanwhile.
@@ -63,29 +77,30 @@ impl RangeLobes {
         read: impl Fn(usize, &mut [f32]) + Sync,
         out: &mut Vec<f32>,
     ) -> f32 {
-        let simd = Simd::chosen();
-        out.resize(ROWS * COLUMNS, 0.0);
+        let (simd, rows) = (Simd::chosen(), self.rows);
+        out.resize(rows * COLUMNS, 0.0);
         let of_block = |(block, out): (usize, &mut [f32])| {
             KEPT_LOBES.with_borrow_mut(|kept| {
-                kept.sources.resize(ROWS * BLOCK, 0.0);
+                kept.sources.resize(rows * BLOCK, 0.0);
                 read(block, &mut kept.sources);
                 simd.run(Sums { sources: &kept.sources, sums: &mut kept.sums });
-                let parts = out.chunks_exact_mut(TO * BLOCK).enumerate();
+                let parts = out.chunks_mut(TO * BLOCK).enumerate();
                 parts.map(|(to, out)| self.add_to(simd, floor, unseen, to, kept, out)).sum::<usize>()
             })
         };
-        let tiles = out.par_chunks_mut(ROWS * BLOCK).enumerate().map(of_block).sum::<usize>();
+        let tiles = out.par_chunks_mut(rows * BLOCK).enumerate().map(of_block).sum::<usize>();
         tiles as f32 / (COLUMNS / BLOCK * self.reach.len()) as f32
     }
 
-    /// What a block's sources add to [`TO`] rows, in how many tiles.
+    /// What a block's sources add to the rows of a tile, [`TO`] or what is left, in how many tiles.
     fn add_to(&self, simd: Simd, floor: f32, unseen: f32, to: usize, kept: &Kept, out: &mut [f32]) -> usize {
-        let reach = &self.reach[to * (ROWS / FROM)..][..ROWS / FROM];
+        let (rows, tiles) = (self.rows, self.rows / FROM);
+        let reach = &self.reach[to * tiles..][..tiles];
         let shows = simd.run(Shows { reach, sums: &kept.sums, floor, unseen });
-        let tiles = (0..ROWS / FROM).filter(|tile| shows >> tile & 1 == 1);
+        let tiles = (0..tiles).filter(|tile| shows[tile / BITS] >> (tile % BITS) & 1 == 1);
         let runs = tiles.map(|tile| tile * FROM..(tile + 1) * FROM);
-        product(simd, &self.kernel[to * TO * ROWS..][..TO * ROWS], &kept.sources, runs, out);
-        shows.count_ones() as usize
+        product(simd, &self.kernel[to * TO * rows..][..out.len() / BLOCK * rows], &kept.sources, runs, out);
+        shows.iter().map(|word| word.count_ones() as usize).sum()
     }
 }
 
@@ -102,7 +117,7 @@ impl Kernel for Sums<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        self.sums.resize(ROWS / FROM * BLOCK, 0.0);
+        self.sums.resize(self.sources.len() / FROM, 0.0);
         for (rows, sums) in self.sources.chunks_exact(FROM * BLOCK).zip(self.sums.chunks_exact_mut(BLOCK)) {
             for at in (0..BLOCK).step_by(LANES) {
                 let row = |row: usize| Vector::load(&rows[row * BLOCK + at..]);
@@ -120,14 +135,12 @@ struct Shows<'a> {
     unseen: f32,
 }
 
-const _: () = assert!(ROWS / FROM <= u64::BITS as usize, "a bit for each tile");
-
 impl Kernel for Shows<'_> {
-    type Output = u64;
+    type Output = [u64; WORDS];
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) -> u64 {
-        let mut shows = 0;
+    fn run<const FMA: bool>(self) -> [u64; WORDS] {
+        let mut shows = [0; WORDS];
         for at in (0..BLOCK).step_by(LANES) {
             let sum = |tile: usize| Vector::load(&self.sums[tile * BLOCK + at..]);
             let mut least = Vector::splat(self.floor);
@@ -135,9 +148,13 @@ impl Kernel for Shows<'_> {
                 least = sum(tile).mul_add::<FMA>(Lanes::splat(of_least), least);
             }
             least = least * Lanes::splat(self.unseen);
-            for (tile, &[_, of_most]) in self.reach.iter().enumerate() {
-                let over = sum(tile).mul_add::<FMA>(Lanes::splat(of_most), -least);
-                shows |= u64::from(over.0.iter().any(|v| *v > 0.0)) << tile;
+            for (word, (shows, reach)) in shows.iter_mut().zip(self.reach.chunks(BITS)).enumerate() {
+                let mut bits = 0;
+                for (bit, &[_, of_most]) in reach.iter().enumerate() {
+                    let over = sum(word * BITS + bit).mul_add::<FMA>(Lanes::splat(of_most), -least);
+                    bits |= u64::from(over.0.iter().any(|v| *v > 0.0)) << bit;
+                }
+                *shows |= bits;
             }
         }
         shows
@@ -150,8 +167,12 @@ mod tests {
 
     #[test]
     fn what_is_left_out_does_not_show() {
+        [512, 200, 1024].into_iter().for_each(check_what_is_left_out);
+    }
+
+    fn check_what_is_left_out(rows: usize) {
         // Tails as those of a Hann window, and sources over fifteen decades, most of them weak.
-        let decades: Vec<f32> = (0..=ROWS / 2).map(|k| -3.0 - 3.0 * (1.0 + k as f32).log10()).collect();
+        let decades: Vec<f32> = (0..=rows / 2).map(|k| -3.0 - 3.0 * (1.0 + k as f32).log10()).collect();
         let lobes = RangeLobes::new(&decades);
         let source = |row: usize, column: usize| {
             let random = ((row * COLUMNS + column) as u32).wrapping_mul(2_654_435_761) >> 8;
@@ -163,14 +184,14 @@ mod tests {
         };
         let floor = 1e-14;
         let mut found = Vec::new();
-        let part = lobes.add_up(floor, UNSEEN, read, &mut found);
+        let part = lobes.add_up(floor, lobes.unseen(), read, &mut found);
         assert!(part < 0.5, "{part} of all tiles");
         let mut worst: f32 = 0.0;
         for column in (0..COLUMNS).step_by(7) {
-            for row in 0..ROWS {
-                let kernel = &lobes.kernel[row * ROWS..][..ROWS];
+            for row in 0..rows {
+                let kernel = &lobes.kernel[row * rows..][..rows];
                 let all: f32 = kernel.iter().enumerate().map(|(from, k)| k * source(from, column)).sum();
-                let found = found[(column / BLOCK * ROWS + row) * BLOCK + column % BLOCK];
+                let found = found[(column / BLOCK * rows + row) * BLOCK + column % BLOCK];
                 worst = worst.max(((all + floor) / (found + floor)).log10().abs());
             }
         }

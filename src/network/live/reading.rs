@@ -119,7 +119,8 @@ fn cell_by_cell(of_channels: &[f32], channels: usize) -> Vec<f32> {
 /// `[n, n]`: over the distance of row and column, which wraps around, the amplitudes of so many decades.
 pub(super) fn circulant(kernel: &[f32], n: usize) -> Vec<f32> {
     let distance = |k: usize| (k / n).abs_diff(k % n).min(n - (k / n).abs_diff(k % n));
-    (0..n * n).map(|k| 10f32.powf(kernel[distance(k)])).collect()
+    let amplitudes: Vec<f32> = kernel.iter().map(|decades| 10f32.powf(*decades)).collect();
+    (0..n * n).map(|k| amplitudes[distance(k)]).collect()
 }
 
 #[cfg(test)]

@@ -296,6 +296,7 @@ mod networks {
     use std::path::Path;
 
     const LIVE: &[u8] = include_bytes!("../../data/live_reference_weights.safetensors");
+    const SHAPE: &[u8] = include_bytes!("../../data/shape_reference_weights.safetensors");
     const THESIS: &[u8] = include_bytes!("../../data/thesis_reference_weights.safetensors");
     const CHECKPOINT: &[u8] = include_bytes!("../../data/thesis_reference_weights.pt");
 
@@ -337,7 +338,7 @@ mod networks {
     fn whole_networks() -> Reader {
         Reader {
             name: "weights",
-            files: vec![THESIS.to_vec(), CHECKPOINT.to_vec()],
+            files: vec![THESIS.to_vec(), CHECKPOINT.to_vec(), SHAPE.to_vec()],
             read: |folder, bytes| {
                 let path = folder.join("damaged.weights");
                 std::fs::write(&path, bytes).map_err(|e| e.to_string())?;

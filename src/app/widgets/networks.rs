@@ -1,0 +1,107 @@
+//! The networks for the radar on screen, in the menu of methods; where there is none, how one is trained.
+
+use super::method_menu::Offered;
+use crate::app::state::{Command, DocumentCommand};
+use crate::network::live::size::LiveSize;
+use crate::radar::{Radar, counted};
+use crate::reconstruct::{Family, Reconstructor};
+use eframe::egui::{RichText, Ui};
+
+/// Maps of a training whose time is told: with so many the second edition of `live` was near its end (training/README.md).
+const TOLD_MAPS: f64 = 50_000.0;
+
+/// Cores whose time is told.
+const CORES: f64 = 2.0;
+
+/// Names the networks that take the radar, or shows the commands that train one.
+pub fn networks(ui: &mut Ui, offered: Offered<'_>, asked: &mut Vec<Command>) {
+    let Some(radar) = offered.radar else { return };
+    let takes = |method: &&dyn Reconstructor| method.family() == Family::Network && method.check_array(radar).is_ok();
+    let fitting: Vec<&str> = offered.all.iter().map(AsRef::as_ref).filter(takes).map(|method| method.name()).collect();
+    ui.separator();
+    ui.horizontal_wrapped(|ui| {
+        ui.strong("Networks for this radar");
+        ui.label(if fitting.is_empty() { "none".to_owned() } else { fitting.join(", ") });
+        let tip = "Weights of the live network for any radar, as training/train_live.py writes them (.safetensors)";
+        if ui.small_button("Open weights…").on_hover_text(tip).clicked() {
+            ui.close();
+            asked.push(DocumentCommand::Open.into());
+        }
+    });
+    if fitting.is_empty() {
+        training(ui, radar);
+    }
+}
+
+fn training(ui: &mut Ui, radar: &Radar) {
+    let size = match LiveSize::for_radar(radar) {
+        Ok(size) => size,
+        Err(why) => {
+            ui.weak(format!("None can be trained: {why}."));
+            return;
+        }
+    };
+    let hours = TOLD_MAPS * size.training_seconds_a_map() / CORES / 3600.0;
+    let time = match hours {
+        hours if hours < 2.0 => counted((60.0 * hours).ceil() as u32, "minute", "minutes"),
+        hours => counted(hours.round() as u32, "hour", "hours"),
+    };
+    let minutes = (60.0 * hours).ceil();
+    ui.weak(format!(
+        "Save the scene as radar.toml, then train one: {TOLD_MAPS} maps in about {time} on two processor cores."
+    ));
+    let commands = format!(
+        "python3 training/train_live.py --radar radar.toml --out own --minutes {minutes} --threads 2\n\
+         python3 training/train_live.py --radar radar.toml --out own --export own.safetensors --validation 24"
+    );
+    ui.label(RichText::new(&commands).monospace().small());
+    if ui.small_button("Copy the commands").clicked() {
+        ui.ctx().copy_text(commands);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::widgets::seen;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn menu(radar: Radar) -> Harness<'static, Vec<Command>> {
+        let all = crate::methods::all();
+        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+            networks(ui, Offered { radar: Some(&radar), ..Offered::untimed(&all) }, asked);
+        };
+        let mut menu = Harness::builder().with_size([700.0, 200.0]).build_ui_state(draw, Vec::new());
+        menu.run();
+        menu
+    }
+
+    fn says(menu: &Harness<'_, Vec<Command>>, text: &str) -> bool {
+        seen::texts(menu.output()).iter().any(|seen| seen.text.contains(text))
+    }
+
+    #[test]
+    fn networks_that_take_the_radar_are_named() {
+        let mut menu = menu(Radar::default());
+        assert!(says(&menu, "live") && !says(&menu, "train_live.py"), "{:?}", seen::texts(menu.output()));
+        menu.get_by_label("Open weights…").click();
+        menu.run();
+        assert_eq!(menu.state(), &[Command::from(DocumentCommand::Open)]);
+    }
+
+    #[test]
+    fn a_radar_without_a_network_is_told_how_to_train_one() {
+        let menu = menu(Radar { elements: 86, end_elements: 8, samples: 256, ..Radar::default() });
+        for text in ["none", "50000 maps in about", "--radar radar.toml --out own --minutes "] {
+            assert!(says(&menu, text), "{text}: {:?}", seen::texts(menu.output()));
+        }
+    }
+
+    #[test]
+    fn a_radar_that_no_network_can_have_is_told_why() {
+        let menu = menu(Radar { elements: 86, end_elements: 8, samples: 100, ..Radar::default() });
+        assert!(says(&menu, "None can be trained: its network has rows of 100; expected a multiple of 8"));
+        assert!(!says(&menu, "train_live.py"));
+    }
+}

@@ -1,0 +1,69 @@
+//! The network's columns as those of an array of any number of elements.
+
+use super::grid::COLUMNS;
+use rayon::prelude::*;
+
+/// For each column of an array, where it lies between two of the network's; cos(theta) rises with both.
+#[derive(Debug)]
+pub(super) struct ColumnTaps {
+    taps: Vec<Tap>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Tap {
+    pair: [usize; 2],
+    /// How far it is to the second, 0 to 1.
+    part: f32,
+}
+
+impl ColumnTaps {
+    /// Those of an array of `elements`; `None` where it has the network's own columns.
+    pub(super) fn new(elements: usize) -> Option<Self> {
+        let tap = |column: usize| {
+            let from_middle = column as f64 - (elements / 2) as f64;
+            let place = from_middle * (COLUMNS as f64 / elements as f64) + (COLUMNS / 2) as f64;
+            let low = place.floor();
+            Tap { pair: [0, 1].map(|beside| (low as usize + beside) % COLUMNS), part: (place - low) as f32 }
+        };
+        (elements != COLUMNS).then(|| ColumnTaps { taps: (0..elements).map(tap).collect() })
+    }
+
+    /// Fills a row of the array from one of the network.
+    pub(super) fn fill(&self, wide: &[f32; COLUMNS], row: &mut [f32]) {
+        for (to, Tap { pair: [low, high], part }) in row.iter_mut().zip(&self.taps) {
+            *to = wide[*low] * (1.0 - part) + wide[*high] * part;
+        }
+    }
+
+    /// All rows `[rows, 1024]` as `[rows, elements]`.
+    pub(super) fn rows_of(&self, wide: &[f32]) -> Vec<f32> {
+        let (wide, elements) = (wide.as_chunks::<COLUMNS>().0, self.taps.len());
+        let mut rows = vec![0.0; wide.len() * elements];
+        rows.par_chunks_mut(elements).zip(wide).for_each(|(row, wide)| self.fill(wide, row));
+        rows
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_keeps_its_direction_in_an_array_of_any_size() {
+        let cos = |column: usize, columns: usize| (column as f32 - (columns / 2) as f32) / (columns as f32 / 2.0);
+        let wide: Vec<f32> = (0..COLUMNS).map(|column| cos(column, COLUMNS)).collect();
+        for elements in [2, 85, 86, 192, 1000, 1500] {
+            let found = ColumnTaps::new(elements).unwrap().rows_of(&wide);
+            for (column, found) in found.iter().enumerate() {
+                let expected = cos(column, elements);
+                // Beyond the network's last column the directions wrap around.
+                let is_inside = expected <= wide[COLUMNS - 1];
+                assert!(
+                    !is_inside || (found - expected).abs() < 1e-6,
+                    "{column} of {elements}: {found} for {expected}"
+                );
+            }
+        }
+        assert!(ColumnTaps::new(COLUMNS).is_none());
+    }
+}

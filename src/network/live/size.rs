@@ -1,0 +1,283 @@
+//! How large a live network is: its widths, and the shape of the radar whose maps it draws.
+
+use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, LiveConfig, WIDE_COLUMNS};
+use super::constants::WINDOWS;
+use super::grid::{COARSE, COLUMNS, FINE, ROWS};
+use crate::network::domain::Domain;
+use crate::network::kernels::convolution::padded;
+use crate::network::weights::{WeightFile, WeightsError};
+use crate::radar::{Bytes, Radar};
+use serde::Deserialize;
+use std::ops::RangeInclusive;
+
+/// Entry of a weight file that says how large its network is, as JSON; without it the network has the shipped size.
+pub const SIZE_ENTRY: &str = "size";
+
+/// Most samples of a radar for which there can be a network.
+pub const MAX_ROWS: usize = 4096;
+/// The network halves the samples three times.
+pub const ROWS_STEP: usize = 8;
+
+/// Most memory that a network may take for its weights and one pass, bytes.
+const MAX_BYTES: u64 = 1 << 30;
+/// Channels of networks for radars of at most half as many cells as table 3.1's.
+const SMALL_CHANNELS: [usize; 4] = [12, 24, 44, 60];
+/// Processor seconds that a map of 512 samples takes in training, of the shipped widths and of the small ones (training/README.md).
+const MAP_SECONDS: f64 = 0.52;
+const SMALL_MAP_SECONDS: f64 = 0.33;
+const CHANNELS: RangeInclusive<usize> = 1..=512;
+const BLOCKS: RangeInclusive<usize> = 1..=16;
+const ELEMENTS: RangeInclusive<usize> = 2..=65_536;
+
+/// Widths of a network, and the shape of its maps.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LiveSize {
+    /// Channels and blocks of its levels.
+    pub config: LiveConfig,
+    /// Samples of the radar: range rows of every tensor.
+    pub rows: usize,
+    /// Elements of the radar's whole array: columns of the map. Inside, the network's pictures have 64, 256 and 1024 for any radar.
+    pub columns: usize,
+}
+
+/// The entry as `training/train_live.py` writes it.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct SizeEntry {
+    c: [usize; 4],
+    blocks: [usize; 4],
+    fine: usize,
+    rows: usize,
+    columns: usize,
+}
+
+impl Default for SizeEntry {
+    fn default() -> Self {
+        let LiveConfig { channels: c, blocks, fine } = LiveConfig::default();
+        SizeEntry { c, blocks, fine, rows: ROWS, columns: COLUMNS }
+    }
+}
+
+impl Default for LiveSize {
+    fn default() -> Self {
+        LiveConfig::default().into()
+    }
+}
+
+impl From<LiveConfig> for LiveSize {
+    /// A network of these widths for the shape of table 3.1's radar.
+    fn from(config: LiveConfig) -> Self {
+        LiveSize { config, rows: ROWS, columns: COLUMNS }
+    }
+}
+
+impl LiveSize {
+    /// The size that `file` says.
+    /// # Errors
+    /// [`WeightsError::Store`] names the entry where it can't be read, and the number that is out of bounds.
+    pub fn of(file: &WeightFile) -> Result<Self, WeightsError> {
+        let wrong = |reason: String| WeightsError::Store {
+            file: file.name().to_owned(),
+            reason: format!("its entry \"{SIZE_ENTRY}\" {reason}"),
+        };
+        let entry = match file.provenance.get(SIZE_ENTRY) {
+            "" => SizeEntry::default(),
+            text => serde_json::from_str(text).map_err(|e| wrong(format!("is no size of a network: {e}")))?,
+        };
+        let SizeEntry { c: channels, blocks, fine, rows, columns } = entry;
+        let size = LiveSize { config: LiveConfig { channels, blocks, fine }, rows, columns };
+        size.check().map_err(wrong)?;
+        Ok(size)
+    }
+
+    /// That of a network which `training/train_live.py` makes for `radar`.
+    /// # Errors
+    /// A sentence without its full stop, where there can be none.
+    pub fn for_radar(radar: &Radar) -> Result<Self, String> {
+        if radar.end_elements < 2 {
+            return Err("an end of one element sees no direction".to_owned());
+        }
+        let shipped = LiveSize::default();
+        let is_small = 2 * radar.samples * radar.elements <= ROWS * COLUMNS;
+        let channels = if is_small { SMALL_CHANNELS } else { shipped.config.channels };
+        let config = LiveConfig { channels, ..shipped.config };
+        let size = LiveSize { config, rows: radar.samples, columns: radar.elements };
+        size.check().map(|()| size).map_err(|why| format!("its network {why}"))
+    }
+
+    /// Checks that the radars of a weight file called `name` have this shape.
+    /// # Errors
+    /// [`WeightsError::Store`] with both shapes.
+    pub(super) fn check_domain(&self, name: &str, domain: &Domain) -> Result<(), WeightsError> {
+        let [samples, elements] = domain.shape();
+        if [samples, elements] == [self.rows, self.columns] {
+            return Ok(());
+        }
+        let (file, LiveSize { rows, columns, .. }) = (name.to_owned(), self);
+        let reason = format!(
+            "its entry \"{SIZE_ENTRY}\" says {rows} samples and {columns} elements; its radars have {samples} and {elements}"
+        );
+        Err(WeightsError::Store { file, reason })
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let LiveSize { config: LiveConfig { channels, blocks, fine }, rows, columns } = self;
+        let within = |name: &str, number: usize, range: &RangeInclusive<usize>| match range.contains(&number) {
+            true => Ok(()),
+            false => Err(format!("has {name} of {number}; expected {} to {}", range.start(), range.end())),
+        };
+        if *rows == 0 || *rows > MAX_ROWS || !rows.is_multiple_of(ROWS_STEP) {
+            return Err(format!("has rows of {rows}; expected a multiple of {ROWS_STEP} up to {MAX_ROWS}"));
+        }
+        within("columns", *columns, &ELEMENTS)?;
+        within("fine", *fine, &CHANNELS)?;
+        channels.iter().try_for_each(|c| within("c", *c, &CHANNELS))?;
+        blocks.iter().try_for_each(|b| within("blocks", *b, &BLOCKS))?;
+        let bytes = self.memory_bytes();
+        if bytes > MAX_BYTES {
+            let (bytes, most) = (Bytes(bytes), Bytes(MAX_BYTES));
+            return Err(format!("asks for {bytes} of memory; expected at most {most}"));
+        }
+        Ok(())
+    }
+
+    /// Processor seconds that a map takes in `training/train_live.py`: its pictures have as many rows as the radar has samples, and as many columns
+    /// for any radar.
+    pub fn training_seconds_a_map(&self) -> f64 {
+        let seconds = if self.config.channels == SMALL_CHANNELS { SMALL_MAP_SECONDS } else { MAP_SECONDS };
+        seconds * self.rows as f64 / ROWS as f64
+    }
+
+    /// Upper bound on the bytes of the weights as they are packed, and of the tables, pictures and maps of one pass.
+    pub fn memory_bytes(&self) -> u64 {
+        let LiveConfig { channels, blocks, fine } = &self.config;
+        let wide = |count: usize| padded(count) as u64;
+        // A 3x3 convolution is kept as 36 products.
+        let conv = |input: usize, output: usize| 36 * wide(input) * wide(output);
+        let levels: u64 = channels
+            .iter()
+            .zip(blocks)
+            .map(|(c, blocks)| 2 * *blocks as u64 * (2 * conv(*c, *c) + 4 * wide(*c) * wide(*c)))
+            .sum();
+        let steps: u64 = channels.windows(2).map(|pair| 8 * wide(pair[0]) * wide(pair[1])).sum();
+        let heads = conv(INPUT_CHANNELS, channels[0]) + conv(channels[0], 4 * DECODER_CHANNELS) + conv(12, *fine);
+        let [rows, columns] = [self.rows, self.columns].map(|n| n as u64);
+        let kernels = WINDOWS as u64 * (rows * rows + (WIDE_COLUMNS * WIDE_COLUMNS) as u64);
+        // Of a row: a level, what is convolved and what comes from below; heads and features; maps.
+        let of_levels: u64 = channels.iter().enumerate().map(|(level, c)| 3 * (wide(*c) >> (2 * level))).sum();
+        let pictures = COARSE as u64 * (of_levels + 64) + FINE as u64 * 32 + 2 * COLUMNS as u64 + 3 * columns;
+        4 * (levels + steps + heads + kernels + rows * pictures)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::live::LiveMethod;
+    use crate::network::live::engine::LiveScratch;
+    use crate::network::live::features::FeatureExtractor;
+    use crate::radar::Convention;
+    use crate::reconstruct::{Reconstructor, Request};
+    use crate::scene::Reflector;
+    use crate::signal::exact;
+
+    fn of(entry: &str) -> Result<LiveSize, String> {
+        let header = serde_json::json!({ "__metadata__": { SIZE_ENTRY: entry } }).to_string();
+        let bytes = [&(header.len() as u64).to_le_bytes(), header.as_bytes()].concat();
+        LiveSize::of(&WeightFile::parse("own.safetensors", &bytes).unwrap()).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_size_has_the_shipped_values_where_it_says_none() {
+        assert_eq!(of(""), Ok(LiveSize::default()));
+        assert_eq!(of("{}"), Ok(LiveSize::default()));
+        let small = of(r#"{"c": [12, 24, 44, 60], "rows": 128, "columns": 192}"#).unwrap();
+        assert_eq!((small.rows, small.columns, small.config.channels), (128, 192, [12, 24, 44, 60]));
+        assert_eq!(of(r#"{"rows": 4096}"#).unwrap().rows, MAX_ROWS);
+        assert_eq!(small.config.blocks, LiveConfig::default().blocks);
+    }
+
+    #[test]
+    fn a_size_out_of_bounds_is_named_with_file_and_entry() {
+        for (entry, told) in [
+            ("7", "is no size of a network"),
+            (r#"{"depth": 3}"#, "unknown field `depth`"),
+            (r#"{"rows": 100}"#, "rows of 100; expected a multiple of 8 up to 4096"),
+            (r#"{"rows": 4104}"#, "rows of 4104; expected a multiple of 8 up to 4096"),
+            (r#"{"columns": 1}"#, "columns of 1; expected 2 to 65536"),
+            (r#"{"c": [16, 32, 64, 4096]}"#, "c of 4096; expected 1 to 512"),
+            (r#"{"blocks": [1, 2, 2, 0]}"#, "blocks of 0; expected 1 to 16"),
+            (r#"{"rows": 4096, "columns": 65536}"#, "of memory; expected at most 1.0 GiB"),
+            (r#"{"c": [512, 512, 512, 512], "blocks": [16, 16, 16, 16]}"#, "of memory; expected at most 1.0 GiB"),
+        ] {
+            let error = of(entry).unwrap_err();
+            assert!(error.starts_with("own.safetensors: its entry \"size\" ") && error.contains(told), "{error}");
+        }
+    }
+
+    #[test]
+    fn radars_of_another_shape_than_the_size_are_refused() {
+        let domain = Domain::Radar(Box::new(Radar { elements: 192, samples: 128, ..Radar::default() }));
+        let told = LiveSize::default().check_domain("own", &domain).unwrap_err().to_string();
+        assert!(told.contains("512 samples and 1024 elements; its radars have 128 and 192"), "{told}");
+        assert_eq!(LiveSize { rows: 128, columns: 192, ..LiveSize::default() }.check_domain("own", &domain), Ok(()));
+    }
+
+    // `training/reference.py` writes these files.
+    /// Weights of a tiny network for a radar whose shape is another and whose columns fall.
+    const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/shape_reference_weights.safetensors");
+    /// Three reflectors before it, and every third row of what PyTorch makes of them.
+    const REFERENCE: &[u8] = include_bytes!("../../../tests/data/shape_reference.safetensors");
+
+    /// Largest distance of every third row of a map from the tensor `name` of the reference.
+    fn gap(found: &[f32], reference: &WeightFile, name: &str) -> f32 {
+        let expected = reference.tensor(name, &[24, 86]).unwrap();
+        assert_eq!(found.len(), 72 * 86);
+        let picked = found.chunks(86).step_by(3).flatten();
+        picked.zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+    }
+
+    #[test]
+    fn a_network_of_another_shape_agrees_with_its_twin() {
+        let reference = WeightFile::parse("reference", REFERENCE).unwrap();
+        let method = LiveMethod::new(WeightFile::parse("weights", WEIGHTS).unwrap()).unwrap();
+        let shape = Radar { elements: 86, end_elements: 8, samples: 72, ..Radar::default() };
+        let radar = shape.in_convention(Convention::Physical);
+        let points = reference.tensor("points", &[3, 2]).unwrap();
+        let reflectors: Vec<Reflector> = points
+            .chunks(2)
+            .map(|p| Reflector { x_metres: p[0].into(), y_metres: p[1].into(), reflectivity: 1.0 })
+            .collect();
+        let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
+        let input = FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap();
+        let mut scratch = LiveScratch::default();
+        let found = method.engine().forward(&input, &mut scratch);
+        let of_decades = gap(&found.map, &reference, "log");
+        assert!(of_decades < 1e-2, "decades: {of_decades}");
+        let minimum = reference.tensor("minimum", &[1]).unwrap()[0];
+        assert!((found.minimum - minimum).abs() < 1e-3, "{} for {minimum}", found.minimum);
+        let doubt = method.engine().doubt(&scratch).unwrap().lambda;
+        let of_doubt = gap(doubt.as_slice().unwrap(), &reference, "doubt");
+        assert!(of_doubt < 1e-4, "doubt: {of_doubt}");
+        let lambda = method.estimate(&radar, &ends, &Request::default()).unwrap().lambda.lambda;
+        let of_lambda = gap(lambda.as_slice().unwrap(), &reference, "lambda");
+        assert!(of_lambda < 2e-3, "Lambda: {of_lambda}");
+    }
+
+    #[test]
+    fn a_network_of_another_shape_refuses_the_usual_radar() {
+        let method = LiveMethod::new(WeightFile::parse("weights", WEIGHTS).unwrap()).unwrap();
+        let told = method.check_radar(&Radar::default()).unwrap_err().to_string();
+        assert!(told.contains("trained for 86 elements, 8 elements an end, 72 samples"), "{told}");
+    }
+
+    #[test]
+    fn weights_that_do_not_fit_their_size_are_named() {
+        let says = br#"\"rows\": 72"#;
+        let at = WEIGHTS.windows(says.len()).position(|part| part == says).unwrap();
+        let mut bytes = WEIGHTS.to_vec();
+        bytes[at..at + says.len()].copy_from_slice(br#"\"rows\": 80"#);
+        let told = LiveMethod::new(WeightFile::parse("own", &bytes).unwrap()).unwrap_err().to_string();
+        assert!(told.contains("says 80 samples and 86 elements; its radars have 72 and 86"), "{told}");
+    }
+}
