@@ -17,7 +17,7 @@ class ArgumentError(TypeError, ValueError):
 
 @dataclass(frozen=True)
 class Point:
-    """One reflector. x lies along the array, y ahead of it, both in metres. Every object may have a velocity, which only
+    """One reflector. x lies along the array, y ahead of it, both in metres. Every object may have a name, and a velocity, which only
     `range_doppler` sees."""
 
     kind: ClassVar[str] = "point"
@@ -26,6 +26,7 @@ class Point:
     reflectivity: float = 1.0
     velocity_x_metres_per_second: float = 0.0
     velocity_y_metres_per_second: float = 0.0
+    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,7 @@ class Line:
     reflectivity: float = 1.0
     velocity_x_metres_per_second: float = 0.0
     velocity_y_metres_per_second: float = 0.0
+    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,7 @@ class Cluster:
     reflectivity: float = 1.0
     velocity_x_metres_per_second: float = 0.0
     velocity_y_metres_per_second: float = 0.0
+    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,7 @@ class Wall:
     seed: int = 0
     velocity_x_metres_per_second: float = 0.0
     velocity_y_metres_per_second: float = 0.0
+    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -91,6 +95,7 @@ class Box:
     seed: int = 0
     velocity_x_metres_per_second: float = 0.0
     velocity_y_metres_per_second: float = 0.0
+    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -106,6 +111,7 @@ class Post:
     seed: int = 0
     velocity_x_metres_per_second: float = 0.0
     velocity_y_metres_per_second: float = 0.0
+    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -119,6 +125,7 @@ class Polygon:
     seed: int = 0
     velocity_x_metres_per_second: float = 0.0
     velocity_y_metres_per_second: float = 0.0
+    name: str = ""
 
 
 @dataclass(frozen=True)

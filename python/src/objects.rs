@@ -88,6 +88,8 @@ pub fn object(from: &Bound<'_, PyAny>, index: usize) -> PyResult<Object> {
     let [x, y] = velocity()?;
     let [velocity_x, velocity_y] = object.velocity_mut();
     (*velocity_x, *velocity_y) = (x, y);
+    let name: String = from.getattr("name")?.extract()?;
+    object.set_name(&name);
     Ok(object)
 }
 
@@ -109,6 +111,7 @@ pub fn of_object<'py>(py: Python<'py>, object: &Object) -> PyResult<Bound<'py, P
     let [velocity_x, velocity_y] = object.velocity_metres_per_second();
     fields.set_item("velocity_x_metres_per_second", velocity_x)?;
     fields.set_item("velocity_y_metres_per_second", velocity_y)?;
+    fields.set_item("name", object.name())?;
     if let Some(body) = object.body() {
         fields.set_item("roughness_millimetres", body.surface().roughness_millimetres)?;
         fields.set_item("seed", body.surface().seed)?;

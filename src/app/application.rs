@@ -1,5 +1,7 @@
 //! The thin part that joins state, jobs and what is drawn: poll, input, draw, apply, ask.
 
+mod zoom;
+
 use super::apply::{self, Effect};
 use super::chrome::{file_dialog, help, menu, messages, palette, save_question, status_bar, tiles};
 use super::contents::{self, Contents, Panels};
@@ -17,21 +19,10 @@ use crate::scene::presets;
 use eframe::egui;
 use std::path::PathBuf;
 use std::sync::Arc;
+use zoom::Zoom;
 
 /// Name under which settings and the autosave are kept.
 pub const APP_ID: &str = "apertura";
-
-/// Height that a presentation is laid out for, points: on a larger screen everything is larger.
-const PRESENTATION_HEIGHT: f32 = 600.0;
-
-/// How much larger everything is in a presentation at least and at most.
-const PRESENTATION_ZOOMS: [f32; 2] = [1.25, 2.5];
-
-/// How much larger everything is in a presentation on a window of a height, points at normal size.
-fn presentation_zoom(height: f32) -> f32 {
-    let [least, most] = PRESENTATION_ZOOMS;
-    (height / PRESENTATION_HEIGHT).clamp(least, most)
-}
 
 /// How the app is started.
 #[derive(Default)]
@@ -70,12 +61,7 @@ pub struct App {
     pub(super) asked: Vec<Command>,
     frame_log: Option<FrameLog>,
     title: String,
-    /// Whether the window fills the screen because a lesson does.
-    is_full_screen: bool,
-    /// Size of the interface before the presentation that is shown.
-    zoom_before: Option<f32>,
-    /// Size of the interface before the lesson that is taken.
-    zoom_before_lesson: Option<f32>,
+    zoom: Zoom,
     /// Keys that came too quickly for one frame.
     later: input::Later,
     /// Whether a field had the focus at the end of the last frame.
@@ -149,9 +135,7 @@ impl App {
             asked,
             frame_log,
             title: String::new(),
-            is_full_screen: false,
-            zoom_before: None,
-            zoom_before_lesson: None,
+            zoom: Zoom::default(),
             later: Default::default(),
             in_a_field: false,
             close_refused: false,
@@ -269,46 +253,6 @@ impl App {
         }
     }
 
-    /// Large type while a presentation or a lesson has the whole screen; that of before after it.
-    fn update_type(&mut self, ctx: &egui::Context) {
-        match (self.state.is_presenting(), self.zoom_before) {
-            (true, None) => {
-                self.zoom_before = Some(ctx.zoom_factor());
-                let zoom = presentation_zoom(ctx.content_rect().height() * ctx.zoom_factor());
-                ctx.set_zoom_factor((zoom * ctx.zoom_factor()).min(3.0));
-            }
-            (false, Some(before)) => {
-                self.zoom_before = None;
-                ctx.set_zoom_factor(before);
-            }
-            _ => {}
-        }
-    }
-
-    /// The zoom of before a lesson comes back after it.
-    fn update_lesson_zoom(&mut self, ctx: &egui::Context) {
-        match (self.state.lesson.is_some(), self.zoom_before_lesson) {
-            (true, None) => self.zoom_before_lesson = Some(self.zoom_before.unwrap_or_else(|| ctx.zoom_factor())),
-            (false, Some(before)) => {
-                self.zoom_before_lesson = None;
-                // A presentation gives it back when it ends.
-                match &mut self.zoom_before {
-                    Some(zoom) => *zoom = before,
-                    None => ctx.set_zoom_factor(before),
-                }
-            }
-            _ => {}
-        }
-    }
-
-    fn update_full_screen(&mut self, ctx: &egui::Context) {
-        let full_screen = self.state.is_presenting();
-        if full_screen != self.is_full_screen {
-            ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(full_screen));
-            self.is_full_screen = full_screen;
-        }
-    }
-
     fn write_frame_log(&mut self, previous: Option<f32>) {
         let (requested, painted) = self.work_done();
         if let Some(log) = &mut self.frame_log
@@ -386,9 +330,7 @@ impl eframe::App for App {
         self.panels.ask(&self.state, &self.jobs);
         self.jobs.take_pictures(&self.state, self.panels.is_busy());
         self.update_title(&ctx);
-        self.update_full_screen(&ctx);
-        self.update_type(&ctx);
-        self.update_lesson_zoom(&ctx);
+        self.zoom.follow(&ctx, &self.state);
         if !self.jobs.hides_messages() {
             messages::show(&ctx, &mut self.state.notices);
         }
@@ -408,7 +350,7 @@ impl eframe::App for App {
             captions_seen: !state.captions,
             recent_commands: self.memory.palette.recent().to_vec(),
             method_times: state.method_times.clone(),
-            zoom: self.zoom_before_lesson.or(self.zoom_before),
+            zoom: self.zoom.before(),
         };
         kept.write(storage);
         *state.kept_arrangement() = kept.arrangement;
@@ -420,16 +362,5 @@ impl eframe::App for App {
         if let Err(error) = self.jobs.failures.keep_now() {
             tracing::warn!("the rows could not be kept: {error}");
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_presentation_grows_with_the_screen() {
-        let zooms = [640.0, 900.0, 1440.0, 4320.0].map(presentation_zoom);
-        assert_eq!(zooms, [1.25, 1.5, 2.4, 2.5]);
     }
 }

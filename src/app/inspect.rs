@@ -234,7 +234,7 @@ impl App {
         super::jobs::evaluation_to_csv(self.jobs.evaluation.rows())
     }
 
-    /// The rows of the panel Failures.
+    /// The rows of the panel Evaluate.
     pub fn rows(&self) -> &[Row] {
         self.jobs.failures.table().rows()
     }

@@ -104,7 +104,7 @@ impl Row {
             return None;
         }
         let [x, y] = object.centre_metres();
-        let name = format!("{} {}", object.noun(), index + 1);
+        let name = object.called(index);
         let dbsm = cross_section_dbsm(object.reflectivity());
         Some(Row::new(radar, name, dbsm, x.hypot(y).max(1e-3), x.atan2(y).to_degrees()))
     }

@@ -119,8 +119,8 @@ fn digits(value: f64) -> String {
 }
 
 fn named(number: ObjectNumber, scene: &Scene) -> String {
-    let noun = number.index(scene.objects.len()).map_or("object", |index| scene.objects[index].noun());
-    format!("{noun} {}", number.0)
+    let index = number.index(scene.objects.len());
+    index.map_or_else(|_| format!("object {}", number.0), |index| scene.objects[index].called(index))
 }
 
 #[cfg(test)]

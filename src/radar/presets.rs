@@ -61,8 +61,8 @@ fn of_pairs() -> [Option<RadarPreset>; 2] {
         preset(
             "chip-3x4",
             "77 GHz single chip, 3 x 4 pairs",
-            "Three transmitters and four receivers on one chip, in the physical convention: 12 elements, a beam of 15 degrees, and range \
-             bins of 5 cm up to 6 m.",
+            "Three transmitters and four receivers on one chip, in the physical convention: 12 elements, a beam of 15 degrees with a Hann \
+             window, and range bins of 5 cm up to 6 m.",
             chip,
         ),
     ]
@@ -72,8 +72,8 @@ const MONOSTATIC: &[RadarPreset] = &[
     RadarPreset {
         id: "table-3.1",
         name: "The thesis' radar (table 3.1)",
-        about: "1024 elements over 2 m, 2 GHz of bandwidth: range bins of 7.5 cm, a beam of 0.17 degrees. The table says 77 GHz; \
-                the thesis' formula is a radar at 38.5 GHz whose chirp falls. Every scene lies in the near field, which extends to about 2 km.",
+        about: "1024 elements over 2 m, 2 GHz of bandwidth: range bins of 7.5 cm, a beam of 0.17 degrees with a Hann window. The table says \
+                77 GHz; the thesis' formula is a radar at 38.5 GHz whose chirp falls. Every scene lies in the near field, which extends to about 2 km.",
         radar: TABLE_3_1,
     },
     RadarPreset {
@@ -91,15 +91,15 @@ const MONOSTATIC: &[RadarPreset] = &[
     RadarPreset {
         id: "cascade-86",
         name: "77 GHz cascade, 86 elements",
-        about: "Four radar chips side by side, whose virtual elements form a line of 86: 17 cm wide, a beam of 2.0 degrees. Its far field \
-                begins at 14 m, so plane waves are a fair assumption.",
+        about: "Four radar chips side by side, whose virtual elements form a line of 86: 17 cm wide, a beam of 2.0 degrees with a Hann window. \
+                Its far field begins at 14 m, so plane waves are a fair assumption.",
         radar: Radar { bandwidth_hz: 1e9, elements: 86, samples: 256, ..TABLE_3_1 },
     },
     RadarPreset {
         id: "chip-8",
         name: "77 GHz single chip, 8 elements",
         about: "Two transmitters and four receivers on one chip, the radar of most laboratories: range bins of 5 cm up to 6 m, but a beam of \
-                25 degrees.",
+                25 degrees with a Hann window.",
         radar: Radar { bandwidth_hz: 3.072e9, elements: 8, end_elements: 3, samples: 128, ..TABLE_3_1 },
     },
     RadarPreset {

@@ -137,6 +137,7 @@ impl Wall {
             reflectivity,
             roughness_millimetres,
             seed,
+            name: String::new(),
             velocity_x_metres_per_second: 0.0,
             velocity_y_metres_per_second: 0.0,
         }
@@ -162,6 +163,7 @@ impl Block {
             reflectivity,
             roughness_millimetres,
             seed,
+            name: String::new(),
             velocity_x_metres_per_second: 0.0,
             velocity_y_metres_per_second: 0.0,
         }
@@ -188,6 +190,7 @@ impl Post {
             reflectivity: 1.0,
             roughness_millimetres: 0.0,
             seed: 0,
+            name: String::new(),
             velocity_x_metres_per_second: 0.0,
             velocity_y_metres_per_second: 0.0,
         }
@@ -202,6 +205,7 @@ impl Polygon {
             reflectivity: 1.0,
             roughness_millimetres: 0.0,
             seed: 0,
+            name: String::new(),
             velocity_x_metres_per_second: 0.0,
             velocity_y_metres_per_second: 0.0,
         }

@@ -7,6 +7,9 @@ macro_rules! moving {
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct $name {
+            /// What the object is called, where it has a name; at most [`MAX_NAME_CHARACTERS`](super::MAX_NAME_CHARACTERS).
+            #[serde(default, skip_serializing_if = "String::is_empty")]
+            pub name: String,
             $($fields)*
             /// Velocity along the array's axis, metres a second.
             #[serde(default, skip_serializing_if = "is_zero")]

@@ -19,7 +19,7 @@ mod turn;
 pub use body::{Block, Body, Polygon, Post, Surface, Wall};
 pub use disturbances::{Disturbances, Interferer, Mirror};
 pub use motion::MAX_SPEED_METRES_PER_SECOND;
-pub use object::{GaussianCluster, Line, Object, Point};
+pub use object::{GaussianCluster, Line, MAX_NAME_CHARACTERS, Object, Point};
 pub use shape::Shape;
 
 use crate::radar::{BuiltArrayError, Radar, RadarError};

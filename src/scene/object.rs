@@ -10,6 +10,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
+/// Characters of an object's name, at most.
+pub const MAX_NAME_CHARACTERS: usize = 40;
+
 /// Something that can be placed, dragged and deleted as one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
@@ -105,6 +108,7 @@ impl Line {
             direction_degrees,
             count,
             reflectivity: 1.0,
+            name: String::new(),
             velocity_x_metres_per_second: 0.0,
             velocity_y_metres_per_second: 0.0,
         }
@@ -140,6 +144,7 @@ impl GaussianCluster {
             count,
             seed: 0,
             reflectivity: 1.0,
+            name: String::new(),
             velocity_x_metres_per_second: 0.0,
             velocity_y_metres_per_second: 0.0,
         }
@@ -153,6 +158,7 @@ impl Point {
             x_metres,
             y_metres,
             reflectivity: 1.0,
+            name: String::new(),
             velocity_x_metres_per_second: 0.0,
             velocity_y_metres_per_second: 0.0,
         }
@@ -179,6 +185,22 @@ impl Object {
             Object::Gaussian(_) => "cluster",
             other => other.kind(),
         }
+    }
+
+    /// Its name; its kind and number, from 1, where it has none.
+    pub fn called(&self, index: usize) -> String {
+        if self.name().is_empty() { format!("{} {}", self.noun(), index + 1) } else { self.name().to_owned() }
+    }
+
+    /// Its name; empty where it has none.
+    pub fn name(&self) -> &str {
+        of_each!(self, one => &one.name)
+    }
+
+    /// Names it, or takes its name where the text is empty; of a longer text the first [`MAX_NAME_CHARACTERS`].
+    pub fn set_name(&mut self, name: &str) {
+        let name: String = name.chars().filter(|c| !c.is_control()).take(MAX_NAME_CHARACTERS).collect();
+        of_each!(self, one => one.name = name);
     }
 
     /// The body that it is; `None` for what is made of points.

@@ -44,9 +44,8 @@ pub fn folded(radar: &Radar, scene: &Scene) -> Option<String> {
     let mut blobs = scene.objects.iter().enumerate().map(|(i, o)| (i, o, DopplerBlob::of(radar, o)));
     let (index, object, blob) = blobs.find(|(.., blob)| blob.is_folded())?;
     Some(format!(
-        "{} {} moves at {:.1} m/s, beyond the unambiguous {:.1} m/s: the map shows it at {:.1} m/s. A shorter interval tells it apart.",
-        object.noun(),
-        index + 1,
+        "{} moves at {:.1} m/s, beyond the unambiguous {:.1} m/s: the map shows it at {:.1} m/s. A shorter interval tells it apart.",
+        object.called(index),
         blob.velocity_metres_per_second,
         radar.unambiguous_velocity_metres_per_second(),
         blob.apparent_velocity_metres_per_second

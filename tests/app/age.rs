@@ -1,7 +1,7 @@
 //! What is drawn is of the scene on screen, or is marked as old.
 
 use crate::session::Session;
-use apertura::app::{Command, EditCommand, MapKind, Panel, RadarCommand, ViewCommand, WindowCommand};
+use apertura::app::{Command, EditCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand};
 use apertura::radar::{Radar, WindowFunction};
 use apertura::reconstruct::{
     About, Baseline, CAPON, ReconstructError, Reconstruction, Reconstructor, Request as MethodRequest,
@@ -34,7 +34,7 @@ impl Reconstructor for Slow {
 }
 
 /// Panels that draw something derived from the scene.
-const PANELS: [Panel; 14] = [
+const PANELS: [Panel; 18] = [
     Panel::Map(MapKind::Output),
     Panel::Map(MapKind::Output),
     Panel::Map(MapKind::OutputAbove),
@@ -45,6 +45,10 @@ const PANELS: [Panel; 14] = [
     Panel::Bounds,
     Panel::Phasors,
     Panel::Chirp,
+    Panel::RangeDoppler,
+    Panel::Several,
+    Panel::Values,
+    Panel::Scene,
     Panel::Elements,
     Panel::Roc,
     Panel::Compare,
@@ -58,7 +62,10 @@ fn action() -> impl Strategy<Value = Command> {
     prop_oneof![
         4 => (-2.0..2.0f64, -2.0..2.0f64)
             .prop_map(|(dx_metres, dy_metres)| Command::from(EditCommand::Nudge { dx_metres, dy_metres })),
-        1 => Just(EditCommand::Undo.into()),
+        2 => Just(EditCommand::Undo.into()),
+        1 => Just(EditCommand::Redo.into()),
+        1 => Just(EditCommand::Delete.into()),
+        1 => Just(EditCommand::Add(NewObject::Point, None).into()),
         1 => Just(EditCommand::SelectAll.into()),
         1 => window.prop_map(|window| RadarCommand::SetWindow(window).into()),
         1 => floor.prop_map(|floor| ViewCommand::SetFloor(floor).into()),

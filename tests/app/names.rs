@@ -173,7 +173,7 @@ fn the_first_drag_is_told_in_one_sentence() {
     s.ask(WindowCommand::ToggleCaptions);
     let told = |s: &Session, text: &str| apertura_texts(s).iter().any(|t| t == text);
     assert!(told(&s, "Drag the post along its ring, to the wall"), "{:?}", apertura_texts(&s));
-    let (from, metres_per_point) = (s.handle("point 4: move"), s.state().views().0.metres_per_point);
+    let (from, metres_per_point) = (s.handle("post: move"), s.state().views().0.metres_per_point);
     let [x, y] = s.place(3);
     let (range, (sin, cos)) = (x.hypot(y), 27f64.to_radians().sin_cos());
     let by = vec2(((range * sin - x) / metres_per_point) as f32, ((y - range * cos) / metres_per_point) as f32);

@@ -12,7 +12,7 @@ use apertura::scene::Object;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
 use apertura::theory::chirp::{ChirpShape, heard};
-use eframe::egui::{Event, Key, Modifiers, vec2};
+use eframe::egui::{Event, Key, Modifiers, Rangef, vec2};
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
 
@@ -299,4 +299,21 @@ fn nobody_but_the_user_moves_a_threshold() {
     let s = Session::with_methods(vec![Arc::new(CAPON)]);
     assert_eq!(CAPON.eta(), 0.851, "more decimals than the slider shows");
     assert!(s.state().settings().method_eta.is_empty());
+}
+
+#[test]
+fn frames_stay_aligned_while_a_panel_is_open_below_one() {
+    let mut s = Session::start();
+    let names = ["Input 0 map", "Input 1 map", "Target map", "Output map"];
+    let frames = |s: &Session| names.map(|name| s.app.get_by_label(name).rect().y_range());
+    let near = |a: Rangef, b: Rangef| (a.min - b.min).abs() < 1.0 && (a.max - b.max).abs() < 1.0;
+    let before = frames(&s);
+    s.ask(WindowCommand::OpenPanel(Panel::Chirp));
+    s.app.run_steps(4);
+    let [input_0, input_1, target, output] = frames(&s);
+    assert!(near(input_0, input_1) && near(target, output), "{:?}", frames(&s));
+    assert!(input_0.span() < before[0].span(), "the panel has taken room");
+    s.ask(WindowCommand::ClosePanel(Panel::Chirp));
+    s.app.run_steps(4);
+    assert!(frames(&s).into_iter().zip(before).all(|(now, before)| near(now, before)), "{:?}", frames(&s));
 }

@@ -112,10 +112,10 @@ fn what_is_no_weight_file_is_named() {
 fn files_of_a_later_version_say_so() {
     let folder = folder();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-    write("s.toml", "format = 2\nmotion = true\n\n[[object]]\nkind = \"swarm\"\n");
+    write("s.toml", "format = 3\nmotion = true\n\n[[object]]\nkind = \"swarm\"\n");
     write("r.toml", "format = 9\n\n[radar]\n\n[recording]\nfile = \"a.npz\"\n");
     for (file, says) in [
-        ("s.toml", "line 1, column 10: format is 2, of a later version of apertura; this one reads format 1"),
+        ("s.toml", "line 1, column 10: format is 3, of a later version of apertura; this one reads formats 1 to 2"),
         ("r.toml", "format is 9, of a later version of apertura"),
     ] {
         apertura(&folder).args(["maps", file, "-o", "x.png"]).assert().failure().stderr(contains(says));

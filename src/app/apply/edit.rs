@@ -42,6 +42,7 @@ pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
                 state.notices.error(format!("Nothing was changed: {error}"));
             }
         }
+        EditCommand::Name(name) => editor.name_selected(&name),
         EditCommand::Align(alignment) => editor.align(alignment),
         EditCommand::Distribute(along) => editor.distribute(along),
         // What is looked at at another time is not where the document has it.

@@ -70,5 +70,5 @@ fn echo_at(state: &State, cursor: &Cursor) -> Option<String> {
     let strength = |(_, echo): &(usize, PathEcho)| echo.amplitude.norm_sqr();
     let all = heard_in_the_middle(radar, scene).into_iter().filter(near);
     let (index, echo) = all.max_by(|a, b| strength(a).total_cmp(&strength(b)))?;
-    Some(format!("{} of {} {}", echo.kind.name(), scene.objects[index].noun(), index + 1))
+    Some(format!("{} of {}", echo.kind.name(), scene.objects[index].called(index)))
 }

@@ -52,7 +52,7 @@ pub(super) fn subject(editor: &Editor) -> Option<(String, Reflector)> {
     let reflectivity = object.reflectivity();
     let what = if matches!(object, Object::Point(_)) { "" } else { "middle of " };
     let reflector = Reflector { x_metres, y_metres, reflectivity };
-    (x_metres.hypot(y_metres) > 0.0).then(|| (format!("{what}{} {}", object.noun(), index + 1), reflector))
+    (x_metres.hypot(y_metres) > 0.0).then(|| (format!("{what}{}", object.called(index)), reflector))
 }
 
 /// What came of it.

@@ -119,7 +119,7 @@ impl Exports {
         self.begin(path, move |path| write_bytes(path, text.as_bytes()).map(|()| None).map_err(|e| e.to_string()))
     }
 
-    /// Writes the rows of the panel Failures as CSV. Returns what to tell.
+    /// Writes the rows of the panel Evaluate as CSV. Returns what to tell.
     ///
     /// # Errors
     /// That there are none, or why it could not be begun.

@@ -1,18 +1,19 @@
 //! A chirp: frequency against time of what is sent and of what returns, the beat as its samples, and the beat's spectrum.
 
+mod choices;
+
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::ChirpResult;
 use crate::app::jobs::{ChirpQuery, Jobs};
-use crate::app::state::{ChirpSettings, Command, RadarCommand, State, ViewCommand};
-use crate::app::widgets::axes::Axis;
+use crate::app::state::{ChirpSettings, Command, State};
+use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
 use crate::radar::{Carrier, Radar};
 use crate::scene::Scene;
 use crate::theory::chirp::{BeatTone, ChirpShape, delay_seconds, heard};
-use eframe::egui::{self, CursorIcon, Id, Rect, Sense, Stroke, Ui, vec2};
+use eframe::egui::{self, Color32, CursorIcon, FontId, Rect, Sense, Stroke, Ui, vec2};
 
 /// The part of the chirp that the delay from the farthest range is drawn as, where delays are shorter.
 const DRAWN_DELAY: f64 = 0.25;
@@ -20,7 +21,7 @@ const DRAWN_DELAY: f64 = 0.25;
 /// Most echoes that are drawn.
 const ECHOES: usize = 60;
 
-/// Where the beats of the first echoes are told, as parts of the time in which they are heard while the chirp is sent.
+/// Where the beats of the first objects are drawn, as parts of the time in which they are heard while the chirp is sent.
 const LABEL_PLACES: [f64; 2] = [0.2, 0.65];
 
 /// Radius of a handle, points.
@@ -32,6 +33,9 @@ const DRAGGED_CARRIER_HZ: [f64; 2] = [1e9, 3e11];
 
 /// Shortest and longest chirp that is dragged to, seconds.
 const DRAGGED_SECONDS: [f64; 2] = [1e-6, 1e-2];
+
+/// Height in which the charts can be read, points.
+const LEAST_CHARTS_HEIGHT: f32 = 230.0;
 
 /// Decibels that the spectrum spans.
 const SPECTRUM_DB: f64 = 100.0;
@@ -79,38 +83,45 @@ impl Content for ChirpPanel {
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
-        let chirp = ChirpShape::of(input.radar);
-        let element = input.settings.element.min(input.radar.elements - 1);
-        let mut echoes = match input.is_recorded {
-            true => Vec::new(),
-            false => heard(input.radar, input.scene, element),
-        };
-        echoes.truncate(ECHOES);
-        choices(ui, &input, element, &mut asked);
-        let stretch = stretch(input.radar, &chirp);
-        legend(ui, &input, stretch);
-        if input.radar.carrier == Carrier::OneWay {
-            let half_gigahertz = input.radar.carrier_hz / 2e9;
-            let said = format!("Drawn rising from the carrier; the thesis' formula falls from {half_gigahertz} GHz, with the same beats.");
-            ui.weak(said);
-        }
-        let area = ui.available_rect_before_wrap();
-        ui.advance_cursor_after_rect(area);
-        let [frequencies, beat, spectrum] = parts(area);
-        let shown = Shown { input: &input, chirp, echoes: &echoes, stretch };
-        shown.frequencies(ui, frequencies, &mut asked);
-        match input.result {
-            None => _ = ui.put(beat, egui::Label::new(egui::RichText::new("computing…").weak())),
-            Some(Err(error)) => {
-                _ = ui.put(beat, egui::Label::new(egui::RichText::new(error).color(ui.visuals().error_fg_color)));
-            }
-            Some(Ok(result)) => {
-                shown.beat(ui, beat, result);
-                shown.spectrum(ui, spectrum, result);
-            }
-        }
+        let height = ui.available_height();
+        let scroll = egui::ScrollArea::vertical().auto_shrink(false);
+        scroll.show(ui, |ui| contents(ui, &input, height, &mut asked));
     });
     asked
+}
+
+/// What is drawn in a panel of a height, points: in a low one the charts are scrolled to.
+fn contents(ui: &mut Ui, input: &Input<'_>, height: f32, asked: &mut Vec<Command>) {
+    let top = ui.cursor().top();
+    let chirp = ChirpShape::of(input.radar);
+    let element = input.settings.element.min(input.radar.elements - 1);
+    let mut echoes = match input.is_recorded {
+        true => Vec::new(),
+        false => heard(input.radar, input.scene, element),
+    };
+    echoes.truncate(ECHOES);
+    choices::show(ui, input, element, asked);
+    let stretch = stretch(input.radar, &chirp);
+    legend(ui, input, stretch);
+    if input.radar.carrier == Carrier::OneWay {
+        let half_gigahertz = input.radar.carrier_hz / 2e9;
+        ui.weak(format!("Drawn rising; the thesis' formula falls from {half_gigahertz} GHz: the same beats."));
+    }
+    let left = (height - 1.0 - (ui.cursor().top() - top)).max(LEAST_CHARTS_HEIGHT);
+    let (_, area) = ui.allocate_space(vec2(ui.available_width(), left));
+    let [frequencies, beat, spectrum] = parts(area);
+    let shown = Shown { input, chirp, echoes: &echoes, stretch };
+    shown.frequencies(ui, frequencies, asked);
+    match input.result {
+        None => _ = ui.put(beat, egui::Label::new(egui::RichText::new("computing…").weak())),
+        Some(Err(error)) => {
+            _ = ui.put(beat, egui::Label::new(egui::RichText::new(error).color(ui.visuals().error_fg_color)));
+        }
+        Some(Ok(result)) => {
+            shown.beat(ui, beat, result);
+            shown.spectrum(ui, spectrum, result);
+        }
+    }
 }
 
 /// Where the three charts are: beside each other the chirp over its beat, and the spectrum; below each other where there is little width.
@@ -129,53 +140,6 @@ fn parts(area: Rect) -> [Rect; 3] {
 fn stretch(radar: &Radar, chirp: &ChirpShape) -> f64 {
     let longest = delay_seconds(radar.max_range_metres());
     (DRAWN_DELAY * chirp.duration_seconds / longest).max(1.0)
-}
-
-fn choices(ui: &mut Ui, input: &Input<'_>, element: usize, asked: &mut Vec<Command>) {
-    ui.horizontal_wrapped(|ui| {
-        let (radar, mut settings) = (input.radar, ChirpSettings { element });
-        let mut changed = radar.clone();
-        let label = ui.label("Element").on_hover_text("The element whose chirp and beat are drawn, from the left");
-        ui.add(NumberField::new(&mut settings.element).range(0..=radar.elements - 1).speed(0.3)).labelled_by(label.id);
-        let tooltip = "Time that the samples span. No echo at rest depends on it: a beat turns 2RB/c times in a chirp of any length.";
-        let label = ui.label("Chirp").on_hover_text(tooltip);
-        let mut microseconds = 1e6 * radar.chirp_seconds;
-        let range = 1e6 * DRAGGED_SECONDS[0]..=1e6 * DRAGGED_SECONDS[1];
-        let field = NumberField::new(&mut microseconds).range(range).speed(0.05).suffix(" µs");
-        if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
-            changed.set_chirp_seconds(1e-6 * microseconds);
-        }
-        ask(input, settings, changed, asked);
-    });
-    ui.add_enabled_ui(!input.is_recorded, |ui| {
-        ui.horizontal_wrapped(|ui| {
-            let mut changed = input.radar.clone();
-            let label = ui.label("Samples").on_hover_text("Samples of the beat, and range bins of its spectrum");
-            ui.add(NumberField::new(&mut changed.samples).range(1..=65536)).labelled_by(label.id);
-            let label = ui.label("Bandwidth").on_hover_text("Drag the end of the chirp up or down");
-            gigahertz(ui, &mut changed.bandwidth_hz, label.id);
-            let label = ui.label("Carrier").on_hover_text("Drag the beginning of the chirp up or down");
-            gigahertz(ui, &mut changed.carrier_hz, label.id);
-            ask(input, input.settings, changed, asked);
-        });
-    });
-}
-
-fn gigahertz(ui: &mut Ui, hertz: &mut f64, label: Id) {
-    let mut giga = *hertz / 1e9;
-    let field = ui.add(NumberField::new(&mut giga).range(1e-3..=300.0).speed(0.01).suffix(" GHz")).labelled_by(label);
-    if field.changed() {
-        *hertz = 1e9 * giga;
-    }
-}
-
-fn ask(input: &Input<'_>, settings: ChirpSettings, radar: Radar, asked: &mut Vec<Command>) {
-    if settings != input.settings {
-        asked.push(ViewCommand::SetChirp(settings).into());
-    }
-    if radar != *input.radar {
-        asked.push(RadarCommand::Set(Box::new(radar)).into());
-    }
 }
 
 fn legend(ui: &mut Ui, input: &Input<'_>, stretch: f64) {
@@ -215,14 +179,25 @@ impl Shown<'_> {
             area,
             Sense::hover(),
         );
-        for (i, echo) in self.echoes.iter().enumerate() {
+        let stroke = Stroke::new(1.2, inks.ends[0].gamma_multiply(0.9));
+        let mut beats: Vec<(usize, [f64; 2])> = Vec::new();
+        for echo in self.echoes {
             let late = 1e6 * self.stretch * delay_seconds(echo.range_metres);
-            let stroke = Stroke::new(1.2, inks.ends[0].gamma_multiply(0.9));
             drawn.line([[late, 0.0], [late + microseconds, giga]], stroke, None);
-            if i < LABEL_PLACES.len() {
-                self.difference(&drawn, echo, [late, LABEL_PLACES[i]], stroke);
+            let beat = self.chirp.beat_hz(echo.range_metres) / 1e6;
+            match beats.iter_mut().find(|(object, _)| *object == echo.object) {
+                Some((_, [low, high])) => (*low, *high) = (low.min(beat), high.max(beat)),
+                None => {
+                    if let Some(part) = LABEL_PLACES.get(beats.len()) {
+                        let time = late + part * (microseconds - late).max(0.0);
+                        let [sent, returned] = [time, time - late].map(|t| giga * t / microseconds);
+                        drawn.line([[time, returned], [time, sent]], stroke, Some([2.0, 2.0]));
+                    }
+                    beats.push((echo.object, [beat, beat]));
+                }
             }
         }
+        self.tell(&drawn, &beats, stroke.color);
         if let Some(interferer) = self.input.scene.disturbances.interferer.filter(|_| !self.input.is_recorded) {
             let at = |part: f64| {
                 let seconds = part * chirp.duration_seconds;
@@ -237,21 +212,21 @@ impl Shown<'_> {
         self.handles(ui, &drawn, [microseconds, giga], asked);
     }
 
-    /// The beat as the difference of the two lines, at a part of the time in which an echo is heard while the chirp is sent.
-    fn difference(&self, drawn: &Drawn<'_>, echo: &BeatTone, [late, part]: [f64; 2], stroke: Stroke) {
-        let (microseconds, giga) = (1e6 * self.chirp.duration_seconds, self.chirp.bandwidth_hz / 1e9);
-        let time = late + part * (microseconds - late).max(0.0);
-        let [sent, returned] = [time, time - late].map(|t| giga * t / microseconds);
-        drawn.line([[time, returned], [time, sent]], stroke, Some([2.0, 2.0]));
-        let beat = self.chirp.beat_hz(echo.range_metres);
-        let name = format!("{} {:.2} MHz", self.name(echo), beat / 1e6);
-        let painter = drawn.painter();
-        let at = drawn.at([time, (sent + returned) / 2.0]) + vec2(4.0, 0.0);
-        painter.text(at, egui::Align2::LEFT_CENTER, name, egui::FontId::proportional(12.0), stroke.color);
-    }
-
-    fn name(&self, echo: &BeatTone) -> String {
-        format!("{} {}", self.input.scene.objects[echo.object].kind(), echo.object + 1)
+    /// The beats of each object in megahertz, above the lines: as many as have room there.
+    fn tell(&self, drawn: &Drawn<'_>, beats: &[(usize, [f64; 2])], ink: Color32) {
+        let mut at = drawn.rect.left_top() + vec2(6.0, 3.0);
+        for (object, [low, high]) in beats {
+            let numbers = if high - low < 0.005 { format!("{low:.2}") } else { format!("{low:.2} to {high:.2}") };
+            let text = format!("{} {numbers} MHz", self.input.scene.objects[*object].called(*object));
+            let galley = drawn.painter().layout_no_wrap(text, FontId::proportional(12.0), ink);
+            let corner = at + galley.size();
+            let sent = drawn.x_at(corner) / 1e6 / self.chirp.duration_seconds * self.chirp.bandwidth_hz / 1e9;
+            if drawn.y_at(corner) < sent {
+                break;
+            }
+            drawn.painter().galley(at, galley, ink);
+            at.y = corner.y;
+        }
     }
 
     /// Both ends of what is sent are dragged: the beginning up and down for the carrier, the end for bandwidth and duration.
@@ -288,7 +263,7 @@ impl Shown<'_> {
             );
             response.on_hover_cursor(icon).on_hover_text(name);
         }
-        ask(self.input, settings, radar, asked);
+        choices::ask(self.input, settings, radar, asked);
     }
 
     /// The beat over the chirp, its samples as dots.
@@ -312,10 +287,9 @@ impl Shown<'_> {
         let inks = Inks::of(ui.visuals());
         let peak = result.spectrum.iter().copied().fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         let bins = result.spectrum.len() as f64;
-        let (x, y) = (
-            Axis::new(-0.5, bins - 0.5, "range bin: turns of the beat in a chirp"),
-            Axis::new(-SPECTRUM_DB, 5.0, "dB"),
-        );
+        let titles = ["range bin: turns of the beat in a chirp", "range bin"];
+        let title = axes::fitting(ui.painter(), area.width() - 70.0, &titles);
+        let (x, y) = (Axis::new(-0.5, bins - 0.5, title), Axis::new(-SPECTRUM_DB, 5.0, "dB"));
         let drawn = Chart { name: "Spectrum of the beat", x, y }.show(ui, area, Sense::hover());
         for echo in self.echoes {
             let bin = self.chirp.range_bin(self.chirp.beat_hz(echo.range_metres));
@@ -338,6 +312,7 @@ impl Shown<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::RadarCommand;
     use crate::app::widgets::seen;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;

@@ -1,20 +1,20 @@
 //! Numbers of what is selected, with units: of one object, or those that several have in common.
 
 mod look;
+mod number;
 mod slider;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand, NewObject};
 use crate::app::widgets::direction::angle_of_place_degrees;
 use crate::app::widgets::entry::{arrange, button};
-use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::signed;
-use crate::interact::{Coordinates, Editor, FieldChange, SharedField};
+use crate::interact::{Coordinates, Editor};
 use crate::radar::{Radar, counted};
-use crate::scene::Scene;
+use crate::scene::{MAX_NAME_CHARACTERS, Object, Scene};
 use eframe::egui;
-use eframe::egui::{Grid, ScrollArea, Ui};
-use look::{Look, look};
+use eframe::egui::{Grid, ScrollArea, TextEdit, Ui};
+use number::number;
 
 /// What the numbers are of, and turned into.
 pub struct Input<'a> {
@@ -84,12 +84,12 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let single = editor.selection().single();
     let object = single.and_then(|index| editor.scene().objects.get(index));
     ui.horizontal(|ui| {
-        ui.strong(match (object, single) {
-            (Some(object), Some(index)) => format!("{} {}", capital(object.noun()), index + 1),
-            _ => counted(editor.selection().len(), "object", "objects"),
-        });
-        if object.is_none() {
-            ui.weak(counted(editor.selected_reflectors(), "reflector", "reflectors"));
+        match (object, single) {
+            (Some(object), Some(index)) => title(ui, object, index, asked),
+            _ => {
+                ui.strong(counted(editor.selection().len(), "object", "objects"));
+                ui.weak(counted(editor.selected_reflectors(), "reflector", "reflectors"));
+            }
         }
         toggle(ui, coordinates, asked);
     });
@@ -112,6 +112,18 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             ui.menu_button("Arrange", |ui| arrange(ui, asked)).response.on_hover_text("Align and distribute them");
         }
     });
+}
+
+/// The object's name, to be typed; its kind and number stand there while it has none.
+fn title(ui: &mut Ui, object: &Object, index: usize, asked: &mut Vec<Command>) {
+    let (mut name, kind) = (object.name().to_owned(), format!("{} {}", capital(object.noun()), index + 1));
+    let hint = egui::RichText::new(&kind).strong();
+    let edit = TextEdit::singleline(&mut name).id_salt(index).char_limit(MAX_NAME_CHARACTERS).hint_text(hint);
+    let response = ui.add(edit.desired_width(130.0).font(egui::FontSelection::Default));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, &kind));
+    if response.on_hover_text("Its name in lists and verdicts").changed() {
+        asked.push(EditCommand::Name(name).into());
+    }
 }
 
 fn toggle(ui: &mut Ui, shown: Coordinates, asked: &mut Vec<Command>) {
@@ -149,67 +161,6 @@ fn seen(ui: &mut Ui, radar: &Radar, [x, y]: [f64; 2], coordinates: Coordinates) 
     }
 }
 
-/// A number to drag or to type; what becomes of it in all objects. Where it differs between them, typing sets it in all, dragging moves
-/// it in all by the same.
-fn number(ui: &mut Ui, shared: &SharedField, metres_per_point: f64) -> Option<FieldChange> {
-    let look = look(shared.field);
-    let shown = shared.is_same.then(|| rounded(shared.first, &look, metres_per_point)).flatten();
-    let tooltip = match &shown {
-        Some(_) => format!("{}; exactly {}{}", look.tooltip, shared.first, look.unit),
-        None => look.tooltip.to_owned(),
-    };
-    let label = ui.label(look.name).on_hover_text(&tooltip);
-    let entered = ui.scope_id().with(look.name);
-    // A range read back from x and y differs in its last bits from the one that was entered; that mustn't disturb the typing.
-    let before: Option<f64> = ui.data(|d| d.get_temp(entered));
-    let base = before.filter(|v| (v - shared.first).abs() < 1e-9 * v.abs().max(1.0)).unwrap_or(shared.first);
-    let mut asked = None;
-    let get_set = |new: Option<f64>| {
-        asked = new.or(asked);
-        asked.unwrap_or(base)
-    };
-    let mut drag = NumberField::from_get_set(get_set)
-        .range(look.low..=look.high)
-        .clamp_existing_to_range(false)
-        .speed(look.speed)
-        .max_decimals(if look.digits == 0 { 0 } else { 6 })
-        .min_decimals(look.digits)
-        .suffix(look.unit);
-    if !shared.is_same {
-        drag = drag.standing_for("various");
-    }
-    if let Some(shown) = &shown {
-        drag = drag.standing_for(shown);
-    }
-    let (response, slid) = ui
-        .horizontal(|ui| {
-            let response = ui.add(drag).labelled_by(label.id).on_hover_text(tooltip);
-            (response, slider::show(ui, shared))
-        })
-        .inner;
-    ui.end_row();
-    if slid.is_some() {
-        return slid;
-    }
-    let asked = asked?;
-    if !shared.is_same && response.dragged() {
-        return Some(FieldChange::By(asked - base));
-    }
-    ui.data_mut(|d| d.insert_temp(entered, asked));
-    // A number that was looked at only comes back as it was printed.
-    (!shared.is_same || (asked - base).abs() > 0.5e-6).then_some(FieldChange::To(asked))
-}
-
-/// A length that a drag left, with as many digits as a point of the canvas is worth; `None` for one that has no more than three decimals
-/// anyway, as those that are typed.
-fn rounded(value: f64, look: &Look, metres_per_point: f64) -> Option<String> {
-    if look.unit != " m" || (1e3 * value - (1e3 * value).round()).abs() < 1e-6 {
-        return None;
-    }
-    let digits = (-metres_per_point.log10()).ceil().clamp(1.0, 6.0) as usize;
-    Some(format!("{value:.digits$}{}", look.unit))
-}
-
 fn capital(word: &str) -> String {
     let mut letters = word.chars();
     letters.next().map(|c| c.to_uppercase().chain(letters).collect()).unwrap_or_default()
@@ -218,8 +169,8 @@ fn capital(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::interact::{Field, SelectionMode};
-    use crate::scene::{Line, Object};
+    use crate::interact::SelectionMode;
+    use crate::scene::Line;
     use eframe::egui::{Event, Key};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -240,8 +191,12 @@ mod tests {
                 metres_per_point: 0.05,
             };
             for command in show(ui, input) {
-                if let Command::Edit(EditCommand::SetField(field, change)) = command {
-                    held.editor.set_field(field, change).unwrap();
+                match &command {
+                    Command::Edit(EditCommand::SetField(field, change)) => {
+                        held.editor.set_field(*field, *change).unwrap()
+                    }
+                    Command::Edit(EditCommand::Name(name)) => held.editor.name_selected(name),
+                    _ => {}
                 }
                 held.asked.push(command);
             }
@@ -366,15 +321,6 @@ mod tests {
     }
 
     #[test]
-    fn a_length_has_the_digits_that_a_point_of_the_canvas_is_worth() {
-        let y = look(Field::Y);
-        let shown = |metres_per_point| rounded(3.041_35, &y, metres_per_point);
-        assert_eq!([0.1, 0.05, 0.004].map(shown), ["3.0 m", "3.04 m", "3.041 m"].map(|t| Some(t.to_owned())));
-        assert_eq!(rounded(3.125, &y, 0.1), None, "what was typed stays as it was typed");
-        assert_eq!(rounded(33.333_333, &look(Field::AngleDegrees), 0.1), None);
-    }
-
-    #[test]
     fn a_length_that_is_shown_rounded_keeps_all_its_digits() {
         let mut inspector = panel(of(&[(1.0, 3.041_35)]), Coordinates::Cartesian);
         inspector.run();
@@ -390,6 +336,14 @@ mod tests {
         editor.select_all();
         let inspector = panel(editor, Coordinates::Cartesian);
         let _called = inspector.get_by_label("Cluster 1");
+    }
+
+    #[test]
+    fn an_object_is_named_where_its_kind_stands() {
+        let mut inspector = panel(of(&[(1.0, 10.0)]), Coordinates::Cartesian);
+        enter(&mut inspector, "Point 1", "post");
+        let editor = &inspector.state().editor;
+        assert_eq!((editor.scene().objects[0].name(), editor.history().depth()), ("post", 1));
     }
 
     #[test]

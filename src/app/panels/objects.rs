@@ -166,7 +166,7 @@ fn list_window(ui: &Ui) -> egui::Id {
 fn row(ui: &mut Ui, input: &Input<'_>, index: usize, object: &Object) -> Option<SelectionMode> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::CLICK);
     let selected = input.selection.contains(index);
-    let name = format!("{} {}", object.noun(), index + 1);
+    let name = object.called(index);
     response.widget_info(|| {
         egui::WidgetInfo::selected(egui::Role::ListBoxOption, true, selected, format!("{name} in the list"))
     });

@@ -61,7 +61,7 @@ impl Content for RadarPanel {
         let measured = editor.document().recording().map(|r| Measured { by_all_elements: r.signal().is_some() });
         let selected = editor.selection().single().and_then(|index| {
             let object = editor.scene().objects.get(index).filter(|o| o.body().is_none())?;
-            let name = format!("{} {}", object.noun(), index + 1);
+            let name = object.called(index);
             let of_many = if object.reflector_count() == 1 { name } else { format!("a reflector of {name}") };
             let (place_metres, reflectivity) = (object.centre_metres(), object.reflectivity());
             Some(Selected { name: of_many, place_metres, reflectivity })

@@ -33,6 +33,7 @@ pub fn least_size(panel: Panel) -> Vec2 {
         Panel::Guide | Panel::Lesson => [300.0, 260.0],
         Panel::Radar | Panel::Elements | Panel::Disturbances => [280.0, 260.0],
         Panel::Several => [420.0, 320.0],
+        Panel::Chirp | Panel::RangeDoppler => [360.0, 350.0],
         Panel::Compare | Panel::Failures | Panel::Evaluation | Panel::RunTime => [560.0, 320.0],
         _ => [360.0, 280.0],
     };
@@ -62,6 +63,26 @@ pub fn give_back(tiles: &mut Tiles<Panel>, taken: &mut Vec<Taken>, panel: Panel)
     }
 }
 
+/// The children of a row or a column that are in sight.
+fn in_sight(tiles: &Tiles<Panel>, container: TileId) -> Vec<TileId> {
+    let Some(Tile::Container(Container::Linear(linear))) = tiles.get(container) else { return Vec::new() };
+    linear.children.iter().copied().filter(|id| tiles.is_visible_in_layout(*id)).collect()
+}
+
+/// The columns beside one whose rows begin where its own begin: they keep doing so, for the frames of maps.
+fn aligned(tiles: &Tiles<Panel>, column: TileId) -> Vec<TileId> {
+    let tops = |id: TileId| -> Vec<i64> {
+        in_sight(tiles, id)
+            .into_iter()
+            .filter_map(|row| tiles.rect(row))
+            .map(|rect| rect.top().round() as i64)
+            .collect()
+    };
+    let own = tops(column);
+    let beside = tiles.parent_of(column).map(|row| in_sight(tiles, row)).unwrap_or_default();
+    beside.into_iter().filter(|id| *id != column && tops(*id) == own).collect()
+}
+
 /// Along one direction, from the innermost container outwards, until the panel has `need` points.
 fn grow(tiles: &mut Tiles<Panel>, panel: Panel, dir: LinearDir, need: f32) -> Vec<Taken> {
     let mut taken = Vec::new();
@@ -72,25 +93,19 @@ fn grow(tiles: &mut Tiles<Panel>, panel: Panel, dir: LinearDir, need: f32) -> Ve
     let Some(mut child) = tiles.find_pane(&panel) else { return taken };
     let mut lacking = tiles.parent_of(child).map_or(0.0, |tabs| need - extent(tiles, tabs));
     while let Some(parent) = tiles.parent_of(child).filter(|_| lacking > 0.5) {
-        let whole = extent(tiles, parent);
-        if let Some(Tile::Container(Container::Linear(linear))) = tiles.get(parent).filter(|_| whole > 0.0)
-            && linear.dir == dir
-        {
-            let in_sight = |id: &&TileId| tiles.is_visible_in_layout(**id);
-            let others: Vec<TileId> =
-                linear.children.iter().filter(in_sight).copied().filter(|id| *id != child).collect();
-            let now = extent(tiles, child);
-            let most = whole - LEAST_OF_NEIGHBOURS * others.len() as f32;
-            let wanted = (now + lacking).min(most);
-            if wanted > now && !others.is_empty() {
-                let (before, mut shares) = (linear.shares.clone(), linear.shares.clone());
-                let of_others: f32 = others.iter().map(|id| before[*id]).sum();
-                shares.set_share(child, of_others * wanted / (whole - wanted));
-                lacking -= wanted - now;
-                if let Some(Tile::Container(Container::Linear(linear))) = tiles.get_mut(parent) {
-                    linear.shares = shares;
+        let (whole, now, rows) = (extent(tiles, parent), extent(tiles, child), in_sight(tiles, parent));
+        let leads = matches!(tiles.get(parent), Some(Tile::Container(Container::Linear(l))) if l.dir == dir);
+        let wanted = (now + lacking).min(whole - LEAST_OF_NEIGHBOURS * (rows.len() as f32 - 1.0));
+        if let Some(row) = rows.iter().position(|id| *id == child).filter(|_| leads && rows.len() > 1 && wanted > now) {
+            lacking -= wanted - now;
+            for container in aligned(tiles, parent).into_iter().chain([parent]) {
+                let rows = in_sight(tiles, container);
+                if let Some(Tile::Container(Container::Linear(linear))) = tiles.get_mut(container) {
+                    let before = linear.shares.clone();
+                    let of_others = rows.iter().map(|id| before[*id]).sum::<f32>() - before[rows[row]];
+                    linear.shares.set_share(rows[row], of_others * wanted / (whole - wanted));
+                    taken.push(Taken { panel, container, before });
                 }
-                taken.push(Taken { panel, container: parent, before });
             }
         }
         child = parent;

@@ -34,6 +34,14 @@ impl Editor {
         self.edit("edit numbers", Some(&format!("{field:?}")), |scene, _| *scene = changed);
         Ok(())
     }
+
+    /// Names the selected object, where it is one. Letters in a row are one step until [`Editor::seal`].
+    pub fn name_selected(&mut self, name: &str) {
+        self.edit("name", Some("name"), |scene, selection| {
+            let object = selection.single().and_then(|index| scene.objects.get_mut(index));
+            object.into_iter().for_each(|object| object.set_name(name));
+        });
+    }
 }
 
 #[cfg(test)]
@@ -80,6 +88,21 @@ mod tests {
         e.set_field(Field::X, FieldChange::To(2.0)).unwrap();
         e.undo();
         assert_eq!(all(&e, Field::X), [1.0, 3.0, 5.0, 2.0]);
+    }
+
+    #[test]
+    fn letters_of_a_name_are_one_step_of_one_object() {
+        let mut e = editor();
+        e.name_selected("several have no name");
+        assert_eq!(e.history().depth(), 0);
+        e.select([1], SelectionMode::Replace);
+        ["p", "po", "post"].map(|name| e.name_selected(name));
+        e.duplicate_selected().unwrap();
+        let called: Vec<String> = e.scene().objects.iter().enumerate().map(|(i, o)| o.called(i)).collect();
+        assert_eq!(called, ["point 1", "post", "point 3", "line 4", "point 5"]);
+        e.undo();
+        e.undo();
+        assert_eq!(e.scene().objects[1].called(1), "point 2");
     }
 
     #[test]

@@ -174,7 +174,9 @@ impl Editor {
     /// # Errors
     /// [`SceneError::TooMany`] where the scene has no room for them; nothing changes then.
     pub fn duplicate_selected(&mut self) -> Result<(), SceneError> {
-        self.insert_copies("duplicate", self.selected_objects())
+        let mut copies = self.selected_objects();
+        copies.iter_mut().for_each(|copy| copy.set_name(""));
+        self.insert_copies("duplicate", copies)
     }
 
     /// The selected objects as TOML; `None` where nothing is selected.

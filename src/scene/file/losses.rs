@@ -25,6 +25,11 @@ pub enum FileLoss {
         /// Objects that have one.
         objects: usize,
     },
+    /// Names: reopened, objects are called by kind and number.
+    Named {
+        /// Objects that have a name.
+        objects: usize,
+    },
     /// Velocities: reopened, everything rests.
     Velocity {
         /// Objects that move.
@@ -66,6 +71,8 @@ impl fmt::Display for FileLoss {
             FileLoss::Recording => f.write_str("the recording that it is laid over"),
             FileLoss::Reflectivity { objects: 1 } => f.write_str("the reflectivity of one object"),
             FileLoss::Reflectivity { objects } => write!(f, "the reflectivity of {objects} objects"),
+            FileLoss::Named { objects: 1 } => f.write_str("the name of one object"),
+            FileLoss::Named { objects } => write!(f, "the names of {objects} objects"),
             FileLoss::Velocity { objects: 1 } => f.write_str("the velocity of one object"),
             FileLoss::Velocity { objects } => write!(f, "the velocity of {objects} objects"),
             FileLoss::Structure { objects: 1, points } => {
@@ -94,6 +101,8 @@ impl SceneFormat {
         losses.extend((!disturbances.is_none()).then_some(FileLoss::Disturbances));
         let reflective = objects.iter().filter(|o| o.reflectivity() != 1.0).count();
         losses.extend((reflective > 0).then_some(FileLoss::Reflectivity { objects: reflective }));
+        let named = objects.iter().filter(|o| !o.name().is_empty()).count();
+        losses.extend((named > 0).then_some(FileLoss::Named { objects: named }));
         let moving = objects.iter().filter(|o| o.is_moving()).count();
         losses.extend((moving > 0).then_some(FileLoss::Velocity { objects: moving }));
         losses.extend((!shadows).then_some(FileLoss::Shadows));

@@ -39,6 +39,7 @@
 //!
 //! [[object]]
 //! kind = "point"           # or "line", "gaussian"
+//! name = "post"            # optional; with `format = 2` as the first line
 //! x_metres = -4.0
 //! y_metres = 12.5
 //! reflectivity = 0.5       # optional, 1 otherwise

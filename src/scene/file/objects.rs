@@ -2,7 +2,7 @@
 
 use super::content::{SceneTextError, one_line};
 use crate::radar::budget::reflectivity_of;
-use crate::scene::{Block, GaussianCluster, Line, Object, Point, Polygon, Post, Wall};
+use crate::scene::{Block, GaussianCluster, Line, MAX_NAME_CHARACTERS, Object, Point, Polygon, Post, Wall};
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
@@ -49,6 +49,11 @@ fn object(entry: Spanned<DeValue<'_>>) -> Result<Object, (Option<Range<usize>>, 
         None => return Err((Some(kind.span()), format!("\"kind\" is not a string; {KINDS}"))),
     };
     let mut object = object.map_err(|e| (e.span(), one_line(e.message())))?;
+    let characters = object.name().chars().count();
+    if characters > MAX_NAME_CHARACTERS || object.name().contains(char::is_control) {
+        let expected = format!("expected one line of at most {MAX_NAME_CHARACTERS}");
+        return Err((None, format!("name has {characters} characters; {expected}")));
+    }
     if let Some(dbsm) = dbsm {
         object.set_reflectivity(reflectivity_of(dbsm));
     }

@@ -1,7 +1,7 @@
 //! Scenes read from TOML, with errors that name the line.
 //!
-//! A text may begin with `format = 1`. It is not written: a scene that needs more than that format has is written with a higher number, which
-//! older programs name in their message.
+//! A text without `format` is of format 1. Format 2 adds names of objects; it is written only where one has a name, and older programs name
+//! the number in their message.
 
 use super::content::{SceneFile, SceneTextError, one_line};
 use super::objects::objects;
@@ -13,8 +13,8 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-/// The format of scenes that this program knows. A text that says nothing else is of it; one that needs more will say so.
-const FORMAT: i64 = 1;
+/// The latest format of scenes that this program knows.
+pub(super) const FORMAT: i64 = 2;
 
 /// Most values and tables that a text may ask for, told by the marks that come with each: the largest scene needs some three million.
 const MAX_MARKS: usize = 4_000_000;
@@ -136,11 +136,11 @@ fn check_format(text: &str, document: &DeTable<'_>) -> Result<(), SceneTextError
         _ => None,
     };
     let message = match number {
-        Some(FORMAT) => return Ok(()),
+        Some(1..=FORMAT) => return Ok(()),
         Some(later) if later > FORMAT => {
-            format!("format is {later}, of a later version of apertura; this one reads format {FORMAT}")
+            format!("format is {later}, of a later version of apertura; this one reads formats 1 to {FORMAT}")
         }
-        _ => format!("format is no version; expected {FORMAT}"),
+        _ => format!("format is no version; expected 1 to {FORMAT}"),
     };
     Err(SceneTextError::at(text, format.span().start, message))
 }

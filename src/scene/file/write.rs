@@ -1,6 +1,7 @@
 //! Scenes written as TOML, for people.
 
 use super::content::SceneFile;
+use super::read::FORMAT;
 use crate::radar::{Convention, Radar};
 use crate::scene::{Disturbances, Object, Scene};
 use serde::Serialize;
@@ -11,6 +12,8 @@ use serde::Serialize;
 pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
     #[derive(Serialize)]
     struct Document<'a> {
+        #[serde(skip_serializing_if = "Option::is_none")]
+        format: Option<i64>,
         #[serde(skip_serializing_if = "str::is_empty")]
         name: &'a str,
         #[serde(skip_serializing_if = "str::is_empty")]
@@ -29,7 +32,8 @@ pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
     let shadows = Some(*shadows).filter(|shadows| !shadows);
     let noise_seed = Some(*noise_seed).filter(|seed| *seed != 0);
     let radar = radar_table(&file.radar)?;
-    toml::to_string_pretty(&Document { name, notes, noise_seed, shadows, radar, disturbances, object: objects })
+    let format = objects.iter().any(|o| !o.name().is_empty()).then_some(FORMAT);
+    toml::to_string_pretty(&Document { format, name, notes, noise_seed, shadows, radar, disturbances, object: objects })
 }
 
 /// What differs from table 3.1. The physical convention is said by its name where the spacing is its own.
@@ -77,7 +81,7 @@ mod tests {
             Object::Gaussian(GaussianCluster { seed: 9, ..GaussianCluster::new([-5.0, 20.0], [1.0, 0.5], 40) }),
             Object::Wall(Wall { roughness_millimetres: 0.3, ..Wall::new(1.0, 9.0, 4.0, 0.0) }),
             Object::Box(Block { reflectivity: 0.5, seed: 3, ..Block::new([3.0, 9.0], [4.5, 1.8], 12.0) }),
-            Object::Post(Post::new(-3.0, 9.0, 0.1)),
+            Object::Post(Post { name: "the \"post\"".to_owned(), ..Post::new(-3.0, 9.0, 0.1) }),
             Object::Polygon(Polygon::new(vec![[-9.0, 9.0], [-8.0, 9.0], [-8.0, 10.5]])),
         ];
         let scene = Scene {
@@ -100,6 +104,14 @@ mod tests {
         let text = to_toml(&scene()).unwrap();
         assert!(text.contains("carrier = \"two-way\"") && !text.contains("bandwidth"), "{text}");
         assert_eq!(from_toml(&text).unwrap(), scene());
+    }
+
+    #[test]
+    fn only_a_scene_with_named_objects_has_format_2() {
+        let mut file = scene();
+        assert!(to_toml(&file).unwrap().starts_with("format = 2\n"));
+        file.scene.objects.iter_mut().for_each(|object| object.set_name(""));
+        assert!(!to_toml(&file).unwrap().contains("format"));
     }
 
     #[test]

@@ -195,10 +195,8 @@ impl Kinds<'_> {
         let Some(index) = verdict.object else {
             return format!("ghost: {} above η = {eta}\nwhere the scene has nothing", counted(cells, "cell", "cells"));
         };
-        let named = |index: usize| {
-            let kind = scene.objects.get(index).map_or("object", |o| o.noun());
-            format!("{kind} {}", index + 1)
-        };
+        let unknown = |index: usize| format!("object {}", index + 1);
+        let named = |index: usize| scene.objects.get(index).map_or_else(|| unknown(index), |o| o.called(index));
         let part = failures.covered.get(index).copied().unwrap_or(0.0);
         let of_what = match scene.objects.get(index).is_some_and(|object| object.body().is_some()) {
             true => "ends, corners and glints".to_owned(),

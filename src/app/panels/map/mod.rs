@@ -3,11 +3,13 @@
 mod answer;
 mod blank;
 mod caption;
+mod clear;
 mod frame;
 mod hand;
 mod hatch;
 mod kinds;
 mod legend;
+mod menu;
 mod morph;
 mod outline;
 mod overlay;
@@ -30,23 +32,22 @@ pub use theory::Theory;
 pub use told::{MapMemory, MapPanel, caption_of, cells, is_updating, map_input, marks_of, verdict};
 
 use crate::app::state::{
-    Command, Cursor, DifferenceView, Directions, ExportCommand, LessonCommand, MapKind, MapView, Panel, Projection,
-    Units, ViewCommand, WindowCommand,
+    Command, Cursor, DifferenceView, Directions, LessonCommand, MapKind, MapView, Projection, Units, ViewCommand,
 };
 use crate::app::widgets::axes;
 use crate::app::widgets::colour_bar::Bar;
-use crate::app::widgets::entry::{entry, ticked};
 use crate::app::widgets::nudge::nudge;
 use crate::app::widgets::theme::{CAPTION, CAPTION_INK, Inks};
 use crate::interact::Selection;
 use crate::maps::cfar::Cfar;
 use crate::picture::ColourMap;
 use crate::radar::{End, Radar};
-use crate::scene::Scene;
+use crate::scene::{Object, Scene};
 use eframe::egui;
-use eframe::egui::{Align2, Color32, Painter, Rect, Sense, TextureId, Ui, pos2, vec2};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Sense, TextureId, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
 use legend::{Fill, Legend};
+use menu::menu;
 use plot::{draw_axes, is_wide, navigate, rect_of};
 
 /// What a map shows.
@@ -281,7 +282,13 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
         overlay::marks(inner, frame, input.marks.objects, pointer);
         overlay::found(inner, frame, input.marks.found, input.stale);
         overlay::selected(inner, frame, input.scene, input.selection);
-        input.theory.iter().for_each(|theory| theory.draw(inner, frame, pointer));
+        if let Some(theory) = &input.theory {
+            theory.draw(inner, frame);
+            // The map that a threshold is of tells the same numbers.
+            if !input.kind.is_above() {
+                theory.tell(inner, frame, pointer, &taken(input, frame));
+            }
+        }
         if let Some(places) = &input.places {
             answer::draw(inner, frame, places);
         }
@@ -296,6 +303,13 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
         let corner = rect.left_bottom() + vec2(8.0, -8.0);
         axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, said);
     }
+}
+
+/// Places that no numbers cover: where the map has the scene's reflectors, and the caption.
+fn taken(input: &Input<'_>, frame: Frame<'_>) -> Vec<Pos2> {
+    let reflectors = input.scene.objects.iter().flat_map(Object::marks).take(overlay::MARKS);
+    let caption = input.line.iter().map(|_| frame.rect.left_bottom() + vec2(12.0, -12.0));
+    reflectors.map(|reflector| frame.blob(&reflector)).chain(caption).collect()
 }
 
 /// A line at the foot of a map, left of the button in its corner.
@@ -356,38 +370,6 @@ fn bar_of(input: &Input<'_>) -> Bar {
     let Input { kind, colours, units, difference, end, .. } = *input;
     let lambda = input.cells.as_ref().and_then(|cells| cells.scale);
     scale::Scale { kind, colours, units, lambda, difference, end }.bar()
-}
-
-fn menu(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let kind = input.kind;
-    let (shown, difference) = (input.shown, input.difference);
-    ui.menu_button("Overlays", |ui| {
-        let on = [shown.reflectors, shown.found, shown.theory, shown.kinds];
-        for (command, on) in ViewCommand::OVERLAYS.map(Command::from).into_iter().zip(on) {
-            let name = command.entry().map_or("", |listed| listed.name.as_ref());
-            ticked(ui, name, command.clone(), on, asked);
-        }
-    });
-    for (command, on) in [
-        (ViewCommand::ToggleProjection, Some(input.projection == Projection::Cartesian)),
-        (ViewCommand::ToggleUnits, Some(input.units == Units::Decibels)),
-        (ViewCommand::ToggleAbsoluteDifference, Some(difference.absolute).filter(|_| kind.is_difference())),
-        (ViewCommand::ToggleWholeDifference, Some(!difference.whole).filter(|_| kind.is_difference())),
-    ] {
-        if let (Some(on), command) = (on, Command::from(command)) {
-            let name = command.entry().map_or("", |listed| listed.name.as_ref());
-            ticked(ui, name, command.clone(), on, asked);
-        }
-    }
-    ui.separator();
-    for command in [
-        Command::Window(WindowCommand::Maximise(Panel::Map(kind))),
-        Command::View(ViewCommand::ResetMaps),
-        Command::Export(ExportCommand::CopyMap(kind)),
-        Command::Window(WindowCommand::ClosePanel(Panel::Map(kind))),
-    ] {
-        entry(ui, command, true, asked);
-    }
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use crate::scene::{Object, Reflector, Scene};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, vec2};
 
 /// Most reflectors that are marked.
-const MARKS: usize = 4000;
+pub const MARKS: usize = 4000;
 
 /// Radius of a ring, points.
 const RADIUS: f32 = 6.0;

@@ -1,5 +1,6 @@
 //! What the formulas say of one reflector, drawn over a map with the numbers in it.
 
+use super::clear::clear_patch;
 use super::frame::Frame;
 use crate::app::widgets::direction::angle_degrees;
 use crate::app::widgets::numbers::signed;
@@ -8,7 +9,7 @@ use crate::radar::Decibels;
 use crate::scene::Reflector;
 use crate::theory::overlay::STREAK;
 use crate::theory::{Ellipse, MapPlace, Overlay, blob_cell, fold_period_cos};
-use eframe::egui::{Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
+use eframe::egui::{Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, vec2};
 
 /// What is drawn.
 #[derive(Clone, Copy)]
@@ -42,16 +43,12 @@ const ALIAS: Color32 = Color32::from_rgb(205, 190, 255);
 const TICK: f32 = 7.0;
 /// The ellipse is drawn larger than this, points.
 const ELLIPSE: f32 = 9.0;
-/// Points around a blob that no number covers.
-const CLEAR: f32 = 8.0;
-/// Part of the map that the numbers cover at the most.
-const MOST_PART: f32 = 0.25;
 /// Least size of a map that has room for the numbers.
 const ROOM: Vec2 = vec2(250.0, 130.0);
 
 impl Theory<'_> {
     /// Draws it.
-    pub fn draw(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>) {
+    pub fn draw(&self, painter: &Painter, frame: Frame<'_>) {
         let Overlay { blob, streak, teeth, .. } = self.overlay;
         let at = |bin: f64, column: f64| {
             frame.cell(MapPlace { bin: blob.peak.bin + bin, column: blob.peak.column + column })
@@ -75,7 +72,6 @@ impl Theory<'_> {
         if let Some((outline, _)) = self.outline(frame) {
             line(painter, &outline, frame.rect, BOUND);
         }
-        self.tell(painter, frame, pointer);
     }
 
     /// Where the reflector's blob shows: its peak, its streak and the corners of its half-power box.
@@ -165,8 +161,9 @@ impl Theory<'_> {
         format!("same cell: {} m{wrapped}; {folds}", ranges.join(", "))
     }
 
-    /// Writes the numbers in the corner that is farthest from the blob; under the `pointer` they make way for the map, but for the name.
-    fn tell(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>) {
+    /// Writes the numbers in a corner, clear of the blob and of what else is `taken`; under the `pointer` they make way for the map, but for
+    /// the name.
+    pub fn tell(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>, taken: &[Pos2]) {
         let rect = frame.rect;
         if rect.width() < ROOM.x || rect.height() < ROOM.y {
             return;
@@ -178,7 +175,8 @@ impl Theory<'_> {
             .map(|(colour, text)| painter.layout(text, font.clone(), colour, rect.width() - 28.0))
             .collect();
         let sizes: Vec<Vec2> = galleys.iter().map(|g| g.size()).collect();
-        let (mut patch, mut count) = clear_patch(rect, &self.places(frame), &sizes);
+        let places = [self.places(frame).as_slice(), taken].concat();
+        let (mut patch, mut count) = clear_patch(rect, &places, &sizes);
         if pointer.is_some_and(|p| patch.contains(p)) {
             // The map beneath is what is pointed at.
             count = 1;
@@ -198,30 +196,6 @@ impl Theory<'_> {
 fn lobe_columns(overlay: &Overlay) -> impl Iterator<Item = f64> {
     let signed = [-1.0, 1.0].into_iter().zip(overlay.blob.side_lobes);
     signed.filter_map(|(sign, lobe)| Some(sign * lobe?.columns))
-}
-
-/// Where as many of the lines fit as leave the `blob`'s places in sight, the peak first, and cover no more than [`MOST_PART`] of the map,
-/// and how many; the larger the map, the more, and one always.
-fn clear_patch(rect: Rect, blob: &[Pos2], lines: &[Vec2]) -> (Rect, usize) {
-    let from = blob.first().copied().unwrap_or(rect.center());
-    let patch = |count: usize| {
-        let size = lines[..count].iter().fold(Vec2::ZERO, |s, g| vec2(s.x.max(g.x), s.y + g.y));
-        (free_corner(rect, from, size + vec2(10.0, 6.0)), count)
-    };
-    let fits = |(patch, count): &(Rect, usize)| {
-        let hides = blob.iter().any(|p| patch.expand(CLEAR).contains(*p));
-        *count == 1 || !hides && patch.area() <= MOST_PART * rect.area()
-    };
-    (1..=lines.len()).rev().map(patch).find(fits).unwrap_or_else(|| patch(lines.len().min(1)))
-}
-
-/// A box of `size` in the corner of `rect` that is farthest from `from`, clear of the value under the pointer at the top.
-fn free_corner(rect: Rect, from: Pos2, size: Vec2) -> Rect {
-    let left = from.x > rect.center().x;
-    let x = if left { rect.left() + 6.0 } else { rect.right() - 6.0 - size.x };
-    let top = from.y > rect.center().y;
-    let y = if top { rect.top() + 28.0 } else { rect.bottom() - 6.0 - size.y };
-    Rect::from_min_size(pos2(x, y), size)
 }
 
 /// A length with the unit that suits it.
@@ -258,6 +232,7 @@ mod tests {
     use crate::maps::{Aperture, angle_transform, range_transform};
     use crate::radar::Radar;
     use crate::signal::exact;
+    use eframe::egui::pos2;
 
     const RECT: Rect = Rect { min: Pos2::ZERO, max: pos2(1280.0, 640.0) };
 
@@ -375,23 +350,5 @@ mod tests {
         let size = Rect::from_points(&outline).size();
         assert!(size.max_elem() > ELLIPSE && size.max_elem() < 400.0, "{size:?}");
         assert!(times >= 10.0 && times.log10().fract() == 0.0, "{times}");
-    }
-
-    #[test]
-    fn the_numbers_leave_a_small_map_in_sight() {
-        let small = Rect::from_min_size(Pos2::ZERO, vec2(300.0, 180.0));
-        let lines = [vec2(290.0, 14.0); 7];
-        let (patch, count) = clear_patch(small, &[small.center()], &lines);
-        assert!(count > 1 && patch.area() <= MOST_PART * small.area(), "{count} lines at {patch:?}");
-        assert!(!patch.expand(CLEAR).contains(small.center()));
-        assert_eq!(clear_patch(RECT, &[RECT.center()], &lines).1, 7);
-    }
-
-    #[test]
-    fn a_free_corner_is_away_from_the_place() {
-        for from in [pos2(320.0, 160.0), pos2(960.0, 160.0), pos2(320.0, 480.0), pos2(960.0, 480.0)] {
-            let corner = free_corner(RECT, from, vec2(300.0, 90.0));
-            assert!(RECT.contains_rect(corner) && !corner.contains(from), "{corner:?}");
-        }
     }
 }

@@ -16,7 +16,7 @@ pub fn mirror(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> 
     let centres = scene.objects.iter().map(|object| object.centre_metres()).enumerate();
     let behind: Vec<(usize, [f64; 2])> = centres.filter(|(_, [_, y])| *y < 0.0).collect();
     let stroke = Stroke::new(1.0, canvas.inks.grid_text);
-    let name = |index: usize| format!("{} {}", scene.objects[index].noun(), index + 1);
+    let name = |index: usize| scene.objects[index].called(index);
     for (index, [x, y]) in behind.iter().copied().take(MAX_OBJECTS_BEHIND) {
         let (from, to) = (canvas.at(Place::new(x, y)), canvas.at(Place::new(x, -y)));
         painter.extend(Shape::dashed_line(&[from, to + vec2(0.0, RADIUS)], stroke, 2.0, 4.0));

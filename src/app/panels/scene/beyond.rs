@@ -41,7 +41,7 @@ pub fn warn(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> Op
     let ink = ui.visuals().warn_fg_color;
     for one in beyond.iter().take(SIGNS) {
         let at = sign(painter, canvas, one, ink);
-        let name = format!("{} {} beyond the maximum range", one.object.noun(), one.index + 1);
+        let name = format!("{} beyond the maximum range", one.object.called(one.index));
         let place = Rect::from_center_size(at, Vec2::splat(18.0));
         let response = ui.interact(place, Id::unique(("beyond the maximum range", one.index)), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &name));
@@ -74,16 +74,13 @@ fn sentence(radar: &Radar, beyond: &[Beyond<'_>]) -> Option<String> {
     let most = radar.max_range_metres();
     Some(match beyond {
         [] => return None,
-        [Beyond { index, object: Object::Point(p), .. }] => {
-            let shown = p.x_metres.hypot(p.y_metres).rem_euclid(most);
-            format!(
-                "point {} stands beyond the maximum range of {most:.1} m: the maps show it at {shown:.1} m.",
-                index + 1
-            )
+        [Beyond { index, object: object @ Object::Point(p), .. }] => {
+            let (name, shown) = (object.called(*index), p.x_metres.hypot(p.y_metres).rem_euclid(most));
+            format!("{name} stands beyond the maximum range of {most:.1} m: the maps show it at {shown:.1} m.")
         }
         [Beyond { index, object, is_whole, .. }] => {
-            let (name, part) = (object.noun(), if *is_whole { "it wraps" } else { "its far part wraps" });
-            format!("{name} {} reaches beyond the maximum range of {most:.1} m: {part} around in the maps.", index + 1)
+            let (name, part) = (object.called(*index), if *is_whole { "it wraps" } else { "its far part wraps" });
+            format!("{name} reaches beyond the maximum range of {most:.1} m: {part} around in the maps.")
         }
         several => {
             let count = several.len();

@@ -1,5 +1,6 @@
 use super::*;
 use crate::app::widgets::seen;
+use crate::interact::grips;
 use crate::scene::Scene;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

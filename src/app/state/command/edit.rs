@@ -35,6 +35,8 @@ pub enum EditCommand {
     SelectPrevious,
     /// Change a number of every selected object.
     SetField(Field, FieldChange),
+    /// Name the selected object.
+    Name(String),
     /// Align the selected objects.
     Align(Alignment),
     /// Put the selected objects the same distance apart.

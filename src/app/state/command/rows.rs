@@ -1,9 +1,9 @@
-//! Commands about the rows of the panel Failures: try methods, open a row, look for worse scenes, keep scenes.
+//! Commands about the rows of the panel Evaluate: try methods, open a row, look for worse scenes, keep scenes.
 
 use crate::app::state::{FailureChoice, SearchChoice};
 use std::path::PathBuf;
 
-/// Commands about the rows of the panel Failures: try methods, open a row, look for worse scenes, keep scenes.
+/// Commands about the rows of the panel Evaluate: try methods, open a row, look for worse scenes, keep scenes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RowsCommand {
     /// Try methods on scenes, row by row.

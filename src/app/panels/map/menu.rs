@@ -1,0 +1,39 @@
+//! What a map offers at the pointer: overlays, views, pictures.
+
+use super::Input;
+use crate::app::state::{Command, ExportCommand, Panel, Projection, Units, ViewCommand, WindowCommand};
+use crate::app::widgets::entry::{entry, ticked};
+use eframe::egui::Ui;
+
+/// Draws the menu; what was chosen.
+pub fn menu(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let kind = input.kind;
+    let (shown, difference) = (input.shown, input.difference);
+    ui.menu_button("Overlays", |ui| {
+        let on = [shown.reflectors, shown.found, shown.theory, shown.kinds];
+        for (command, on) in ViewCommand::OVERLAYS.map(Command::from).into_iter().zip(on) {
+            let name = command.entry().map_or("", |listed| listed.name.as_ref());
+            ticked(ui, name, command.clone(), on, asked);
+        }
+    });
+    for (command, on) in [
+        (ViewCommand::ToggleProjection, Some(input.projection == Projection::Cartesian)),
+        (ViewCommand::ToggleUnits, Some(input.units == Units::Decibels)),
+        (ViewCommand::ToggleAbsoluteDifference, Some(difference.absolute).filter(|_| kind.is_difference())),
+        (ViewCommand::ToggleWholeDifference, Some(!difference.whole).filter(|_| kind.is_difference())),
+    ] {
+        if let (Some(on), command) = (on, Command::from(command)) {
+            let name = command.entry().map_or("", |listed| listed.name.as_ref());
+            ticked(ui, name, command.clone(), on, asked);
+        }
+    }
+    ui.separator();
+    for command in [
+        Command::Window(WindowCommand::Maximise(Panel::Map(kind))),
+        Command::View(ViewCommand::ResetMaps),
+        Command::Export(ExportCommand::CopyMap(kind)),
+        Command::Window(WindowCommand::ClosePanel(Panel::Map(kind))),
+    ] {
+        entry(ui, command, true, asked);
+    }
+}
