@@ -1,6 +1,6 @@
 //! The radars that a network was trained for.
 
-use crate::radar::{Antennas, Carrier, LinkBudget, Radar};
+use crate::radar::{Antennas, Carrier, LinkBudget, Radar, WindowFunction};
 use crate::reconstruct::ReconstructError;
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +17,7 @@ pub enum Domain {
     Limits(RadarLimits),
 }
 
-/// Limits of radars of one antenna an element, in both conventions and with all windows.
+/// Limits of radars of one antenna an element, in both conventions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RadarLimits {
@@ -39,6 +39,9 @@ pub struct RadarLimits {
     pub relative_spacing: [f64; 2],
     /// Narrowest and widest pattern of elements, beside isotropic ones: degrees between its half-power directions.
     pub half_power_width_degrees: [f64; 2],
+    /// Windows; empty: all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub windows: Vec<WindowFunction>,
 }
 
 type Difference = [String; 2];
@@ -203,7 +206,10 @@ impl RadarLimits {
             between(self.relative_spacing, relative_spacing, 1.0, "of the filled spacing between elements"),
             width.and_then(|width| between(self.half_power_width_degrees, width, 1.0, "degrees of elements' pattern")),
         ];
-        self.shape(radar).chain(quantities.into_iter().flatten()).collect()
+        let known = self.windows.is_empty() || self.windows.contains(&radar.window);
+        let windows = || self.windows.iter().map(|window| window.name()).collect::<Vec<_>>().join(" or ");
+        let window = (!known).then(|| [format!("the {} window", windows()), format!("the {} window", radar.window.name())]);
+        self.shape(radar).chain(quantities.into_iter().flatten()).chain(window).collect()
     }
 }
 

@@ -27,6 +27,7 @@ pub const DRAWN: RadarLimits = RadarLimits {
     max_migration_bins: 64.0,
     relative_spacing: [0.8, 1.2],
     half_power_width_degrees: [40.0, 150.0],
+    windows: Vec::new(),
 };
 
 const THESIS_SHARE: f64 = 0.25;
