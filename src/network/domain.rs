@@ -208,7 +208,8 @@ impl RadarLimits {
         ];
         let known = self.windows.is_empty() || self.windows.contains(&radar.window);
         let windows = || self.windows.iter().map(|window| window.name()).collect::<Vec<_>>().join(" or ");
-        let window = (!known).then(|| [format!("the {} window", windows()), format!("the {} window", radar.window.name())]);
+        let window =
+            (!known).then(|| [format!("the {} window", windows()), format!("the {} window", radar.window.name())]);
         self.shape(radar).chain(quantities.into_iter().flatten()).chain(window).collect()
     }
 }
