@@ -1,17 +1,15 @@
-//! Samples and receivers of a file that no text describes: the length of rows that makes the sharpest spectrum, and after how many rows
-//! they repeat.
+//! Samples and receivers of a file that no text describes: the length of rows at whose beginnings samples don't follow from those before,
+//! how often the spectrum of a row repeats, and after how many rows they are the same again.
 
-use super::evidence::OF_LEVEL;
+use super::breaks::Breaks;
 use super::marks::{HEADER_BYTES, Marks};
-use super::spectrum::{ROUNDING, Spectrum, correlation};
+use super::spectrum::{Spectrum, correlation};
 use super::stream::Stream;
 use super::{Counts, Layout, Parts, ReceiverOrder, Words, decode};
 use ndarray::{Array2, ArrayView1, s};
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
 
-/// Numbers before it that each is predicted from.
-const ORDER: usize = 12;
 /// Samples of a chirp that are tried.
 const SAMPLES: [usize; 50] = [
     32, 40, 48, 50, 60, 64, 80, 90, 96, 100, 112, 120, 125, 128, 144, 150, 160, 180, 192, 200, 224, 225, 240, 250, 256,
@@ -35,16 +33,12 @@ const SATURATED: usize = 8;
 const JUDGED_NUMBERS: usize = 1 << 16;
 /// Lengths of rows by which the parts are judged.
 const LEVEL_LENGTHS: [usize; 3] = [64, 128, 256];
-/// A shorter length divides a longer one where so much more of its other beginnings does not follow.
-const DIVIDES: f64 = 1.4;
-/// So little more at its other beginnings leaves a length a part of a longer one.
-const WHOLE: f64 = 1.15;
 /// Numbers between those that each is predicted from: receivers may stand sample by sample.
 const STRIDES: [usize; 4] = [1, 3, 4, 16];
 /// Rows after which rows may repeat.
 const LONGEST_PERIOD: usize = 64;
 /// Longest row that is tried, all receivers that stand sample by sample counted.
-const LONGEST: usize = 16384;
+const LONGEST_ROW: usize = 16384;
 /// Log-odds of a length of which the file holds no whole number, and of a usual one.
 const UNFILLED: f64 = -3.0;
 const USUAL_LENGTH: f64 = 2.0;
@@ -71,8 +65,8 @@ struct Cut {
     mixed: usize,
 }
 
-/// Searches the lengths of rows: the order of parts that makes the sharpest spectra, and then the lengths whose spectra are sharpest,
-/// which fill the file, and at whose multiples samples don't follow from those before.
+/// Searches the lengths of rows: the order of parts that makes the sharpest spectra, and then the length at whose multiples samples don't
+/// follow from those before, and which fills the file.
 pub(super) fn search<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>) -> io::Result<Searched> {
     let bytes = samples_of(stream, marks, 4 * JUDGED_NUMBERS)?;
     let marked = marks.filter(|m| m.apart > 0).map(|m| m.apart - HEADER_BYTES);
@@ -107,7 +101,7 @@ pub(super) fn search<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks
 /// The likeliest way to cut numbers into rows.
 fn cut(layout: Layout, numbers: &[Complex64], bytes: u64, marked: Option<usize>) -> Cut {
     let fits = |length: &usize| marked.is_none_or(|held| held.is_multiple_of(length * layout.parts.bytes()));
-    let lengths: Vec<usize> = (SAMPLES[0]..=LONGEST).filter(fits).collect();
+    let lengths: Vec<usize> = (SAMPLES[0]..=LONGEST_ROW).filter(fits).collect();
     let likeliest = |stride: usize| {
         let breaks = Breaks::of(numbers, stride);
         let score = |length: &usize| (breaks.gain(*length) + prior(&layout, *length, bytes), *length);
@@ -151,109 +145,6 @@ fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
         sum += row_level(numbers, length, is_real);
     }
     (numbers.len() >= 4 * LEVEL_LENGTHS[0]).then_some(sum)
-}
-
-/// Where numbers don't follow from those before: sums of squares of what linear prediction leaves, from the first number on.
-struct Breaks {
-    sums: Vec<f64>,
-    /// Numbers behind a break that are predicted across it.
-    edge: usize,
-}
-
-impl Breaks {
-    /// Of prediction from the [`ORDER`] numbers before, `stride` apart, by least squares.
-    fn of(numbers: &[Complex64], stride: usize) -> Breaks {
-        let mean = numbers.iter().sum::<Complex64>() / numbers.len().max(1) as f64;
-        let centred: Vec<Complex64> = numbers.iter().map(|v| v - mean).collect();
-        let edge = ORDER * stride;
-        let windows = || centred.windows(edge + 1);
-        let mut normal = [[Complex64::default(); ORDER + 1]; ORDER];
-        for window in windows() {
-            for n in 0..ORDER {
-                let before = window[n * stride].conj();
-                normal[n].iter_mut().zip(window.iter().step_by(stride)).for_each(|(sum, b)| *sum += before * b);
-            }
-        }
-        let ridge = 1e-6 * (0..ORDER).map(|n| normal[n][n].re).sum::<f64>() / ORDER as f64;
-        (0..ORDER).for_each(|n| normal[n][n] += ridge.max(f64::MIN_POSITIVE));
-        let weights = solved(normal);
-        let predicted =
-            |window: &[Complex64]| window.iter().step_by(stride).zip(weights).map(|(v, w)| v * w).sum::<Complex64>();
-        let mut sums = vec![0.0; edge.min(numbers.len()) + 1];
-        let mut sum = 0.0;
-        for window in windows() {
-            sum += (window[edge] - predicted(window)).norm_sqr();
-            sums.push(sum);
-        }
-        Breaks { sums, edge }
-    }
-
-    fn numbers(&self) -> usize {
-        self.sums.len() - 1
-    }
-
-    /// Sum of the beginnings of rows of `length` that count, and how many numbers they are.
-    fn first(&self, length: usize, counts: impl Fn(usize) -> bool) -> (f64, f64) {
-        let edge = self.edge.min(length / 4);
-        let rows = (1..self.numbers() / length).filter(|row| counts(*row)).map(|row| row * length);
-        rows.fold((0.0, 0.0), |(sum, count), at| (sum + self.sums[at + edge] - self.sums[at], count + edge as f64))
-    }
-
-    /// The likelihood of two variances, at beginnings of rows and elsewhere, over that of the samples alone, as a spectrum's level counts.
-    fn gain(&self, length: usize) -> f64 {
-        if self.numbers() < 3 * length {
-            return f64::MIN;
-        }
-        let (first, count) = self.first(length, |_| true);
-        let end = self.numbers() / length * length;
-        let all = self.sums[end] - self.sums[length];
-        let part = count / (end - length) as f64;
-        let variance = |sum: f64, part: f64| (sum / ((end - length) as f64 * part) + ROUNDING).ln();
-        -OF_LEVEL * (part * variance(first, part) + (1.0 - part) * variance(all - first, 1.0 - part))
-    }
-
-    /// How much less the beginnings of rows of this length follow than all else, of those that don't begin rows of a longer one.
-    fn broken_within(&self, length: usize, longer: usize) -> f64 {
-        let (first, count) = self.first(length, |row| !row.is_multiple_of(longer / length));
-        let (edges, in_edges) = self.first(length, |_| true);
-        let all = self.sums[self.numbers() / length * length] - self.sums[length];
-        let elsewhere = (self.numbers() / length * length - length) as f64 - in_edges;
-        // Rounding alone leaves as much.
-        first / count.max(1.0) / ((all - edges) / elsewhere.max(1.0) + 0.2)
-    }
-
-    /// The length of rows of which `length` is a part: where the others of its beginnings are not broken, it is none of its own.
-    fn whole(&self, length: usize, lengths: &[usize]) -> usize {
-        let mut longer =
-            lengths.iter().copied().filter(|l| *l > length && l.is_multiple_of(length) && self.numbers() >= 3 * l);
-        longer.find(|l| l / length <= 4 && self.broken_within(length, *l) < WHOLE).unwrap_or(length)
-    }
-
-    /// The length of rows of which `longest` is several: where an echo goes on almost unbroken from receiver to receiver, most of what does
-    /// not follow stands at the beginnings of loops.
-    fn divided(&self, longest: usize, lengths: &[usize]) -> usize {
-        let mut length = longest;
-        loop {
-            let shorter = lengths.iter().copied().filter(|l| *l < length && length.is_multiple_of(*l));
-            let within = shorter.map(|l| (self.broken_within(l, length), l));
-            match within.max_by(|a, b| a.0.total_cmp(&b.0)) {
-                Some((ratio, shorter)) if ratio > DIVIDES => length = shorter,
-                _ => return length,
-            }
-        }
-    }
-}
-
-/// The solution of a positive definite system whose right side stands in its last column.
-fn solved(mut system: [[Complex64; ORDER + 1]; ORDER]) -> [Complex64; ORDER] {
-    for pivot in 0..ORDER {
-        let top = system[pivot];
-        for (_, row) in system.iter_mut().enumerate().filter(|(n, _)| *n != pivot) {
-            let factor = row[pivot] / top[pivot];
-            row.iter_mut().zip(top).for_each(|(v, t)| *v -= factor * t);
-        }
-    }
-    std::array::from_fn(|n| system[n][ORDER] / system[n][n])
 }
 
 /// How many receivers stand sample by sample in rows of this length: their spectrum repeats as often.
