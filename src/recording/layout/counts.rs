@@ -1,6 +1,7 @@
-//! Samples and receivers of a file that no text describes: the length of rows that makes the sharpest spectrum, and after how many rows
-//! they repeat.
+//! Samples and receivers of a file that no text describes: the length of rows at whose beginnings samples don't follow from those before,
+//! how often the spectrum of a row repeats, and after how many rows they are the same again.
 
+use super::breaks::Breaks;
 use super::marks::{HEADER_BYTES, Marks};
 use super::spectrum::{Spectrum, correlation};
 use super::stream::Stream;
@@ -9,8 +10,6 @@ use ndarray::{Array2, ArrayView1, s};
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
 
-/// Numbers before it that each is predicted from.
-const ORDER: usize = 12;
 /// Samples of a chirp that are tried.
 const SAMPLES: [usize; 50] = [
     32, 40, 48, 50, 60, 64, 80, 90, 96, 100, 112, 120, 125, 128, 144, 150, 160, 180, 192, 200, 224, 225, 240, 250, 256,
@@ -21,16 +20,28 @@ const SAMPLES: [usize; 50] = [
 const INTERLEAVED: [usize; 5] = [16, 8, 4, 3, 2];
 /// Rows of receivers sample by sample repeat their spectrum so much alike, as a correlation of logarithms.
 const COMB: f64 = 0.6;
+/// The line of an echo is one where its logarithm over the middle of the spectrum is such a part of the strongest line's; and how far that
+/// stands over the middle at least, nepers of power.
+const LINE: f64 = 0.3;
+const CLIPPED_LINE: f64 = 0.75;
+const STANDS_OUT: f64 = 3.0;
 /// Receivers that radars usually have.
 const USUAL_RECEIVERS: usize = 4;
+/// So many times more words at the ends of their type than next to them are saturated.
+const SATURATED: usize = 8;
 /// Samples by which parts and the length of rows are judged.
-const JUDGED_NUMBERS: usize = 1 << 15;
+const JUDGED_NUMBERS: usize = 1 << 16;
 /// Lengths of rows by which the parts are judged.
 const LEVEL_LENGTHS: [usize; 3] = [64, 128, 256];
-/// A shorter length divides a longer one where so much more of its other beginnings does not follow.
-const DIVIDES: f64 = 1.4;
+/// Numbers between those that each is predicted from: receivers may stand sample by sample.
+const STRIDES: [usize; 4] = [1, 3, 4, 16];
 /// Rows after which rows may repeat.
 const LONGEST_PERIOD: usize = 64;
+/// Longest row that is tried, all receivers that stand sample by sample counted.
+const LONGEST_ROW: usize = 16384;
+/// Log-odds of a length of which the file holds no whole number, and of a usual one.
+const UNFILLED: f64 = -3.0;
+const USUAL_LENGTH: f64 = 2.0;
 /// Rows are the same again where they are so much alike, as a part of the most alike; and at least so much.
 const REPEATS: f64 = 0.9;
 const LEAST_ALIKE: f64 = 0.3;
@@ -39,7 +50,9 @@ const MOST_LOOPS: usize = 64;
 
 /// Counts that were found.
 pub(super) struct Searched {
-    pub counts: Vec<Counts>,
+    pub counts: Option<Counts>,
+    /// Those of the same rows where receivers don't stand sample by sample after all.
+    pub unmixed: Option<Counts>,
     pub note: Option<String>,
 }
 
@@ -53,37 +66,71 @@ struct Cut {
 }
 
 /// Searches the lengths of rows: the order of parts that makes the sharpest spectra, and then the length at whose multiples samples don't
-/// follow from those before.
+/// follow from those before, and which fills the file.
 pub(super) fn search<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>) -> io::Result<Searched> {
     let bytes = samples_of(stream, marks, 4 * JUDGED_NUMBERS)?;
     let marked = marks.filter(|m| m.apart > 0).map(|m| m.apart - HEADER_BYTES);
     let words = likely_words(&bytes);
-    let numbers = |layout: &Layout| {
-        let count = bytes.len() / layout.parts.bytes();
-        decode::numbers(layout, &bytes, count.min(JUDGED_NUMBERS))
-    };
-    let levels = Parts::ALL.into_iter().filter_map(|parts| {
+    let mut all = Vec::new();
+    for parts in Parts::ALL {
         let layout = layout(words, parts);
-        Some((level(&numbers(&layout), parts == Parts::Real)?, layout))
-    });
-    let Some((_, layout)) = levels.min_by(|a, b| a.0.total_cmp(&b.0)) else {
-        return Ok(Searched { counts: Vec::new(), note: None });
+        let count = bytes.len() / parts.bytes();
+        let numbers = decode::numbers(&layout, &bytes, count.min(JUDGED_NUMBERS));
+        if let Some(level) = level(&numbers, parts == Parts::Real) {
+            all.push((level, layout, numbers));
+        }
+    }
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((_, layout, numbers)) = all.first() else {
+        return Ok(Searched { counts: None, unmixed: None, note: None });
     };
-    let numbers = numbers(&layout);
-    let residual = residual(&numbers);
-    let fits = |length: &usize| marked.is_none_or(|held| held.is_multiple_of(length * layout.parts.bytes()));
-    let lengths: Vec<usize> = SAMPLES.into_iter().flat_map(|samples| [samples, 4 * samples]).filter(fits).collect();
-    let broken = lengths.iter().map(|length| (broken(&residual, *length), *length));
-    let longest = broken.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(SAMPLES[0], |(_, length)| length);
-    let length = divided(&residual, longest, &lengths);
-    let mixed = interleaved(&numbers, length);
-    let cut = Cut { layout, samples: length / mixed, mixed };
+    let cut = cut(*layout, numbers, stream.bytes(), marked);
+    let counts = counted(&cut, numbers, stream.bytes(), marks, marked);
+    let unmixed = (cut.mixed > 1).then(|| {
+        let length = cut.samples * cut.mixed;
+        counted(&Cut { samples: length, mixed: 1, ..cut }, numbers, stream.bytes(), marks, marked)
+    });
     let note = Some(
         "No .cfg says samples and receivers: they are those that make the sharpest spectrum and repeat. Carrier, slope and rate are not \
          known: a bin of range is shown as one metre, and directions are those of elements half a wavelength apart."
             .to_owned(),
     );
-    Ok(Searched { counts: vec![counted(&cut, &numbers, stream.bytes(), marks, marked)], note })
+    Ok(Searched { counts: Some(counts), unmixed, note })
+}
+
+/// The likeliest way to cut numbers into rows.
+fn cut(layout: Layout, numbers: &[Complex64], bytes: u64, marked: Option<usize>) -> Cut {
+    let fits = |length: &usize| marked.is_none_or(|held| held.is_multiple_of(length * layout.parts.bytes()));
+    let lengths: Vec<usize> = (SAMPLES[0]..=LONGEST_ROW).filter(fits).collect();
+    let likeliest = |stride: usize| {
+        let breaks = Breaks::of(numbers, stride);
+        let score = |length: &usize| (breaks.gain(*length) + prior(&layout, *length, bytes), *length);
+        let best = lengths.iter().map(score).max_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(score, length)| (score, breaks, length))
+    };
+    let best = STRIDES.into_iter().filter_map(likeliest).max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((_, breaks, longest)) = best else { return Cut { layout, samples: SAMPLES[0], mixed: 1 } };
+    let whole = breaks.whole(longest, &lengths);
+    let mixed = interleaved(numbers, whole);
+    let lengths: Vec<usize> = lengths.into_iter().filter(|length| length.is_multiple_of(mixed)).collect();
+    let length = if clipped(numbers) { whole } else { breaks.divided(whole, &lengths) };
+    Cut { layout, samples: length / mixed, mixed }
+}
+
+/// Log-odds of a length before its numbers are looked at: rows fill the file, which the odd part of a length does by chance but once in
+/// itself; and some lengths are usual.
+fn prior(layout: &Layout, length: usize, bytes: u64) -> f64 {
+    let odd = (length >> length.trailing_zeros()) as f64;
+    let fills = if bytes.is_multiple_of((length * layout.parts.bytes()) as u64) { odd.ln() } else { UNFILLED };
+    let is_usual = SAMPLES.contains(&length)
+        || INTERLEAVED.iter().any(|r| length.is_multiple_of(*r) && SAMPLES.contains(&(length / r)));
+    fills + if is_usual { USUAL_LENGTH } else { 0.0 }
+}
+
+/// The level of rows of one length.
+fn row_level(numbers: &[Complex64], length: usize, is_real: bool) -> f64 {
+    let spectrum = Spectrum::of(&rows(numbers, length, 1), 1);
+    if is_real { spectrum.of_real().level } else { spectrum.level }
 }
 
 /// How low the spectra of rows of a few lengths lie, all together; real numbers in rows of twice as many, which hold as much. `None` where
@@ -95,92 +142,51 @@ fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
         if numbers.len() < 2 * length {
             break;
         }
-        let spectrum = Spectrum::of(&rows(numbers, length, 1), 1);
-        sum += if is_real { spectrum.of_real().level } else { spectrum.level };
+        sum += row_level(numbers, length, is_real);
     }
     (numbers.len() >= 4 * LEVEL_LENGTHS[0]).then_some(sum)
-}
-
-/// The length of rows of which `longest` is several: where an echo goes on almost unbroken from receiver to receiver, most of what does not
-/// follow stands at the beginnings of loops.
-fn divided(residual: &[f64], longest: usize, lengths: &[usize]) -> usize {
-    let mut length = longest;
-    loop {
-        let shorter = lengths.iter().copied().filter(|l| *l < length && length.is_multiple_of(*l));
-        let within = shorter.map(|l| (broken_within(residual, l, length), l));
-        match within.max_by(|a, b| a.0.total_cmp(&b.0)) {
-            Some((ratio, shorter)) if ratio > DIVIDES => length = shorter,
-            _ => return length,
-        }
-    }
-}
-
-/// How much of each number does not follow from the [`ORDER`] before it, as a power: linear prediction by least squares.
-fn residual(numbers: &[Complex64]) -> Vec<f64> {
-    let mean = numbers.iter().sum::<Complex64>() / numbers.len().max(1) as f64;
-    let centred: Vec<Complex64> = numbers.iter().map(|v| v - mean).collect();
-    let mut normal = [[Complex64::default(); ORDER + 1]; ORDER];
-    for window in centred.windows(ORDER + 1) {
-        for (row, a) in normal.iter_mut().zip(window) {
-            row.iter_mut().zip(window).for_each(|(sum, b)| *sum += a.conj() * b);
-        }
-    }
-    let ridge = 1e-6 * (0..ORDER).map(|n| normal[n][n].re).sum::<f64>() / ORDER as f64;
-    (0..ORDER).for_each(|n| normal[n][n] += ridge.max(f64::MIN_POSITIVE));
-    let weights = solved(normal);
-    let predicted = |before: &[Complex64]| before.iter().zip(weights).map(|(v, w)| v * w).sum::<Complex64>();
-    let errors = centred.windows(ORDER + 1).map(|window| (window[ORDER] - predicted(&window[..ORDER])).norm_sqr());
-    std::iter::repeat_n(0.0, ORDER.min(centred.len())).chain(errors).collect()
-}
-
-/// The solution of a positive definite system whose right side stands in its last column.
-fn solved(mut system: [[Complex64; ORDER + 1]; ORDER]) -> [Complex64; ORDER] {
-    for pivot in 0..ORDER {
-        let top = system[pivot];
-        for (_, row) in system.iter_mut().enumerate().filter(|(n, _)| *n != pivot) {
-            let factor = row[pivot] / top[pivot];
-            row.iter_mut().zip(top).for_each(|(v, t)| *v -= factor * t);
-        }
-    }
-    std::array::from_fn(|n| system[n][ORDER] / system[n][n])
-}
-
-/// How much less the first numbers of rows of this length follow from those before them than all others.
-fn broken(residual: &[f64], length: usize) -> f64 {
-    broken_at(residual, length, |_| true)
-}
-
-/// The same of those rows of this length that don't begin where longer ones do.
-fn broken_within(residual: &[f64], length: usize, longer: usize) -> f64 {
-    broken_at(residual, length, |row| !row.is_multiple_of(longer / length))
-}
-
-fn broken_at(residual: &[f64], length: usize, counts: impl Fn(usize) -> bool) -> f64 {
-    if residual.len() < 3 * length || length <= 2 * ORDER {
-        return 0.0;
-    }
-    let (mut first, mut other) = ((0.0, 0.0), (0.0, 0.0));
-    for (n, row) in residual.chunks_exact(length).enumerate().skip(1) {
-        if counts(n) {
-            first = (first.0 + row[..ORDER].iter().sum::<f64>(), first.1 + ORDER as f64);
-        }
-        other = (other.0 + row[ORDER..].iter().sum::<f64>(), other.1 + (length - ORDER) as f64);
-    }
-    let mean = |(sum, count): (f64, f64)| sum / f64::max(count, 1.0);
-    // Rounding alone leaves as much.
-    mean(first) / (mean(other) + 0.2)
 }
 
 /// How many receivers stand sample by sample in rows of this length: their spectrum repeats as often.
 fn interleaved(numbers: &[Complex64], length: usize) -> usize {
     let power = Spectrum::of(&rows(numbers, length, 1), 1).power;
     let logs: Vec<f64> = power.iter().map(|p| p.ln()).collect();
+    let is_clipped = clipped(numbers);
     let repeats = |receivers: &usize| {
         let shift = length / receivers;
-        let turned = logs.iter().cycle().skip(shift).take(length).copied();
-        length.is_multiple_of(*receivers) && shift >= SAMPLES[0] && correlation(logs.iter().copied(), turned) > COMB
+        length.is_multiple_of(*receivers)
+            && shift >= SAMPLES[0]
+            && match is_clipped {
+                // Harmonics of a clipped echo stand at even distances too, but none as high as it.
+                true => peaks_repeat(&logs, shift, CLIPPED_LINE),
+                false => repeats_alike(&logs, shift) > COMB || peaks_repeat(&logs, shift, LINE),
+            }
     };
     INTERLEAVED.into_iter().find(repeats).unwrap_or(1)
+}
+
+/// Whether many parts stand at the ends of the numbers' type.
+fn clipped(numbers: &[Complex64]) -> bool {
+    let end = f64::from(i16::MAX);
+    let at_end = numbers.iter().filter(|v| v.re.abs() >= end || v.im.abs() >= end).count();
+    at_end * 100 > numbers.len()
+}
+
+/// Correlation of a spectrum with itself, turned.
+fn repeats_alike(logs: &[f64], shift: usize) -> f64 {
+    correlation(logs.iter().copied(), logs.iter().cycle().skip(shift).take(logs.len()).copied())
+}
+
+/// Whether the strongest echo stands at every shift too, over a floor that fills the rest.
+fn peaks_repeat(logs: &[f64], shift: usize, least: f64) -> bool {
+    let mut sorted = logs.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let median = sorted[sorted.len() / 2];
+    let strongest = (0..logs.len()).max_by(|a, b| logs[*a].total_cmp(&logs[*b])).unwrap_or(0);
+    let height = logs[strongest] - median;
+    let places = logs.len() / shift - 1;
+    let stands = |n: &usize| logs[(strongest + n * shift) % logs.len()] - median > least * height;
+    height > STANDS_OUT && (1..=places).filter(stands).count() * 5 >= places * 4
 }
 
 fn layout(words: Words, parts: Parts) -> Layout {
@@ -203,17 +209,21 @@ fn samples_of<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>, most
 /// The words that change least from one to the next of the same kind: wrong ones jump.
 fn likely_words(bytes: &[u8]) -> Words {
     let words = || bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
-    if words().all(|w| w < 0x1000) && words().any(|w| w >= 0x0800) {
-        return Words::TwelveBits;
-    }
+    // Saturated samples would be the smallest with bit 15 flipped; those next to them tell them from small ones.
+    let count = |of: [u16; 2]| words().filter(|w| of.contains(w)).count();
+    let is_saturated = count([0x7fff, 0x8000]) > SATURATED * count([0x7ffe, 0x8001]).max(1);
     let power = |of: Words| {
-        let numbers = || bytes.chunks_exact(2).map(move |b| f64::from(of.number([b[0], b[1]])));
+        let counts = move |b: &&[u8]| !is_saturated || ![[0xff, 0x7f], [0x00, 0x80]].contains(&[b[0], b[1]]);
+        let numbers = || bytes.chunks_exact(2).filter(counts).map(move |b| f64::from(of.number([b[0], b[1]])));
         let count = numbers().count().max(1) as f64;
         let mean = numbers().sum::<f64>() / count;
         numbers().map(|v| (v - mean).powi(2)).sum::<f64>() / count
     };
-    let [plain, offset, swapped] = [Words::Int16, Words::OffsetBinary, Words::BigEndian].map(power);
-    if offset < 0.5 * plain && offset <= swapped {
+    let [plain, offset, swapped, twelve] =
+        [Words::Int16, Words::OffsetBinary, Words::BigEndian, Words::TwelveBits].map(power);
+    if words().all(|w| w < 0x1000) && twelve < 0.5 * plain {
+        Words::TwelveBits
+    } else if offset < 0.5 * plain && offset <= swapped {
         Words::OffsetBinary
     } else if swapped < 0.5 * plain {
         Words::BigEndian

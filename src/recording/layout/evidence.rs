@@ -45,7 +45,7 @@ const MOST_ECHOES: usize = 6;
 /// Log-odds of what the `.cfg` says: of I and Q, of the receivers' order, and of real samples.
 const OF_ORDER: f64 = 5.0;
 const OF_RECEIVERS: f64 = 2.0;
-const OF_REAL: f64 = 12.0;
+const OF_REAL: f64 = 40.0;
 
 /// What is known of a file beside its samples.
 #[derive(Debug, Clone, Copy)]

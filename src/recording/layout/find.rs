@@ -93,29 +93,28 @@ pub enum LayoutError {
 pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfile>) -> Result<Found, LayoutError> {
     let marks = marks(stream)?;
     let mut notes = Vec::new();
-    let searched: Vec<Counts> = match profile {
+    let (counts, unmixed) = match profile {
         Some(p) => {
-            vec![Counts {
-                samples: p.samples,
-                receivers: p.receivers,
-                chirps: p.chirp_transmitters.len(),
-                loops: p.loops,
-            }]
+            let RadarProfile { samples, receivers, loops, .. } = *p;
+            (Some(Counts { samples, receivers, chirps: p.chirp_transmitters.len(), loops }), None)
         }
         None => {
-            let Searched { counts, note } = counts::search(stream, marks)?;
+            let Searched { counts, unmixed, note } = counts::search(stream, marks)?;
             notes.extend(note);
-            counts
+            (counts, unmixed)
         }
     };
-    let header_bytes = headers(marks, &searched, profile, &mut notes);
+    let header_bytes = headers(marks, counts, profile, &mut notes);
     let packets = stream.has_packets();
     let mut candidates = Vec::new();
-    for counts in searched {
+    for counts in counts.into_iter().chain(unmixed) {
         let job = Job { counts, header_bytes, packets, known: Known { profile, bytes: stream.bytes() } };
-        candidates.extend(job.candidates(stream)?);
+        candidates = job.candidates(stream)?;
+        candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
+        if candidates.first().is_some_and(|best| best.layout.receivers == ReceiverOrder::Interleaved) {
+            break;
+        }
     }
-    candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
     let Some(best) = candidates.first() else {
         return Err(LayoutError::Short { bytes: stream.bytes(), expected: 1024, whose: "" });
     };
@@ -137,7 +136,12 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
 }
 
 /// Bytes of the headers before chirps.
-fn headers(marks: Option<Marks>, counts: &[Counts], profile: Option<&RadarProfile>, notes: &mut Vec<String>) -> usize {
+fn headers(
+    marks: Option<Marks>,
+    counts: Option<Counts>,
+    profile: Option<&RadarProfile>,
+    notes: &mut Vec<String>,
+) -> usize {
     let Some(Marks { found, apart }) = marks else {
         if profile.is_some_and(|p| p.headers) {
             notes.push("The .cfg asks for a header before each chirp, but none stands there.".to_owned());
@@ -145,7 +149,7 @@ fn headers(marks: Option<Marks>, counts: &[Counts], profile: Option<&RadarProfil
         return 0;
     };
     let fits = |c: &Counts| Parts::ALL.iter().any(|p| c.samples * c.receivers * p.bytes() + HEADER_BYTES == apart);
-    if !counts.iter().any(fits) && found > 1 {
+    if !counts.as_ref().is_some_and(fits) && found > 1 {
         let held = (apart - HEADER_BYTES) / 4;
         notes.push(format!(
             "Headers stand {apart} bytes apart, so a chirp holds {held} complex samples of all receivers: the .cfg says otherwise."

@@ -11,9 +11,11 @@
 //! | `spectrum` | what a layout makes of the bytes: range profiles |
 //! | `evidence` | log-odds of a layout, of several kinds |
 //! | `find` | the candidates and the best of them |
+//! | `breaks` | where samples don't follow from those before |
 //! | `counts` | samples and receivers where no text says them |
 //! | `verdict` | why, in sentences |
 
+mod breaks;
 mod counts;
 mod decode;
 mod evidence;

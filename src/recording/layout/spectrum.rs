@@ -6,7 +6,7 @@ use ndarray::{Array2, ArrayView2, Axis};
 use num_complex::Complex64;
 
 /// Power that rounding to whole numbers leaves in a bin: a twelfth for each part.
-const ROUNDING: f64 = 1.0 / 6.0;
+pub(super) const ROUNDING: f64 = 1.0 / 6.0;
 
 /// An echo stands so far above the middle of all bins, decibels, and no farther below the strongest.
 const ABOVE_MEDIAN_DB: f64 = 15.0;
@@ -49,8 +49,9 @@ impl Spectrum {
         of_receivers.mapv_inplace(|p| p + ROUNDING);
         let power: Vec<f64> = of_receivers.mean_axis(Axis(0)).map_or_else(Vec::new, |mean| mean.to_vec());
         let spectrum = Spectrum::of_power(power, alike(of_receivers.view()));
-        // The logarithm of a mean of few powers lies below that of the mean of many, by half of one over their number.
-        Spectrum { level: spectrum.level + 0.5 / count.max(1) as f64, ..spectrum }
+        // The logarithm of a mean of few powers lies below that of the mean of many: ln n less the digamma function of n.
+        let few = 1.0 / count.max(1) as f64;
+        Spectrum { level: spectrum.level + few / 2.0 + few * few / 12.0, ..spectrum }
     }
 
     fn of_power(power: Vec<f64>, alike: f64) -> Spectrum {

@@ -166,6 +166,19 @@ fn samples_with_receivers_are_found_without_a_cfg() {
 }
 
 #[test]
+fn a_constant_part_or_saturation_leaves_the_words() {
+    let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
+    let changed = |change: fn(Complex64) -> Complex64| -> Vec<Vec<Complex64>> {
+        (0..5).flat_map(|_| chirps()).map(|chirp| chirp.into_iter().map(change).collect()).collect()
+    };
+    for chirps in [changed(|v| v + Complex64::new(2300.0, 1500.0)), changed(|v| v * 60.0)] {
+        let found = found(written(&right, &chirps), None);
+        let Candidate { layout, counts, .. } = found.best();
+        assert_eq!((layout, counts.samples, counts.receivers), (&right, SAMPLES, 3), "{:#?}", found.sentences());
+    }
+}
+
+#[test]
 fn an_echo_that_hardly_breaks_between_rows_is_cut() {
     let mut state = 7u32;
     let mut noise = move || {
