@@ -96,7 +96,7 @@ mod tests {
         e.name_selected("several have no name");
         assert_eq!(e.history().depth(), 0);
         e.select([1], SelectionMode::Replace);
-        ["p", "po", "post"].map(|name| e.name_selected(name));
+        ["p", "po", "post"].into_iter().for_each(|name| e.name_selected(name));
         e.duplicate_selected().unwrap();
         let called: Vec<String> = e.scene().objects.iter().enumerate().map(|(i, o)| o.called(i)).collect();
         assert_eq!(called, ["point 1", "post", "point 3", "line 4", "point 5"]);
