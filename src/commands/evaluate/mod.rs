@@ -9,6 +9,7 @@ mod report;
 
 use super::arguments::{self, FloorArgs, real, seed, whole};
 use super::network_args::NetworkArgs;
+use super::radar_arg::RadarArg;
 use super::{CommandError, print};
 use crate::evaluate::campaign::{Campaign, Shard};
 use crate::evaluate::rows::{
@@ -82,7 +83,7 @@ pub struct Args {
     seed: u64,
 
     /// Folder of scene files, in place of random scenes
-    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["set", "count", "seed", "carrier", "thesis_text"])]
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["set", "count", "seed", "carrier", "radar", "thesis_text"])]
     scenes: Option<PathBuf>,
 
     /// Append one row a scene and method to this CSV file, and resume where its rows end; tables are printed from these rows
@@ -99,7 +100,8 @@ pub struct Args {
 
     /// Print the tables of rows from these files together
     #[arg(long, value_name = "FILE.csv", num_args = 1..,
-          conflicts_with_all = ["method", "set", "count", "seed", "scenes", "shard", "floor", "carrier", "thesis_text"])]
+          conflicts_with_all = ["method", "set", "count", "seed", "scenes", "shard", "floor", "carrier", "radar",
+                                "thesis_text"])]
     merge: Vec<PathBuf>,
 
     /// Print the tables of --merge even if scenes are missing
@@ -117,8 +119,11 @@ pub struct Args {
     floor: FloorArgs,
 
     /// How the carrier's phase is read
-    #[arg(long, value_parser = arguments::carrier(), value_name = "one-way|two-way", default_value = "one-way")]
+    #[arg(long, value_parser = arguments::carrier(), value_name = "one-way|two-way", default_value = "one-way", conflicts_with = "radar")]
     carrier: Carrier,
+
+    #[command(flatten)]
+    radar: RadarArg,
 
     /// Make scenes as the thesis' text describes them, not as its author's program does
     #[arg(long)]
@@ -155,9 +160,13 @@ impl Args {
         }
     }
 
-    fn campaign(&self) -> Campaign {
-        Campaign {
-            radar: Radar { carrier: self.carrier, ..Radar::default() },
+    fn campaign(&self) -> Result<Campaign, CommandError> {
+        let radar = match self.radar.is_given() {
+            true => self.radar.load()?.0,
+            false => Radar { carrier: self.carrier, ..Radar::default() },
+        };
+        Ok(Campaign {
+            radar,
             reading: if self.thesis_text { Reading::Text } else { Reading::Program },
             seed: self.seed,
             count: self.count,
@@ -165,14 +174,14 @@ impl Args {
             floor: self.floor.floor,
             cfar: self.cfar,
             ..Campaign::default()
-        }
+        })
     }
 
     fn measure(&self) -> Result<Vec<Row>, CommandError> {
         let own = self.network.start_own()?;
         let methods = self.network.methods(&arguments::chosen(&self.method, &own, "baseline"))?;
         let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
-        let (campaign, sets) = (self.campaign(), self.sets()?);
+        let (campaign, sets) = (self.campaign()?, self.sets()?);
         let empty = campaign.empty_rows(&sets, &methods).map_err(CommandError::failed)?;
         let scenes: u64 = sets.iter().map(|set| u64::from(campaign.scenes(set))).sum();
         if scenes == 0 {
