@@ -240,7 +240,10 @@ impl App {
         timeline.follow(editor.scene());
         if timeline.is_playing() {
             let step = f64::from(ctx.input(|i| i.stable_dt).min(0.1));
-            timeline.set(editor.scene(), timeline.seconds() + step);
+            match editor.document().recording() {
+                Some(_) => apply::next_frame(&mut self.state, step),
+                None => timeline.set(editor.scene(), timeline.seconds() + step),
+            }
             ctx.request_repaint();
         }
     }

@@ -1,11 +1,13 @@
 //! `apertura maps`: the maps of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs};
+use super::frames::Frames;
 use super::input::{ConfigArg, InputArgs};
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print};
+use crate::files::npz::NpzError;
 use crate::files::write_bytes;
-use crate::maps::archive::{write_maps, write_recorded_maps};
+use crate::maps::archive::{write_frames, write_maps, write_recorded_maps};
 use crate::maps::{LogMap, Normalisation, RangeAngleMap};
 use crate::methods;
 use crate::picture::{ColourMap, PictureFormat, Style, compose, compose_recording, maps_of};
@@ -18,7 +20,7 @@ use crate::signal::{self, Floor, TwoEnds};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Compute the maps of a scene or a recording, to an .npz archive or a .png or .svg picture
+/// Compute the maps of a scene or a recording, to an .npz archive or a .png or .svg picture, or a .gif of all frames
 ///
 /// The archive has all_point_x, all_point_y (f64 [L], metres), sub0, sub1 (complex128 [512, 12], the samples of the two ends),
 /// polar_full (f64 [1, 512, 1024], log10 magnitude of the whole array, not normalised) and polar_partial_mag_phase
@@ -41,7 +43,7 @@ pub struct Args {
     #[command(flatten)]
     capture: ConfigArg,
 
-    /// File to write (.npz, .png or .svg)
+    /// File to write (.npz, .png or .svg; of a recording also .gif, an animation of all its frames)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
 
@@ -75,6 +77,10 @@ pub struct Args {
     #[arg(long, value_name = "SCENE")]
     explain: Option<PathBuf>,
 
+    /// Recording and archive: polar_full (f64 [frames, samples, elements]) of every frame, with the axes and constants alone
+    #[arg(long)]
+    all_frames: bool,
+
     /// Seed of the floor's noise; overrides the scene's
     #[arg(long, value_name = "S", value_parser = arguments::seed)]
     seed: Option<u64>,
@@ -90,7 +96,14 @@ impl Args {
                     "--explain takes reflectors off a recording; expected one as input".into(),
                 ));
             }
+            InputArgs::Scene(_) if self.all_frames || matches!(output, Output::Animation) => {
+                let message = "a scene has no frames; expected a recording for --all-frames or a .gif";
+                return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
+            }
             InputArgs::Scene(file) => self.of_scene(*file, output)?,
+            InputArgs::Recording(recording) if self.all_frames || matches!(output, Output::Animation) => {
+                self.of_frames(*recording, output)?;
+            }
             InputArgs::Recording(recording) => self.of_recording(*recording, output)?,
         }
         print(&format!("wrote {}", self.output.display()))
@@ -117,6 +130,42 @@ impl Args {
                     compose(&radar, &scene, &signal, method.as_ref(), &style, format).map_err(CommandError::failed)?;
                 self.write(&bytes)
             }
+            Output::Animation => Ok(()),
+        }
+    }
+
+    /// Every frame of a recording, one after another.
+    fn of_frames(&self, mut recording: Recording, output: Output) -> Result<(), CommandError> {
+        if self.explain.is_some() {
+            return Err(CommandError::Usage("--explain takes one frame".into()));
+        }
+        recording.radar.carrier = self.carrier.unwrap_or(recording.radar.carrier);
+        recording.radar.focus_off_line |= self.focus_off_line;
+        let frames = Frames::of(recording);
+        let radar = &frames.opened().radar;
+        match output {
+            Output::Archive if self.method.is_some() => Err(CommandError::Usage(
+                "--all-frames writes maps without a method; `apertura reconstruct --all-frames` writes a method's"
+                    .into(),
+            )),
+            Output::Archive => {
+                let map = |n: usize| {
+                    let frame = frames.at(n).map_err(|e| NpzError::Io(std::io::Error::other(e)))?;
+                    maps_of(&frame).1.ok_or_else(|| NpzError::Io(std::io::Error::other(ENDS_ALONE)))
+                };
+                write_frames(&self.output, radar, frames.count(), map).map_err(CommandError::on(&self.output))
+            }
+            Output::Animation => {
+                let method = self.method(|| methods::preferred_for(radar))?;
+                frames.animate(&self.output, |frame| {
+                    compose_recording(frame, method.as_ref(), &self.style(), PictureFormat::Png)
+                        .map_err(CommandError::on(&self.input))
+                })
+            }
+            Output::Picture(_) => Err(CommandError::Usage(format!(
+                "{}: a picture shows one frame; expected .gif or .npz beside --all-frames",
+                self.output.display()
+            ))),
         }
     }
 
@@ -147,6 +196,7 @@ impl Args {
                     .map_err(CommandError::on(&self.input))?;
                 self.write(&bytes)
             }
+            Output::Animation => Ok(()),
         }
     }
 
@@ -184,19 +234,29 @@ fn span(full: &LogMap) -> String {
     )
 }
 
+/// Why a frame has no map of the whole array.
+const ENDS_ALONE: &str = "the recording has the two ends alone; expected samples of every element";
+
+#[derive(Clone, Copy)]
 enum Output {
     Archive,
+    /// A GIF of all frames.
+    Animation,
     Picture(PictureFormat),
 }
 
 impl Output {
     fn of_path(path: &Path) -> Result<Output, CommandError> {
-        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz")) {
+        let ends = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+        if ends("npz") {
             return Ok(Output::Archive);
+        }
+        if ends("gif") {
+            return Ok(Output::Animation);
         }
         PictureFormat::of_path(path).map(Output::Picture).ok_or_else(|| {
             CommandError::Usage(format!(
-                "{}: can't tell what to write from this name; expected one ending in .npz, .png or .svg",
+                "{}: can't tell what to write from this name; expected one ending in .npz, .png, .svg or .gif",
                 path.display()
             ))
         })

@@ -14,6 +14,7 @@ mod evaluate;
 mod figure;
 #[cfg(feature = "network")]
 mod figures;
+mod frames;
 mod import;
 mod input;
 mod layouts;

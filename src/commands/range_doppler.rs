@@ -1,20 +1,21 @@
 //! `apertura range-doppler`: range against radial velocity of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs, real, whole};
-use super::input::{ConfigArg, InputArgs};
+use super::input::{ConfigArg, InputArgs, load_recording};
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::maps::doppler::{RangeDopplerMap, range_doppler, write_range_doppler};
 use crate::picture::{ColourMap, PictureFormat, compose_range_doppler};
 use crate::radar::{Decibels, MAX_CHIRPS, Radar};
-use crate::recording::file::{is_recording_at, load_loops};
+use crate::recording::FrameLoops;
+use crate::recording::file::is_recording_at;
 use crate::scene::Scene;
 use crate::scene::file::SceneFile;
 use crate::theory::doppler::folded;
 use std::path::PathBuf;
 
-/// Compute the range-Doppler map of a scene whose objects move, or of a raw capture, to an .npz archive or a .png or .svg picture
+/// Compute the range-Doppler map of a scene whose objects move, or of a recording with loops, to an .npz archive or a .png or .svg picture
 ///
 /// The radar sends several chirps. An object's velocity (velocity_x_metres_per_second and velocity_y_metres_per_second in the scene)
 /// turns its phase from chirp to chirp. Powers are averaged over up to 4 elements of each end. A velocity
@@ -27,7 +28,7 @@ use std::path::PathBuf;
 /// (f64 [L], metres).
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Scene (.toml or .npz) or raw capture (.bin, or a recording's .toml that names one) to look at
+    /// Scene (.toml or .npz), raw capture, array or recording's .toml to look at
     input: PathBuf,
 
     #[command(flatten)]
@@ -68,6 +69,9 @@ pub struct Args {
     #[arg(long, value_name = "S", value_parser = arguments::seed)]
     seed: Option<u64>,
 }
+
+/// What is told where nothing says the interval.
+const UNKNOWN_INTERVAL: &str = "Nothing says the interval of chirps: a step of velocity is shown as 1 m/s. radar.chirp_interval_seconds of a TOML says it.";
 
 /// Chirps where neither the scene nor the command says how many.
 const CHIRPS: usize = 128;
@@ -114,8 +118,15 @@ impl Args {
             let message = format!("{name} is a scene's; a recording has chirps of its own");
             return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
         }
-        let (radar, mut samples) =
-            load_loops(&self.input, self.capture.config.as_deref()).map_err(CommandError::failed)?;
+        let recording = load_recording(&self.input, self.capture.config.as_deref())?;
+        let Some(origin) = &recording.origin else {
+            let message = "counts no loops; one chirp tells no velocity";
+            return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
+        };
+        let FrameLoops { radar, mut samples, knows_interval } = origin.loops().map_err(CommandError::failed)?;
+        if !knows_interval {
+            eprintln!("note: {}: {UNKNOWN_INTERVAL}", self.input.display());
+        }
         if self.static_clutter_out {
             samples.take_out_static();
         }

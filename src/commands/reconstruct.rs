@@ -1,18 +1,19 @@
 //! `apertura reconstruct`: an estimate of the whole array's map from the samples of the two ends.
 
 use super::arguments::FloorArgs;
+use super::frames::Frames;
 use super::input::{ConfigArg, load_recording, shared_text};
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
 use super::{CommandError, print};
 use crate::files::kind::kind_at;
-use crate::files::npz::{Npz, NpzError, write_npz};
+use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
 use crate::maps::archive::{add_columns, read_radar};
 use crate::methods;
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
 use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstructor, Request};
-use crate::recording;
+use crate::recording::{self, Recording};
 use crate::scene::file;
 use crate::signal::TwoEnds;
 use ndarray::{Array1, Array2, Array3, Ix2, Ix3, arr0};
@@ -47,6 +48,10 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
 
+    /// Recording: every frame. OUT gets net_output (f32 [frames, samples, elements]) and found_frame (i64), the frame of each echo
+    #[arg(long)]
+    all_frames: bool,
+
     #[command(flatten)]
     radar: RadarArg,
 
@@ -67,6 +72,9 @@ impl Args {
         let own = self.network.start_own()?;
         // A name that is wrong is told before anything is read.
         let asked = self.method.as_deref().or(own.first().copied()).map(|name| self.method(name)).transpose()?;
+        if self.all_frames {
+            return self.of_frames(asked);
+        }
         let input = self.input()?;
         let radar = &input.radar;
         let method = asked.map_or_else(|| self.method(methods::preferred_for(radar).name()), Ok)?;
@@ -81,7 +89,9 @@ impl Args {
                     found: Vec::new(),
                 }
             }
-            Samples::Ends(ends) => self.answer(method.as_ref(), &input, ends).map_err(CommandError::on(&self.input))?,
+            Samples::Ends(ends) => self
+                .answer(method.as_ref(), (radar, input.range_metres, input.noise), ends)
+                .map_err(CommandError::on(&self.input))?,
         };
         self.write(radar, &answer).map_err(CommandError::on(&self.output))?;
         print_echoes(&answer.found)?;
@@ -91,6 +101,44 @@ impl Args {
             print(&format!("{doubtful} of {of} echoes are doubtful: found_confidence is less than {DOUBTFUL}"))?;
         }
         print(&format!("wrote {} ({}, {:.1} ms)", self.output.display(), method.name(), answer.milliseconds))
+    }
+
+    /// Every frame of a recording, one after another.
+    fn of_frames(&self, asked: Option<Arc<dyn Reconstructor>>) -> Result<(), CommandError> {
+        if !recording::file::is_recording_at(&self.input) {
+            let name = self.input.display();
+            return Err(CommandError::Usage(format!("{name}: expected a recording beside --all-frames")));
+        }
+        let frames = Frames::of(load_recording(&self.input, self.capture.config.as_deref())?);
+        let radar = &frames.opened().radar;
+        let method = asked.map_or_else(|| self.method(methods::preferred_for(radar).name()), Ok)?;
+        let mut found: Vec<(usize, Detection)> = Vec::new();
+        let shape = [frames.count(), radar.samples, radar.elements];
+        let answer = |n: usize| -> Result<Answer, CommandError> {
+            let recording = frames.at(n)?;
+            let ends = recording.two_ends();
+            let Recording { radar, range_metres, .. } = recording;
+            self.answer(method.as_ref(), (&radar, range_metres, NoisePrior::UNKNOWN), &ends)
+                .map_err(CommandError::on(&self.input))
+        };
+        let written = write_npz(&self.output, |out| {
+            let (mut etas, mut times) = (Vec::new(), Vec::new());
+            out.add_stack("net_output", shape, |n| {
+                let answer = answer(n).map_err(|e| NpzError::Io(std::io::Error::other(e)))?;
+                etas.push(f64::from(answer.eta));
+                times.push(answer.milliseconds);
+                found.extend(answer.found.into_iter().map(|echo| (n, echo)));
+                Ok(answer.map)
+            })?;
+            add_columns(out, radar)?;
+            out.add("eta", &Array1::from(etas))?;
+            out.add("milliseconds", &Array1::from(times))?;
+            out.add("found_frame", &found.iter().map(|(n, _)| *n as i64).collect::<Array1<i64>>())?;
+            add_found(out, &found.iter().map(|(_, echo)| echo))
+        });
+        written.map_err(CommandError::on(&self.output))?;
+        let (count, echoes) = (frames.count(), found.len());
+        print(&format!("wrote {} ({}, {count} frames, {echoes} echoes)", self.output.display(), method.name()))
     }
 
     fn method(&self, name: &str) -> Result<Arc<dyn Reconstructor>, CommandError> {
@@ -167,33 +215,45 @@ impl Args {
         Ok(TwoEnds { first, last: last.map_err(CommandError::on(&self.input))? })
     }
 
-    fn answer(&self, method: &dyn Reconstructor, input: &Input, ends: &TwoEnds) -> Result<Answer, ReconstructError> {
-        let Input { radar, range_metres, noise, .. } = input;
-        let request = Request { noise: *noise, snapshot_range_metres: *range_metres, ..Request::default() };
+    fn answer(
+        &self,
+        method: &dyn Reconstructor,
+        (radar, snapshot_range_metres, noise): (&Radar, Option<f64>, NoisePrior),
+        ends: &TwoEnds,
+    ) -> Result<Answer, ReconstructError> {
+        let request = Request { noise, snapshot_range_metres, ..Request::default() };
         let started = Instant::now();
         let answer = method.reconstruct(radar, ends, &request)?;
         let milliseconds = started.elapsed().as_secs_f64() * 1e3;
         let mut found = find(method, radar, ends, &request, &answer)?;
         if radar.samples == 1 {
             // Where a single sample's echoes come from is only known from elsewhere.
-            found.iter_mut().for_each(|f| f.range_metres = range_metres.unwrap_or(f64::NAN));
+            found.iter_mut().for_each(|f| f.range_metres = snapshot_range_metres.unwrap_or(f64::NAN));
         }
         Ok(Answer { eta: method.eta_of(&answer), map: answer.lambda.lambda, milliseconds, found })
     }
 
     fn write(&self, radar: &Radar, answer: &Answer) -> Result<(), NpzError> {
-        let list = |of: fn(&Detection) -> f64| answer.found.iter().map(of).collect::<Array1<f64>>();
         write_npz(&self.output, |out| {
             out.add("net_output", &answer.map)?;
             add_columns(out, radar)?;
             out.add("eta", &arr0(f64::from(answer.eta)))?;
             out.add("milliseconds", &arr0(answer.milliseconds))?;
-            out.add("found_cos_theta", &list(|f| f.cos_theta))?;
-            out.add("found_range_metres", &list(|f| f.range_metres))?;
-            out.add("found_db", &list(|f| f.relative_power.0))?;
-            out.add("found_confidence", &list(|f| f.confidence.unwrap_or(f64::NAN)))
+            add_found(out, &answer.found.iter())
         })
     }
+}
+
+/// Adds what was found, a list of each figure.
+fn add_found<'a>(
+    out: &mut NpzOutput<'_>,
+    found: &(impl Iterator<Item = &'a Detection> + Clone),
+) -> Result<(), NpzError> {
+    let list = |of: fn(&Detection) -> f64| found.clone().map(of).collect::<Array1<f64>>();
+    out.add("found_cos_theta", &list(|f| f.cos_theta))?;
+    out.add("found_range_metres", &list(|f| f.range_metres))?;
+    out.add("found_db", &list(|f| f.relative_power.0))?;
+    out.add("found_confidence", &list(|f| f.confidence.unwrap_or(f64::NAN)))
 }
 
 /// `number` to so many decimals, never -0.

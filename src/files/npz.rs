@@ -4,13 +4,18 @@ use super::entries::check_entries;
 use super::{npy, write_atomically};
 use crate::platform::fs::Draft;
 use crate::platform::fs::File;
-use ndarray::{Array, ArrayRef, Dimension};
-use ndarray_npy::{NpzWriter, ReadNpyError, ReadNpyExt, ReadableElement, WritableElement, WriteNpzError};
+use ndarray::{Array, Array2, ArrayRef, Dimension};
+use ndarray_npy::npy::header::{Header, Layout};
+use ndarray_npy::{
+    NpzWriter, ReadNpyError, ReadNpyExt, ReadableElement, WritableElement, WriteNpyError, WriteNpyExt, WriteNpzError,
+};
 use num_complex::{Complex32, Complex64};
-use std::io::{self, BufReader, BufWriter, Read};
+use std::cell::RefCell;
+use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
 use std::path::Path;
-use zip::ZipArchive;
 use zip::result::ZipError;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive};
 
 /// Most bytes that one array of an archive may have, unless [`Npz::at_most`] says otherwise: 1 GiB, the samples of the largest radar.
 pub const MAX_ARRAY_BYTES: u64 = 1 << 30;
@@ -46,8 +51,8 @@ pub enum NpzError {
 }
 
 /// An open archive.
-pub struct Npz {
-    archive: ZipArchive<BufReader<File>>,
+pub struct Npz<R = BufReader<File>> {
+    archive: ZipArchive<R>,
     keys: Vec<String>,
     most_bytes: u64,
 }
@@ -73,21 +78,30 @@ impl Npz {
     /// # Errors
     /// [`NpzError::Io`] or [`NpzError::Archive`].
     pub fn open(path: &Path) -> Result<Npz, NpzError> {
-        let mut file = File::open(path)?;
+        let file = File::open(path)?;
         if !file.metadata()?.is_file() {
             let message = "is a folder, device or pipe; expected an .npz file";
             return Err(io::Error::new(io::ErrorKind::InvalidInput, message).into());
         }
+        Npz::of(BufReader::new(file))
+    }
+}
+
+impl<R: Read + Seek> Npz<R> {
+    /// The archive that `file` holds, with its list of keys.
+    /// # Errors
+    /// [`NpzError::Archive`].
+    pub fn of(mut file: R) -> Result<Npz<R>, NpzError> {
         let not_whole = |error: ZipError| NpzError::Archive(error.to_string());
         check_entries(&mut file).map_err(|e| NpzError::Archive(e.to_string()))?;
-        let archive = ZipArchive::new(BufReader::new(file)).map_err(not_whole)?;
+        let archive = ZipArchive::new(file).map_err(not_whole)?;
         // NumPy leaves the ending off its keys.
         let keys = archive.file_names().map(|name| name.strip_suffix(".npy").unwrap_or(name).to_owned()).collect();
         Ok(Npz { archive, keys, most_bytes: MAX_ARRAY_BYTES })
     }
 
     /// Refuses arrays of more than so many bytes.
-    pub fn at_most(self, most_bytes: u64) -> Npz {
+    pub fn at_most(self, most_bytes: u64) -> Npz<R> {
         Npz { most_bytes, ..self }
     }
 
@@ -136,10 +150,6 @@ impl Npz {
     }
 
     fn read<T: ReadableElement, D: Dimension>(&mut self, key: &str) -> Result<Result<Array<T, D>, String>, NpzError> {
-        if !self.has(key) {
-            let found = if self.keys.is_empty() { "nothing".to_owned() } else { self.keys.join(", ") };
-            return Err(NpzError::Missing { key: key.to_owned(), found });
-        }
         let damaged = |reason: String| NpzError::Damaged { key: key.to_owned(), reason };
         let bytes = self.bytes(key)?;
         npy::check(&bytes).map_err(damaged)?;
@@ -155,13 +165,23 @@ impl Npz {
         }
     }
 
-    fn bytes(&mut self, key: &str) -> Result<Vec<u8>, NpzError> {
-        let damaged = |reason: String| NpzError::Damaged { key: key.to_owned(), reason };
+    /// The bytes of the array under `key`, as `numpy.save` writes them.
+    /// # Errors
+    /// [`NpzError`] where there is no such key, or its bytes can't be read.
+    pub fn entry(&mut self, key: &str) -> Result<impl Read + '_, NpzError> {
         let name = format!("{key}.npy");
         let index = self.archive.index_for_name(key).or_else(|| self.archive.index_for_name(&name));
-        let index = index.ok_or_else(|| damaged("its name is not in the archive's list".to_owned()))?;
+        let Some(index) = index else {
+            let found = if self.keys.is_empty() { "nothing".to_owned() } else { self.keys.join(", ") };
+            return Err(NpzError::Missing { key: key.to_owned(), found });
+        };
+        self.archive.by_index(index).map_err(|e| NpzError::Damaged { key: key.to_owned(), reason: e.to_string() })
+    }
+
+    fn bytes(&mut self, key: &str) -> Result<Vec<u8>, NpzError> {
+        let damaged = |reason: String| NpzError::Damaged { key: key.to_owned(), reason };
         let most = self.most_bytes;
-        let file = self.archive.by_index(index).map_err(|e| damaged(e.to_string()))?;
+        let file = self.entry(key)?;
         let mut bytes = Vec::new();
         file.take(most + 1).read_to_end(&mut bytes).map_err(|e| damaged(e.to_string()))?;
         if bytes.len() as u64 > most {
@@ -198,6 +218,47 @@ impl NpzOutput<'_> {
     pub fn add<T: WritableElement, D: Dimension>(&mut self, key: &str, array: &ArrayRef<T, D>) -> Result<(), NpzError> {
         self.writer.add_array(key, array).map_err(write_error)
     }
+
+    /// Adds arrays `[rows, columns]` as one of `shape` `[count, rows, columns]` under `key`. `next` makes them in order, and one is held at
+    /// a time.
+    /// # Errors
+    /// What `next` returns, an array of another shape, or [`NpzError::Io`] when the disk is full.
+    pub fn add_stack<T: WritableElement + Clone>(
+        &mut self,
+        key: &str,
+        shape: [usize; 3],
+        next: impl FnMut(usize) -> Result<Array2<T>, NpzError>,
+    ) -> Result<(), NpzError> {
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored).large_file(true);
+        let stack = Stack { shape, next: RefCell::new(next) };
+        self.writer.add_array_with_options(key, &stack, options).map_err(write_error)
+    }
+}
+
+/// Arrays of one shape, made one after another, as the one array that has them along its first axis.
+struct Stack<F> {
+    shape: [usize; 3],
+    next: RefCell<F>,
+}
+
+impl<T: WritableElement + Clone, F: FnMut(usize) -> Result<Array2<T>, NpzError>> WriteNpyExt for Stack<F> {
+    fn write_npy<W: Write>(&self, mut writer: W) -> Result<(), WriteNpyError> {
+        let [count, rows, columns] = self.shape;
+        let type_descriptor = T::type_descriptor();
+        Header { type_descriptor, layout: Layout::Standard, shape: self.shape.to_vec() }.write(&mut writer)?;
+        for n in 0..count {
+            let array = (self.next.borrow_mut())(n).map_err(io::Error::other)?;
+            let array = array.as_standard_layout();
+            match array.as_slice() {
+                Some(numbers) if array.dim() == (rows, columns) => T::write_slice(numbers, &mut writer)?,
+                _ => {
+                    let message = format!("array {n} has shape {:?}; expected [{rows}, {columns}]", array.shape());
+                    return Err(io::Error::other(message).into());
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 fn write_error(error: WriteNpzError) -> NpzError {
@@ -220,6 +281,18 @@ pub fn write_npz(path: &Path, fill: impl FnOnce(&mut NpzOutput) -> Result<(), Np
 mod tests {
     use super::*;
     use ndarray::{Ix1, Ix2, array};
+
+    #[test]
+    fn a_stack_is_one_array_of_three_axes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.npz");
+        let next = |n: usize| Ok(array![[n as f64, 1.0, 2.0]]);
+        write_npz(&path, |out| out.add_stack("maps", [4, 1, 3], next)).unwrap();
+        let maps = Npz::open(&path).unwrap().reals::<ndarray::Ix3>("maps").unwrap();
+        assert_eq!((maps.dim(), maps[[3, 0, 0]], maps[[2, 0, 2]]), ((4, 1, 3), 3.0, 2.0));
+        let error = write_npz(&path, |out| out.add_stack("maps", [4, 2, 3], next)).unwrap_err().to_string();
+        assert!(error.contains("array 0 has shape [1, 3]"), "{error}");
+    }
 
     fn archive() -> (tempfile::TempDir, std::path::PathBuf) {
         let folder = tempfile::tempdir().unwrap();

@@ -84,6 +84,23 @@ pub fn write_recorded_maps(
     })
 }
 
+/// Writes the maps of a recording's frames: `polar_full` (f64 `[frames, samples, elements]`), with the axes of [`write_maps`]. `next` makes
+/// the map of each frame in order, and one is held at a time.
+/// # Errors
+/// What `next` returns, or [`NpzError::Io`].
+pub fn write_frames(
+    path: &Path,
+    radar: &Radar,
+    frames: usize,
+    mut next: impl FnMut(usize) -> Result<LogMap, NpzError>,
+) -> Result<(), NpzError> {
+    let shape = [frames, radar.samples, radar.elements];
+    write_npz(path, |out| {
+        out.add_stack("polar_full", shape, |n| Ok(next(n)?.decades().clone()))?;
+        add_axes(out, radar)
+    })
+}
+
 /// The radar of an archive that [`write_maps`] wrote; `None` for one without the radar's constants: version 1, or the author's own.
 /// # Errors
 /// [`NpzError`] names a constant that is missing, damaged or of another type, or what of the radar makes no sense.

@@ -1,12 +1,14 @@
 //! The recording that a text describes: the TOML, and what it names.
 
+use super::capture::Plan;
 use super::doubts::doubts;
+use super::layout::stream::Stream;
 use super::profile::lines::text_of;
 use super::said_radar::said_radar;
 use super::said_recording::Table;
-use super::samples::{Open, read_loops, read_samples};
+use super::samples::{Open, count_frames, open_capture, read_loops, read_samples};
 use super::signs::{FORMAT, Signs, oldest};
-use super::{Fault, RadarProfile, Recording, RecordingError};
+use super::{AxisKind, Fault, RadarProfile, Recording, RecordingError, layout};
 use crate::platform::fs::File;
 use crate::radar::Radar;
 use crate::scene::file::SceneTextError;
@@ -87,6 +89,8 @@ pub(super) struct Parts {
     pub radar: Radar,
     pub profile: Option<RadarProfile>,
     pub signs: Signs,
+    /// Whether the text says the interval of loops.
+    says_interval: bool,
 }
 
 pub(super) fn parts(text: &str, path: &Path, open: Open<'_>) -> Result<Parts, RecordingError> {
@@ -104,9 +108,13 @@ pub(super) fn parts(text: &str, path: &Path, open: Open<'_>) -> Result<Parts, Re
             let read = || -> Result<RadarProfile, Fault> {
                 Ok(RadarProfile::of_sub_frame(&config_text(open(config)?)?, capture.sub_frame)?)
             };
-            Some(read().map_err(|fault| fault.of(&beside))?)
+            let mut profile = read().map_err(|fault| fault.of(&beside))?;
+            // A layout that contradicts the .cfg follows the samples.
+            profile.real = capture.parts.map_or(profile.real, |parts| parts == layout::Parts::Real);
+            Some(profile)
         }
     };
+    let says_interval = document.radar.contains_key("chirp_interval_seconds");
     let mut radar = said_radar(document.radar, profile.as_ref()).map_err(|fault| fault.of(path))?;
     table.has_places = !radar.is_monostatic();
     if table.reverse_elements {
@@ -116,12 +124,19 @@ pub(super) fn parts(text: &str, path: &Path, open: Open<'_>) -> Result<Parts, Re
     let signs = table.signs(document.format, &radar, profile.is_some()).map_err(|fault| fault.of(path))?;
     radar.carrier_hz = signs.carrier_hz;
     radar.validate().map_err(|e| Fault::from(e).of(path))?;
-    Ok(Parts { format: document.format, name: document.name, notes: document.notes, table, radar, profile, signs })
+    let Document { format, name, notes, .. } = document;
+    Ok(Parts { format, name, notes, table, radar, profile, signs, says_interval })
 }
 
-/// Reads a recording from the text of its TOML, which stands at `path`, and what `open` opens.
-pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Recording, RecordingError> {
-    let Parts { format, name, notes, table, radar, profile, signs } = parts(text, path, open)?;
+/// Reads a recording from the text of its TOML, which stands at `path`, and what `open` opens; `frame` in place of the one that the text says.
+pub(super) fn from_parts(
+    text: &str,
+    path: &Path,
+    open: Open<'_>,
+    frame: Option<u64>,
+) -> Result<Recording, RecordingError> {
+    let Parts { format, name, notes, mut table, radar, profile, signs, .. } = parts(text, path, open)?;
+    table.look_at(frame);
     let folder = path.parent().unwrap_or(Path::new(""));
     let data = folder.join(&table.file);
     // Keys stand in the TOML, those about other files too.
@@ -139,17 +154,53 @@ pub(super) fn from_parts(text: &str, path: &Path, open: Open<'_>) -> Result<Reco
     Ok(Recording { name, notes, radar, samples, missing, range_metres, doubts, origin: None })
 }
 
-/// Every loop of the frame that a text describes: the radar with their number and interval, and the samples, `[loops, elements, samples]`.
-pub(super) fn loops_of(text: &str, path: &Path, open: Open<'_>) -> Result<(Radar, ChirpSamples), RecordingError> {
-    let Parts { table, mut radar, profile, signs, .. } = parts(text, path, open)?;
-    let Some(profile) = profile else {
-        let expected = "it: without a .cfg nothing says the interval of chirps";
-        return Err(Fault::key("recording.capture.config", "is missing", expected).of(path));
+/// How many whole frames the recording of a text has, and which of them the text says; `None` where it counts neither frames nor loops.
+pub(super) fn frames_of(text: &str, path: &Path, open: Open<'_>) -> Result<Option<[u64; 2]>, RecordingError> {
+    let Parts { table, profile, .. } = parts(text, path, open)?;
+    let counted = || -> Result<u64, Fault> {
+        let Some(capture) = &table.capture else { return count_frames(&table, open) };
+        let stream = Stream::new(open_capture(&table, open, capture)?)?;
+        Ok(Plan::new(capture, profile.as_ref(), stream.bytes())?.frames.max(1))
     };
-    let samples = read_loops(&table, open, Some(&profile), signs).map_err(|fault| fault.of(path))?;
+    let repeats = |kind: &AxisKind| matches!(kind, AxisKind::Frame | AxisKind::Chirp);
+    if table.capture.is_none() && !table.axes.iter().flatten().any(repeats) {
+        return Ok(None);
+    }
+    let frame = table.capture.as_ref().map_or(table.frame, |capture| Some(capture.frame));
+    Ok(Some([counted().map_err(|fault| fault.of(path))?, frame.unwrap_or(0) as u64]))
+}
+
+/// Every loop of a frame, for a range-Doppler map.
+#[derive(Debug, Clone)]
+pub struct FrameLoops {
+    /// The radar, with the number of loops and their interval.
+    pub radar: Radar,
+    /// `[loops, elements, samples]`.
+    pub samples: ChirpSamples,
+    /// Whether the interval is known; where not, it is such that velocities are 1 m/s apart.
+    pub knows_interval: bool,
+}
+
+/// Every loop of the frame that a text describes, or of `frame`.
+pub(super) fn loops_of(
+    text: &str,
+    path: &Path,
+    open: Open<'_>,
+    frame: Option<u64>,
+) -> Result<FrameLoops, RecordingError> {
+    let Parts { mut table, mut radar, profile, signs, says_interval, .. } = parts(text, path, open)?;
+    table.look_at(frame);
+    let samples = read_loops(&table, open, profile.as_ref(), signs).map_err(|fault| fault.of(path))?;
     radar.chirps = samples.dim().0;
-    radar.chirp_interval_seconds =
-        (profile.chirp_interval_seconds * profile.chirp_transmitters.len() as f64).max(radar.chirp_seconds);
+    if let Some(profile) = &profile {
+        radar.chirp_interval_seconds = profile.chirp_interval_seconds * profile.chirp_transmitters.len() as f64;
+    } else if !says_interval {
+        radar.chirp_interval_seconds = 1.0;
+        radar.chirp_interval_seconds = radar.velocity_resolution_metres_per_second();
+        radar.chirp_seconds = radar.chirp_seconds.min(radar.chirp_interval_seconds);
+    }
+    radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
     radar.validate().map_err(|e| Fault::from(e).of(path))?;
-    Ok((radar, ChirpSamples { samples }))
+    let knows_interval = profile.is_some() || says_interval;
+    Ok(FrameLoops { radar, samples: ChirpSamples { samples }, knows_interval })
 }

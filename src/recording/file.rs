@@ -42,13 +42,13 @@
 //! loop = 0
 //! ```
 
-use super::described::{from_parts, loops_of, open_file, read_text};
+use super::described::{frames_of, from_parts, open_file, read_text};
 use super::raw;
-use super::{Fault, Recording, RecordingError};
-use crate::radar::Radar;
-use crate::signal::ChirpSamples;
+use super::samples::Open;
+use super::{Fault, Offer, Origin, Recording, RecordingError};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Whether a TOML is that of a recording: whether it has a table `[recording]`.
 pub fn is_recording(text: &str) -> bool {
@@ -82,29 +82,28 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
     if raw::is_raw_at(path) {
         return raw::open(path, None);
     }
-    let folder = path.parent().unwrap_or(Path::new(""));
     let text = read_text(open_file(path).map_err(|e| Fault::from(e).of(path))?).map_err(|e| e.of(path))?;
-    from_parts(&text, path, &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))))
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let open: Open<'_> = &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)));
+    let recording = from_parts(&text, path, open, None)?;
+    let origin = frames_of(&text, path, open)?.map(|frames| Arc::new(of_toml(text, path, frames)));
+    Ok(Recording { origin, ..recording })
 }
 
-/// Every loop of a recording's frame, for a range-Doppler map: the radar with their number and interval, and the samples,
-/// `[loops, elements, samples]`. The recording is a raw capture, or the TOML of one.
-///
-/// # Errors
-/// As [`load`]; [`Fault::Key`] where the recording is no capture with a `.cfg`.
-pub fn load_loops(path: &Path, config: Option<&Path>) -> Result<(Radar, ChirpSamples), RecordingError> {
-    let (text, path) = match raw::is_raw_at(path) {
-        true => {
-            let origin = raw::import(path, config, None)?.origin;
-            (origin.toml(), origin.data)
-        }
-        false => {
-            let text = read_text(open_file(path).map_err(|e| Fault::from(e).of(path))?).map_err(|e| e.of(path))?;
-            (text, path.to_owned())
-        }
-    };
-    let folder = path.parent().unwrap_or(Path::new(""));
-    loops_of(&text, &path, &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))))
+/// The one way to read what a TOML describes, with its frames.
+fn of_toml(toml: String, path: &Path, [frames, frame]: [u64; 2]) -> Origin {
+    let offer = Offer { described: "Read as its TOML says".to_owned(), log_odds: 0.0, power: Vec::new(), toml };
+    Origin {
+        data: path.to_owned(),
+        config: None,
+        offers: vec![offer],
+        taken: 0,
+        sentences: Vec::new(),
+        doubts: Vec::new(),
+        board: None,
+        frames,
+        frame,
+    }
 }
 
 #[cfg(test)]

@@ -6,12 +6,13 @@
 //! |---|---|
 //! | [`file`], `described`, `said_radar`, `said_recording` | the TOML: `[radar]` and `[recording]` |
 //! | `samples` | what the data files hold, in the order of the elements |
+//! | `chain` | files that go on from one to the next |
 //! | `numpy` | `.npy` and `.npz` |
 //! | `matlab` | `.mat`, versions 5 and 7 |
 //! | `capture`, `profile` | samples of a capture card, and the `.cfg` that set the radar up |
 //! | [`layout`] | how the bytes of a raw capture stand for samples, by evidence |
 //! | [`raw`] | raw captures and arrays as they are: the text that describes them is made |
-//! | `origin`, `reread` | where such a recording comes from, what else its bytes could be, and reading them so |
+//! | `origin`, `reread` | where a recording comes from, what else its bytes could be, its frames, and reading them |
 //! | [`packets`] | packets that a capture card sends, to frames |
 //! | `axes`, `analytic` | an array of any shape, of real samples too, to `[elements, samples]` |
 //! | `calibration` | what is taken off each element |
@@ -24,6 +25,7 @@ mod analytic;
 mod axes;
 mod calibration;
 mod capture;
+mod chain;
 mod described;
 mod doubts;
 mod error;
@@ -47,6 +49,7 @@ mod signs;
 pub use axes::{AxesError, AxisKind, Chirp};
 pub use calibration::{Calibration, CalibrationError};
 pub use capture::{Capture, CaptureError};
+pub use described::FrameLoops;
 pub use error::{Fault, RecordingError};
 pub use matlab::MatError;
 pub use numbers::MAX_NUMBERS;

@@ -1,32 +1,20 @@
 //! NumPy's `.npy` and `.npz` files: what the header says is checked before any memory is asked for.
 
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
-use crate::files::entries::check_entries;
 use crate::files::npy::header_bytes;
+use crate::files::npz::{Npz, NpzError};
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 use ndarray_npy::npy::header::Header;
 use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement};
 use num_complex::{Complex32, Complex64};
-use std::io::{self, Cursor, Read, Seek};
-use zip::ZipArchive;
+use std::io::{Cursor, Read, Seek};
 
 /// Why an array could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum NumpyError {
-    /// The system could not read.
+    /// The archive, or one of its keys.
     #[error("{0}")]
-    Io(#[from] io::Error),
-    /// Not a zip archive, or one that was cut off.
-    #[error("not a whole .npz archive ({0}); expected one written by numpy.savez")]
-    Archive(String),
-    /// The archive lacks a key.
-    #[error("has no array \"{key}\"; expected it beside what is there: {found}")]
-    Missing {
-        /// The key asked for.
-        key: String,
-        /// The keys the archive has.
-        found: String,
-    },
+    Archive(#[from] NpzError),
     /// The header is none of NumPy's.
     #[error("{what} can't be read: {reason}; expected what numpy.save writes")]
     Damaged {
@@ -59,37 +47,23 @@ pub enum NumpyError {
 ///
 /// # Errors
 /// [`NumpyError`] names the key, and what was expected of it.
-pub(super) fn read_npz(mut file: impl Read + Seek, key: &str) -> Result<Numbers, NumpyError> {
-    check_entries(&mut file).map_err(|e| NumpyError::Archive(e.to_string()))?;
-    let mut archive = ZipArchive::new(file).map_err(|e| NumpyError::Archive(e.to_string()))?;
-    let name = format!("{key}.npy");
-    if archive.index_for_name(&name).is_none() {
-        let mut keys: Vec<&str> = archive.file_names().map(|n| n.strip_suffix(".npy").unwrap_or(n)).collect();
-        keys.sort_unstable();
-        let found = if keys.is_empty() { "nothing".to_owned() } else { keys.join(", ") };
-        return Err(NumpyError::Missing { key: key.to_owned(), found });
-    }
-    let what = format!("array \"{key}\"");
-    let damaged = |e: zip::result::ZipError| NumpyError::Damaged { what: what.clone(), reason: e.to_string() };
-    let entry = archive.by_name(&name).map_err(damaged)?;
-    read_array(entry, &what)
+pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, NumpyError> {
+    read_array(Npz::of(file)?.entry(key)?, &format!("array \"{key}\""))
 }
 
 /// Names and shapes of the arrays of an archive, without their numbers; those that can't be read are left out.
 ///
 /// # Errors
 /// [`NumpyError`].
-pub(super) fn shapes(mut file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, NumpyError> {
-    check_entries(&mut file).map_err(|e| NumpyError::Archive(e.to_string()))?;
-    let mut archive = ZipArchive::new(file).map_err(|e| NumpyError::Archive(e.to_string()))?;
-    let names: Vec<String> = archive.file_names().map(str::to_owned).collect();
-    let mut shape = |name: &String| {
-        let mut entry = archive.by_name(name).ok()?;
-        let bytes = header_bytes(&mut entry).ok()?;
+pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, NumpyError> {
+    let mut archive = Npz::of(file)?;
+    let keys = archive.keys().to_vec();
+    let shape = |key: String| {
+        let bytes = header_bytes(&mut archive.entry(&key).ok()?).ok()?;
         let header = Header::from_reader(&mut bytes.as_slice()).ok()?;
-        Some((name.strip_suffix(".npy")?.to_owned(), header.shape))
+        Some((key, header.shape))
     };
-    Ok(names.iter().filter_map(&mut shape).collect())
+    Ok(keys.into_iter().filter_map(shape).collect())
 }
 
 /// Reads the one array of an `.npy` file.

@@ -15,14 +15,14 @@ pub struct Offer {
     pub toml: String,
 }
 
-/// Where a recording comes from that was opened without a TOML.
+/// Where a recording comes from whose file can be read otherwise: another way, or another frame of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Origin {
-    /// The file with the samples.
+    /// The file with the samples, or the TOML that describes them.
     pub data: PathBuf,
     /// The `.cfg` that was read, where there is one.
     pub config: Option<PathBuf>,
-    /// Ways to read the file, the most likely first.
+    /// Ways to read the file, the most likely first; the TOML alone where there is one.
     pub offers: Vec<Offer>,
     /// Which of them was taken.
     pub taken: usize,
@@ -38,13 +38,9 @@ pub struct Origin {
     pub frame: u64,
 }
 
-/// The line of a text that says which frame is looked at.
-const FIRST_FRAME: &str = "\nframe = 0\n";
-
 impl Origin {
     /// The text of the way that was taken.
-    pub fn toml(&self) -> String {
-        let toml = self.offers.get(self.taken).map_or("", |offer| offer.toml.as_str());
-        toml.replacen(FIRST_FRAME, &format!("\nframe = {}\n", self.frame), 1)
+    pub fn toml(&self) -> &str {
+        self.offers.get(self.taken).map_or("", |offer| offer.toml.as_str())
     }
 }

@@ -1,7 +1,7 @@
 //! Recordings that come with the program: the files of `assets/recordings`, embedded in it.
 
 use super::described::from_parts;
-use super::samples::Source;
+use super::samples::Open;
 use super::{Recording, RecordingError};
 use std::io::{self, Cursor};
 use std::path::Path;
@@ -43,13 +43,14 @@ impl Preset {
     /// None for the presets of [`ALL`]: a test reads each of them.
     pub fn load(&self) -> Result<Recording, RecordingError> {
         let path = format!("{}.toml", self.id);
-        from_parts(self.toml, Path::new(&path), &|name| {
+        let open: Open<'_> = &|name| {
             if name == self.data_name {
-                Ok(Box::new(Cursor::new(self.data)) as Box<dyn Source>)
+                Ok(Box::new(Cursor::new(self.data)))
             } else {
                 Err(io::Error::new(io::ErrorKind::NotFound, format!("expected {}", self.data_name)))
             }
-        })
+        };
+        from_parts(self.toml, Path::new(&path), open, None)
     }
 
     /// The preset called `id`.

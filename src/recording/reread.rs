@@ -1,10 +1,8 @@
-//! Recordings of a file without a text: read by any of the texts that describe it.
+//! Recordings read again: by any of the texts that describe a file, or another frame of it.
 
-use super::described::{from_parts, loops_of, open_file};
+use super::described::{FrameLoops, from_parts, loops_of, open_file};
 use super::samples::Open;
 use super::{Origin, Recording, RecordingError};
-use crate::radar::Radar;
-use crate::signal::ChirpSamples;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 use std::sync::Arc;
@@ -40,20 +38,18 @@ impl Origin {
         })
     }
 
-    /// Every loop of the frame, for a range-Doppler map: the radar with their number and interval, and the samples,
-    /// `[loops, elements, samples]`.
+    /// Every loop of the frame, for a range-Doppler map.
     ///
     /// # Errors
-    /// As [`Origin::recording`], and where no `.cfg` says the interval of chirps.
-    pub fn loops(&self) -> Result<(Radar, ChirpSamples), RecordingError> {
+    /// As [`Origin::recording`], and where the file holds no loops.
+    pub fn loops(&self) -> Result<FrameLoops, RecordingError> {
         let folder = self.data.parent().unwrap_or(Path::new("")).to_owned();
-        loops_of(&self.toml(), &self.data.with_extension("toml"), &|name| {
-            Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)))
-        })
+        let open: Open<'_> = &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)));
+        loops_of(self.toml(), &self.data.with_extension("toml"), open, Some(self.frame))
     }
 
     fn read(&self, open: Open<'_>) -> Result<Recording, RecordingError> {
-        let mut recording = from_parts(&self.toml(), &self.data.with_extension("toml"), open)?;
+        let mut recording = from_parts(self.toml(), &self.data.with_extension("toml"), open, Some(self.frame))?;
         let known = recording.doubts.clone();
         recording.doubts.splice(0..0, self.doubts.iter().filter(|d| !known.contains(d)).cloned());
         recording.origin = Some(Arc::new(self.clone()));

@@ -93,6 +93,18 @@ impl Table {
         Said { format, carrier_at, beat_sign, sweep, conjugate }.signs(radar)
     }
 
+    /// Looks at another frame than the text says.
+    pub fn look_at(&mut self, frame: Option<u64>) {
+        match (&mut self.capture, frame) {
+            (_, None) => {}
+            (Some(capture), Some(frame)) => capture.frame = frame as usize,
+            (None, Some(frame)) => {
+                let counts_frames = self.axes.iter().flatten().any(|kind| *kind == AxisKind::Frame);
+                self.frame = counts_frames.then_some(frame as usize);
+            }
+        }
+    }
+
     /// Whether the phase of an echo rises from sample to sample of the file.
     pub fn beat_rises(&self) -> bool {
         self.beat_sign != Some(BeatSign::Negative)

@@ -2,6 +2,7 @@
 
 use super::axes::{Join, arrange, in_turn, loops, one_frame};
 use super::capture::{Meaning, strongest_of};
+use super::chain::{Chain, Source};
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
 use super::said_recording::{Covers, Table};
@@ -13,59 +14,7 @@ use ndarray::{Array2, Array3, Axis, concatenate};
 use num_complex::Complex64;
 use std::cell::RefCell;
 use std::collections::HashSet;
-use std::io::{self, Read, Seek, SeekFrom};
-
-/// Something to read a data file from.
-pub(super) trait Source: Read + Seek {}
-
-impl<T: Read + Seek> Source for T {}
-
-/// Files that are read as one, one after another.
-pub(super) struct Chain {
-    files: Vec<(Box<dyn Source>, u64)>,
-    at: u64,
-}
-
-impl Chain {
-    /// The files in order.
-    ///
-    /// # Errors
-    /// What the system says.
-    pub fn new(files: Vec<Box<dyn Source>>) -> io::Result<Self> {
-        let sized = |mut file: Box<dyn Source>| file.seek(SeekFrom::End(0)).map(|bytes| (file, bytes));
-        Ok(Chain { files: files.into_iter().map(sized).collect::<io::Result<_>>()?, at: 0 })
-    }
-}
-
-impl Read for Chain {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let mut start = 0;
-        for (file, bytes) in &mut self.files {
-            if self.at < start + *bytes {
-                file.seek(SeekFrom::Start(self.at - start))?;
-                let here = buffer.len().min((start + *bytes - self.at) as usize);
-                let read = file.read(&mut buffer[..here])?;
-                self.at += read as u64;
-                return Ok(read);
-            }
-            start += *bytes;
-        }
-        Ok(0)
-    }
-}
-
-impl Seek for Chain {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let all: u64 = self.files.iter().map(|(_, bytes)| bytes).sum();
-        let place = match to {
-            SeekFrom::Start(at) => Some(at),
-            SeekFrom::End(by) => all.checked_add_signed(by),
-            SeekFrom::Current(by) => self.at.checked_add_signed(by),
-        };
-        self.at = place.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "a place before the first byte"))?;
-        Ok(self.at)
-    }
-}
+use std::io;
 
 /// Opens a data file by the name that the TOML gives it.
 pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
@@ -149,7 +98,7 @@ fn read_capture(
     Ok((arrange(Numbers::Complex(rows.into_dyn()), &kinds, None)?, notes))
 }
 
-/// Every loop of the capture's frame, `[loops, elements, samples]`, with the signs of the maps' formula.
+/// Every loop of a frame, `[loops, elements, samples]`, with the signs of the maps' formula.
 ///
 /// # Errors
 /// [`Fault`] names the key.
@@ -159,13 +108,13 @@ pub(super) fn read_loops(
     profile: Option<&RadarProfile>,
     signs: Signs,
 ) -> Result<Array3<Complex64>, Fault> {
-    let Some(capture) = &table.capture else {
-        let expected =
-            "it: range-Doppler maps of recordings are made of raw captures, whose .cfg says the interval of chirps";
-        return Err(Fault::key("[recording.capture]", "is missing", expected));
+    let mut loops = match &table.capture {
+        Some(capture) => {
+            check_capture(table)?;
+            capture.loops(open_capture(table, open, capture)?, profile)?
+        }
+        None => array_loops(table, open)?,
     };
-    check_capture(table)?;
-    let mut loops = capture.loops(open_capture(table, open, capture)?, profile)?;
     if signs.conjugates {
         loops.mapv_inplace(|v| v.conj());
     }
@@ -175,8 +124,39 @@ pub(super) fn read_loops(
     Ok(loops)
 }
 
+/// Every loop of an array's frame, `[loops, elements, samples]`: elements are the pairs of the transmitters and receivers taken.
+fn array_loops(table: &Table, open: Open<'_>) -> Result<Array3<Complex64>, Fault> {
+    let mut kinds = table.axes.clone().unwrap_or_default();
+    if !kinds.contains(&AxisKind::Chirp) {
+        let expected = "an axis \"chirp\": one chirp tells no velocity";
+        return Err(Fault::key("recording.axes", "has no loops", expected));
+    }
+    let mut numbers = numbers(table, open, table.array.as_deref())?;
+    numbers.mend_signs();
+    let numbers = in_turn(one_frame(numbers, &mut kinds, table.frame)?, &mut kinds, table.transmitters_in_turn)?;
+    let loops = loops(numbers, &kinds)?;
+    let (count, transmitters, receivers, samples) = loops.dim();
+    let pairs = transmitters * receivers;
+    // The same numbers in the same order: the shape can't fail to fit.
+    let rows = loops
+        .into_shape_with_order((count, pairs, samples))
+        .map_err(|e| Fault::key("recording.axes", e.to_string(), "others"))?;
+    let numbers = Array2::from_shape_fn((pairs, 1), |(pair, _)| Complex64::from(pair as f64));
+    let places: Vec<usize> =
+        taken(table, numbers, [transmitters, receivers])?.iter().map(|pair| pair.re as usize).collect();
+    Ok(rows.select(Axis(1), &places))
+}
+
+/// How many frames the arrays of a table have.
+pub(super) fn count_frames(table: &Table, open: Open<'_>) -> Result<u64, Fault> {
+    let place = table.axes.iter().flatten().position(|kind| *kind == AxisKind::Frame);
+    let Some(place) = place else { return Ok(1) };
+    let numbers = numbers(table, open, table.array.as_deref().or(table.first.as_deref()))?;
+    Ok(numbers.shape().get(place).map_or(1, |frames| *frames as u64))
+}
+
 /// The file of a capture, with those that go on from it.
-fn open_capture(table: &Table, open: Open<'_>, capture: &Capture) -> Result<Box<dyn Source>, Fault> {
+pub(super) fn open_capture(table: &Table, open: Open<'_>, capture: &Capture) -> Result<Box<dyn Source>, Fault> {
     let first = open(&table.file)?;
     if capture.more_files.is_empty() {
         return Ok(first);

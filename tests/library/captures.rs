@@ -2,7 +2,7 @@
 
 use apertura::reconstruct::found::reconstruct_and_find;
 use apertura::reconstruct::{NoisePrior, Request};
-use apertura::recording::{Recording, raw};
+use apertura::recording::{FrameLoops, Recording, raw};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::fs;
@@ -187,7 +187,9 @@ fn range_with_velocity_of_a_capture_stand_in_its_map() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("c.bin"), two_lanes(samples(&RISING, echo, 2, 32).into_iter().flatten())).unwrap();
     fs::write(folder.path().join("c.cfg"), cfg(&RISING, &[1, 4], 32, "")).unwrap();
-    let (radar, samples) = apertura::recording::file::load_loops(&folder.path().join("c.bin"), None).unwrap();
+    let recording = raw::open(&folder.path().join("c.bin"), None).unwrap();
+    let FrameLoops { radar, samples, knows_interval } = recording.origin.unwrap().loops().unwrap();
+    assert!(knows_interval);
     let map = apertura::maps::doppler::RangeDopplerMap::of(&radar, samples);
     let (bin, column) = map.peak();
     assert!((radar.range_of_bin_metres(bin as f64) - echo.x.hypot(echo.y)).abs() < RISING.bin_metres());

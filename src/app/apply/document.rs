@@ -6,6 +6,7 @@ use crate::app::state::{DocumentCommand, MapKind, Panel, Settings, State, Way};
 use crate::interact::Document;
 #[cfg(feature = "live")]
 use crate::methods;
+use crate::platform::Instant;
 use crate::recording::raw::boards;
 use crate::recording::{self, raw};
 use crate::scene::Scene;
@@ -155,12 +156,39 @@ fn read_another_way(state: &mut State, way: Way) {
     };
     match read {
         Ok(recording) => {
-            if let Some(document) = state.editor.document().read_another_way(recording) {
+            let Some(document) = state.editor.document().read_another_way(recording) else { return };
+            if matches!(way, Way::Frame(_)) {
+                state.editor.open_frame(document);
+            } else {
                 state.editor.open("read another way", document);
                 use_a_method_that_can(state);
             }
         }
-        Err(error) => state.notices.error(format!("{error}\nThe recording on screen was kept.")),
+        Err(error) => {
+            state.timeline.play_frames(false);
+            state.notices.error(format!("{error}\nThe recording on screen was kept."));
+        }
+    }
+}
+
+/// Lets the frames of the recording play, from the first where the last is on screen, or stops them.
+pub fn play_frames(state: &mut State, is_playing: bool) {
+    state.timeline.play_frames(is_playing);
+    if is_playing && state.frames().is_some_and(|[frame, count]| frame + 1 >= count) {
+        read_another_way(state, Way::Frame(0));
+        state.timeline.frame_took(0.0);
+    }
+}
+
+/// Goes to the next frame of the recording that plays where it is due, `step` seconds after the last call; the last one ends it.
+pub fn next_frame(state: &mut State, step: f64) {
+    let [frame, count] = state.frames().unwrap_or_default();
+    if frame + 1 >= count {
+        state.timeline.play_frames(false);
+    } else if state.timeline.is_frame_due(step) {
+        let began = Instant::now();
+        read_another_way(state, Way::Frame(frame + 1));
+        state.timeline.frame_took(began.elapsed().as_secs_f64());
     }
 }
 

@@ -15,6 +15,8 @@ mod view;
 mod window;
 mod work;
 
+pub use document::next_frame;
+
 pub use document::{read, show_recording_panels};
 pub use effect::Effect;
 pub use failure_view::follow as follow_failure;

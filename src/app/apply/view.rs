@@ -1,5 +1,6 @@
 //! Commands that change how the scene is looked at.
 
+use super::document;
 use crate::app::jobs::Jobs;
 use crate::app::state::{MapViews, Panel, PinnedCut, State, ViewCommand};
 use crate::maps::cfar::Cfar;
@@ -31,9 +32,15 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::SetChirp(chirp) => settings.chirp = chirp,
         ViewCommand::SetTime(seconds) => state.timeline.set(state.editor.scene(), seconds),
         ViewCommand::TogglePlay => {
-            let is_playing = !state.timeline.is_playing() && state.editor.scene().is_moving();
-            state.timeline.play(state.editor.scene(), is_playing);
+            let is_playing = !state.timeline.is_playing();
+            if state.frames().is_some() {
+                document::play_frames(state, is_playing);
+            } else {
+                let scene = state.editor.scene();
+                state.timeline.play(scene, is_playing && scene.is_moving());
+            }
         }
+        ViewCommand::TakeOutStaticClutter(is_out) => settings.static_clutter_out = is_out,
         ViewCommand::SetPhasors(phasors) => settings.phasors = phasors,
         ViewCommand::MarkReflectors => settings.show_reflectors = true,
         ViewCommand::ToggleDeveloper => settings.developer ^= true,

@@ -8,6 +8,7 @@ use crate::maps::doppler::{RangeDopplerMap, range_doppler_for};
 use crate::maps::{LogMap, Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::Radar;
+use crate::recording::FrameLoops;
 use crate::task::Task;
 use eframe::egui::ColorImage;
 use std::sync::Arc;
@@ -16,6 +17,7 @@ use std::sync::Arc;
 #[derive(Clone, PartialEq)]
 pub struct DopplerQuery {
     source: Source,
+    static_clutter_out: bool,
     normalisation: Normalisation,
     colours: ColourMap,
 }
@@ -29,7 +31,8 @@ impl DopplerQuery {
             None => source.radar.chirps > 1,
             Some(recording) => recording.origin.is_some(),
         };
-        has_chirps.then_some(DopplerQuery { source, normalisation, colours })
+        let static_clutter_out = state.settings.static_clutter_out && source.recording.is_some();
+        has_chirps.then_some(DopplerQuery { source, static_clutter_out, normalisation, colours })
     }
 }
 
@@ -37,6 +40,8 @@ impl DopplerQuery {
 pub struct DopplerResult {
     /// The radar whose chirps it is made of.
     pub radar: Radar,
+    /// Whether their interval is known.
+    pub knows_interval: bool,
     /// Decades of amplitude, `[range bins, velocities]`.
     pub decades: LogMap,
     /// The map as a picture, the farthest row on top.
@@ -46,33 +51,45 @@ pub struct DopplerResult {
 impl Query for DopplerQuery {
     type Value = DopplerResult;
     /// The decades of the last scene or recording, and the radar: colours and normalisation are chosen among many for one.
-    type State = Option<(Source, Radar, LogMap)>;
+    type State = Option<(Source, bool, DopplerMade)>;
     const THREAD: &'static str = "range-Doppler";
     const WHAT: &'static str = "Computing the range-Doppler map";
     const ADVICE: &'static str = "Change the scene to try again.";
 
     fn compute(&self, kept: &mut Self::State, task: &Task) -> Result<DopplerResult, Failure> {
-        let DopplerQuery { source, normalisation, colours } = self;
-        let (radar, decades) = match kept.take() {
-            Some((of, radar, decades)) if of == *source => (radar, decades),
-            _ => source_map(source, task)?,
+        let DopplerQuery { source, static_clutter_out, normalisation, colours } = self;
+        let made = match kept.take() {
+            Some((of, is_out, made)) if of == *source && is_out == *static_clutter_out => made,
+            _ => source_map(source, *static_clutter_out, task)?,
         };
+        let DopplerMade { radar, knows_interval, decades } = made.clone();
         let image = picture(&decades.normalise(*normalisation), *colours);
-        *kept = Some((source.clone(), radar.clone(), decades.clone()));
-        Ok(DopplerResult { radar, decades, image })
+        *kept = Some((source.clone(), *static_clutter_out, made));
+        Ok(DopplerResult { radar, knows_interval, decades, image })
     }
 }
 
-/// The map of a scene's chirps, or of the loops of a recording's frame; and the radar whose chirps they are.
-fn source_map(source: &Source, task: &Task) -> Result<(Radar, LogMap), String> {
+/// A map, and the radar whose chirps it is made of.
+#[derive(Clone)]
+pub struct DopplerMade {
+    radar: Radar,
+    knows_interval: bool,
+    decades: LogMap,
+}
+
+/// The map of a scene's chirps, or of the loops of a recording's frame.
+fn source_map(source: &Source, static_clutter_out: bool, task: &Task) -> Result<DopplerMade, String> {
     if let Some(origin) = source.recording.as_ref().and_then(|r| r.origin.as_ref()) {
-        let (radar, samples) = origin.loops().map_err(|e| e.to_string())?;
-        let map = RangeDopplerMap::of(&radar, samples);
-        return Ok((radar, map.log_magnitude()));
+        let FrameLoops { radar, mut samples, knows_interval } = origin.loops().map_err(|e| e.to_string())?;
+        if static_clutter_out {
+            samples.take_out_static();
+        }
+        let decades = RangeDopplerMap::of(&radar, samples).log_magnitude();
+        return Ok(DopplerMade { radar, knows_interval, decades });
     }
     let (scene, floor) = source.simulated()?;
     let map = range_doppler_for(task, &source.radar, scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
-    Ok((source.radar.clone(), map.log_magnitude()))
+    Ok(DopplerMade { radar: source.radar.clone(), knows_interval: true, decades: map.log_magnitude() })
 }
 
 fn picture(map: &RangeAngleMap, colours: ColourMap) -> Arc<ColorImage> {

@@ -3,7 +3,7 @@
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::DopplerResult;
 use crate::app::jobs::{DopplerQuery, Jobs};
-use crate::app::state::{Command, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
+use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand, Way};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::colour_bar::Bar;
@@ -44,6 +44,10 @@ pub struct Input<'a> {
     pub normalisation: Normalisation,
     /// Whether a recording stands in the place of the scene: its chirps are those of the file.
     pub is_recorded: bool,
+    /// Which frame of the recording is looked at, and how many it has, where it has several.
+    pub frames: Option<[u64; 2]>,
+    /// Whether what stands still is left out of a recording's map.
+    pub static_clutter_out: bool,
     /// The map, or why there is none; nothing before the first.
     pub result: Option<Result<&'a DopplerResult, &'a str>>,
 }
@@ -77,6 +81,8 @@ impl Content for DopplerPanel {
             colours: state.settings.colours,
             normalisation: state.settings.normalisation,
             is_recorded: state.editor.document().recording().is_some(),
+            frames: state.frames(),
+            static_clutter_out: state.settings.static_clutter_out,
             result: cx.value,
         };
         show(ui, input, cx.memory)
@@ -88,7 +94,11 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Co
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
         chirps(ui, &input, &mut asked);
-        timeline(ui, &input, &mut asked);
+        match (input.frames, input.is_recorded) {
+            (Some(frames), _) => frames_played(ui, &input, frames, &mut asked),
+            (None, true) => {}
+            (None, false) => timeline(ui, &input, &mut asked),
+        }
         said(ui, &input, &mut asked);
         match input.result {
             _ if !input.is_recorded && input.radar.chirps < 2 => {}
@@ -142,8 +152,7 @@ fn follows(radar: &Radar) -> String {
 
 /// Plays the scene and goes to a time.
 fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let moves = input.scene.is_moving() && !input.is_recorded;
-    ui.add_enabled_ui(moves, |ui| {
+    ui.add_enabled_ui(input.scene.is_moving(), |ui| {
         ui.horizontal_wrapped(|ui| {
             let label = if input.is_playing { "Pause" } else { "Play" };
             if ui.button(label).on_hover_text("Let every object move by its velocity; all maps follow").clicked() {
@@ -164,16 +173,38 @@ fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     });
 }
 
+/// Plays the frames of a recording and goes to one.
+fn frames_played(ui: &mut Ui, input: &Input<'_>, [frame, count]: [u64; 2], asked: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        let label = if input.is_playing { "Pause" } else { "Play" };
+        if ui.button(label).on_hover_text("Show one frame after another; all maps and methods follow").clicked() {
+            asked.push(ViewCommand::TogglePlay.into());
+        }
+        let mut chosen = frame;
+        let label = ui.label(format!("Frame of {count}")).on_hover_text("Which frame of the file all maps show");
+        let slider = ui.add(Slider::new(&mut chosen, 0..=count - 1)).labelled_by(label.id);
+        if slider.changed() && chosen != frame {
+            asked.push(DocumentCommand::ReadAnotherWay(Way::Frame(chosen)).into());
+        }
+    });
+}
+
 /// Why there is no map, or what to know of it.
 fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     if input.is_recorded {
         let text = match input.result {
-            None => {
-                "The loops of a raw capture's frame make this map, where its .cfg says their interval. One chirp tells no velocity."
+            None => "The loops of a raw capture's frame, or of an array, make this map. One chirp tells no velocity.",
+            Some(Ok(result)) if !result.knows_interval => {
+                "Nothing says the interval of chirps: a step of velocity is shown as 1 m/s."
             }
-            Some(_) => "The loops of the recording's frame, as the .cfg says them.",
+            Some(_) => "The loops of the recording's frame.",
         };
         ui.weak(text);
+        let mut is_out = input.static_clutter_out;
+        let tooltip = "The mean over the loops, which holds all that stands still";
+        if input.result.is_some() && ui.checkbox(&mut is_out, "Static clutter out").on_hover_text(tooltip).changed() {
+            asked.push(ViewCommand::TakeOutStaticClutter(is_out).into());
+        }
     } else if input.radar.chirps < 2 {
         ui.horizontal_wrapped(|ui| {
             ui.label("One chirp tells no velocity.");
@@ -270,128 +301,4 @@ fn told(result: &DopplerResult, velocity: f64, range: f64) -> Option<String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::widgets::seen;
-    use crate::maps::LogMap;
-    use crate::scene::{Object, Point};
-    use eframe::egui::ColorImage;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-    use std::sync::Arc;
-
-    fn radar(chirps: usize) -> Radar {
-        Radar { elements: 64, samples: 32, chirps, ..Radar::default() }
-    }
-
-    fn result(radar: &Radar) -> DopplerResult {
-        let mut decades = ndarray::Array2::from_elem((radar.samples, radar.chirps), -3.0);
-        decades[[10, radar.chirps / 2]] = 0.0;
-        let image = ColorImage::new([radar.chirps, radar.samples], vec![Color32::BLACK; radar.chirps * radar.samples]);
-        DopplerResult { radar: radar.clone(), decades: LogMap::new(decades), image: Arc::new(image) }
-    }
-
-    #[test]
-    fn a_recording_shows_the_loops_of_its_frame() {
-        let texts = |result: Option<DopplerResult>| {
-            let (radar, scene, mut memory) = (radar(1), Scene::default(), DopplerMemory::default());
-            let panel = Harness::builder().with_size([700.0, 420.0]).build_ui(move |ui| {
-                let input = Input {
-                    radar: &radar,
-                    scene: &scene,
-                    seconds: 0.0,
-                    is_playing: false,
-                    marks: true,
-                    colours: ColourMap::default(),
-                    normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
-                    is_recorded: true,
-                    result: result.as_ref().map(Ok),
-                };
-                show(ui, input, &mut memory);
-            });
-            (seen::texts(panel.output()), panel.query_by_label("Range-Doppler map").is_some())
-        };
-        let (told, drawn) = texts(Some(result(&radar(64))));
-        assert!(drawn && told.iter().any(|t| t.text.contains("in steps of")), "{told:?}");
-        let (told, drawn) = texts(None);
-        assert!(!drawn && told.iter().any(|t| t.text.contains("raw capture")), "{told:?}");
-    }
-
-    fn panel(size: [f32; 2], chirps: usize, velocity: f64, seconds: f64) -> Harness<'static, Vec<Command>> {
-        let radar = radar(chirps);
-        let point = Point { velocity_y_metres_per_second: velocity, ..Point::new(0.0, 1.0) };
-        let scene = Scene { objects: vec![Object::Point(point)], ..Scene::default() };
-        let (result, mut memory) = (result(&radar), DopplerMemory::default());
-        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            let input = Input {
-                radar: &radar,
-                scene: &scene,
-                seconds,
-                is_playing: false,
-                marks: true,
-                colours: ColourMap::default(),
-                normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
-                is_recorded: false,
-                result: Some(Ok(&result)),
-            };
-            asked.extend(show(ui, input, &mut memory));
-        };
-        Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
-    }
-
-    #[test]
-    fn the_map_has_its_axes_in_a_wide_panel_or_a_narrow_one() {
-        for size in [[700.0, 420.0], [360.0, 300.0]] {
-            let panel = panel(size, 64, -9.0, 0.0);
-            let rect = panel.get_by_label("Range-Doppler map").rect();
-            assert!(rect.height() > 60.0 && rect.right() <= size[0], "{rect:?}");
-            let texts = seen::texts(panel.output());
-            for text in ["radial velocity, m/s", "range, m", "1"] {
-                assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
-            }
-            seen::assert_readable(panel.output());
-        }
-    }
-
-    #[test]
-    fn one_chirp_offers_several() {
-        let mut panel = panel([700.0, 420.0], 1, 5.0, 0.0);
-        assert!(panel.query_by_label("Range-Doppler map").is_none());
-        panel.get_by_label("Send 128 chirps").click();
-        panel.run();
-        let asked = panel.state().iter().find_map(|c| match c {
-            Command::Radar(RadarCommand::Set(radar)) => Some(radar.chirps),
-            _ => None,
-        });
-        assert_eq!(asked, Some(128));
-    }
-
-    #[test]
-    fn what_folds_is_said_with_what_helps() {
-        let most = radar(64).unambiguous_velocity_metres_per_second();
-        let panel = panel([700.0, 420.0], 64, 1.5 * most, 0.0);
-        let texts = seen::texts(panel.output());
-        assert!(texts.iter().any(|t| t.text.contains("beyond the unambiguous")), "{texts:?}");
-        assert!(texts.iter().any(|t| t.text == "1 folded"), "{texts:?}");
-    }
-
-    #[test]
-    fn a_cell_tells_its_velocity_with_its_range() {
-        let radar = radar(64);
-        let found = told(&result(&radar), 0.01, radar.range_of_bin_metres(10.2)).unwrap();
-        assert!(found.starts_with("0.00 m/s\nrange 0.75 m\n") && found.ends_with("0.0 dB below the peak"), "{found}");
-        let away = told(&result(&radar), 2.0 * radar.velocity_resolution_metres_per_second(), 0.0).unwrap();
-        assert!(away.contains("going away") && away.contains("60.0 dB"), "{away}");
-        assert_eq!(told(&result(&radar), 1e4, 0.5), None);
-    }
-
-    #[test]
-    fn every_button_of_time_is_a_command() {
-        for (label, command) in [("Play", ViewCommand::TogglePlay), ("Back to 0 s", ViewCommand::SetTime(0.0))] {
-            let mut panel = panel([700.0, 420.0], 64, 5.0, 1.0);
-            panel.get_by_label(label).click();
-            panel.run();
-            assert!(panel.state().contains(&Command::View(command)), "{label}: {:?}", panel.state());
-        }
-    }
-}
+mod tests;

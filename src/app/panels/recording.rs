@@ -45,7 +45,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             match &recording.origin {
                 None => _ = ui.weak("Read as its TOML says."),
                 Some(origin) => {
-                    layouts(ui, origin, &mut asked);
+                    match origin.offers.as_slice() {
+                        [only] if only.power.is_empty() => _ = ui.weak(&only.described),
+                        _ => layouts(ui, origin, &mut asked),
+                    }
                     frames(ui, origin, &mut asked);
                     board(ui, origin, &mut asked);
                 }

@@ -233,6 +233,12 @@ impl State {
         self.timeline.scene(self.editor.scene())
     }
 
+    /// Which frame of the recording on screen is looked at, and how many it has; `None` where it has one.
+    pub fn frames(&self) -> Option<[u64; 2]> {
+        let origin = self.editor.document().recording()?.origin.as_ref()?;
+        (origin.frames > 1).then_some([origin.frame, origin.frames])
+    }
+
     /// Everything that the guide may change, as it is.
     pub fn setup(&self) -> Setup {
         Setup {

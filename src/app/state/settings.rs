@@ -109,6 +109,8 @@ pub struct Settings {
     pub directions: Directions,
     /// Whether inputs, target and output are drawn on one scale; each on its own where not.
     pub one_scale: bool,
+    /// Whether range-Doppler maps of recordings leave out what stands still, the mean over the loops.
+    pub static_clutter_out: bool,
     /// How the difference is drawn.
     pub difference: DifferenceView,
     /// eta', the threshold of the target.
@@ -200,6 +202,7 @@ impl Default for Settings {
             units: Units::default(),
             directions: Directions::default(),
             one_scale: false,
+            static_clutter_out: false,
             difference: DifferenceView::default(),
             target_eta: crate::evaluate::TARGET_ETA,
             cfar: None,

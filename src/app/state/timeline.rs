@@ -1,4 +1,5 @@
-//! The time at which a scene of moving objects is looked at. The document is not changed: it is the scene at time 0.
+//! The time at which a scene of moving objects is looked at. The document is not changed: it is the scene at time 0. Of a recording it says when
+//! the next frame is due.
 
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -13,7 +14,14 @@ pub struct Timeline {
     moved: Option<(Arc<Scene>, Arc<Scene>)>,
     seconds: f64,
     is_playing: bool,
+    /// Until a recording's next frame is due, seconds.
+    until_frame: f64,
 }
+
+/// Time from frame to frame of a recording that plays, seconds, unless reading one takes longer.
+const FRAME_SECONDS: f64 = 0.1;
+/// Part of the time that reading a recording's frames may take.
+const READING_PART: f64 = 0.5;
 
 impl Timeline {
     /// The time, seconds.
@@ -42,6 +50,22 @@ impl Timeline {
         self.is_playing = is_playing;
     }
 
+    /// Whether a recording's next frame is due, `step` seconds after the last call.
+    pub fn is_frame_due(&mut self, step: f64) -> bool {
+        self.until_frame -= step;
+        self.until_frame <= 0.0
+    }
+
+    /// A recording's next frame was read in `seconds`: the one after it is due later.
+    pub fn frame_took(&mut self, seconds: f64) {
+        self.until_frame = FRAME_SECONDS.max(seconds / READING_PART);
+    }
+
+    /// Lets a recording's frames go on, or stops them.
+    pub fn play_frames(&mut self, is_playing: bool) {
+        (self.is_playing, self.until_frame) = (is_playing, 0.0);
+    }
+
     /// Goes back to time 0 where the document's scene has changed since the time was set.
     pub fn follow(&mut self, document: &Arc<Scene>) {
         if self.moved.as_ref().is_some_and(|(of, _)| !Arc::ptr_eq(of, document)) {
@@ -67,6 +91,17 @@ impl Timeline {
 mod tests {
     use super::*;
     use crate::scene::{Object, Point};
+
+    #[test]
+    fn a_slow_frame_delays_the_one_after_it() {
+        let mut timeline = Timeline::default();
+        timeline.play_frames(true);
+        assert!(timeline.is_frame_due(0.0));
+        timeline.frame_took(0.01);
+        assert!(!timeline.is_frame_due(0.09) && timeline.is_frame_due(0.02));
+        timeline.frame_took(0.3);
+        assert!(!timeline.is_frame_due(0.5) && timeline.is_frame_due(0.11));
+    }
 
     fn scene() -> Arc<Scene> {
         let point = Point { velocity_x_metres_per_second: 2.0, ..Point::new(1.0, 9.0) };

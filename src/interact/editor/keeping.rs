@@ -95,6 +95,16 @@ impl Editor {
         }
     }
 
+    /// Puts the same recording's other frame in the place of this one: what is selected stays, and frames that follow one another are one step
+    /// of undo.
+    pub fn open_frame(&mut self, document: Document) {
+        self.cancel_drag();
+        let before = self.snapshot();
+        self.replace(document);
+        self.selection.clamp(self.scene().objects.len());
+        self.history.push("another frame", Some("frame"), before);
+    }
+
     /// Puts the document `id` of [`Editor::left`] back on screen, as one undo step; false where there is none.
     pub fn recover(&mut self, id: u64) -> bool {
         let found = self.left.iter().find(|d| d.id() == id).cloned();

@@ -25,11 +25,11 @@ mod text;
 pub use imported::Imported;
 
 use super::capture::{Capture, Frame, Part, Plan, ReceiverOrder, Together, Turn};
+use super::chain::{Chain, Source};
 use super::described::{config_text, open_file};
 use super::layout::stream::Stream;
 use super::layout::{Candidate, Certainty, Found, Kind, find};
 use super::profile::RadarProfile;
-use super::samples::{Chain, Source};
 use super::{Fault, Offer, Origin, Recording, RecordingError};
 use boards::Board;
 use std::io::{self, BufReader, Cursor, Read};

@@ -54,6 +54,10 @@ pub(super) fn of_array(array: &Array<'_>, about: &About<'_>) -> String {
         [p.carrier_hz(), bandwidth, samples as f64 / p.samples_per_second]
     });
     radar(&mut out, said, samples, about);
+    if let Some(profile) = about.profile {
+        let chirps = in_turn.unwrap_or(reading.len(AxisKind::Transmitter, shape)).max(1);
+        put(&mut out, "chirp_interval_seconds", &number(profile.chirp_interval_seconds * chirps as f64));
+    }
     out.push_str("\n[recording]\n");
     put(&mut out, "file", &quoted(&beside(about.data, about.data)));
     if let Some(key) = key {

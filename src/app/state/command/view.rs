@@ -61,6 +61,8 @@ pub enum ViewCommand {
     SetTime(f64),
     /// Let time go on by itself, or stop it.
     TogglePlay,
+    /// Whether range-Doppler maps of recordings leave out what stands still.
+    TakeOutStaticClutter(bool),
     /// Which element's chirp is drawn, and how long it lasts.
     SetChirp(ChirpSettings),
     /// List the panels for developers in menus, or not.

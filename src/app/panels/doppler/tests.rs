@@ -1,0 +1,145 @@
+use super::*;
+use crate::app::widgets::seen;
+use crate::maps::LogMap;
+use crate::scene::{Object, Point};
+use eframe::egui::ColorImage;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::sync::Arc;
+
+fn radar(chirps: usize) -> Radar {
+    Radar { elements: 64, samples: 32, chirps, ..Radar::default() }
+}
+
+fn result(radar: &Radar) -> DopplerResult {
+    let mut decades = ndarray::Array2::from_elem((radar.samples, radar.chirps), -3.0);
+    decades[[10, radar.chirps / 2]] = 0.0;
+    let image = ColorImage::new([radar.chirps, radar.samples], vec![Color32::BLACK; radar.chirps * radar.samples]);
+    DopplerResult { radar: radar.clone(), knows_interval: true, decades: LogMap::new(decades), image: Arc::new(image) }
+}
+
+/// The panel of a recording of 20 frames, of which the fourth is looked at.
+fn recorded(result: Option<DopplerResult>) -> Harness<'static, Vec<Command>> {
+    let (radar, scene, mut memory) = (radar(1), Scene::default(), DopplerMemory::default());
+    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+        let input = Input {
+            radar: &radar,
+            scene: &scene,
+            seconds: 0.0,
+            is_playing: false,
+            marks: true,
+            colours: ColourMap::default(),
+            normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
+            is_recorded: true,
+            frames: Some([3, 20]),
+            static_clutter_out: false,
+            result: result.as_ref().map(Ok),
+        };
+        asked.extend(show(ui, input, &mut memory));
+    };
+    Harness::builder().with_size([700.0, 420.0]).build_ui_state(draw, Vec::new())
+}
+
+#[test]
+fn frames_of_a_recording_play_without_their_clutter() {
+    let mut panel = recorded(Some(result(&radar(64))));
+    assert!(seen::texts(panel.output()).iter().any(|t| t.text == "Frame of 20"));
+    for label in ["Play", "Static clutter out"] {
+        panel.get_by_label(label).click();
+        panel.run();
+    }
+    let commands = [ViewCommand::TogglePlay, ViewCommand::TakeOutStaticClutter(true)].map(Command::View);
+    assert_eq!(panel.state(), &commands);
+}
+
+#[test]
+fn a_recording_shows_the_loops_of_its_frame() {
+    let texts = |result: Option<DopplerResult>| {
+        let panel = recorded(result);
+        (seen::texts(panel.output()), panel.query_by_label("Range-Doppler map").is_some())
+    };
+    let (told, drawn) = texts(Some(result(&radar(64))));
+    assert!(drawn && told.iter().any(|t| t.text.contains("in steps of")), "{told:?}");
+    let (told, drawn) = texts(None);
+    assert!(!drawn && told.iter().any(|t| t.text.contains("raw capture")), "{told:?}");
+}
+
+fn panel(size: [f32; 2], chirps: usize, velocity: f64, seconds: f64) -> Harness<'static, Vec<Command>> {
+    let radar = radar(chirps);
+    let point = Point { velocity_y_metres_per_second: velocity, ..Point::new(0.0, 1.0) };
+    let scene = Scene { objects: vec![Object::Point(point)], ..Scene::default() };
+    let (result, mut memory) = (result(&radar), DopplerMemory::default());
+    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+        let input = Input {
+            radar: &radar,
+            scene: &scene,
+            seconds,
+            is_playing: false,
+            marks: true,
+            colours: ColourMap::default(),
+            normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
+            is_recorded: false,
+            frames: None,
+            static_clutter_out: false,
+            result: Some(Ok(&result)),
+        };
+        asked.extend(show(ui, input, &mut memory));
+    };
+    Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
+}
+
+#[test]
+fn the_map_has_its_axes_in_a_wide_panel_or_a_narrow_one() {
+    for size in [[700.0, 420.0], [360.0, 300.0]] {
+        let panel = panel(size, 64, -9.0, 0.0);
+        let rect = panel.get_by_label("Range-Doppler map").rect();
+        assert!(rect.height() > 60.0 && rect.right() <= size[0], "{rect:?}");
+        let texts = seen::texts(panel.output());
+        for text in ["radial velocity, m/s", "range, m", "1"] {
+            assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
+        }
+        seen::assert_readable(panel.output());
+    }
+}
+
+#[test]
+fn one_chirp_offers_several() {
+    let mut panel = panel([700.0, 420.0], 1, 5.0, 0.0);
+    assert!(panel.query_by_label("Range-Doppler map").is_none());
+    panel.get_by_label("Send 128 chirps").click();
+    panel.run();
+    let asked = panel.state().iter().find_map(|c| match c {
+        Command::Radar(RadarCommand::Set(radar)) => Some(radar.chirps),
+        _ => None,
+    });
+    assert_eq!(asked, Some(128));
+}
+
+#[test]
+fn what_folds_is_said_with_what_helps() {
+    let most = radar(64).unambiguous_velocity_metres_per_second();
+    let panel = panel([700.0, 420.0], 64, 1.5 * most, 0.0);
+    let texts = seen::texts(panel.output());
+    assert!(texts.iter().any(|t| t.text.contains("beyond the unambiguous")), "{texts:?}");
+    assert!(texts.iter().any(|t| t.text == "1 folded"), "{texts:?}");
+}
+
+#[test]
+fn a_cell_tells_its_velocity_with_its_range() {
+    let radar = radar(64);
+    let found = told(&result(&radar), 0.01, radar.range_of_bin_metres(10.2)).unwrap();
+    assert!(found.starts_with("0.00 m/s\nrange 0.75 m\n") && found.ends_with("0.0 dB below the peak"), "{found}");
+    let away = told(&result(&radar), 2.0 * radar.velocity_resolution_metres_per_second(), 0.0).unwrap();
+    assert!(away.contains("going away") && away.contains("60.0 dB"), "{away}");
+    assert_eq!(told(&result(&radar), 1e4, 0.5), None);
+}
+
+#[test]
+fn every_button_of_time_is_a_command() {
+    for (label, command) in [("Play", ViewCommand::TogglePlay), ("Back to 0 s", ViewCommand::SetTime(0.0))] {
+        let mut panel = panel([700.0, 420.0], 64, 5.0, 1.0);
+        panel.get_by_label(label).click();
+        panel.run();
+        assert!(panel.state().contains(&Command::View(command)), "{label}: {:?}", panel.state());
+    }
+}
