@@ -6,7 +6,7 @@
 The term is linear in the means of the head's hidden layer. Its weights minimise a sum: the pinball loss of all cells, the squared distance of each kind's
 coverage from 90 %, and the squares of the weights. Nothing else in FILE changes. The scenes are those of every kind over the thesis'
 floor, of every kind over thermal noise of 10 to 60 dB, and of two sets heard by elements that are off; training and test never see them.
-Weights for radars within limits see the world before radars drawn at random, and four kinds before each of seven radars, over the same floors.
+Weights for radars within limits see four kinds before each of the radars of `train_live.py` that they are for, over the same floors.
 
 Needs what train_live.py needs. 32 scenes a kind take 10 minutes on two cores.
 """
@@ -20,7 +20,7 @@ from safetensors import safe_open
 from safetensors.torch import load_file, save_file
 
 import apertura as ap
-from apertura.live import CELL_DECADES, COLS, DOUBT, FINE, SCENE_DECADES, Doubt, Live, normalise, parted, widened
+from apertura.live import CELL_DECADES, COLS, DOUBT, FINE, SCENE_DECADES, WINDOWS, Doubt, Live, normalise, parted, widened
 from common import LEARNED, TARGET
 from train_live import COVERED, INPUTS, KINDS, OFF, RADARS, error_of
 
@@ -38,22 +38,23 @@ LEAST = 1e-7
 KINDS_OF_RADARS = ("2", "3", "clusters", "walls")
 
 
-def groups(any_radar):
-    """Of each kind of scene, by name, the arguments of `Scenes`."""
+def groups(limits):
+    """Of each kind of scene, by name, the arguments of `Scenes`; `limits` are those of the weights' radars, None for table 3.1's."""
     found = {kind: {"mixture": kind} for kind in KINDS}
-    if any_radar:
-        found = {"world, random radars": {"mixture": "world", "radar": "random"}}
-        found |= {f"{kind}, {name}": {"mixture": kind, "radar": ap.Radar(**given)} for name, given in RADARS.items() for kind in KINDS_OF_RADARS}
+    if limits is not None:
+        windows = limits.get("windows") or list(WINDOWS)
+        radars = {name: ap.Radar(**given) for name, given in RADARS.items() if given.get("window", "hann") in windows}
+        found = {f"{kind}, {name}": {"mixture": kind, "radar": radar} for name, radar in radars.items() for kind in KINDS_OF_RADARS}
     found |= {f"{name} at 10 to 60 dB": {**given, "thermal": (1.0, 10.0, 60.0)} for name, given in found.items()}
-    return found if any_radar else found | OFF
+    return found if limits is not None else found | OFF
 
 
 @torch.no_grad()
-def seen(live, doubt, seed, count, any_radar):
+def seen(live, doubt, seed, count, limits):
     """For each kind of scene: the hidden layer's means, [count, hidden], and log10 of error over said error of some cells, [count, CELLS]."""
     draw = np.random.default_rng(seed)
     found = {}
-    for name, given in groups(any_radar).items():
+    for name, given in groups(limits).items():
         data = ap.torch.Scenes(**given, seed=seed, length=count, purpose="validation", targets=[TARGET])
         means, gaps = [], []
         for i in range(count):
@@ -116,12 +117,12 @@ def main():
     network, of_doubt = parted(tensors)
     if not of_doubt:
         parser.error(f"{args.file} has no head of doubt; expected weights that train_live.py wrote")
-    any_radar = "limits" in json.loads(meta.get("domain", "{}"))
+    limits = json.loads(meta.get("domain", "{}")).get("limits")
     live, doubt = Live(), Doubt()
     live.load_state_dict(widened(network))
     doubt.load_state_dict(of_doubt, strict=False)
     if not args.judge:
-        weights, constant = fitted(seen(live, doubt, 0, args.scenes, any_radar))
+        weights, constant = fitted(seen(live, doubt, 0, args.scenes, limits))
         with torch.no_grad():
             doubt.scene.weight[0], doubt.scene.bias[:] = weights, constant
         changed = {f"{DOUBT}scene.{name}": t.detach() for name, t in doubt.scene.named_parameters()}
@@ -129,7 +130,7 @@ def main():
                   metadata={**meta, "doubt": f"its scene's part fitted to {args.scenes} validation scenes of each kind, seed 0"})
         os.replace(args.file + ".part", args.file)
     with torch.no_grad():
-        report(seen(live, doubt, 1, args.scenes, any_radar), lambda means: doubt.scene(means.float())[:, 0].double())
+        report(seen(live, doubt, 1, args.scenes, limits), lambda means: doubt.scene(means.float())[:, 0].double())
 
 
 if __name__ == "__main__":
