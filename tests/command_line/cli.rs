@@ -265,7 +265,8 @@ fn bad_input_leaves_no_file() {
     let before = names(folder.path());
     bad_scenes_are_named(&folder);
     for (arguments, part) in [
-        ("maps good.toml -o out.gif", ".npz, .png or .svg"),
+        ("maps good.toml -o out.gif", "a scene has no frames"),
+        ("maps good.toml -o out.bmp", ".npz, .png"),
         ("maps good.toml -o nowhere/out.npz", "nowhere"),
         ("maps good.toml -o out.npz --floor loud", "snr=DB"),
         ("maps good.toml -o out.npz --carrier sideways", "one-way"),

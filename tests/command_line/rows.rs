@@ -277,7 +277,7 @@ fn rows_name_the_radar_of_a_file() {
     let folder = folder();
     std::fs::write(folder.path().join("wide.toml"), "[radar]\nbandwidth_hz = 1e9\n").unwrap();
     apertura(&folder, "evaluate --set 1 --count 1 --radar wide.toml --rows rows.csv").assert().success();
-    assert_eq!(&*rows(&folder, "rows.csv")[0].radar, "bandwidth_hz=1000000000");
+    assert_eq!(&*rows(&folder, "rows.csv")[0].radar, "bandwidth_hz=1000000000.0");
     let both = apertura(&folder, "evaluate --set 1 --count 1 --radar wide.toml --carrier two-way").output().unwrap();
     assert!(String::from_utf8_lossy(&both.stderr).contains("cannot be used with"), "{both:?}");
 }
