@@ -31,15 +31,7 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::SetBounds(bounds) => settings.bounds = bounds,
         ViewCommand::SetChirp(chirp) => settings.chirp = chirp,
         ViewCommand::SetTime(seconds) => state.timeline.set(state.editor.scene(), seconds),
-        ViewCommand::TogglePlay => {
-            let is_playing = !state.timeline.is_playing();
-            if state.frames().is_some() {
-                document::play_frames(state, is_playing);
-            } else {
-                let scene = state.editor.scene();
-                state.timeline.play(scene, is_playing && scene.is_moving());
-            }
-        }
+        ViewCommand::TogglePlay => toggle_play(state),
         ViewCommand::TakeOutStaticClutter(is_out) => settings.static_clutter_out = is_out,
         ViewCommand::SetPhasors(phasors) => settings.phasors = phasors,
         ViewCommand::MarkReflectors => settings.show_reflectors = true,
@@ -70,5 +62,16 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         }
         ViewCommand::Unpin(index) => state.pins.remove(index),
         ViewCommand::UnpinAll => state.pins.clear(),
+    }
+}
+
+/// Plays or stops the frames of a recording, or a scene that moves.
+fn toggle_play(state: &mut State) {
+    let is_playing = !state.timeline.is_playing();
+    if state.frames().is_some() {
+        document::play_frames(state, is_playing);
+    } else {
+        let scene = state.editor.scene();
+        state.timeline.play(scene, is_playing && scene.is_moving());
     }
 }

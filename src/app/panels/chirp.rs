@@ -31,9 +31,6 @@ const HANDLE: f32 = 5.0;
 const DRAGGED_BANDWIDTH_HZ: [f64; 2] = [1e6, 2e10];
 const DRAGGED_CARRIER_HZ: [f64; 2] = [1e9, 3e11];
 
-/// Shortest and longest chirp that is dragged to, seconds.
-const DRAGGED_SECONDS: [f64; 2] = [1e-6, 1e-2];
-
 /// Height in which the charts can be read, points.
 const LEAST_CHARTS_HEIGHT: f32 = 230.0;
 
@@ -52,6 +49,10 @@ pub struct Input<'a> {
     pub is_recorded: bool,
     /// The beat, or why there is none; nothing before the first.
     pub result: Option<Result<&'a ChirpResult, &'a str>>,
+}
+
+fn chosen<'a>(input: &Input<'a>) -> choices::Chosen<'a> {
+    choices::Chosen { radar: input.radar, settings: input.settings, is_recorded: input.is_recorded }
 }
 
 /// Draws [`Panel::Chirp`](crate::app::state::Panel::Chirp).
@@ -100,7 +101,7 @@ fn contents(ui: &mut Ui, input: &Input<'_>, height: f32, asked: &mut Vec<Command
         false => heard(input.radar, input.scene, element),
     };
     echoes.truncate(ECHOES);
-    choices::show(ui, input, element, asked);
+    choices::show(ui, &chosen(input), element, asked);
     let stretch = stretch(input.radar, &chirp);
     legend(ui, input, stretch);
     if input.radar.carrier == Carrier::OneWay {
@@ -251,7 +252,7 @@ impl Shown<'_> {
             if response.dragged() && at[1] != 0.0 {
                 let across = f64::from(by.x / drawn.rect.width());
                 let seconds = radar.chirp_seconds * (1.0 + across);
-                radar.set_chirp_seconds(seconds.clamp(DRAGGED_SECONDS[0], DRAGGED_SECONDS[1]));
+                radar.set_chirp_seconds(seconds.clamp(choices::DRAGGED_SECONDS[0], choices::DRAGGED_SECONDS[1]));
             }
             let lit = response.hovered() || response.dragged();
             let radius = if lit { HANDLE + 1.5 } else { HANDLE };
@@ -263,7 +264,7 @@ impl Shown<'_> {
             );
             response.on_hover_cursor(icon).on_hover_text(name);
         }
-        choices::ask(self.input, settings, radar, asked);
+        choices::ask(&chosen(self.input), settings, radar, asked);
     }
 
     /// The beat over the chirp, its samples as dots.

@@ -88,7 +88,9 @@ pub fn method_list(
         response
     });
     #[cfg(feature = "live")]
-    super::networks::networks(ui, offered, asked);
+    if let Some(radar) = offered.radar {
+        super::networks::networks(ui, offered.all, radar, asked);
+    }
     times_footer(ui, offered, asked);
     if let Some(name) = clicked.or(described) {
         ui.close();

@@ -1,11 +1,11 @@
 //! The networks for the radar on screen, in the menu of methods; where there is none, how one is trained.
 
-use super::method_menu::Offered;
 use crate::app::state::{Command, DocumentCommand};
 use crate::network::live::size::LiveSize;
 use crate::radar::{Radar, counted};
 use crate::reconstruct::{Family, Reconstructor};
 use eframe::egui::{RichText, Ui};
+use std::sync::Arc;
 
 /// Maps of a training whose time is told: with so many the second edition of `live` was near its end (training/README.md).
 const TOLD_MAPS: f64 = 50_000.0;
@@ -14,10 +14,9 @@ const TOLD_MAPS: f64 = 50_000.0;
 const CORES: f64 = 2.0;
 
 /// Names the networks that take the radar, or shows the commands that train one.
-pub fn networks(ui: &mut Ui, offered: Offered<'_>, asked: &mut Vec<Command>) {
-    let Some(radar) = offered.radar else { return };
+pub fn networks(ui: &mut Ui, all: &[Arc<dyn Reconstructor>], radar: &Radar, asked: &mut Vec<Command>) {
     let takes = |method: &&dyn Reconstructor| method.family() == Family::Network && method.check_array(radar).is_ok();
-    let fitting: Vec<&str> = offered.all.iter().map(AsRef::as_ref).filter(takes).map(|method| method.name()).collect();
+    let fitting: Vec<&str> = all.iter().map(AsRef::as_ref).filter(takes).map(|method| method.name()).collect();
     ui.separator();
     ui.horizontal_wrapped(|ui| {
         ui.strong("Networks for this radar");
@@ -70,7 +69,7 @@ mod tests {
     fn menu(radar: Radar) -> Harness<'static, Vec<Command>> {
         let all = crate::methods::all();
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            networks(ui, Offered { radar: Some(&radar), ..Offered::untimed(&all) }, asked);
+            networks(ui, &all, &radar, asked);
         };
         let mut menu = Harness::builder().with_size([700.0, 200.0]).build_ui_state(draw, Vec::new());
         menu.run();

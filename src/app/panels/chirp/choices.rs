@@ -1,15 +1,27 @@
 //! The element that is looked at, and the numbers of the chirp.
 
-use super::{DRAGGED_SECONDS, Input};
 use crate::app::state::{ChirpSettings, Command, RadarCommand, ViewCommand};
 use crate::app::widgets::number_field::NumberField;
 use crate::radar::Radar;
 use eframe::egui::{Id, Ui};
 
+/// Shortest and longest chirp that is dragged to, seconds.
+pub const DRAGGED_SECONDS: [f64; 2] = [1e-6, 1e-2];
+
+/// What the numbers are of.
+pub struct Chosen<'a> {
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Which element.
+    pub settings: ChirpSettings,
+    /// Whether a recording stands in the place of the scene, whose radar is what it was.
+    pub is_recorded: bool,
+}
+
 /// Draws the numbers; what is asked of settings and radar.
-pub fn show(ui: &mut Ui, input: &Input<'_>, element: usize, asked: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, chosen: &Chosen<'_>, element: usize, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        let (radar, mut settings) = (input.radar, ChirpSettings { element });
+        let (radar, mut settings) = (chosen.radar, ChirpSettings { element });
         let mut changed = radar.clone();
         let label = ui.label("Element").on_hover_text("The element whose chirp and beat are drawn, from the left");
         ui.add(NumberField::new(&mut settings.element).range(0..=radar.elements - 1).speed(0.3)).labelled_by(label.id);
@@ -21,18 +33,18 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, element: usize, asked: &mut Vec<Comm
         if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
             changed.set_chirp_seconds(1e-6 * microseconds);
         }
-        ask(input, settings, changed, asked);
+        ask(chosen, settings, changed, asked);
     });
-    ui.add_enabled_ui(!input.is_recorded, |ui| {
+    ui.add_enabled_ui(!chosen.is_recorded, |ui| {
         ui.horizontal_wrapped(|ui| {
-            let mut changed = input.radar.clone();
+            let mut changed = chosen.radar.clone();
             let label = ui.label("Samples").on_hover_text("Samples of the beat, and range bins of its spectrum");
             ui.add(NumberField::new(&mut changed.samples).range(1..=65536)).labelled_by(label.id);
             let label = ui.label("Bandwidth").on_hover_text("Drag the end of the chirp up or down");
             gigahertz(ui, &mut changed.bandwidth_hz, label.id);
             let label = ui.label("Carrier").on_hover_text("Drag the beginning of the chirp up or down");
             gigahertz(ui, &mut changed.carrier_hz, label.id);
-            ask(input, input.settings, changed, asked);
+            ask(chosen, chosen.settings, changed, asked);
         });
     });
 }
@@ -46,11 +58,11 @@ fn gigahertz(ui: &mut Ui, hertz: &mut f64, label: Id) {
 }
 
 /// Asks for what differs from what is shown.
-pub fn ask(input: &Input<'_>, settings: ChirpSettings, radar: Radar, asked: &mut Vec<Command>) {
-    if settings != input.settings {
+pub fn ask(chosen: &Chosen<'_>, settings: ChirpSettings, radar: Radar, asked: &mut Vec<Command>) {
+    if settings != chosen.settings {
         asked.push(ViewCommand::SetChirp(settings).into());
     }
-    if radar != *input.radar {
+    if radar != *chosen.radar {
         asked.push(RadarCommand::Set(Box::new(radar)).into());
     }
 }
