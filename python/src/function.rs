@@ -137,7 +137,7 @@ impl Reconstructor for Function {
         true
     }
 
-    fn weights(&self, _radar: &Radar) -> Option<Weights> {
+    fn weights(&self, _radar: &apertura::radar::Radar) -> Option<Weights> {
         self.weights.clone()
     }
 
