@@ -122,7 +122,7 @@ fn a_radar_they_were_not_trained_for_is_an_error() {
         let method = methods::by_name(name).unwrap();
         // Of the convention `live` knows both, but not this spacing in it.
         let convention =
-            if name == "live" { "2.0000 of the filled spacing" } else { "the physical convention (two-way carrier)" };
+            if name == "live" { "2.0260 of the filled spacing" } else { "the physical convention (two-way carrier)" };
         for (other, differs) in [(&smaller, "512 elements"), (&two_way, convention)] {
             let signal = simulate(other, &Scene::of_points([(0.0, 5.0)]), Floor::Exact, 0);
             let ends = signal.unwrap().two_ends(other);
