@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// than the network: a tenth of the power is half a decibel of the cell.
 const LEFT_DECADES: [f32; 2] = [-3.0, -1.0];
 
-/// The same where a dynamic range cuts off the dark cells. In bright ones the network draws narrow lobes 10 to 20 dB too dark.
+/// The same where a dynamic range cuts off the dark cells. In bright ones the network draws narrow lobes too dark.
 const BRIGHT_LEFT_DECADES: [f32; 2] = [0.0, 1.0];
 
 /// Part of the shown cells with more left than drawn, between which the search isn't believed anywhere: such a scene is not made of what it

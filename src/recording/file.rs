@@ -90,7 +90,7 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
     Ok(Recording { origin, ..recording })
 }
 
-/// The one way to read what a TOML describes, with its frames.
+/// Reads the samples that a TOML describes, with their frames.
 fn of_toml(toml: String, path: &Path, [frames, frame]: [u64; 2]) -> Origin {
     let offer = Offer { described: "Read as its TOML says".to_owned(), log_odds: 0.0, power: Vec::new(), toml };
     Origin {

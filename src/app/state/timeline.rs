@@ -56,7 +56,7 @@ impl Timeline {
         self.until_frame <= 0.0
     }
 
-    /// A recording's next frame was read in `seconds`: the one after it is due later.
+    /// The next frame of a recording took `seconds` to read: the frame after it is due that much later.
     pub fn frame_took(&mut self, seconds: f64) {
         self.until_frame = FRAME_SECONDS.max(seconds / READING_PART);
     }

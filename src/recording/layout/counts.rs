@@ -37,7 +37,7 @@ const LEVEL_LENGTHS: [usize; 3] = [64, 128, 256];
 const STRIDES: [usize; 4] = [1, 3, 4, 16];
 /// Rows after which rows may repeat.
 const LONGEST_PERIOD: usize = 64;
-/// Longest row that is tried, all receivers that stand sample by sample counted.
+/// Longest row that is tried, in samples of all interleaved receivers together.
 const LONGEST_ROW: usize = 16384;
 /// Log-odds of a length of which the file holds no whole number, and of a usual one.
 const UNFILLED: f64 = -3.0;
