@@ -212,7 +212,7 @@ mod tests {
         let expected: ndarray::Array2<f64> = ndarray_npy::read_npy(path).unwrap();
         assert_eq!(full.decades().dim(), expected.dim());
         let worst = full.decades().iter().zip(&expected).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-        assert!(worst < 1e-9, "by scripts/reference_maps.py: {worst}");
+        assert!(worst < 1e-9, "by comparisons/reference_maps.py: {worst}");
     }
 
     #[test]

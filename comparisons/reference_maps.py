@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Range-angle map of a shipped recording, word for word by NumPy: the reference that a test compares with.
 
-    scripts/reference_maps.py            # writes tests/data/chip-8-map.npy
+    comparisons/reference_maps.py            # writes tests/data/chip-8-map.npy
 
 Decades of amplitude, log10(|Y| + 1e-20), [range bins, columns], float64: symmetric Hann windows over samples and elements, DFT over
 the samples, DFT over the elements, orthonormal, rolled so that cos(theta) rises with the column.
