@@ -5,7 +5,7 @@
 //! derivatives of `s`, and the errors of `p` have at least its inverse as covariance (chapter 3 for real samples and for what follows
 //! from parameters by a function of them).
 //!
-//! It is said of unbiased estimators alone. One that knows something of the scene beforehand, and so is biased, may err less.
+//! Biased estimators, such as those with prior knowledge of the scene, may have smaller errors.
 
 use crate::radar::{Decibels, Layout, Pair, Radar};
 use crate::scene::Reflector;
@@ -60,12 +60,10 @@ impl PositionBound {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum BoundsError {
-    /// The samples don't determine every reflector's range, cos(theta) and gain.
     #[error(
         "the samples of {elements} elements don't determine {reflectors} reflectors: some coincide, have no echo, or there are too few elements"
     )]
     NotIdentifiable { elements: usize, reflectors: usize },
-    /// The noise variance is not a positive number.
     #[error("the noise variance must be finite and above 0")]
     Noise,
 }
@@ -174,9 +172,8 @@ impl PlacedEcho {
 
 /// Echoes of all reflectors at all elements, and which gain each element has.
 ///
-/// Each reflector's derivatives by range and cos(theta) are taken orthogonal to its own signal. That only says the gains by
-/// other numbers, so the bound on the position stays as it is, and keeps the matrix well conditioned: the carrier turns hundreds
-/// of times for each metre, and all of that belongs to the unknown gain.
+/// Each reflector's derivatives by range and cos(theta) are made orthogonal to its own signal. This only reparametrises the gains, so the
+/// bound on the position is unchanged. It keeps the matrix well conditioned: the carrier's hundreds of turns a metre belong to the gain.
 struct Model {
     /// `[reflectors][elements]`.
     echoes: Vec<Vec<PlacedEcho>>,

@@ -122,28 +122,19 @@ pub enum Ink {
 
 /// A shape of a sketch.
 #[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // Names and messages say it.
 pub enum SketchShape {
     /// A line through places; an arrow head at its end if `arrow`.
     Line {
-        /// Places.
         places: Vec<(f64, f64)>,
         /// Whether it ends in an arrow head.
         arrow: bool,
-        /// Its ink.
         ink: Ink,
     },
     /// A filled dot, its radius in pixels.
-    Dot {
-        /// Centre.
-        at: (f64, f64),
-        /// Radius in pixels.
-        pixels: i32,
-        /// Its ink.
-        ink: Ink,
-    },
+    Dot { at: (f64, f64), pixels: i32, ink: Ink },
     /// A filled area.
     Area {
-        /// Corners.
         corners: Vec<(f64, f64)>,
         /// Its ink, thinned.
         ink: Ink,
@@ -154,16 +145,13 @@ pub enum SketchShape {
         low: (f64, f64),
         /// Upper right corner.
         high: (f64, f64),
-        /// Lines of text.
         text: String,
     },
     /// Words, their middle at a place.
     Words {
         /// The middle.
         at: (f64, f64),
-        /// The words.
         text: String,
-        /// Their ink.
         ink: Ink,
     },
 }

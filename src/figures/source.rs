@@ -15,17 +15,14 @@ use ndarray::Array2;
 
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // Names and messages say it.
 pub enum FigureError {
-    /// Its scene can't be simulated.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A method failed.
     #[error(transparent)]
     Reconstruct(#[from] ReconstructError),
-    /// It shows a method or a scene that this build lacks.
     #[error("{0}")]
     Missing(String),
-    /// It can't be drawn.
     #[error(transparent)]
     Picture(#[from] PictureError),
 }

@@ -9,7 +9,7 @@ use crate::radar::Radar;
 use crate::scene::{Object, Scene};
 use serde::Deserialize;
 
-/// Something to bring about by changing the scene or the radar.
+/// A goal that the learner reaches by changing the scene or the radar.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Challenge {
@@ -18,10 +18,10 @@ pub struct Challenge {
     /// Every one must hold.
     #[serde(rename = "require")]
     pub requirements: Vec<Requirement>,
-    /// Objects the learner can't see but in the maps, to be explained by those placed.
+    /// Objects visible only in the maps, which the learner's objects should reproduce.
     #[serde(default)]
     pub hidden: Vec<Object>,
-    /// One that meets it: tried before the lesson begins, and shown to who gives up.
+    /// One that meets it: checked before the lesson begins, and shown on request.
     pub solution: Solution,
 }
 
@@ -37,36 +37,33 @@ pub struct Solution {
     pub radar: Option<Radar>,
 }
 
-/// A bound on something measured.
+/// A bound on a measured quantity.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Requirement {
     /// What is measured.
     pub measure: Measure,
-    /// Smallest value that does.
+    /// Lower bound.
     #[serde(default)]
     pub at_least: Option<f64>,
-    /// Largest value that does.
+    /// Upper bound.
     #[serde(default)]
     pub at_most: Option<f64>,
 }
 
-/// Something that is measured on the maps or read from the radar.
+/// A quantity measured on the maps or read from the radar.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[allow(missing_docs)] // Names and messages say it.
 pub enum Measure {
     /// Lambda of an object's blob.
     Lambda {
-        /// In this map.
         map: MapName,
-        /// The object.
         object: ObjectNumber,
     },
     /// How far Lambda falls between two objects' blobs, below the weaker of the two.
     Dip {
-        /// In this map.
         map: MapName,
-        /// The two objects.
         objects: [ObjectNumber; 2],
     },
     /// SE of the output.
@@ -79,28 +76,21 @@ pub enum Measure {
     Objects,
     /// Distance between two objects, metres.
     Distance {
-        /// The two objects.
         objects: [ObjectNumber; 2],
     },
-    /// Bandwidth, gigahertz.
     BandwidthGigahertz,
     /// Range of an object from the array's centre, metres.
     Range {
-        /// The object.
         object: ObjectNumber,
     },
     /// Part of a map's cells that are brighter than `above`.
     BrightPart {
-        /// In this map.
         map: MapName,
-        /// Lambda.
         above: f32,
     },
     /// A quantity of the radar or of an object.
     Quantity {
-        /// Which.
         quantity: Quantity,
-        /// The object it belongs to.
         #[serde(default)]
         object: Option<ObjectNumber>,
     },
@@ -169,7 +159,7 @@ impl Requirement {
 }
 
 impl Measure {
-    /// What there is on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
+    /// The value for the learner's scene; `hidden` is the stage of [`Challenge::hidden_scene`].
     pub(super) fn value(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<f64, String> {
         let object =
             |number: &ObjectNumber| number.index(stage.scene.objects.len()).map(|index| &stage.scene.objects[index]);

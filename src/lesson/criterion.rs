@@ -1,4 +1,4 @@
-//! Requirements of a challenge measured, and told as sentences: what is wanted, and what there is now.
+//! Requirements of a challenge, measured and put into sentences: the wanted and the present value.
 
 use super::challenge::{Challenge, Measure, Requirement};
 use super::object_number::ObjectNumber;
@@ -18,7 +18,6 @@ pub struct Measured {
 
 impl Challenge {
     /// Measures every requirement on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
-    ///
     /// # Errors
     /// A sentence when something can't be measured: an object is gone, the method refuses.
     pub fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Vec<Measured>, String> {

@@ -71,34 +71,22 @@ pub struct LessonTextError {
 
 /// Why a lesson could not be opened.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // Names and messages say it.
 pub enum LessonError {
-    /// The system could not read the file.
     #[error("{}: {source}", path.display())]
     Io {
-        /// The file.
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,
     },
-    /// The file is larger than any lesson.
     #[error("{}: larger than {MOST_BYTES} bytes, which no lesson is", path.display())]
-    Large {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The text is no lesson.
+    Large { path: PathBuf },
     #[error("{}: {source}", path.display())]
-    Text {
-        /// The file.
-        path: PathBuf,
-        /// What and where.
-        source: LessonTextError,
-    },
+    Text { path: PathBuf, source: LessonTextError },
 }
 
 impl Lesson {
     /// Reads a lesson from TOML and checks every step, without simulating any ([`Lesson::try_out`] does).
-    ///
     /// # Errors
     /// [`LessonTextError`] names the line, the key or the step, and what was expected.
     pub fn from_toml(text: &str) -> Result<Lesson, LessonTextError> {
@@ -124,7 +112,6 @@ impl Lesson {
     }
 
     /// Reads a lesson file and tries every step out, which takes a moment ([`Lesson::try_out`]).
-    ///
     /// # Errors
     /// [`LessonError`] names the file, the line and what was expected.
     pub fn load(path: &Path) -> Result<Lesson, LessonError> {

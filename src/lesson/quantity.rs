@@ -75,7 +75,6 @@ impl Quantity {
     }
 
     /// Its value.
-    ///
     /// # Errors
     /// A sentence when it needs an object that is not named or not there.
     pub fn of(self, radar: &Radar, scene: &Scene, object: Option<ObjectNumber>) -> Result<f64, String> {

@@ -24,10 +24,10 @@ pub struct Question {
 /// How a question is answered; the truth comes from the simulation, never from the file, but for choices.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[allow(missing_docs)] // Names and messages say it.
 pub enum Answer {
     /// By clicking where a peak will be in a map.
     Click {
-        /// The map.
         map: MapName,
         /// The object whose blob is meant; the brightest cell of the map without.
         #[serde(default)]
@@ -37,11 +37,8 @@ pub enum Answer {
         /// Range bins a right guess may be off.
         within_bins: f64,
     },
-    /// By a number.
     Number {
-        /// What is asked for.
         quantity: Quantity,
-        /// The object it belongs to.
         #[serde(default)]
         object: Option<ObjectNumber>,
         /// Its unit, beside the field.
@@ -49,7 +46,6 @@ pub enum Answer {
         /// Percent a right guess may be off.
         within_percent: f64,
     },
-    /// By choosing.
     Choice {
         /// What can be chosen.
         options: Vec<String>,
@@ -58,7 +54,6 @@ pub enum Answer {
     },
     /// By setting a threshold that keeps objects and lets few other cells through.
     Threshold {
-        /// The map the threshold is for.
         map: MapName,
         /// Objects whose blobs must exceed it.
         keep: Vec<ObjectNumber>,
@@ -69,31 +64,25 @@ pub enum Answer {
 
 /// What a learner answered.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // Names and messages say it.
 pub enum Guess {
-    /// A place in a map.
     Place(Cell),
-    /// A number.
     Number(f64),
     /// An option, from 1.
     Choice(usize),
-    /// A threshold.
     Eta(f32),
 }
 
 /// The truth that a guess is compared with.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // Names and messages say it.
 pub enum Truth {
-    /// A place in a map.
     Place(Cell),
-    /// A number.
     Number(f64),
     /// An option, from 1.
     Choice(usize),
-    /// Thresholds that do.
     Etas {
-        /// Smallest.
         low: f32,
-        /// Largest.
         high: f32,
     },
 }
@@ -149,7 +138,6 @@ impl Question {
     }
 
     /// The truth, from the simulation.
-    ///
     /// # Errors
     /// A sentence when the method has no output or an object is missing.
     pub fn truth(&self, stage: &Stage) -> Result<Truth, String> {
@@ -182,7 +170,6 @@ impl Question {
     }
 
     /// What `guess` is worth.
-    ///
     /// # Errors
     /// A sentence when the truth can't be had, or the guess is of another kind than the question.
     pub fn judge(&self, stage: &Stage, guess: Guess) -> Result<Judgement, String> {

@@ -45,7 +45,6 @@ pub const ALL: &[Shipped] = lessons![
 ];
 
 /// The place in [`ALL`] of the lesson of this name, or of the one lesson whose name begins so.
-///
 /// # Errors
 /// [`UnknownLesson`] lists the lessons that may be meant.
 pub fn by_name(name: &str) -> Result<usize, UnknownLesson> {
@@ -73,7 +72,6 @@ pub struct UnknownLesson {
 
 impl Shipped {
     /// The lesson.
-    ///
     /// # Errors
     /// None for the lessons of [`ALL`]: a test reads each of them.
     pub fn load(&self) -> Result<Lesson, LessonTextError> {

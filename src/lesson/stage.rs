@@ -68,10 +68,9 @@ pub struct Cell {
 
 /// A scene simulated for checking.
 #[derive(Debug, Clone)]
+#[allow(missing_docs)] // Names and messages say it.
 pub struct Stage {
-    /// The radar.
     pub radar: Radar,
-    /// The scene.
     pub scene: Scene,
     maps: [RangeAngleMap; 3],
     output: Result<RangeAngleMap, String>,
@@ -81,7 +80,6 @@ pub struct Stage {
 
 impl Stage {
     /// Simulates `scene` and, where `with_output`, reconstructs it.
-    ///
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. A method that fails leaves its reason in [`Stage::map`].
     pub fn new(radar: &Radar, scene: &Scene, view: &View, with_output: bool) -> Result<Stage, SceneError> {
@@ -104,7 +102,6 @@ impl Stage {
     }
 
     /// A map.
-    ///
     /// # Errors
     /// Why the method has no output.
     pub fn map(&self, name: MapName) -> Result<&RangeAngleMap, String> {

@@ -11,7 +11,6 @@ use crate::scene::Scene;
 impl Lesson {
     /// Simulates every step: each question must have an answer, each challenge must be unmet at the start and met by its solution.
     /// `text` is what the lesson was read from, for the lines of what is wrong.
-    ///
     /// # Errors
     /// [`LessonTextError`] names the line, the step and what fails.
     pub fn try_out(&self, text: &str) -> Result<(), LessonTextError> {

@@ -1,8 +1,8 @@
-//! The range-Doppler map: how strongly something echoes at each range and each radial velocity.
+//! The range-Doppler map: echo power over range and radial velocity.
 //!
 //! A windowed transform over the samples of every chirp gives range, as in every map; a windowed transform over the chirps gives the phase
 //! from chirp to chirp, which is the radial velocity ([`Radar::unambiguous_velocity_metres_per_second`]). Powers are averaged over the
-//! elements: their phases tell directions, which this map leaves out.
+//! elements: their phases hold the direction, which this map leaves out.
 //!
 //! Rows are range bins; columns are velocities, 0 in column `chirps / 2`, away from the radar to the right.
 

@@ -5,8 +5,8 @@
 //! sines between 0 and 1 (Chebyshev nodes), transformed, and each column is interpolated between these maps at its own sine (J.-P. Berrut and
 //! L. N. Trefethen, "Barycentric Lagrange interpolation", SIAM Rev. 46, 2004). Turning samples takes off the shift in range, too.
 //!
-//! That is exact for echoes from the far field of how far the elements stand off the line. Columns that stand for several directions are
-//! focused towards the one that [`Radar::cos_of_column`] says, the squint taken off.
+//! That is exact for reflectors in the far field of the elements' y. Columns of several directions are focused towards that of
+//! [`Radar::cos_of_column`], corrected for squint.
 
 use super::transform::{Aperture, ComplexMap, angle_transform_of, channels_range_transform};
 use crate::radar::{BuiltArray, Radar};
@@ -19,8 +19,7 @@ use std::f64::consts::{PI, TAU};
 /// Largest error of a focused cell, relative to the sum of the magnitudes of its elements' parts.
 const TOLERANCE: f64 = 1e-9;
 
-/// How far each element stands off the line, metres: what `radar` says of its antennas and `elements` of each of them. `None` where maps
-/// aren't focused, or all stand on the line.
+/// y of each element, metres, from the antennas of `radar` and the errors in `elements`. `None` where maps aren't focused or all y are 0.
 fn off_line_metres(radar: &Radar, elements: &BuiltArray) -> Option<Vec<f64>> {
     let y = |n: usize| radar.pair(n).forward_metres() + elements.forward_metres(n);
     let y_metres: Vec<f64> = if radar.focus_off_line { (0..radar.elements).map(y).collect() } else { Vec::new() };

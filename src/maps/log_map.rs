@@ -3,14 +3,12 @@
 use super::lambda::{LambdaScale, Normalisation, RangeAngleMap};
 use ndarray::Array2;
 
-/// Added to every magnitude before its logarithm, as in the thesis' program: an exact zero becomes -20.
-///
-/// That makes the map of a faint scene another one than that of a bright scene: where the peak is 1e-10, the guard lies where the rounding floor
-/// should. So it is less where the peak is below 1 ([`guard`]), which no scene of the tables' is.
+/// Added to every magnitude before its logarithm, as in the thesis' program: an exact zero becomes -20. It is less where the peak is below 1
+/// ([`guard`]), which no table's scene is: at a peak of 1e-10 it would cover the rounding floor.
 pub const LOG_GUARD: f64 = 1e-20;
 
-/// What is added to every magnitude of a map whose largest is `peak`: 20 decades below the peak, and never more than [`LOG_GUARD`]. A scene and
-/// the same scene with a millionth of its reflectivities then have the same map.
+/// The guard of a map whose largest magnitude is `peak`: 20 decades below the peak, at most [`LOG_GUARD`]. So the map does not depend on a
+/// common factor of all reflectivities.
 pub fn guard(peak: f64) -> f64 {
     (LOG_GUARD * peak.min(1.0)).max(f64::MIN_POSITIVE)
 }

@@ -20,8 +20,8 @@ pub fn tolerance_for(floor: Floor, normalisation: Normalisation) -> f64 {
 
 /// Why maps of this floor and normalisation must not be made in `precision`, if so.
 ///
-/// Without a floor the smallest cells are rounding errors; normalised by them, a map in single precision shows its own rounding and nothing
-/// that the scene has to do with. What no picture in f32 can hold, [`plan::refusal`] says.
+/// Without a floor the smallest cells are rounding errors, and normalising by them shows these in place of the scene. Amplitudes beyond the
+/// range of f32: [`plan::refusal`].
 pub fn refusal(precision: Precision, sum: &Sum, floor: Floor, normalisation: Normalisation) -> Option<&'static str> {
     match (precision, floor, normalisation) {
         (Precision::F64, ..) => None,

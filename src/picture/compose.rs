@@ -43,11 +43,10 @@ pub struct Style {
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // Names and messages say it.
 pub enum ComposeError {
-    /// The method failed.
     #[error(transparent)]
     Reconstruct(#[from] ReconstructError),
-    /// The panels can't be drawn.
     #[error(transparent)]
     Picture(#[from] PictureError),
 }

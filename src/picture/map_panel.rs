@@ -32,7 +32,6 @@ const BAR_SPACE: i32 = 62;
 pub(super) struct MapAxes {
     /// To the right, rising.
     pub x: [f64; 2],
-    /// Upwards.
     pub y: [f64; 2],
     /// What is counted to the right.
     pub x_title: &'static str,

@@ -1,7 +1,7 @@
-//! Where the columns of a map are drawn: left in the scene is left in every picture, in any convention.
+//! The horizontal place of a column in a drawn map: left in the scene is left in every picture, in any convention.
 //!
-//! A map's array has its columns in the order of the transform: cos(theta) rises from column to column where the carrier's phase falls with
-//! the distance (one-way), and falls where it rises (two-way). Arrays and archives keep that order; what is drawn is turned here.
+//! Arrays and archives have columns in the order of the transform: cos(theta) rises with the column for the one-way carrier and falls for
+//! the two-way carrier. Drawing reverses the second order.
 
 use super::Radar;
 use ndarray::{Array2, ArrayView2, Axis};
@@ -12,19 +12,19 @@ impl Radar {
         self.carrier.turns_per_wavelength() > 0.0
     }
 
-    /// Where the middle of column `k2` (fractional) is drawn, as a part of the map's width from its left edge.
+    /// Horizontal place of the middle of column `k2` (fractional), as a fraction of the map's width from its left edge.
     pub fn across_of_column(&self, k2: f64) -> f64 {
         let from_first = (k2 + 0.5) / self.elements as f64;
         if self.columns_fall() { 1.0 - from_first } else { from_first }
     }
 
-    /// The column (fractional) that is drawn at a part of the map's width from its left edge: the inverse of [`Radar::across_of_column`].
+    /// The column (fractional) at a fraction of the map's width from its left edge: the inverse of [`Radar::across_of_column`].
     pub fn column_across(&self, across: f64) -> f64 {
         let from_first = if self.columns_fall() { 1.0 - across } else { across };
         from_first * self.elements as f64 - 0.5
     }
 
-    /// Cells of a map, `[range bins, columns]`, as they are drawn: the smallest cos(theta) first.
+    /// Cells of a map, `[range bins, columns]`, with cos(theta) rising from column to column.
     pub fn left_to_right<'a, T>(&self, cells: &'a Array2<T>) -> ArrayView2<'a, T> {
         let mut drawn = cells.view();
         if self.columns_fall() {

@@ -1,7 +1,7 @@
-//! Transmitters that stand apart from receivers: every pair of them is an element of the array.
+//! A MIMO array: every pair of a transmitter and a receiver is a virtual element, halfway between both.
 //!
-//! The element that a pair makes stands halfway between both (the convention is [`Pair`]'s: a range is half the way there and back). Far
-//! away a pair hears what one antenna there would; near by its way is longer by up to `a^2 / 4R`, where `a` is their distance.
+//! A range is half the path from transmitter to receiver ([`Pair`]). In the far field a pair receives what a single antenna at the midpoint
+//! would. At range `R` its path is longer by up to `a^2 / 4R`, where `a` is the distance between both antennas.
 
 mod error;
 mod off_line;
@@ -13,20 +13,19 @@ use error::{MAX_ELEMENTS, MIN_ELEMENTS, MOST_OFF, MOST_Y_METRES};
 use std::fmt;
 use std::sync::Arc;
 
-/// Midpoints nearer to each other than this stand at one place, as a part of their mean distance.
+/// Midpoints nearer to each other than this fraction of their mean distance count as one place.
 const ONE_PLACE: f64 = 0.02;
 
-/// Into how many spacings the smallest distance of midpoints may be divided: distances of 2 and 3 spacings alone need 2.
+/// Largest number of spacings in the smallest distance of midpoints. Distances of 2 and 3 spacings alone need 2.
 const MOST_DIVISIONS: usize = 4;
 
-/// How far the middle of the line may lie off x = 0 without being moved there, as a part of the spacing.
+/// The line is moved where its middle lies farther from x = 0 than this fraction of the spacing.
 const CENTRED: f64 = 1e-6;
 
-/// Transmitters and receivers whose pairs make a line of elements at even places along x.
+/// Transmitters and receivers whose pairs form a uniform line of virtual elements along x, centred on x = 0.
 ///
-/// x = 0 is the middle of that line. Elements are numbered from the left. A place that no pair makes is a gap: its element hears nothing. Of
-/// pairs at one place the first counts, by number of transmitter. Antennas may stand off the line, at y of their own; no place along x
-/// depends on it.
+/// Elements are numbered from the left. A place without a pair is a gap: its element receives nothing. Of several pairs at one place the
+/// one with the lowest transmitter counts. Antennas may have a y of their own, which changes no place along x.
 #[derive(Clone, PartialEq)]
 pub struct Antennas {
     transmitter_x_metres: Arc<[f64]>,
@@ -46,7 +45,7 @@ impl fmt::Debug for Antennas {
     }
 }
 
-/// The pairs from left to right, and where the midpoint of each stands.
+/// The pairs from left to right, and their midpoints.
 struct Midpoints {
     pairs: Vec<[usize; 2]>,
     x_metres: Vec<f64>,
@@ -111,7 +110,7 @@ impl Antennas {
         let midpoints = Midpoints::of(transmitter_x_metres, receiver_x_metres);
         let spacing_metres = midpoints.spacing_metres()?;
         let elements = (midpoints.length_metres() / spacing_metres).round() + 1.0;
-        // Antennas that stand apart make one place more at least than there are others beside the first; fewer are taken for one.
+        // Distinct transmitters and receivers form at least this many distinct midpoints.
         let fewest = (apart(transmitter_x_metres) + apart(receiver_x_metres) - 1).max(MIN_ELEMENTS);
         if !(fewest as f64..=MAX_ELEMENTS as f64).contains(&elements) {
             return Err(AntennasError::Line { elements: elements as usize });
@@ -160,12 +159,12 @@ impl Antennas {
         &self.pairs
     }
 
-    /// Places that no pair makes.
+    /// Number of places without a pair.
     pub fn gaps(&self) -> usize {
         self.pairs.iter().filter(|pair| pair.is_none()).count()
     }
 
-    /// Pairs at the place of another, which are left out.
+    /// Number of pairs left out because another pair has their place.
     pub fn left_out(&self) -> usize {
         self.transmitter_x_metres.len() * self.receiver_x_metres.len() - (self.pairs.len() - self.gaps())
     }
@@ -195,7 +194,7 @@ impl Antennas {
         all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)])
     }
 
-    /// The same antennas seen from the other side: what was leftmost is rightmost.
+    /// The same antennas with left and right exchanged.
     pub fn mirrored(&self) -> Self {
         let mirrored = |places: &[f64]| places.iter().map(|x| -x).collect();
         Antennas {
@@ -253,17 +252,17 @@ impl Radar {
         }
     }
 
-    /// Whether no pair of antennas makes element `n`: it hears nothing.
+    /// Whether element `n` is a gap, which receives nothing.
     pub fn is_gap(&self, n: usize) -> bool {
         self.antennas.as_ref().and_then(|antennas| antennas.pairs.get(n)).is_some_and(Option::is_none)
     }
 
-    /// Elements that no pair of antennas makes.
+    /// Number of gaps.
     pub fn gaps(&self) -> usize {
         self.antennas.as_ref().map_or(0, Antennas::gaps)
     }
 
-    /// Whether every element sends and hears by itself.
+    /// Whether every element is a monostatic antenna.
     pub fn is_monostatic(&self) -> bool {
         self.antennas.is_none()
     }

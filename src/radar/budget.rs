@@ -6,15 +6,14 @@
 //! P_r = P_t G^2 lambda^2 sigma / ((4 pi)^3 R^4)
 //! ```
 //!
-//! over noise of `k T B F`, where `B` is the rate at which complex samples are taken ([`Radar::sample_rate_hz`]) and `T` is 290 K. `G` is the
-//! gain of one element straight ahead, for sending and for hearing; its [`Pattern`] says what is left of it in other directions.
+//! over noise of `k T B F`, where `B` is the complex sampling rate ([`Radar::sample_rate_hz`]) and `T` is 290 K. `G` is the
+//! boresight gain of one element, for transmission and reception; [`Pattern`] gives other directions.
 //! (M. I. Skolnik, *Introduction to Radar Systems*, chapter 1.)
 //!
-//! Samples are not watts. In the thesis' convention, which stays the default, a point of reflectivity `g` has the amplitude `P_out g / R^2`
-//! ([`Radar::transmit_power_watts`]). Both laws fall alike with range, so one factor leads from one to the other: a budget takes reflectivity 1
-//! for a cross section of 1 square metre, so that `sigma = g^2` square metres, and a sample `y` for `|y|^2 P_1 / P_out^2` watts, where `P_1` is
-//! what is received of 1 square metre at 1 m. A budget therefore changes no sample but by an element's pattern, and by the noise of the floors
-//! that are levels in watts.
+//! Samples are not watts. By default a point of reflectivity `g` has the amplitude `P_out g / R^2` ([`Radar::transmit_power_watts`]), which
+//! falls with range like the radar equation. With a budget, reflectivity 1 is a cross section of 1 square metre (`sigma = g^2`), and a sample
+//! `y` stands for `|y|^2 P_1 / P_out^2` watts, where `P_1` is the power received from 1 square metre at 1 m. A budget changes samples only by
+//! the element pattern and by floors given in watts.
 
 use super::{DecibelMilliwatts, Decibels, Radar, RadarError};
 use serde::{Deserialize, Serialize};
@@ -24,8 +23,7 @@ use std::f64::consts::PI;
 pub const BOLTZMANN: f64 = 1.380_649e-23;
 /// Temperature that noise figures refer to, kelvin (IEEE).
 pub const NOISE_TEMPERATURE_KELVIN: f64 = 290.0;
-/// Signal-to-noise ratio from which on one look detects a steady echo nine times in ten at one false alarm in a million, dB (Skolnik, figure
-/// 2.6: 13.2 dB).
+/// SNR at which a single pulse detects a steady target with P_D 0.9 and P_FA 1e-6 (Skolnik, figure 2.6: 13.2 dB).
 pub const DETECTION_SNR: Decibels = Decibels(13.0);
 
 /// What the radar equation needs beside the radar's other constants.
@@ -34,12 +32,11 @@ pub const DETECTION_SNR: Decibels = Decibels(13.0);
 pub struct LinkBudget {
     /// Power that a transmitter sends, dBm.
     pub transmit_power_dbm: f64,
-    /// Gain of an element straight ahead, dBi, for sending and for hearing.
+    /// Boresight gain of an element, dBi, for transmission and reception.
     pub antenna_gain_dbi: f64,
     /// Noise figure of a receiver, dB.
     pub noise_figure_db: f64,
-    /// Angle between the two directions, left and right, in which an element sends half of its power straight ahead, degrees; `None` for
-    /// elements that send and hear alike in all directions.
+    /// Half-power beam width of an element, degrees; `None` for isotropic elements.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_power_width_degrees: Option<f64>,
 }
@@ -100,14 +97,13 @@ impl LinkBudget {
     }
 }
 
-/// Pattern of an element: the power that it sends at an angle off broadside is `cos(angle)^n` of that straight ahead, the same behind the array
-/// as before it. What it hears falls alike.
+/// One-way power pattern of an element: `cos^n` of the angle off broadside, the same behind the array as before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pattern {
     exponent: f64,
 }
 
-/// Least amplitude that a pattern leaves of one way: -100 dB. No element is silent in any direction.
+/// Lower bound of a one-way amplitude, -100 dB: no direction is silent.
 const LEAST_AMPLITUDE: f64 = 1e-5;
 
 impl Pattern {
@@ -116,7 +112,7 @@ impl Pattern {
         Pattern { exponent: 0.5f64.ln() / (degrees / 2.0).to_radians().cos().ln() }
     }
 
-    /// `n`.
+    /// The exponent `n` of the cosine.
     pub fn exponent(self) -> f64 {
         self.exponent
     }
@@ -151,8 +147,7 @@ pub struct LinkFigures {
     pub range: Decibels,
     /// SNR by one end, where its elements add in phase.
     pub end: Decibels,
-    /// SNR by the whole array, where its elements add in phase: in a map beyond the far field ([`Radar::far_field_metres`]), nearer for who
-    /// focuses.
+    /// SNR by the whole array, where its elements add in phase: in the far field ([`Radar::far_field_metres`]), or focused.
     pub array: Decibels,
 }
 

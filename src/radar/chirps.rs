@@ -1,6 +1,6 @@
-//! What a sequence of chirps tells of velocities.
+//! Velocities from a sequence of chirps.
 //!
-//! From chirp to chirp the phase of an echo turns by its [wave number](Radar::turns_per_metre) times the way that its range grew. In the
+//! From chirp to chirp the phase of an echo turns by its [wave number](Radar::turns_per_metre) times the change of its range. In the
 //! middle of the chirp, where windows weigh most, the wave number is `kappa = s q / lambda + 1 / (2 dR)` turns a metre. In the physical
 //! convention that is two turns a wavelength of the frequency in the middle of the chirp: velocities up to `lambda / (4 Tc)` have a
 //! column of their own. The thesis' carrier counts the way once and with minus: there it is `lambda / (2 Tc)`, lambda that of `f - B`.

@@ -2,33 +2,29 @@
 
 use super::{BuiltArray, Decibels, ElementError};
 
-/// Columns of a line.
 const COLUMNS: [&str; 4] = ["place in mm", "forward in mm", "gain in dB", "phase in degrees"];
 
 /// Why a text is no list of elements.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ElementListError {
-    /// A cell holds no number.
     #[error("line {line}, {column}: \"{found}\" is no number")]
     Cell { line: usize, column: &'static str, found: String },
-    /// A line has more columns than are known.
     #[error(
         "line {line} has {found} columns; expected at most 4: place in mm, forward in mm, gain in dB, phase in degrees"
     )]
     Columns { line: usize, found: usize },
-    /// Other than one line an element.
     #[error("{found} lines for {expected} elements; expected one line an element, the leftmost first")]
     Lines { found: usize, expected: usize },
 }
 
-/// Letters of a cell that are shown.
+/// Characters of a cell in an error message.
 const SHOWN: usize = 20;
 
 impl BuiltArray {
-    /// The elements that `text` describes: a line an element, the leftmost first. A line holds up to four numbers with tabs, semicolons, commas or
-    /// spaces between them: how far the element stands from its place towards +x and off the line towards the scene (millimetres), its gain
-    /// (decibels) and its phase (degrees). Missing numbers are 0; a cell left empty between two tabs is, too.
+    /// The elements that `text` describes: a line an element, the leftmost first. A line holds up to four numbers, separated by
+    /// tabs, semicolons, commas or spaces: offset along +x and towards the scene (millimetres), gain (decibels), phase (degrees). Missing
+    /// numbers and empty cells are 0.
     /// # Errors
     /// [`ElementListError`] names line and column.
     pub fn from_list(text: &str, elements: usize) -> Result<BuiltArray, ElementListError> {

@@ -7,17 +7,17 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
-/// What one element does otherwise than it should.
+/// Deviation of one element from its nominal gain, phase and place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ElementError {
-    /// What it amplifies by.
+    /// Gain error.
     pub gain: Decibels,
-    /// What it turns the phase by, degrees.
+    /// Phase error, degrees.
     pub phase_degrees: f64,
-    /// How far it stands from its place, towards +x, millimetres.
+    /// Offset from its nominal place along +x, millimetres.
     pub position_millimetres: f64,
-    /// How far it stands off the array's line, towards the scene, millimetres.
+    /// Offset from the array's line towards the scene, millimetres.
     pub forward_millimetres: f64,
     /// Whether it is dead: it receives nothing.
     pub dead: bool,
@@ -45,13 +45,13 @@ impl ElementError {
     }
 }
 
-/// How far elements are off, as standard deviations of normal distributions.
+/// Standard deviations of normally distributed element errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerances {
-    /// Of the gain.
+    /// What it amplifies by.
     pub gain: Decibels,
-    /// Of the phase, degrees.
+    /// What it turns the phase by, degrees.
     pub phase_degrees: f64,
     /// Of the position along the array, millimetres.
     pub position_millimetres: f64,
@@ -82,9 +82,7 @@ impl Tolerances {
     }
 }
 
-/// The elements of a built array; an empty list is an array that is as it should be.
-///
-/// In files it is lists of what differs: `count`, `gain_db`, `phase_degrees`, `position_millimetres`, `forward_millimetres` (one number an
+/// Errors of every element of an array; an empty list is an ideal array. In files: `count`, `gain_db`, `phase_degrees`, `position_millimetres`, `forward_millimetres` (one number an
 /// element each, or none at all) and `dead`, the elements that receive nothing.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(try_from = "Lists", into = "Lists")]
@@ -167,14 +165,12 @@ impl TryFrom<Lists> for BuiltArray {
 
 const MOST_ELEMENTS: usize = 65536;
 
-/// What no element can do.
+/// Why a list of element errors is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum BuiltArrayError {
-    /// Another number of elements.
     #[error("{found} elements are described; the radar has {expected}")]
     Count { found: usize, expected: usize },
-    /// Not a usable number.
     #[error("element {element}: {field} is {value}; expected a number from -{most} to {most}")]
     Value { element: usize, field: &'static str, value: f64, most: f64 },
 }
@@ -184,12 +180,12 @@ const MOST_PHASE: f64 = 3600.0;
 const MOST_POSITION: f64 = 1000.0;
 
 impl BuiltArray {
-    /// Whether every element is as it should be.
+    /// Whether no element has an error.
     pub fn is_ideal(&self) -> bool {
         self.elements.iter().all(|e| *e == ElementError::default())
     }
 
-    /// The same for an array of `count` elements: those that are new are as they should be.
+    /// The same for an array of `count` elements, the additional ones ideal.
     pub fn fitted(&self, count: usize) -> Self {
         let mut elements = self.elements.clone();
         if !elements.is_empty() {
@@ -203,7 +199,7 @@ impl BuiltArray {
         self.elements.iter().filter(|e| e.dead).count()
     }
 
-    /// Root mean squares of what the living elements are off by, gain and phase counted from their means.
+    /// Root mean square errors of the elements that are not dead, gain and phase relative to their means.
     pub fn spread(&self) -> Tolerances {
         let living: Vec<&ElementError> = self.elements.iter().filter(|e| !e.dead).collect();
         let count = living.len().max(1) as f64;
@@ -220,7 +216,7 @@ impl BuiltArray {
         }
     }
 
-    /// What is left of these errors once the gains and phases of `estimate` are taken off; an element that it calls dead stays as it is.
+    /// Residual errors after correction by the gains and phases of `estimate`; elements that it takes for dead are not corrected.
     pub fn corrected(&self, estimate: &BuiltArray) -> Self {
         let count = self.elements.len().max(estimate.elements.len());
         let element = |n: usize| {
@@ -239,13 +235,13 @@ impl BuiltArray {
         self.elements.get(n).copied().unwrap_or_default()
     }
 
-    /// Whether element `n` stands elsewhere than it should.
+    /// Whether element `n` is displaced.
     pub fn is_displaced(&self, n: usize) -> bool {
         let ElementError { position_millimetres, forward_millimetres, .. } = self.element(n);
         position_millimetres != 0.0 || forward_millimetres != 0.0
     }
 
-    /// How far element `n` stands off the array's line, towards the scene, metres.
+    /// Offset of element `n` from the array's line towards the scene, metres.
     pub fn forward_metres(&self, n: usize) -> f64 {
         self.element(n).forward_millimetres * 1e-3
     }
@@ -255,8 +251,7 @@ impl BuiltArray {
         self.elements.iter().filter(|e| !e.dead).map(|e| e.forward_millimetres.abs()).fold(0.0, f64::max)
     }
 
-    /// The same on a bumper that is bent: the middle of the line keeps its place, its ends stand back by `back_millimetres`, and the
-    /// elements between them stand on a parabola.
+    /// The same array bent to a parabola, as on a bumper: the ends stand back by `back_millimetres`, the middle keeps its place.
     pub fn bent(&self, radar: &Radar, back_millimetres: f64) -> Self {
         let half = radar.aperture_metres() / 2.0;
         let mut elements = self.fitted(radar.elements).elements;
@@ -268,7 +263,7 @@ impl BuiltArray {
         BuiltArray { elements }
     }
 
-    /// Where element `n` of `radar` really stands, metres.
+    /// True x of element `n` of `radar`, metres.
     pub fn element_x_metres(&self, radar: &Radar, n: usize) -> f64 {
         radar.element_x_metres(n) + self.element(n).position_millimetres * 1e-3
     }

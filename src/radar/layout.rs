@@ -1,4 +1,4 @@
-//! Where the elements of a line array stand: the whole array, its two ends, random places, or the virtual elements of a MIMO radar.
+//! Element positions of a line array: the whole array, its two ends, random places, or the virtual elements of a MIMO radar.
 
 use super::{End, Pair, Radar};
 use ndarray::{Array2, Axis};
@@ -68,8 +68,7 @@ impl Layout {
     /// `count` elements at random places of the half-wavelength grid, the outermost two always among them so that the aperture
     /// stays whole. The same seed gives the same places.
     ///
-    /// Places are kept on the grid, as multi-coset sampling keeps them (thesis figures 1-2 and 1-3): what is lost is then
-    /// elements, not the array's unambiguous field of view.
+    /// Places on the grid keep the array's unambiguous field of view, as in multi-coset sampling (thesis figures 1-2 and 1-3).
     /// # Errors
     /// [`LayoutError`] for no element or for more than `radar` has.
     pub fn random(radar: &Radar, count: usize, seed: u64) -> Result<Self, LayoutError> {
@@ -93,7 +92,7 @@ impl Layout {
         Layout { x_metres: elements.iter().map(|n| radar.element_x_metres(*n)).collect(), pairs }
     }
 
-    /// Elements that send and hear by themselves, at these places in rising order, metres.
+    /// Monostatic elements at these places in rising order, metres.
     pub fn at(x_metres: Vec<f64>) -> Self {
         Layout { x_metres, pairs: None }
     }

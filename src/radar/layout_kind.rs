@@ -14,19 +14,9 @@ pub enum LayoutKind {
     /// The first end alone.
     OneEnd,
     /// Elements at random places of the whole aperture.
-    Random {
-        /// How many.
-        elements: usize,
-        /// Seed of the places.
-        seed: u64,
-    },
+    Random { elements: usize, seed: u64 },
     /// The virtual elements of every pair of a transmitter and a receiver.
-    Mimo {
-        /// Transmitters.
-        transmitters: usize,
-        /// Receivers.
-        receivers: usize,
-    },
+    Mimo { transmitters: usize, receivers: usize },
 }
 
 /// Most transmitters or receivers that a name may ask for.
@@ -59,7 +49,6 @@ impl fmt::Display for LayoutKind {
     }
 }
 
-/// A name that stands for no layout.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "there is no layout \"{0}\"; expected full, two-ends, one-end, random=N, random=N:SEED or mimo=TxR with up to 64 each"

@@ -5,8 +5,8 @@ use super::{Bytes, Radar, RadarError};
 /// Most bytes of memory that the signal and the maps of one radar may ask for: 4 GiB, some 17 million cells.
 pub const MAX_MEMORY_BYTES: u64 = 4 << 30;
 
-/// Bytes for each cell of a map (element x sample), everything that is held at once counted: the complex f64 signal, its profiles,
-/// complex maps of the array and of both ends, decades, Lambda, and what the hungriest method works in.
+/// Peak bytes per cell of a map (element x sample): complex f64 signal, profiles, complex maps of the array and of both ends, decades, Lambda,
+/// and the work space of the method with the largest.
 const BYTES_PER_CELL: u64 = 256;
 
 /// Bytes for each pair of elements of an end: methods that whiten or look for subspaces hold complex matrices of that size.
@@ -22,10 +22,8 @@ impl Radar {
         if self.chirps > 1 { all(self.chirps) } else { 0 }
     }
 
-    /// Upper bound on the bytes of memory that the signal and the maps of this radar ask for, by any command or method;
-    /// networks refuse radars other than the one they were trained for, and come on top.
-    ///
-    /// `tests/library/memory.rs` holds every method to it.
+    /// Upper bound on the bytes for signal and maps of this radar, in any command or method but networks. `tests/library/memory.rs` checks
+    /// every method.
     pub fn memory_bytes(&self) -> u64 {
         let [elements, samples, end] = [self.elements, self.samples, self.end_elements].map(|n| n as u64);
         let cells = elements.saturating_mul(samples).saturating_mul(BYTES_PER_CELL);

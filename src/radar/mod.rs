@@ -152,30 +152,23 @@ impl Default for Radar {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum RadarError {
-    /// A quantity that must be finite and positive is not.
     #[error("radar.{field} is {value}; it must be a finite number above 0")]
     NotPositive { field: &'static str, value: f64 },
-    /// A count is outside what the maps can hold.
     #[error("radar.{field} is {value}; it must be between {min} and {max}")]
     Count { field: &'static str, value: usize, min: usize, max: usize },
-    /// The signal and the maps would not fit into the memory that a radar may ask for.
     #[error(
         "radar.{field} asks for too much memory: {elements} elements by {samples} samples with ends of {end_elements} need {bytes}; \
          at most {most} can be had"
     )]
     Memory { field: &'static str, elements: usize, samples: usize, end_elements: usize, bytes: Bytes, most: Bytes },
-    /// A chirp would begin before the last one ends.
     #[error("radar.chirp_interval_seconds is {interval}; it must be at least chirp_seconds, which is {chirp}")]
     Interval { interval: f64, chirp: f64 },
-    /// The samples of all chirps would not fit into the memory that a radar may ask for.
     #[error(
         "radar.chirps asks for too much memory: a range-Doppler map of {chirps} chirps by {samples} samples needs {bytes}; at most {most} can be had"
     )]
     ChirpMemory { chirps: usize, samples: usize, bytes: Bytes, most: Bytes },
-    /// A number of the link budget can't be.
     #[error("radar.budget.{field} is {value}; expected {expected}")]
     Budget { field: &'static str, value: f64, expected: &'static str },
-    /// Elements or spacing are not those that the pairs of antennas make.
     #[error("radar.{field} is {value}; its {transmitters} transmitters and {receivers} receivers make {expected}")]
     Pairs { field: &'static str, value: f64, expected: f64, transmitters: usize, receivers: usize },
 }

@@ -16,7 +16,6 @@ pub struct RadarPreset {
     pub radar: Radar,
 }
 
-/// Half the wavelength of a carrier, metres.
 const fn half_wavelength_metres(carrier_hz: f64) -> f64 {
     SPEED_OF_LIGHT / carrier_hz / 2.0
 }

@@ -1,4 +1,4 @@
-//! An inner corner: from one arm to the other and back, and the other way round.
+//! The double reflection at an inner corner, in both orders of its arms.
 //!
 //! Each order is the face formula on the second arm with the transmitter replaced by its image in the first, on the stretch that the image
 //! sees through the first. At a right angle the two orders add up to one echo at the apex.

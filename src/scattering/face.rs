@@ -15,15 +15,12 @@ const LEAST_HEIGHT_METRES: f64 = 1e-9;
 /// A face from one end to the other; its outside lies to the right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Face {
-    /// Where it begins.
     pub(super) from: V,
     /// Unit vector along it.
     pub(super) along: V,
-    /// Its length, metres.
     pub(super) length_metres: f64,
     /// Whether its inside reflects, too.
     pub(super) is_two_sided: bool,
-    /// Reflection coefficient.
     pub(super) reflectivity: f64,
 }
 
@@ -84,17 +81,14 @@ impl Face {
     }
 }
 
-/// Where antennas are, as a face sees them.
+/// Places of both antennas relative to a face.
 struct Heights {
     /// Place of the transmitter along the face, metres.
     along_transmitter: f64,
-    /// The same of the receiver.
     along_receiver: f64,
     /// Distance of the transmitter from the face's line, metres.
     transmitter: f64,
-    /// The same of the receiver.
     receiver: f64,
-    /// Whether both stand on one side.
     same_side: bool,
     /// Whether they stand outside.
     outside: bool,

@@ -1,4 +1,4 @@
-//! What the radar sees of a body: for every pair of antennas a few echoes, each with a range and a complex amplitude.
+//! Echoes of bodies: for every pair of antennas a few, each with a range and a complex amplitude.
 //!
 //! | file | what it gives |
 //! |---|---|
@@ -6,11 +6,11 @@
 //! | [`post`] | a circle: the echo of its specular point |
 //! | [`polygon`] | a closed outline: the sum of its lit faces |
 //! | [`corner`] | an inner corner: the double reflection |
-//! | [`roughness`] | what a rough surface takes from these echoes, and scatters instead |
-//! | [`shadow`] | what passes an obstacle on the way from an antenna to where an echo comes from |
-//! | [`reference`] | what all of this is held against: quadrature, and the exact series of a cylinder |
-//! | `sight` | which bodies may have an effect on an object at all |
-//! | `strips` | which bodies stand near the ways to an object, without asking all |
+//! | [`roughness`] | loss of coherent echoes at a rough surface, and diffuse scattering |
+//! | [`shadow`] | diffraction past an obstacle between antenna and scatterer |
+//! | [`reference`] | references for tests: quadrature, and the exact series of a cylinder |
+//! | `sight` | bodies that may affect an object |
+//! | `strips` | fast search of bodies near the ways to an object |
 //! | [`transition`] | Fresnel's transition from light to shadow, for the two above |
 //! | [`parts`] | a polygon as convex parts, for shadows |
 //!
@@ -18,10 +18,10 @@
 //! `A exp(-j kappa_n R)` to sample `n`, where `kappa_n` is the phase of the whole way there and back for each metre of range ([`Wave`]).
 //!
 //! The formulas are physical optics in the plane: Balanis, *Advanced Engineering Electromagnetics*, chapter 7; Keller, J. Opt. Soc. Am. 52
-//! (1962); Kouyoumjian and Pathak, Proc. IEEE 62 (1974). A perfect post of radius 1 m is, from afar, a point of reflectivity 1, and a
-//! perfect face at `R` metres a point of reflectivity `sqrt(R)`. A face's glint falls as `1/R^1.5`, which is that of a strip lower than the
-//! Fresnel zone (`sqrt(lambda R / 2)`, 14 cm at 77 GHz and 10 m); that of a high wall would fall as `1/R`. What is left out: height and ground,
-//! reflections from one body to another, polarisation but for the sign of a double bounce and the post's second term, waves that creep around a post.
+//! (1962); Kouyoumjian and Pathak, Proc. IEEE 62 (1974). In the far field a perfect post of radius 1 m is a point of reflectivity 1, and a
+//! perfect face at `R` metres a point of reflectivity `sqrt(R)`. A face's glint falls as `1/R^1.5`, as for a strip lower than the Fresnel
+//! zone (`sqrt(lambda R / 2)`, 14 cm at 77 GHz and 10 m); a high wall's falls as `1/R`. Left out: height and ground, reflections between
+//! bodies, creeping waves, and polarisation except the sign of a double bounce and the post's second term.
 
 pub mod corner;
 mod echoing;

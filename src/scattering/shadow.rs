@@ -1,7 +1,7 @@
-//! What passes an obstacle on the way from an antenna to where an echo comes from: two knife edges, left and right.
+//! Diffraction past an obstacle between an antenna and a scatterer: two knife edges, left and right.
 //!
-//! Near the boundary of a shadow nothing is cut off at once: [`passing`] falls over the width of a Fresnel zone. What hides is taken with the
-//! detour over its nearer edge, so that its phase is right; what stands far beside has no effect at all, to the last bit.
+//! Near the boundary of a shadow [`passing`] falls over the width of a Fresnel zone. The phase in the shadow is that of the detour over the
+//! nearer edge. An obstacle far beside the way has no effect, to the last bit.
 
 use super::geometry::{V, hypotenuse, root};
 use super::transition::{passing, transition};
@@ -9,7 +9,7 @@ use super::{AntennaPlaces, PathEcho, Wave};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Past an obstacle, its ripple fades out between these distances in Fresnel's measure: farther out it belongs at another range.
+/// Between these values of Fresnel's measure the ripple beside an obstacle fades out: farther out it belongs at another range.
 const FADE: [f64; 2] = [3.0, FADED];
 
 /// Fresnel's measure from which on an edge has no effect at all.

@@ -20,8 +20,8 @@ pub struct Disturbances {
     pub mirror: Option<Mirror>,
 }
 
-/// A radar whose chirps are not synchronised with ours: for a part of a chirp its frequency is so near ours that the receiver lets the
-/// difference pass, itself a chirp. It comes straight, so that it falls with the distance, not with its square.
+/// A radar whose chirps are not synchronised with ours. While its frequency crosses ours, the difference, itself a chirp, passes the
+/// receiver's filter. It propagates one way, so its amplitude falls with the distance, not with its square.
 ///
 /// After G. M. Brooker, "Mutual interference of millimeter-wave radar systems" (2007).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -94,9 +94,8 @@ impl Mirror {
         [x_metres + twice * sin, y_metres - twice * cos]
     }
 
-    /// The ghosts of a reflector, as reflectors with the same echo: its mirror image, reflected by the wall both ways, and two at the mean
-    /// range, reflected by the wall one way, in the directions of image and reflector. None where the wall stands between it and the
-    /// array's centre.
+    /// The ghosts of a reflector, as reflectors with the same echo: its mirror image, for two reflections at the wall, and two at the mean
+    /// range, for one reflection, in the directions of image and reflector. None where the wall hides the reflector from the array's centre.
     ///
     /// As F. Kraus, N. Scheiner, W. Ritter and K. Dietmayer sort them in "Using machine learning to detect ghost images in automotive
     /// radar" (2020), by which of reflector and wall the echo leaves last.

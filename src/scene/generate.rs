@@ -1,8 +1,8 @@
 //! Seeded random scenes: the thesis' test sets, the training scenes of its two experiments (sections 3.2, 4.1, 5.1), and named
 //! kinds that cover the whole field.
 //!
-//! Every scene comes from its own random stream, named by purpose, kind and number: training, validation and test scenes can't
-//! meet, and scene 7 is the same whether or not scenes 0 to 6 were made. So does the noise beneath it ([`Scene::noise_seed`]).
+//! Purpose, kind and number name the random stream of each scene and of its noise ([`Scene::noise_seed`]). So training, validation and test
+//! scenes are distinct, and scene 7 does not depend on scenes 0 to 6.
 
 mod beyond;
 mod field;

@@ -1,7 +1,5 @@
-//! What stands before the radar: points, lines, clusters and bodies, and where such scenes come from.
-//!
-//! An [`Object`] is what a person drags; a [`Reflector`] is what the radar sees of those made of points. [`Scene::reflectors`] turns the
-//! first into the second. What the radar sees of a [`body`] is worked out in [`crate::scattering`].
+//! Scenes of points, lines, clusters and bodies. [`Scene::reflectors`] turns an [`Object`] made of points into [`Reflector`]s; echoes of a
+//! [`body`] are computed in [`crate::scattering`].
 
 pub mod body;
 mod body_check;
@@ -55,7 +53,6 @@ pub struct Scene {
     /// What is not as the formulas assume.
     #[serde(default, skip_serializing_if = "Disturbances::is_none")]
     pub disturbances: Disturbances,
-    /// The objects.
     #[serde(default, rename = "object", skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<Object>,
 }
@@ -91,31 +88,23 @@ pub const MAX_REFLECTORS: usize = 200_000;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum SceneError {
-    /// A number of an object is not usable.
     #[error("object {} ({kind}): {field} is {value}; expected {expected}", object + 1)]
     Value { object: usize, kind: &'static str, field: &'static str, value: f64, expected: &'static str },
-    /// A reflector sits on an element of the array, where its echo would be infinite.
     #[error(
         "object {} ({kind}): its reflector at x = {x_metres} m, y = {y_metres} m lies on element {element} of the array; move it at least {MIN_ELEMENT_DISTANCE_METRES} m away",
         object + 1
     )]
     OnElement { object: usize, kind: &'static str, x_metres: f64, y_metres: f64, element: usize },
-    /// The outline of a body makes no sense.
     #[error("object {} ({kind}): {fault}", object + 1)]
     Outline { object: usize, kind: &'static str, fault: String },
-    /// An element of the array stands inside a body, or on a wall.
     #[error("object {} ({kind}): element {element} of the array lies inside it or on it; move it away from the array", object + 1)]
     Covers { object: usize, kind: &'static str, element: usize },
-    /// More reflectors, or more objects, than can be simulated.
     #[error("the scene has {count} {what}; at most {MAX_REFLECTORS} can be simulated")]
     TooMany { count: usize, what: &'static str },
-    /// The elements as they are built are not those of the radar.
     #[error("disturbances.elements: {0}")]
     Elements(#[from] BuiltArrayError),
-    /// A number of an interferer or a mirror is not usable.
     #[error("{what}: {field} is {value}; expected a number from {low} to {high}")]
     Disturbance { what: &'static str, field: &'static str, value: f64, low: f64, high: f64 },
-    /// The radar that is to see it makes no sense, or asks for too much memory.
     #[error(transparent)]
     Radar(#[from] RadarError),
 }

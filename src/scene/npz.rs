@@ -29,8 +29,8 @@ pub fn read(path: &Path) -> Result<Scene, NpzError> {
     Ok(Scene::of_points(x.into_iter().zip(y)))
 }
 
-/// Writes the reflectors of a scene, and of its bodies where the array's middle sees them echo. Reflectivities, names, shadows and what made
-/// the points (a line, a cluster, a body) are not part of this format.
+/// Writes the reflectors of a scene, and the echoes of bodies at the array's middle as points. The format has no reflectivities, names,
+/// shadows, lines, clusters or bodies.
 /// # Errors
 /// [`NpzError::Io`] when the file can't be written.
 pub fn write(path: &Path, scene: &Scene) -> Result<(), NpzError> {

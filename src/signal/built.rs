@@ -11,8 +11,8 @@ use crate::scene::{Scene, SceneError};
 use crate::task::Task;
 use num_complex::Complex64;
 
-/// Beat signal of a scene as `array` hears it, with the ghosts and the interferer of the scene, over the named floor; `seed` picks the
-/// floor's noise, which each element's receiver adds at any gain: that of an ideal array, except in dead elements, which hear nothing.
+/// Beat signal of a scene received by `array`, with the scene's ghosts and interferer, over the named floor. `seed` picks the floor's noise,
+/// which does not depend on an element's gain; dead elements receive nothing.
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate_built(

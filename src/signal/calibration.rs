@@ -16,11 +16,8 @@ pub struct Calibration {
     pub unexplained: f64,
 }
 
-/// Estimates gain and phase of every element from the echo of `reflector` in `signal`: what each element's samples hold of the echo
-/// that an ideal element would hear, by least squares under a Hann window. Other reflectors disturb little where they are two range bins
-/// away or more.
-///
-/// `None` where no element hears the reflector.
+/// Gain and phase of every element from the echo of `reflector` in `signal`, by least squares under a Hann window against the echo at an
+/// ideal element. Reflectors two range bins away or more disturb little. `None` where no element receives the echo.
 pub fn calibrate(radar: &Radar, signal: &BeatSignal, reflector: &Reflector) -> Option<Calibration> {
     let polar = radar.polar_of(reflector.x_metres, reflector.y_metres);
     let (mut energy, mut left) = (0.0, 0.0);

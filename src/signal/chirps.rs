@@ -3,12 +3,11 @@
 //! Within a chirp the range of every echo runs in a straight line that leads from where it is at the beginning of the chirp to where it is
 //! at the beginning of the next: `R + D n / N` at sample `n` of `N`, put into equation 3.3 as it stands. What this leaves out is the
 //! curvature of the range, at most `v^2 Tc^2 / (8 R)` metres for a speed `v` at range `R` and an interval `Tc`: 3e-9 m for 20 m/s at 10 m
-//! and 25.6 microseconds. Amplitudes are those of the beginning of the chirp. Echoes of a body that come or go between two chirps stand still in
+//! and 25.6 microseconds. Amplitudes are those of the beginning of the chirp. Echoes of a body that appear or vanish between two chirps stand still in
 //! between.
 //!
-//! What rests is evaluated once, by the algorithms of a single chirp. Where nothing moves the first chirp has the bits of
-//! [`simulate_ends`](super::simulate_ends). Each chirp has noise of its own, the first that of a single one.
-//! An interferer sends the same in every chirp.
+//! Objects at rest are evaluated once, by the algorithms of a single chirp. Without moving objects the first chirp has the bits of
+//! [`simulate_ends`](super::simulate_ends). Each chirp has its own noise. An interferer is the same in every chirp.
 
 use super::built::hear;
 use super::floor::{self, Floor};
@@ -35,10 +34,10 @@ pub const MAX_END_ELEMENTS: usize = 4;
 /// Samples after which running phasors are taken afresh.
 const RESTART: usize = 128;
 
-/// Neighbouring samples whose phasors run side by side: none waits for the one before.
+/// Independent phasor recurrences, so that no sample waits for its predecessor.
 const LANES: usize = 8;
 
-/// Noise streams of one chirp: no array has more elements.
+/// Noise streams of one chirp: the largest number of elements.
 const STREAMS: usize = 65536;
 
 /// Samples of all chirps at the outer elements of both ends.

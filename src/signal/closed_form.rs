@@ -154,7 +154,6 @@ impl<T: Real> ClosedForm<T> {
         let (first, last) = (lowest.floor() as isize - reach, highest.ceil() as isize + reach);
         let (first, last) = match last - first < self.samples as isize {
             true => (first, last),
-            // Every bin once.
             false => (-(self.samples as isize / 2), (self.samples - self.samples / 2) as isize - 1),
         };
         let narrow: Lanes<T, W> = offset.round_to();

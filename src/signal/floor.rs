@@ -1,14 +1,8 @@
-//! What lies beneath the reflectors of a map.
+//! The noise floor of a map. A map normalised by its minimum shows its floor as much as its peaks, so no function picks a floor silently.
 //!
-//! A map normalised by its minimum shows its floor as much as its peaks, so the floor is always named: no function picks one silently.
-//!
-//! A level in dBm needs a convention for the power of a sample, and this is the program's: in the thesis' convention the sample `y` of one
-//! reflector has amplitude `P_out sigma / R^2`, with `P_out` in watts, `R` in metres and no unit for sigma; its power `|y|^2` counts as
-//! watts, so its level is `10 log10(|y|^2 / 1 mW)`. A reflector of sigma 1 at 20 m before a radar of 100 W has amplitude 0.25, which is
-//! +18 dBm. The number says nothing of the watts in a receiver; it makes noise the same for every scene.
-//!
-//! Where the radar has a link budget ([`crate::radar::budget`]), a level is one in its receivers: a sample `y` counts for what the radar
-//! equation has there.
+//! A level in dBm needs a convention for the power of a sample. Without a link budget `|y|^2` counts as watts: a sample `y` of one reflector
+//! has amplitude `P_out sigma / R^2` (`P_out` in watts, `R` in metres) and level `10 log10(|y|^2 / 1 mW)`. Sigma 1 at 20 m and 100 W give
+//! amplitude 0.25, +18 dBm, which is no power of a receiver. With a link budget ([`crate::radar::budget`]) a level is one at the receiver.
 
 use super::path::{PairBlocks, plain_path};
 use super::samples::BeatSignal;
@@ -85,7 +79,6 @@ impl Floor {
     }
 }
 
-/// A floor's name that could not be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "unknown floor \"{0}\"; expected thesis, exact, thermal, snr=DB with DB between -100 and 300, or dbm=LEVEL with LEVEL between -300 and 200"

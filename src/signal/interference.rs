@@ -10,10 +10,8 @@ use std::f64::consts::TAU;
 /// How steeply the receiver's filter cuts: gain `1 / sqrt(1 + (2f)^(2 n))` at f turns a sample.
 const FILTER_ORDER: i32 = 8;
 
-/// Adds what each element hears of `interferer`: where its frequency comes near ours the difference is a chirp of its own, through zero at
-/// `crossing`, which the receiver's filter lets pass while it is below half a turn a sample.
-///
-/// The waves come one way only: an element's phase follows the wavelength once, for both carriers.
+/// Adds the signal of `interferer` at each element: the difference of both frequencies is a chirp that passes zero at `crossing`, and the
+/// receiver's filter while it is below half a turn a sample. Propagation is one-way for both carriers.
 pub fn add_interference(radar: &Radar, array: &BuiltArray, interferer: &Interferer, signal: &mut BeatSignal) {
     let samples = radar.samples as f64;
     let sweep = 1.0 / (interferer.duration * samples);

@@ -1,4 +1,4 @@
-//! From what echoes to the sampled beat signal of every element (thesis equation 3.3).
+//! From echoes to the sampled beat signal of every element (thesis equation 3.3).
 //!
 //! | file | what it is | use it for |
 //! |---|---|---|
@@ -7,23 +7,15 @@
 //! | [`split`] | products of 16 + 32 phasors, one lane an element | few reflectors, or the last bits |
 //! | [`gridded`] | reflectors spread on a range grid, then transformed | many reflectors |
 //! | [`closed_form`] | range profiles from three Dirichlet kernels, on the rows that matter | one or few reflectors, loose tolerances |
-//! | [`judge`] | equation 3.3 in double-double | holding all others to their promise |
+//! | [`judge`] | equation 3.3 in double-double | the reference of all others |
 //!
-//! What echoes is given as [`Sources`](crate::scattering::Sources): points, and bodies with what they hide.
+//! [`Sources`](crate::scattering::Sources) are the scatterers: points, and bodies with their shadows.
 //!
-//! [`path`] says which range and which amplitude an echo has at a pair of antennas, [`phase`] which phases that gives: the forward
-//! model, which everything that simulates, fits or bounds samples calls.
-//!
-//! A [`Plan`] says which of them, in which precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
-//! [`simulate`] goes from a scene to samples over a floor.
-//!
-//! [`built`] is the signal of disturbed scenes, whose elements are off or hear another radar; [`calibration`] estimates gains and phases.
-//!
-//! [`chirps`] is the signal of several chirps while objects move.
-//!
-//! [`echo`] is one reflector's echo as a value: what sparse methods take a signal apart into.
-//!
-//! [`floor`] says what lies beneath the reflectors: rounding noise as in the thesis, nothing, or thermal noise.
+//! * [`path`] (range and amplitude of an echo at a pair of antennas) and [`phase`] are the forward model of every simulation, fit and bound.
+//! * A [`Plan`] picks algorithm and precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
+//! * [`simulate`] goes from a scene to samples over a [`floor`]: the thesis' rounding noise, none, or thermal noise.
+//! * [`built`] adds element errors and interference; [`calibration`] estimates gains and phases; [`chirps`] has moving objects.
+//! * [`echo`] is one reflector's echo as a value, the atom of sparse methods.
 
 mod algorithm;
 pub mod built;

@@ -1,11 +1,9 @@
-//! The path of an echo: which range and which complex amplitude a pair of antennas gives to what stands before it.
+//! The path of an echo: its range and complex amplitude at a pair of antennas.
 //!
-//! This is the one place where geometry becomes an echo. [`EchoModel`](super::phase::EchoModel) makes phases of it, for every carrier;
-//! simulation, fits, bounds and theory take both from here. A point of reflectivity `g` has range `R = (Rt + Rr) / 2` and amplitude
-//! `P g / (Rt Rr)`, where `Rt` and `Rr` are its distances from the transmitter and from the receiver; where both are one antenna, that is
-//! the distance and `P g / R^2`. Elements with a pattern take from both ways what [`Pattern::amplitude`] says.
-//!
-//! Bodies give range and complex amplitude of each of their echoes ([`crate::scattering`]); [`Path::new`] takes them.
+//! Simulation, fits, bounds and theory all take the geometry from here and the phases from [`EchoModel`](super::phase::EchoModel). A point of reflectivity `g` has range `R = (Rt + Rr) / 2` and amplitude
+//! `P g / (Rt Rr)`, where `Rt` and `Rr` are its distances from the transmitter and from the receiver; for a
+//! monostatic antenna the amplitude is `P g / R^2`. [`Pattern::amplitude`] multiplies both ways. [`Path::new`] takes the echoes of bodies
+//! ([`crate::scattering`]).
 
 mod change;
 

@@ -51,14 +51,11 @@ impl Echo {
 
 /// One echo at `W` pairs of antennas; fields as in [`Echo`].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // Names and messages say it.
 pub struct EchoLanes<const W: usize> {
-    /// See [`Echo::amplitude`].
     pub amplitude: Lanes<f64, W>,
-    /// See [`Echo::distance_metres`].
     pub distance_metres: Lanes<f64, W>,
-    /// See [`Echo::carrier_turns`].
     pub carrier_turns: Lanes<f64, W>,
-    /// See [`Echo::beat_turns`].
     pub beat_turns: Lanes<f64, W>,
     /// See [`Echo::beat_turns_low`].
     pub beat_turns_low: Lanes<f64, W>,

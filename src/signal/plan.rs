@@ -81,7 +81,7 @@ impl Plan {
 /// What is to be added up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sum {
-    /// By which algorithm.
+    /// The algorithm.
     pub algorithm: Algorithm,
     /// Reflectors.
     pub reflectors: usize,

@@ -14,10 +14,9 @@ use crate::task::Task;
 
 /// Beat signal of a scene over the named floor; `seed` picks the floor's noise.
 ///
-/// The fastest algorithm whose error stays far beneath the floor is used; `floor::Floor::Thesis` is exact phase and the noise that
-/// rounding leaves in the thesis' evaluation. [`super::direct::beat_signal`] makes that evaluation itself, rounding and all,
-/// [`super::exact`] and [`super::beat_signal`] any other. The same arguments give the same bits on the same instructions,
-/// on any number of threads.
+/// Uses the fastest algorithm whose error stays far below the floor. `floor::Floor::Thesis` is exact phase and noise with the power of the
+/// rounding errors of the thesis' evaluation, which [`super::direct::beat_signal`] repeats. The same arguments give the same bits on the
+/// same instruction set, on any number of threads.
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {

@@ -5,11 +5,10 @@ use crate::task::Cancelled;
 
 /// Why there are no samples.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // Names and messages say it.
 pub enum Unfinished {
-    /// The scene can't be simulated.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The task was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }

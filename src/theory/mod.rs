@@ -1,22 +1,22 @@
-//! What the formulas say about one reflector, or about a radar alone: where a blob stands, how wide it is, what else looks like it.
+//! Predictions by formula for one reflector or one radar: place and width of a blob, and its ambiguities.
 //!
-//! | file | what it says |
+//! | file | predicts |
 //! |---|---|
-//! | [`squint`] | the column of a blob, off broadside not quite that of the true direction |
+//! | [`squint`] | the offset of a blob's column from the true direction |
 //! | [`pattern`] | beam width and highest side lobe of a window |
 //! | [`response`] | the map of one reflector at any fraction of a bin and column, in closed form |
 //! | [`blob`] | its peak, half-power widths and first side lobes |
 //! | [`streak`] | how far a near reflector is drawn out over columns and bins |
-//! | [`comb`] | the teeth of two ends that listen together |
+//! | [`comb`] | the grating lobes (teeth) of both ends used coherently |
 //! | [`aliases`] | ranges that wrap and directions that fold onto the same cell |
 //! | [`chirp`] | a chirp and its echoes as frequencies against time |
 //! | [`doppler`] | where a range-Doppler map shows an object |
 //! | [`ellipse`] | the area that no unbiased estimator's error can stay below |
-//! | [`overlay`] | all of it for one reflector on one map, to be drawn over it |
+//! | [`overlay`] | all of it for one reflector, drawn over a map |
 //! | [`phasors`] | what every element contributes to one cell, in the complex plane |
-//! | [`consequences`] | what a radar's constants mean before it sees anything |
+//! | [`consequences`] | quantities of a radar without a scene |
 //!
-//! Nothing here but [`phasors`] looks at samples; tests hold every prediction to a simulated map.
+//! Only [`phasors`] uses samples. Tests compare every prediction with a simulated map.
 
 pub mod aliases;
 pub mod blob;

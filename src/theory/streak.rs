@@ -1,8 +1,8 @@
 //! The streak of a near reflector: each element sees it in its own direction and at its own range.
 //!
-//! Nearer than [`crate::radar::Radar::far_field_metres`] the waves are curved over the array. The part of the map that an element at `x` is
-//! answerable for is the cell of the direction and range seen from there (stationary phase; J. W. Goodman, "Introduction to Fourier Optics",
-//! on chirps), so the blob is drawn out along a path of such cells.
+//! Nearer than [`crate::radar::Radar::far_field_metres`] the waves are curved over the array. An element at `x` contributes to the
+//! cell of the direction and range seen from there (stationary phase; J. W. Goodman, "Introduction to Fourier Optics", on chirps), so the
+//! blob is smeared along a path of such cells.
 
 use super::blob::path;
 use super::response::Response;
@@ -14,10 +14,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 const POINTS: usize = 65;
 
-/// How far one reflector is drawn out.
+/// Extent of one reflector's streak.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Streak {
-    /// The cells answered for by the elements, from the first to the last: a curve that the streak follows.
+    /// The cells to which the elements contribute, from the first to the last.
     pub path: Vec<MapPlace>,
     /// From the peak to nearer and to farther ranges, the bins over which cells joined to it stay above the level.
     pub bins: [usize; 2],

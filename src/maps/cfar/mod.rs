@@ -9,7 +9,7 @@
 //! * Ordered statistics (H. Rohling, *Radar CFAR thresholding in clutter and multiple target situations*, IEEE Transactions on Aerospace and
 //!   Electronic Systems 19, 1983) takes the training cell of rank 3/4: strong echoes among the training cells don't raise it.
 //!
-//! A window function, or elements that are missing, make neighbouring cells alike. The rate is then another one than was asked for.
+//! A window function or missing elements correlate neighbouring cells. The false-alarm rate then differs from the nominal one.
 
 mod factor;
 mod text;
@@ -73,25 +73,19 @@ impl Default for Cfar {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum CfarError {
-    /// The rate is none.
     #[error("the wanted false-alarm rate is {0}; expected a number between 0 and 1, without these")]
     Rate(f64),
-    /// There is nothing to measure the noise by.
     #[error("there are no training cells; expected at least one a side, in range or in angle")]
     NoTraining,
-    /// The window is larger than any map.
     #[error("{what} are {cells} cells a side; expected at most {MOST_CELLS}")]
     Large { what: &'static str, cells: usize },
-    /// Columns would be counted twice.
     #[error("guard and training cells span {span} columns and the map has {columns}; expected fewer cells in angle")]
     Wide { span: usize, columns: usize },
-    /// The guard cells cover all that there is.
     #[error(
         "the guard of {guard} range bins a side leaves no training cell around range bin {bin} of {bins}; expected \
          fewer guard cells or more training cells"
     )]
     Covered { guard: usize, bin: usize, bins: usize },
-    /// A text is no detector.
     #[error("\"{0}\" is no detector; expected ca or os, as in ca:guard=4x0:training=16x0:rate=0.0001")]
     Text(String),
 }

@@ -88,7 +88,7 @@ impl<const W: usize> Extremes<W> {
     }
 }
 
-/// FastLogMap of a transformed row, rolled by half its length.
+/// Decades of a transformed row, rolled by half its length.
 #[inline(always)]
 pub(super) fn log_rolled<T: Real, const W: usize, const FMA: bool>(
     row: &[Complex<T>],

@@ -1,8 +1,8 @@
 //! Range profiles to log-magnitude maps in one pass over the rows: floor added, windowed, transformed, rolled and taken to decades
-//! while a row is in the cache; the ends by a transform that knows how few of its inputs are not zero. Rows that did not change are left
-//! as they are, and rows in which there is nothing are not transformed.
+//! while a row is in the cache; the ends by a transform that knows how few of its inputs are not zero. Unchanged and empty
+//! rows are not transformed.
 //!
-//! FastLogMap are kept in f32 (an error of at most 4e-6 decades); [`super::LogMap`] keeps them in f64.
+//! Decades are kept in f32 (error at most 4e-6); [`super::LogMap`] keeps them in f64.
 
 mod log;
 mod normalise;

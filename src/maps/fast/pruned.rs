@@ -51,7 +51,7 @@ impl<T: Real, const W: usize> Pruned<T, W> {
         }
     }
 
-    /// FastLogMap of the rolled transform of `inputs`.
+    /// Decades of the rolled transform of `inputs`.
     #[inline(always)]
     pub(super) fn log_row<const FMA: bool>(
         &self,

@@ -1,37 +1,30 @@
-//! Why antennas are no array.
+//! Errors of an array of antennas.
 
 pub(super) const MIN_ELEMENTS: usize = 2;
 pub(super) const MAX_ELEMENTS: usize = 65536;
-/// How far the elements that pairs make may stand off an even line, as a part of the spacing.
+/// Largest distance of a pair's midpoint from an evenly spaced line, as a fraction of the spacing.
 pub(super) const MOST_OFF: f64 = 0.01;
 pub(super) const MOST_Y_METRES: f64 = 1.0;
 
-/// Why antennas make no array.
+/// Why transmitters and receivers form no uniform array.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum AntennasError {
-    /// A list is empty or holds something that is no place.
     #[error("{list} has {found}; expected finite numbers, at least one")]
     Places { list: &'static str, found: String },
-    /// A list of y is not as long as that of x.
     #[error("{list} has {found} numbers; expected {expected}, one for each antenna")]
     Length { list: &'static str, found: usize, expected: usize },
-    /// An antenna stands too far off the line.
     #[error("number {} of {list} is {found}; expected at most {MOST_Y_METRES} m off the line, either way", index + 1)]
     OffLine { list: &'static str, index: usize, found: f64 },
-    /// Too few or too many pairs.
     #[error("{transmitters} transmitters and {receivers} receivers make {} elements; expected {MIN_ELEMENTS} to {MAX_ELEMENTS}", transmitters.saturating_mul(*receivers))]
     Count { transmitters: usize, receivers: usize },
-    /// The pairs don't stand on one even line.
     #[error(
         "the midpoint of transmitter {} and receiver {} stands {:.3} mm off the even line, whose places are {:.3} mm apart; expected at most {:.3} mm",
         transmitter + 1, receiver + 1, off_metres * 1e3, spacing_metres * 1e3, MOST_OFF * spacing_metres * 1e3
     )]
     Uneven { transmitter: usize, receiver: usize, off_metres: f64, spacing_metres: f64 },
-    /// All pairs stand at one place.
     #[error("all pairs have one midpoint; expected a line of them")]
     OnePlace,
-    /// The places that pairs leave free make the line too long.
     #[error(
         "the pairs stand on a line of {elements} places; expected as many as such antennas make, {MIN_ELEMENTS} to {MAX_ELEMENTS}"
     )]

@@ -1,14 +1,12 @@
-//! Antennas that stand off the array's line: a bumper is bent.
-//!
-//! Where an element stands along the line follows from x alone. y changes the ways of the pairs that an antenna takes part in.
+//! Antennas off the array's line, as on a bent bumper. An element's place along the line follows from x alone; y changes path lengths.
 
 use super::{Antennas, AntennasError, MOST_Y_METRES};
 use crate::radar::Radar;
 
 impl Antennas {
-    /// The same antennas, off the line by these distances towards the scene, metres.
+    /// The same antennas with these y, metres, positive towards the scene.
     /// # Errors
-    /// [`AntennasError`] where a list has not a number for each antenna, or one that is not finite or beyond 1 m.
+    /// [`AntennasError`] where a list has another length, or a value that is not finite or beyond 1 m.
     pub fn off_line(self, transmitter_y_metres: &[f64], receiver_y_metres: &[f64]) -> Result<Self, AntennasError> {
         check_off_line("transmitter_y_metres", transmitter_y_metres, self.transmitter_x_metres.len())?;
         check_off_line("receiver_y_metres", receiver_y_metres, self.receiver_x_metres.len())?;
@@ -16,12 +14,12 @@ impl Antennas {
         Ok(Antennas { transmitter_y_metres, receiver_y_metres, ..self })
     }
 
-    /// How far the transmitters stand off the line, towards the scene, metres.
+    /// y of each transmitter, metres, positive towards the scene.
     pub fn transmitter_y_metres(&self) -> &[f64] {
         &self.transmitter_y_metres
     }
 
-    /// How far the receivers stand off the line, towards the scene, metres.
+    /// y of each receiver, metres, positive towards the scene.
     pub fn receiver_y_metres(&self) -> &[f64] {
         &self.receiver_y_metres
     }
@@ -42,7 +40,6 @@ fn check_off_line(list: &'static str, places: &[f64], expected: usize) -> Result
     if places.len() != expected {
         return Err(AntennasError::Length { list, found: places.len(), expected });
     }
-    // Not finite is not within either.
     match places.iter().position(|y| y.is_nan() || y.abs() > MOST_Y_METRES) {
         Some(index) => Err(AntennasError::OffLine { list, index, found: places[index] }),
         None => Ok(()),

@@ -22,28 +22,20 @@ pub struct SceneFile {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum SceneFileError {
-    /// The system could not read or write the file.
     #[error("{}: {source}", path.display())]
     Io { path: PathBuf, source: io::Error },
-    /// The TOML is not a scene.
     #[error("{}: {source}", path.display())]
     Text { path: PathBuf, source: SceneTextError },
-    /// The archive is not a scene.
     #[error("{}: {source}", path.display())]
     Archive { path: PathBuf, source: NpzError },
-    /// The archive's reflectors can't be simulated.
     #[error("{}: {source}", path.display())]
     Scene { path: PathBuf, source: SceneError },
-    /// The scene can't be written as TOML.
     #[error("{}: {source}", path.display())]
     Unwritable { path: PathBuf, source: toml::ser::Error },
-    /// A recording, or what one keeps its samples in, where a scene was to be written.
     #[error("{}: holds a recording, which a scene must not replace; choose another name", path.display())]
     Recording { path: PathBuf },
-    /// The recording that the scene is laid over can't be had.
     #[error("{}: is laid over a recording: {message}; without its table [over] the scene opens alone", path.display())]
     Over { path: PathBuf, message: String },
-    /// Neither kind of scene file.
     #[error("{}: not a scene file by its name; expected one ending in .toml or .npz", path.display())]
     Extension { path: PathBuf },
 }

@@ -21,15 +21,9 @@ pub enum FileLoss {
     /// The recording that the scene is laid over: reopened, it lies over none.
     Recording,
     /// Reflectivities other than 1: reopened, they are 1.
-    Reflectivity {
-        /// Objects that have one.
-        objects: usize,
-    },
+    Reflectivity { objects: usize },
     /// Names: reopened, objects are called by kind and number.
-    Named {
-        /// Objects that have a name.
-        objects: usize,
-    },
+    Named { objects: usize },
     /// Velocities: reopened, everything rests.
     Velocity {
         /// Objects that move.

@@ -1,4 +1,4 @@
-//! Scene files: TOML that a person can write, and the thesis author's `.npz` archives.
+//! Scene files: TOML, and the thesis author's `.npz` archives.
 //!
 //! ```toml
 //! name = "A pair and a wall"
@@ -42,9 +42,8 @@
 //! name = "post"            # optional; with `format = 2` as the first line
 //! x_metres = -4.0
 //! y_metres = 12.5
-//! reflectivity = 0.5       # optional, 1 otherwise
+//! reflectivity = 0.5       # optional, 1 otherwise; or cross_section_dbsm = -6.02
 //! velocity_x_metres_per_second = 2.0 # optional, 0 otherwise; likewise y; the place is that of time 0
-//! reflectivity = 0.5       # optional, 1 otherwise; or cross_section_dbsm = -6.02, which is read as that
 //!
 //! [over]                   # optional; what the app lays the objects over; commands look at the scene alone
 //! recording = "post.toml"  # beside this file, or the name of one that comes with the program

@@ -1,7 +1,5 @@
-//! Scenes read from TOML, with errors that name the line.
-//!
-//! A text without `format` is of format 1. Format 2 adds names of objects; it is written only where one has a name, and older programs name
-//! the number in their message.
+//! Scenes read from TOML, with errors that name the line. A text without `format` is of format 1. Format 2 adds names of objects; it is
+//! written only where one has a name.
 
 use super::content::{SceneFile, SceneTextError, one_line};
 use super::objects::objects;

@@ -7,9 +7,8 @@ use std::sync::{Arc, OnceLock};
 
 /// The environment variable that picks an instruction set: `portable`, `avx2` or `avx512`.
 ///
-/// It governs the kernels of this crate: simulation, transforms of maps, the live network. It does not govern foreign kernels, which choose by
-/// the processor themselves: the matrix products and decompositions of `faer`, the short transforms that the fit takes from `rustfft`, and
-/// `burn`.
+/// It governs the kernels of this crate: simulation, transforms of maps, the live network. `faer`, `burn` and the fit's short transforms of
+/// `rustfft` choose by the processor themselves.
 pub const SIMD_VARIABLE: &str = "APERTURA_SIMD";
 
 /// An instruction set that kernels are compiled for.
@@ -26,14 +25,12 @@ pub enum Simd {
 
 /// Why the instruction set that [`SIMD_VARIABLE`] names can't be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // Names and messages say it.
 pub enum SimdError {
-    /// No set has this name.
     #[error("{SIMD_VARIABLE} is \"{0}\"; expected portable, avx2 or avx512")]
     Unknown(String),
-    /// The processor lacks the set.
     #[error("{SIMD_VARIABLE} asks for {asked}, which this processor lacks; it has {}", names(has))]
     Missing {
-        /// What was asked for.
         asked: Simd,
         /// All that there is, slowest first.
         has: Vec<Simd>,
@@ -166,7 +163,6 @@ impl Simd {
 /// What it calls must be `#[inline(always)]`, and its loops plain ones: a closure handed to `map`, `for_each` or `array::from_fn` may be compiled
 /// apart, without the instructions, where every fused multiply-add is a call.
 pub trait Kernel {
-    /// What it returns.
     type Output;
 
     /// Does the work; `FMA` says whether fused multiply-add is an instruction (elsewhere it is a slow call).

@@ -2,8 +2,7 @@
 //!
 //! A [`Kernel`] is written once over [`Lanes`] and compiled for baseline x86-64 (or any other machine), for AVX2 with fused
 //! multiply-add and for AVX-512. Its body must be `#[inline(always)]`, as must everything it calls, or it keeps the baseline's instructions.
-//! A vector is 64 bytes on any machine, 16 f32 or 8 f64, so that data look the same everywhere; narrower machines use
-//! several registers for one.
+//! A vector is 64 bytes on any machine, 16 f32 or 8 f64; narrower machines use several registers for it.
 
 mod instructions;
 pub mod powers;
