@@ -53,6 +53,7 @@ pub struct Scene {
     /// What is not as the formulas assume.
     #[serde(default, skip_serializing_if = "Disturbances::is_none")]
     pub disturbances: Disturbances,
+    /// The objects, in the order they were added.
     #[serde(default, rename = "object", skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<Object>,
 }
