@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 /// A layout that can be named: `full`, `two-ends`, `one-end`, `random=N` or `random=N:SEED`, `mimo=TxR`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub enum LayoutKind {
     /// Every element.
     Full,
@@ -49,6 +50,7 @@ impl fmt::Display for LayoutKind {
     }
 }
 
+/// A name that stands for no layout.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "there is no layout \"{0}\"; expected full, two-ends, one-end, random=N, random=N:SEED or mimo=TxR with up to 64 each"

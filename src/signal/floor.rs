@@ -79,6 +79,7 @@ impl Floor {
     }
 }
 
+/// A floor's name that could not be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "unknown floor \"{0}\"; expected thesis, exact, thermal, snr=DB with DB between -100 and 300, or dbm=LEVEL with LEVEL between -300 and 200"

@@ -1,9 +1,8 @@
 //! The path of an echo: its range and complex amplitude at a pair of antennas.
 //!
-//! Simulation, fits, bounds and theory all take the geometry from here and the phases from [`EchoModel`](super::phase::EchoModel). A point of reflectivity `g` has range `R = (Rt + Rr) / 2` and amplitude
-//! `P g / (Rt Rr)`, where `Rt` and `Rr` are its distances from the transmitter and from the receiver; for a
-//! monostatic antenna the amplitude is `P g / R^2`. [`Pattern::amplitude`] multiplies both ways. [`Path::new`] takes the echoes of bodies
-//! ([`crate::scattering`]).
+//! Simulation, fits, bounds and theory all take the geometry from here and the phases from [`EchoModel`](super::phase::EchoModel). A point of
+//! reflectivity `g` has range `R = (Rt + Rr) / 2` and amplitude `P g / (Rt Rr)`, where `Rt` and `Rr` are its distances from transmitter and
+//! receiver. [`Pattern::amplitude`] multiplies both ways. [`Path::new`] takes the echoes of bodies ([`crate::scattering`]).
 
 mod change;
 

@@ -7,6 +7,7 @@ use std::fmt;
 
 /// Something of a scene that a file would not give back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub enum FileLoss {
     /// The scene's name.
     Name,

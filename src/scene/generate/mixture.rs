@@ -12,6 +12,7 @@ pub struct Mixture {
     shares: Vec<(Kind, f64)>,
 }
 
+/// A mixture that can't be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "mixture \"{mixture}\": {fault}; expected kinds separated by commas, each with a share where they differ, as in 3 or 1=4,2=12,walls=8"
