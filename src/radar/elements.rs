@@ -82,8 +82,8 @@ impl Tolerances {
     }
 }
 
-/// Errors of every element of an array; an empty list is an ideal array. In files: `count`, `gain_db`, `phase_degrees`, `position_millimetres`, `forward_millimetres` (one number an
-/// element each, or none at all) and `dead`, the elements that receive nothing.
+/// Errors of every element of an array; an empty list is an ideal array. In files: `count`, `gain_db`, `phase_degrees`,
+/// `position_millimetres`, `forward_millimetres` (one number an element each, or none at all) and `dead`, the elements that receive nothing.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(try_from = "Lists", into = "Lists")]
 pub struct BuiltArray {

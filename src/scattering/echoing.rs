@@ -1,4 +1,4 @@
-//! All that echoes in a scene: points by themselves, and scatterers.
+//! All scatterers of a scene: free points, and bodies or shadowed points.
 
 use super::sight::{Array, Screen};
 use super::strips::Strips;
@@ -8,12 +8,12 @@ use crate::scene::{Object, Reflector, Scene};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// An object, and the bodies that may hide a part of it from an element. Two that are equal have the same echoes.
+/// An object, and the bodies that may shadow it. Equal values have equal echoes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeenObject {
     /// The object.
     pub object: Object,
-    /// Bodies that stand between it and the array, or nearly so; none for most objects.
+    /// Bodies between it and the array, or nearly so; none for most objects.
     pub hidden_by: Arc<[Arc<Object>]>,
 }
 
@@ -63,7 +63,7 @@ impl Bodies {
     }
 }
 
-/// Objects from which on the bodies that may hide them are looked for on several threads.
+/// Number of objects from which on shadowing bodies are searched on several threads.
 const MIN_PARALLEL_OBJECTS: usize = 32;
 
 impl SeenObject {

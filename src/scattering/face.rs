@@ -1,8 +1,5 @@
-//! A straight face, a strip lower than the Fresnel zone, by physical optics: the glint where the angles in and out agree, and the diffraction of
-//! both ends.
-//!
-//! The glint stands while the foot of the perpendicular lies on the face; [`transition`] takes it over into the end's echo,
-//! so that their sum never jumps.
+//! A straight face, a strip lower than the Fresnel zone, by physical optics: specular glint, and diffraction of both ends. There is a glint
+//! while the foot of the perpendicular lies on the face; [`transition`] keeps the sum of glint and edges continuous.
 
 use super::geometry::{V, hypotenuse, root};
 use super::transition::{slope, transition};
@@ -65,7 +62,7 @@ impl Face {
             is_mirrored: true,
             ..silent(foot, EchoKind::Glint)
         };
-        // The same comparisons as for the glint, so that no rounding parts them.
+        // The same comparisons as for the glint, so that rounding can't separate them.
         let signs = [if foot > low { -1.0 } else { 1.0 }, if foot <= high { -1.0 } else { 1.0 }];
         let [a, b] = [(low, signs[0]), (high, signs[1])].map(|(u, sign)| {
             let edge = seen.edge(u, range_metres, wave);

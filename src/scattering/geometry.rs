@@ -60,7 +60,7 @@ impl V {
     }
 }
 
-/// Hypotenuse, without the library's care for numbers near the ends of f64's range, which no scene has.
+/// Hypotenuse without protection from overflow and underflow, which no scene needs.
 pub(super) fn hypotenuse(a: f64, b: f64) -> f64 {
     root(a * a + b * b)
 }

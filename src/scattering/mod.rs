@@ -48,7 +48,7 @@ use std::f64::consts::TAU;
 /// The length that makes a line density of reflectivity of a face's reflection coefficient, metres.
 pub const REFERENCE_LENGTH_METRES: f64 = 1.0;
 
-/// Where an echo leaves and where it is heard, (x, y) in metres.
+/// Places of transmitter and receiver, (x, y) in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AntennaPlaces {
     /// The transmitter.
@@ -115,7 +115,7 @@ pub enum EchoKind {
 }
 
 impl EchoKind {
-    /// What people call it.
+    /// Its name in sentences.
     pub fn name(self) -> &'static str {
         match self {
             EchoKind::Point => "point",

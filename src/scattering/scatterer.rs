@@ -1,4 +1,4 @@
-//! One object made ready: from a pair of antennas to its echoes.
+//! The echoes of one object at a pair of antennas.
 
 use super::face::Face;
 use super::parts::convex_parts;
@@ -12,7 +12,7 @@ use crate::scene::body::{DIFFUSE_SPACING_METRES, MAX_DIFFUSE, diffuse_points};
 use crate::scene::{Body, Mirror, Object, Reflector, Shape};
 use num_complex::Complex64;
 
-/// An object and what hides it. Every pair of antennas gets the same echoes in the same order; those that it doesn't hear have amplitude 0.
+/// An object and its obstacles. Every pair of antennas gets the same echoes in the same order, those hidden from it with amplitude 0.
 #[derive(Debug, Clone)]
 pub struct Scatterer {
     wave: Wave,
@@ -105,7 +105,7 @@ impl Scatterer {
         }
     }
 
-    /// What comes back without a mirror.
+    /// Echoes without a mirror.
     fn direct(&self, antennas: &AntennaPlaces, out: &mut Vec<PathEcho>) {
         let begin = out.len();
         let wave = &self.wave;
@@ -139,7 +139,7 @@ impl Scatterer {
         }
     }
 
-    /// Takes off what elements of a pattern don't send and hear: `towards` is where a wave leaves for and comes from.
+    /// Applies the element pattern; `towards` is where a wave leaves for and comes from.
     fn through_pattern(
         &self,
         antennas: &AntennaPlaces,

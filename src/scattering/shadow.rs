@@ -17,7 +17,7 @@ pub(super) const FADED: f64 = 6.0;
 
 const MAX_INLINE_CORNERS: usize = 16;
 
-/// What hides: convex.
+/// A convex obstacle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstacle {
     shape: Convex,
@@ -31,7 +31,7 @@ enum Convex {
     Corners(Vec<V>),
 }
 
-/// What passes on one way.
+/// The field past an obstacle on one way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passage {
     /// Factor of the field, but for the phase of the detour.
@@ -43,7 +43,7 @@ pub struct Passage {
 }
 
 impl Passage {
-    /// Nothing stands in the way.
+    /// A clear way.
     const CLEAR: Passage = Passage { factor: Complex64::new(1.0, 0.0), detour_metres: 0.0, part: 0.0 };
 }
 
@@ -137,8 +137,8 @@ impl Ray {
         root(self.half_kappa * (leg(l) + leg(self.whole - l))).copysign(q)
     }
 
-    /// Whether the ripple of all that stands at most `radius_metres` from a place `along` the way and farther than `beside` beside it has
-    /// faded: where that is nearest to the middle of the way, the measure is least.
+    /// Whether the ripple has faded of everything within `radius_metres` of a place `along` the way and farther than `beside` beside it.
+    /// The measure is least nearest to the middle of the way.
     fn has_faded(&self, along: f64, radius_metres: f64, beside: f64) -> bool {
         let middle = (self.whole / 2.0).max(along - radius_metres).min(along + radius_metres);
         // Rounding may not decide here, where the corners are not looked at.

@@ -1,8 +1,8 @@
-//! Which bodies stand so near to the ways from the array to an object that they have an effect on its echoes.
+//! Bodies near enough to the ways from the array to an object to change its echoes.
 //!
 //! All ways together are the convex hull of the array and of the object. A body has no effect on a way, to the last bit, where the detour over
 //! each of its corners is so long that its ripple has faded ([`FADED`]). A detour of a given length is an ellipse around the ends of the way, so
-//! the body has to keep farther from the hull than that ellipse is wide.
+//! bodies farther from the hull than the width of that ellipse are left out.
 
 use super::Wave;
 use super::geometry::V;

@@ -1,4 +1,4 @@
-//! The signal as a built array hears it.
+//! The signal at an array with element errors.
 
 use super::floor::Floor;
 use super::interference::add_interference;
@@ -47,8 +47,7 @@ pub(super) fn simulate_built_for(
     Ok(signal)
 }
 
-/// Adds the scene's interferer to the echoes at the elements of `array`, and multiplies with what each element does to its samples, before its
-/// receiver adds noise.
+/// Adds the scene's interferer at the elements of `array`, then applies gain and phase of each element. Noise comes afterwards.
 pub(super) fn hear(radar: &Radar, scene: &Scene, array: &BuiltArray, signal: &mut BeatSignal) {
     if let Some(interferer) = &scene.disturbances.interferer {
         add_interference(radar, array, interferer, signal);
@@ -56,7 +55,7 @@ pub(super) fn hear(radar: &Radar, scene: &Scene, array: &BuiltArray, signal: &mu
     apply_responses(array, signal);
 }
 
-/// Multiplies the samples of every element with what it does to them; those of an element that is as it should be keep their bits.
+/// Applies gain and phase of each element; the samples of an element without errors keep their bits.
 pub fn apply_responses(array: &BuiltArray, signal: &mut BeatSignal) {
     for (mut samples, error) in signal.samples.outer_iter_mut().zip(&array.elements) {
         if error.dead || error.gain.0 != 0.0 || error.phase_degrees != 0.0 {

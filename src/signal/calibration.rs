@@ -6,13 +6,12 @@ use crate::radar::{BuiltArray, Decibels, ElementError, Radar, chirp_window};
 use crate::scene::Reflector;
 use num_complex::Complex64;
 
-/// What was learned of an array from one reflector.
+/// Element errors estimated from one reflector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
-    /// Gain and phase of each element, relative to the mean of those that hear; elements that hear nothing are dead.
+    /// Gain and phase of each element, relative to the mean of those that receive; the others are dead.
     pub array: BuiltArray,
-    /// Part of the samples' energy that the reflector's echo, heard so, leaves unexplained: other reflectors, noise, and errors that
-    /// are no gain and no phase.
+    /// Residual part of the samples' energy after the fit: other reflectors, noise, and errors other than gain and phase.
     pub unexplained: f64,
 }
 
@@ -60,7 +59,7 @@ pub fn calibrate(radar: &Radar, signal: &BeatSignal, reflector: &Reflector) -> O
 }
 
 impl Calibration {
-    /// Takes the gains and phases off `signal`; dead elements stay silent.
+    /// Corrects `signal` by the gains and phases; dead elements stay silent.
     pub fn take_off(&self, signal: &mut BeatSignal) {
         for (n, mut samples) in signal.samples.outer_iter_mut().enumerate() {
             let response = self.array.element(n).response();
@@ -70,7 +69,7 @@ impl Calibration {
         }
     }
 
-    /// Root mean squares of what the living elements are off by: decibels of gain, degrees of phase.
+    /// Root mean square errors of the elements that are not dead: decibels of gain, degrees of phase.
     pub fn spread(&self) -> (Decibels, f64) {
         let living = || self.array.elements.iter().filter(|e| !e.dead);
         let count = living().count().max(1) as f64;

@@ -28,10 +28,10 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// Most elements of each end whose chirps are evaluated: those farthest out.
+/// Largest number of elements of each end, the outermost, whose chirps are evaluated.
 pub const MAX_END_ELEMENTS: usize = 4;
 
-/// Samples after which running phasors are taken afresh.
+/// Samples between exact evaluations of a running phasor.
 const RESTART: usize = 128;
 
 /// Independent phasor recurrences, so that no sample waits for its predecessor.
@@ -48,7 +48,7 @@ pub struct ChirpSamples {
 }
 
 impl ChirpSamples {
-    /// Takes out what stands still: of every element and sample the mean of all chirps.
+    /// Removes static clutter: subtracts the mean over all chirps from each element and sample.
     pub fn take_out_static(&mut self) {
         if let Some(mean) = self.samples.mean_axis(Axis(0)) {
             self.samples.outer_iter_mut().for_each(|mut chirp| chirp -= &mean);
@@ -56,7 +56,7 @@ impl ChirpSamples {
     }
 }
 
-/// The elements that are evaluated: up to [`MAX_END_ELEMENTS`] of each end, those farthest out.
+/// The elements that are evaluated: the [`MAX_END_ELEMENTS`] outermost of each end.
 pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
     let count = radar.end_elements.min(MAX_END_ELEMENTS);
     [0..count, radar.elements - count..radar.elements]
@@ -222,7 +222,7 @@ impl Motion<'_> {
         }
     }
 
-    /// Replaces `out` by what element `n` hears, in the same order everywhere; of amplitude 0 what it doesn't hear.
+    /// Replaces `out` by the echoes at element `n`, in the same order for all; amplitude 0 for those hidden from it.
     fn echoes(&self, n: usize, echoing: &Echoing, out: &mut Vec<Echo>, scattered: &mut Vec<PathEcho>) {
         let pair = self.array.pair(self.radar, n);
         out.clear();

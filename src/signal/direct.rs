@@ -1,7 +1,7 @@
 //! Equation 3.3 word for word in f64: the phase in radians, unreduced, as the thesis' program evaluates it.
 //!
-//! Phases reach 6e4 rad, so every sample carries a rounding error of about 1e-11 of its amplitude. Normalised by its minimum, a
-//! map shows that error as its floor: it is part of what the thesis' tables measure.
+//! Phases reach 6e4 rad, so every sample has a rounding error of about 1e-11 of its amplitude: the floor of a map normalised by its minimum,
+//! and so of the thesis' tables.
 
 use super::path::thesis_path;
 use super::samples::BeatSignal;
@@ -11,9 +11,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Beat signal of what echoes, `[elements, samples]`.
-///
-/// It must have passed [`crate::scene::Scene::validate`]; otherwise samples may be infinite.
+/// Beat signal of all scatterers, `[elements, samples]`. They must have passed [`crate::scene::Scene::validate`]; otherwise samples may be infinite.
 pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> BeatSignal {
     let sources = sources.into();
     let mut signal = BeatSignal::silence(radar);

@@ -7,7 +7,7 @@ use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Samples after which a running phasor is taken afresh, so that its rounding error stays at a few parts in 1e16.
+/// Samples between exact evaluations of a running phasor: keeps its rounding error at a few parts in 1e16.
 const RESTART: usize = 32;
 
 /// Adds `gain` times the echo of a unit reflector to `samples` of `pair`.
@@ -31,7 +31,7 @@ struct Series {
     last: Complex64,
 }
 
-/// Echo of one reflector as several elements hear it: samples of known norm, never written out unless asked for.
+/// Echo of one reflector at several elements, with the norm of its samples, which are computed on request.
 #[derive(Debug, Clone)]
 pub struct ArrayEcho {
     /// Whose echo it is; its reflectivity is 1.
@@ -126,7 +126,7 @@ impl ArrayEcho {
     }
 }
 
-/// Samples side by side, and groups of them: as many as hide how long a multiplication takes.
+/// Independent samples, and groups of them: enough to hide the latency of a multiplication.
 const W: usize = LANES_F64;
 const GROUPS: usize = 4;
 const SUMS: usize = W * GROUPS;

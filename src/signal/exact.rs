@@ -7,9 +7,7 @@ use crate::radar::Radar;
 use crate::scattering::Sources;
 use rayon::prelude::*;
 
-/// Beat signal of what echoes, `[elements, samples]`, within 1e-13 of its peak.
-///
-/// It must have passed [`crate::scene::Scene::validate`].
+/// Beat signal of all scatterers, `[elements, samples]`, within 1e-13 of its peak. They must have passed [`crate::scene::Scene::validate`].
 pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> BeatSignal {
     let sources = sources.into();
     let mut signal = BeatSignal::silence(radar);

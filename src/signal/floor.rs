@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// What lies beneath the reflectors.
+/// The noise floor of a simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Floor {
@@ -35,8 +35,7 @@ pub enum Floor {
     /// sample's level is.
     #[serde(rename = "dbm")]
     Level(DecibelMilliwatts),
-    /// The noise of the radar's receivers, `k T B F`, beneath echoes as strong as the radar equation has them: by the radar's link budget, or
-    /// [`LinkBudget::default`](crate::radar::LinkBudget) where it has none.
+    /// Receiver noise `k T B F` by the radar's link budget, or [`LinkBudget::default`](crate::radar::LinkBudget) without one.
     Thermal,
 }
 
@@ -46,7 +45,7 @@ pub const SNR_DECIBELS: std::ops::RangeInclusive<f64> = -100.0..=300.0;
 pub const LEVEL_DECIBEL_MILLIWATTS: std::ops::RangeInclusive<f64> = -300.0..=200.0;
 
 impl Floor {
-    /// Whether it is white noise of a level that the samples alone tell.
+    /// Whether it is white noise whose level does not depend on a link budget.
     pub fn is_thermal(self) -> bool {
         matches!(self, Floor::Snr(_) | Floor::Level(_) | Floor::Thermal)
     }
@@ -137,8 +136,8 @@ pub fn thesis_noise_of_echo(radar: &Radar, power: f64, range_metres: f64) -> f64
     power * THESIS_ROUNDING * ulp(thesis_radians_per_metre(radar) * range_metres).powi(2)
 }
 
-/// Variance of thermal noise at `snr`, the same for every element: the reflectors' own powers, added up and averaged over the
-/// array, over the ratio. Whether their echoes happen to interfere does not change the noise; silence has none.
+/// Variance of thermal noise at `snr`, the same for every element: the sum of the reflectors' powers, averaged over the array, over the
+/// ratio. Interference between echoes does not change it; silence has none.
 pub fn snr_noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, snr: Decibels) -> Vec<f64> {
     vec![mean_power(radar, sources.into()) / snr.power_ratio(); radar.elements]
 }
@@ -149,7 +148,7 @@ pub fn snr_over<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, variance: f6
     (ratio > 0.0).then(|| Decibels(10.0 * ratio.log10()))
 }
 
-/// Variance of the noise that is `floor`, for each element, if there is any.
+/// Noise variance of `floor` for each element, if there is any.
 pub fn noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, floor: Floor) -> Option<Vec<f64>> {
     let sources = sources.into();
     match floor {
@@ -160,7 +159,7 @@ pub fn noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, floor:
     }
 }
 
-/// The reflectors' own powers, added up and averaged over the array: `|y|^2` of a sample where echoes don't interfere.
+/// Sum of the reflectors' powers, averaged over the array: `|y|^2` of a sample without interference between echoes.
 fn mean_power(radar: &Radar, sources: Sources<'_>) -> f64 {
     let power = powers(radar, sources, 1.0, None);
     power.iter().sum::<f64>() / radar.elements.max(1) as f64

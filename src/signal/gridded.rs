@@ -40,7 +40,7 @@ impl Kernel {
         const TRANSFORM_STEPS: u32 = 200;
         let half = self.width as f64 / 2.0;
         let step = PI / 2.0 / f64::from(TRANSFORM_STEPS);
-        // The integrand is even: the middle counts once, what is beside it twice; at the ends it vanishes.
+        // The integrand is even and vanishes at the ends: the middle counts once, all other nodes twice.
         let node = |i: u32| {
             let (sin, cos) = (f64::from(i) * step).sin_cos();
             let times = if i == 0 { 1.0 } else { 2.0 };
@@ -131,8 +131,8 @@ impl<T: Real> Gridding<T> {
 
 /// Reflectors that are added up at a time in f64: sums of sums lose fewer digits than one long sum.
 const SUMMED_AT_ONCE: usize = 64;
-/// Reflectors up to which f32 keeps its promise without more ado, even where all roundings agree as they do for coincident points. Beyond,
-/// what every addition rounds off is kept and added at the end (Kahan, Commun. ACM 8, 1965): a sum of any length is as good as a short one.
+/// Largest sum that meets f32's tolerance even where all rounding errors agree, as for coincident points. Longer sums keep the rounding error
+/// of each addition and add it at the end (Kahan, Commun. ACM 8, 1965).
 const SHORT: usize = 16;
 
 /// Beat signal of all that is `heard` at `pairs`, written to `out`, one vector a sample.
@@ -181,7 +181,7 @@ pub(super) fn block_signal<T: Real, const W: usize, const FMA: bool>(
     }
 }
 
-/// Adds `more` to `total`; returns what the rounded sum lacks (Knuth's two-sum).
+/// Adds `more` to `total`; returns the rounding error (Knuth's two-sum).
 #[inline(always)]
 fn add_exactly<T: Real, const W: usize>(
     total: &mut ComplexLanes<T, W>,
@@ -218,7 +218,7 @@ fn kernel_values<T: Real, const W: usize, const FMA: bool>(
     values
 }
 
-/// Adds one echo to `grid`; what is rounded off goes to `lost`, cell for cell, if it is to be kept (`KEEP`).
+/// Adds one echo to `grid`, and with `KEEP` the rounding error of each cell to `lost`.
 #[inline(always)]
 fn spread<T: Real, const W: usize, const FMA: bool, const KEEP: bool>(
     plan: &Gridding<T>,

@@ -1,4 +1,4 @@
-//! What a block of elements hears: points, whose paths are worked out on the way, and paths that were worked out before.
+//! Echoes at a block of elements: points, whose paths are computed on the way, and paths computed before.
 
 use super::path::{PairBlocks, Path};
 use super::phase::{EchoLanes, EchoModel};
@@ -19,7 +19,6 @@ impl<'a, const W: usize> HeardEchoes<'a, W> {
         HeardEchoes { points, paths }
     }
 
-    /// How many.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.points.len() + self.paths.len()
@@ -35,8 +34,7 @@ impl<'a, const W: usize> HeardEchoes<'a, W> {
     }
 }
 
-/// The paths of all scatterers among `sources` to the pairs that `pair` tells for lanes 0, 1 and so on; those that none of them hears are left
-/// out.
+/// The paths of the scatterers among `sources` to the pairs of lanes 0, 1 and so on, without those hidden from all of them.
 pub(super) fn paths<const W: usize>(sources: Sources<'_>, pair: impl Fn(usize) -> Pair) -> Vec<Path<W>> {
     if sources.scatterers.is_empty() {
         return Vec::new();
@@ -48,7 +46,7 @@ pub(super) fn paths<const W: usize>(sources: Sources<'_>, pair: impl Fn(usize) -
     });
     let path = |index: usize| {
         let heard = lanes.iter().find(|echoes| echoes[index].is_heard())?;
-        // A lane without the echo is told the range of one that has it: ranges side by side are cheaper.
+        // A lane without the echo takes the range of another lane: similar ranges are cheaper.
         let range = |echo: &PathEcho| if echo.is_heard() { echo.range_metres } else { heard[index].range_metres };
         let ranges = std::array::from_fn(|lane| range(&lanes[lane][index]));
         Some(Path::new(ranges, std::array::from_fn(|lane| lanes[lane][index].amplitude)))

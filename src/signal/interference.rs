@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// How steeply the receiver's filter cuts: gain `1 / sqrt(1 + (2f)^(2 n))` at f turns a sample.
+/// Order of the receiver's low-pass filter: gain `1 / sqrt(1 + (2f)^(2 n))` at f turns a sample.
 const FILTER_ORDER: i32 = 8;
 
 /// Adds the signal of `interferer` at each element: the difference of both frequencies is a chirp that passes zero at `crossing`, and the

@@ -1,6 +1,5 @@
-//! Equation 3.3 in double-double arithmetic (about 31 digits): the judge of every other algorithm.
-//!
-//! Slow and simple. Its own trust comes from known values and from agreeing with [`super::direct`] where phases are small.
+//! Equation 3.3 in double-double arithmetic (about 31 digits), slow and simple: the reference of every other algorithm. Tests compare it with
+//! known values, and with [`super::direct`] for small phases.
 
 use super::samples::BeatSignal;
 use crate::radar::{Pair, Radar};
@@ -9,7 +8,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use twofloat::TwoFloat;
 
-/// Beat signal of what echoes, `[elements, samples]`, correctly rounded to f64 but for a last bit.
+/// Beat signal of all scatterers, `[elements, samples]`, correctly rounded to f64 but for a last bit.
 pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> BeatSignal {
     let sources = sources.into();
     let mut signal = BeatSignal::silence(radar);
@@ -73,7 +72,7 @@ fn root(a: TwoFloat) -> TwoFloat {
     (TwoFloat::from(guess) + a / guess) * 0.5
 }
 
-/// The part of `t` that is left when whole turns are taken off, in [-1/2, 1/2].
+/// `t` modulo whole turns, in [-1/2, 1/2].
 fn fraction(t: TwoFloat) -> TwoFloat {
     let t = t - t.hi().round();
     t - t.hi().round()

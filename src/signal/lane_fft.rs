@@ -1,6 +1,5 @@
-//! Fourier transforms of many channels at once, one lane an element: no shuffles, and the transposed order the maps want for free.
-//!
-//! Powers of two go through Stockham's radix-4 algorithm; any other length through rustfft, one lane after the other.
+//! Fourier transforms of many channels at once, one lane an element: without shuffles, and in the transposed order of maps. Powers of two go
+//! through Stockham's radix-4 algorithm, other lengths through rustfft, lane by lane.
 
 use super::simd::{ComplexLanes, Lanes, Real, Simd};
 use num_complex::Complex;

@@ -1,4 +1,4 @@
-//! Echoes over a floor: what every simulation of a scene comes down to.
+//! Echoes over a floor: the core of every simulation of a scene.
 
 use super::floor::{self, Floor};
 use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, Plan, amplitude_bound};
@@ -8,8 +8,8 @@ use crate::radar::{BuiltArray, Radar};
 use crate::scattering::Echoing;
 use crate::task::Task;
 
-/// The echoes of what the radar can see, at elements that stand where `array` says, over a floor; `heard` does to the samples what the array
-/// does before its receivers add their noise. Of no meaning once `task` is cancelled.
+/// The scene's echoes at the true positions of `array`, over a floor; `heard` applies the effects of the array before noise is added.
+/// Meaningless once `task` is cancelled.
 pub(super) fn simulate_echoes(
     radar: &Radar,
     array: &BuiltArray,

@@ -39,7 +39,7 @@ impl<const W: usize> PairBlocks<W> {
     }
 }
 
-/// Elements that hear what they sent.
+/// Monostatic elements.
 impl<const W: usize> From<Lanes<f64, W>> for PairBlocks<W> {
     #[inline(always)]
     fn from(element_x_metres: Lanes<f64, W>) -> Self {
@@ -104,8 +104,7 @@ impl<const W: usize> Path<W> {
     }
 }
 
-/// An amplitude, less what elements of a pattern take from both ways to `r`, whose lengths are `legs` in metres, from antennas that stand
-/// `ahead` of the line.
+/// An amplitude times the pattern of both ways to `r`, whose lengths are `legs` in metres; `ahead` is the antennas' y.
 #[inline(always)]
 fn through<const W: usize>(
     pattern: Option<Pattern>,
@@ -122,7 +121,7 @@ fn through<const W: usize>(
     })
 }
 
-/// Distance of `r` from antennas, whose y is that of the line where nothing is said.
+/// Distance of `r` from antennas, whose y is 0 by default.
 #[inline(always)]
 fn leg<const W: usize, const FMA: bool>(
     antenna_x_metres: Lanes<f64, W>,

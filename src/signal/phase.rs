@@ -1,11 +1,8 @@
 //! Phases in turns, reduced modulo one before any sine is taken.
 //!
-//! At 20 m the carrier has turned 5000 times: a distance rounded to f64 is already wrong by 1e-12 of a turn. Distances and turns are
-//! therefore kept as a sum of two f64 (error-free transformations, Dekker 1971) until the whole turns are gone.
-//! The radar's constants (wavelength, range resolution, element positions) count as exact in their f64 values.
-//!
-//! Everything is written over [`Lanes`], one lane a pair of antennas, so that it can be compiled for wide vectors; one echo at one pair
-//! is the case of a single lane.
+//! At 20 m the carrier has turned 5000 times, so rounding a distance to f64 costs 1e-12 of a turn. Distances and turns are therefore sums of
+//! two f64 (error-free transformations, Dekker 1971) until the whole turns are removed. The radar's constants count as exact in their f64
+//! values. Everything is written over [`Lanes`], one lane a pair of antennas; one echo at one pair is the case of a single lane.
 
 use super::double::{Double, product, rest};
 use super::path::{PairBlocks, Path};
@@ -26,7 +23,7 @@ pub struct Echo {
     pub carrier_turns: f64,
     /// Turns from one sample to the next, in [-1/2, 1/2].
     pub beat_turns: f64,
-    /// What [`Echo::beat_turns`] lacks to be exact; matters when multiplied by a sample's number.
+    /// Rounding error of [`Echo::beat_turns`], which counts when multiplied by a sample's number.
     pub beat_turns_low: f64,
 }
 
@@ -84,7 +81,7 @@ impl<const W: usize> EchoLanes<W> {
     }
 }
 
-/// The forward model: what a radar's samples hold of an echo. Constants of one radar, prepared.
+/// The forward model of an echo's samples, with the constants of one radar.
 #[derive(Debug, Clone, Copy)]
 pub struct EchoModel {
     power_watts: f64,
@@ -113,7 +110,7 @@ impl EchoModel {
         self.echo_lanes::<1, false>(pair, r).first()
     }
 
-    /// Echo of `r` between the antennas of `pairs`; lanes of positions are elements that hear what they sent.
+    /// Echo of `r` between the antennas of `pairs`; lanes of positions are monostatic elements.
     #[inline(always)]
     pub fn echo_lanes<const W: usize, const FMA: bool>(
         &self,

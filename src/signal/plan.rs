@@ -1,4 +1,4 @@
-//! Which algorithm, in which precision: written down as a value before anything runs, so that tests can ask what was chosen.
+//! The choice of algorithm and precision, as a value that tests can examine before it runs.
 
 use super::algorithm::{Algorithm, Precision};
 use super::closed_form;
@@ -9,7 +9,7 @@ use crate::scattering::{Echoing, SeenObject, Sources};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// What is to be computed, and how: the planner's answer. Any field may be changed before it runs ([`super::beat_signal`]).
+/// Algorithm, precision, tolerance and instructions of a simulation. Fields may be changed before it runs ([`super::beat_signal`]).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Plan {
     /// The algorithm.
@@ -61,7 +61,7 @@ impl Plan {
         }
     }
 
-    /// This recipe for range profiles of `count` reflectors beneath which there is no floor: with few cells above the tolerance, those alone.
+    /// This plan for range profiles of `count` reflectors without a floor: the closed form where few cells exceed the tolerance.
     pub fn on_few_rows(self, radar: &Radar, count: usize) -> Plan {
         let cells = count.saturating_mul(2 * closed_form::reach(self.tolerance));
         let holds = self.precision == Precision::F64 || count <= most_in_f32(Algorithm::ClosedForm);
@@ -72,7 +72,7 @@ impl Plan {
         }
     }
 
-    /// This recipe with another algorithm.
+    /// This plan with another algorithm.
     pub fn with_algorithm(self, algorithm: Algorithm) -> Plan {
         Plan { algorithm, ..self }
     }
@@ -108,8 +108,7 @@ fn holds(amplitude: f64) -> bool {
 /// Elements whose echoes of bodies are looked at for [`amplitude_bound`].
 const LOOKED_AT: usize = 48;
 
-/// Sum of the largest amplitude each reflector can have at the array, and of those that each echo of a body has at some elements of it: the
-/// scale that tolerances refer to.
+/// Sum of the largest amplitude of each reflector at the array, and of each echo of a body at some elements: the scale of tolerances.
 pub fn amplitude_bound<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> f64 {
     let sources = sources.into();
     let of_points: f64 = sources.points.iter().map(|r| largest_amplitude(radar, r)).sum();
@@ -126,7 +125,7 @@ pub fn amplitude_bound<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> f6
     of_points + largest.iter().sum::<f64>()
 }
 
-/// [`amplitude_bound`] of all that these objects reflect, object by object.
+/// [`amplitude_bound`] of these objects together.
 pub fn amplitude_bound_of(radar: &Radar, seen: &[SeenObject]) -> f64 {
     amplitude_bounds(radar, seen.iter()).iter().sum()
 }

@@ -1,4 +1,4 @@
-//! Sets of range bins: which rows of the profiles, and of the maps made of them, something has to do with.
+//! Sets of range bins: the rows of profiles and maps that may be other than zero.
 
 use std::ops::Range;
 

@@ -13,9 +13,7 @@ use ndarray::{Array2, s};
 use num_complex::Complex64;
 use std::ops::Range;
 
-/// Runs a plan: the whole array's beat signal, noiseless.
-///
-/// What echoes must have passed [`crate::scene::Scene::validate`].
+/// Runs a plan: the whole array's beat signal, noiseless. The scatterers must have passed [`crate::scene::Scene::validate`].
 pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: &Plan) -> BeatSignal {
     let sources = sources.into();
     match plan.algorithm {
@@ -27,8 +25,8 @@ pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: &Pl
     }
 }
 
-/// Noiseless samples of neighbouring elements, which stand where `array` says, by a block algorithm ([`Algorithm::is_fast`]),
-/// `[elements, samples]`, bit for bit those of the whole array. Of no meaning once `task` is cancelled.
+/// Noiseless samples of neighbouring elements at the true positions of `array`, by a block algorithm ([`Algorithm::is_fast`]), `[elements,
+/// samples]`, with the bits of the whole array. Meaningless once `task` is cancelled.
 pub(super) fn samples_of(
     radar: &Radar,
     array: &BuiltArray,

@@ -1,4 +1,4 @@
-//! What the elements sample: the beat signal of the whole array, and of the two ends alone.
+//! The beat signal of the whole array, and of the two ends alone.
 
 use crate::radar::{End, Radar};
 use ndarray::{Array2, ArrayView2, s};
@@ -23,7 +23,7 @@ impl BeatSignal {
         self.samples.slice(s![range, ..])
     }
 
-    /// What the sparse sensor keeps of the signal.
+    /// The samples of both ends.
     pub fn two_ends(&self, radar: &Radar) -> TwoEnds {
         TwoEnds { first: self.end(radar, End::First).to_owned(), last: self.end(radar, End::Last).to_owned() }
     }
@@ -52,8 +52,7 @@ impl TwoEnds {
         }
     }
 
-    /// Whether each element heard something, those of the first end first: one that is dead or missing measured nothing, which is not
-    /// the same as an echo of nothing.
+    /// Whether each element measured, those of the first end first. A dead or missing element did not, which differs from a zero echo.
     pub fn hears(&self) -> Vec<bool> {
         let elements = self.first.outer_iter().chain(self.last.outer_iter());
         elements.map(|samples| samples.iter().any(|v| v.norm_sqr() > 0.0)).collect()

@@ -1,7 +1,7 @@
 //! Equation 3.3 by phasors split at 32 samples: sample `n = 32 a + b` is `A[a] * B[b]`, so 512 phasors cost 16 + 32.
 //!
-//! Recurrences drift as they run; this does not: every phasor is the product of four that were evaluated from their exact phase.
-//! Summed over reflectors it is a matrix product, carried out in registers, one lane an element.
+//! Unlike a recurrence it does not drift: every phasor is the product of four with exact phase. The sum over reflectors is a matrix product,
+//! carried out in registers, one lane an element.
 
 use super::heard::HeardEchoes;
 use super::path::PairBlocks;

@@ -1,6 +1,5 @@
-//! Runs a block algorithm over the whole array: elements in blocks of one vector, blocks in parallel.
-//!
-//! Every block is computed alone and in the same order for any number of threads, so results do not depend on it.
+//! Runs a block algorithm over the whole array: elements in blocks of one vector, blocks in parallel. Results do not depend on the number of
+//! threads.
 
 use super::algorithm::Algorithm;
 use super::closed_form::ClosedForm;
@@ -23,9 +22,8 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Windowed range profiles of the whole array in blocks of `W` elements: `[block][range bin]`, one lane an element.
-///
-/// Lanes past the last element hold nothing of meaning.
+/// Windowed range profiles of the whole array in blocks of `W` elements: `[block][range bin]`, one lane an element. Lanes past the last element
+/// are meaningless.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockProfiles<T, const W: usize> {
     /// Range bins of every element.
@@ -209,7 +207,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         }
     }
 
-    /// The same for elements that stand where `array` says.
+    /// The same at the true element positions of `array`.
     pub fn at(self, array: &BuiltArray) -> Self {
         Synthesis { array: array.clone(), ..self }
     }

@@ -1,10 +1,10 @@
-//! How the echo of a point changes with its place: derivatives of range and amplitude.
+//! Derivatives of a point's range and amplitude by its position.
 
 use crate::radar::{Pair, Pattern};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// What moves when a point's echo changes.
+/// The coordinate of a point by which a derivative is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
     /// The point's x, in metres.
@@ -17,7 +17,7 @@ pub enum By {
     CosTheta,
 }
 
-/// How much an echo changes for each unit of what moves.
+/// Derivative of an echo's range and amplitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathChange {
     /// Change of the range, metres.
@@ -27,7 +27,7 @@ pub struct PathChange {
 }
 
 impl PathChange {
-    /// How the echo of a point at (`x_metres`, `y_metres`) changes, for any reflectivity.
+    /// The derivative for a point at (`x_metres`, `y_metres`), for any reflectivity.
     pub fn of_point(pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
         let range_metres = x_metres.hypot(y_metres);
         let [there, back] = pair.places_metres().map(|[antenna, ahead]| {

@@ -70,7 +70,7 @@ impl Simd {
 
     /// The set to compute with: the one that [`SIMD_VARIABLE`] names, else the best that this processor has. Looked up once.
     ///
-    /// A set that can't be used is as good as none named, with a warning in the log; a program refuses to start with it ([`Simd::requested`]).
+    /// An unusable set counts as none, with a warning in the log; programs refuse to start with it ([`Simd::requested`]).
     pub fn chosen() -> Simd {
         static CHOSEN: OnceLock<Simd> = OnceLock::new();
         *CHOSEN.get_or_init(|| match Simd::requested() {
