@@ -212,8 +212,8 @@ impl Model {
         GAIN + 2 * self.groups
     }
 
-    /// The relative error of reflector `l`'s amplitude as a sum of its parameters' errors: which parameter, and its weight. What was
-    /// taken for the gain with the derivatives is given back.
+    /// Relative error of reflector `l`'s amplitude as a weighted sum of its parameters' errors: index and weight. Reverts the
+    /// orthogonalisation of the derivatives.
     fn amplitude_weights(&self, l: usize) -> Vec<(usize, f64)> {
         let part = 1.0 / self.groups as f64;
         let own = |p: usize| self.own[l].iter().map(|own| part * own[p].re).sum::<f64>();

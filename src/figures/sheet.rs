@@ -1,4 +1,4 @@
-//! What a figure consists of: panels side by side, each a chart, a map or a sketch. Nothing here draws.
+//! The content of a figure: panels side by side, each a chart, a map or a sketch.
 
 use crate::picture::ColourMap;
 use ndarray::Array2;
@@ -35,7 +35,7 @@ pub enum PanelContent {
     Sketch(Sketch),
 }
 
-/// An axis: what stands beside it and what it spans.
+/// An axis: its label and span.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheetAxis {
     /// Quantity and unit.

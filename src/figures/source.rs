@@ -80,7 +80,7 @@ impl SceneSource {
         self.see(Generator::new(&self.radar, Reading::Program, Purpose::Test, 0).scene(kind, number))
     }
 
-    /// What a method makes of the two ends.
+    /// A method's output.
     /// # Errors
     /// [`FigureError`] when there is no such method or it fails.
     pub fn output(&self, method: &str, seen: &ScenePictures) -> Result<RangeAngleMap, FigureError> {

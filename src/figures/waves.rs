@@ -18,7 +18,7 @@ fn decibels(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
 /// Transmitted and received chirp, and the difference frequency the mixer gives.
 pub fn chirps(source: &SceneSource) -> Result<Sheet, FigureError> {
     let (range, bandwidth, carrier) = (21.0, source.radar.bandwidth_hz / 1e9, source.radar.carrier_hz / 1e9);
-    // A chirp of 1 microsecond in place of some tens: else the delay would be thinner than the line.
+    // A chirp of 1 microsecond, so that the delay is wider than the line.
     let (chirp, delay) = (1.0, 2.0 * range / SPEED_OF_LIGHT * 1e6);
     let ramp = |start: f64| [(start, carrier), (start + chirp, carrier + bandwidth)];
     let sent = Series::line("transmitted", ramp(0.0));

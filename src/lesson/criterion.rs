@@ -34,7 +34,7 @@ impl Requirement {
     }
 }
 
-/// What a requirement wants of a scene, as a sentence without its full stop: "A dip of at least 0.06 between the two in the target".
+/// A requirement as a sentence without its full stop: "A dip of at least 0.06 between the two in the target".
 fn wanted(requirement: &Requirement, scene: &Scene) -> String {
     let (times, unit) = requirement.measure.unit();
     let bound = bound(requirement, times, unit);
@@ -71,7 +71,7 @@ fn found(measure: &Measure, value: f64) -> String {
 }
 
 impl Measure {
-    /// What a value is multiplied by before it is told, and the unit that it then has.
+    /// Factor and unit of a value in sentences.
     fn unit(&self) -> (f64, &'static str) {
         match self {
             Measure::Distance { .. } | Measure::Range { .. } => (1.0, "m"),
@@ -100,7 +100,7 @@ fn with_unit(text: &str, unit: &str) -> String {
     format!("{text} {unit}").trim_end().to_owned()
 }
 
-/// A bound as its author wrote it: a product with 100 has no more digits than that.
+/// A bound with its author's digits, also after multiplication by 100.
 fn plain(value: f64) -> String {
     format!("{}", (value * 1e9).round() / 1e9)
 }

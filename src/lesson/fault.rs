@@ -1,13 +1,12 @@
-//! Faults of a lesson's step, with their lines.
+//! Mistakes in a lesson's step, with their lines.
 
 /// A mistake in a step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
     /// What the line begins with; empty for the step's first line.
     key: &'static str,
-    /// Which of the lines that begin so, from 0.
+    /// Number of the line among those that begin so, from 0.
     number: usize,
-    /// What is wrong, and what was expected.
     pub(super) message: String,
 }
 
@@ -39,7 +38,7 @@ impl From<String> for Fault {
     }
 }
 
-/// Refuses a tolerance that no guess can keep to.
+/// Refuses a tolerance that no guess can meet.
 pub(super) fn check_tolerance(key: &'static str, name: &str, value: f64) -> Result<(), Fault> {
     match value.is_finite() && value >= 0.0 {
         true => Ok(()),

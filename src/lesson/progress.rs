@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What one learner made of one step.
+/// A learner's record of one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct StepRecord {
     /// Whether the first prediction was right; `None` before it is made.
@@ -31,7 +31,7 @@ impl Progress {
         &self.learner
     }
 
-    /// Hands the machine to another learner; what others did is kept.
+    /// Switches to another learner; the records of others are kept.
     pub fn set_learner(&mut self, name: &str) {
         self.learner = name.trim().to_owned();
     }
@@ -41,7 +41,7 @@ impl Progress {
         self.records.keys().map(String::as_str)
     }
 
-    /// What the learner made of step `step` (from 0) of a lesson.
+    /// The learner's record of step `step` (from 0) of a lesson.
     pub fn record(&self, lesson: &str, step: usize) -> StepRecord {
         self.records.get(&self.learner).and_then(|r| r.get(&key(lesson, step))).copied().unwrap_or_default()
     }

@@ -15,13 +15,13 @@ pub struct Question {
     pub ask: String,
     /// How it is answered.
     pub answer: Answer,
-    /// What a right guess got right, one sentence.
+    /// Reply to a right guess, one sentence.
     pub right: String,
-    /// What a wrong guess got wrong, one sentence.
+    /// Reply to a wrong guess, one sentence.
     pub wrong: String,
 }
 
-/// How a question is answered; the truth comes from the simulation, never from the file, but for choices.
+/// The kind of answer. Its truth comes from the simulation, except for choices.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[allow(missing_docs)] // Names and messages say it.
@@ -29,7 +29,7 @@ pub enum Answer {
     /// By clicking where a peak will be in a map.
     Click {
         map: MapName,
-        /// The object whose blob is meant; the brightest cell of the map without.
+        /// The object whose blob is meant; without one, the brightest cell of the map.
         #[serde(default)]
         object: Option<ObjectNumber>,
         /// Columns a right guess may be off.
@@ -87,7 +87,7 @@ pub enum Truth {
     },
 }
 
-/// What a guess was worth.
+/// The verdict on a guess.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
     /// Whether it is close enough.
@@ -96,7 +96,7 @@ pub struct Judgement {
     pub distance: String,
     /// The question's sentence on it.
     pub sentence: String,
-    /// What would have been exact.
+    /// The exact answer.
     pub truth: Truth,
 }
 

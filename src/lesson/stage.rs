@@ -9,7 +9,7 @@ use crate::scene::{Object, Scene, SceneError};
 use crate::signal::{self, Floor};
 use serde::{Deserialize, Serialize};
 
-/// How a step's scene is looked at.
+/// Floor, normalisation, method and detector of a step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct View {
@@ -19,7 +19,7 @@ pub struct View {
     pub seed: u64,
     /// How maps are normalised.
     pub normalisation: Normalisation,
-    /// Whether all maps are drawn on one scale, so that what is weaker looks weaker.
+    /// Whether all maps have one scale of brightness.
     pub one_scale: bool,
     /// The method whose output is shown.
     pub method: String,
@@ -28,7 +28,7 @@ pub struct View {
 }
 
 impl Default for View {
-    /// No floor and 100 dB, so that what is seen is the effect and not the noise; `live` reconstructs.
+    /// No floor and 100 dB, so that noise hides no effect; `live` reconstructs.
     fn default() -> Self {
         View {
             floor: Floor::Exact,
@@ -139,7 +139,7 @@ impl Stage {
         best.1
     }
 
-    /// Where an object shows in a map, and how bright: the brightest cell near its expected place.
+    /// Place and Lambda of an object's blob: the brightest cell near its expected place.
     pub fn blob(&self, map: &RangeAngleMap, object: &Object) -> (Cell, f32) {
         self.blob_within(map, object, 8, self.radar.elements / 48)
     }
@@ -149,7 +149,7 @@ impl Stage {
         (cell, map.lambda[[cell.bin as usize, cell.column as usize]])
     }
 
-    /// Where two objects show, each looked for in its own half of what lies between them, in the direction in which they are further apart.
+    /// Place and Lambda of two objects' blobs, each within its own half of the distance between them.
     pub fn blobs_apart(&self, map: &RangeAngleMap, [a, b]: [&Object; 2]) -> [(Cell, f32); 2] {
         let (at, other) = (self.expected(a), self.expected(b));
         let (bins, columns) = (8, self.radar.elements / 48);

@@ -14,7 +14,7 @@ pub struct Uses {
 }
 
 impl Uses {
-    /// What there is without a lesson.
+    /// All parts, as without a lesson.
     pub const ALL: Uses = Uses { output: true, threshold: true };
 }
 

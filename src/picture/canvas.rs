@@ -22,7 +22,7 @@ pub(super) const FAINT_INK: RGBColor = RGBColor(104, 112, 122);
 pub(super) const HAIRLINE: RGBColor = RGBColor(206, 211, 217);
 pub(super) const PAPER: RGBColor = RGBColor(252, 252, 250);
 
-/// Something that can be drawn on a bitmap or as SVG.
+/// A drawing for bitmaps and SVG.
 pub trait Drawing {
     /// Width and height in pixels.
     fn size(&self) -> (u32, u32);

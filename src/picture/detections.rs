@@ -3,18 +3,18 @@
 use super::colour::Rgb;
 use ndarray::ArrayView2;
 
-/// What a cell of a thresholded output is.
+/// The verdict on a cell of a thresholded output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CellVerdict {
-    /// Neither map has it.
+    /// Below both thresholds.
     Nothing,
-    /// The output alone has it, around something that the target has too.
+    /// Above the output's threshold alone, around an echo of the target.
     Rim,
-    /// The target has it, the output doesn't.
+    /// Above the target's threshold alone.
     Miss,
-    /// The output has it, and the target has nothing there.
+    /// Above the output's threshold, without an echo in the target.
     FalseAlarm,
-    /// Both have it.
+    /// Above both thresholds.
     Hit,
 }
 
@@ -74,11 +74,11 @@ impl CellVerdict {
     }
 }
 
-/// How far from what the target shows a blob of the output is its rim, cells.
+/// Largest distance of a rim from the target's blobs, cells.
 const RIM_CELLS: usize = 3;
-/// Smaller blobs are specks, no objects, cells.
+/// Smallest blob that counts as an object, cells.
 const SPECK_CELLS: usize = 8;
-/// What stands out of the target by this much is there, although its threshold hides it, decibels.
+/// Contrast in the target above which a cell below its threshold counts as an echo, decibels.
 const STANDS_OUT_DB: f32 = 10.0;
 const SURROUNDING_CELLS: usize = 5;
 
@@ -127,7 +127,7 @@ pub fn told_apart(
     kinds
 }
 
-/// By how much of Lambda the largest of some cells of a map exceeds the median of what surrounds them.
+/// Lambda of the largest of some cells of a map, less the median around them.
 fn stands_out(map: ArrayView2<'_, f32>, cells: &[usize]) -> f32 {
     let (rows, columns) = map.dim();
     let of = |at: &usize| map[[at / columns, at % columns]];

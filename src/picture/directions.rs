@@ -1,4 +1,4 @@
-//! A snapshot as curves over direction: what all elements see, what one end sees, and what a method makes of both ends.
+//! A snapshot as curves over direction: of all elements, of one end, and of a method.
 
 use super::canvas::{Drawing, FAINT_INK, HAIRLINE, INK, PAPER, PanelArea, PictureError};
 use super::text::{self, Weight};
@@ -16,7 +16,7 @@ pub struct Curve {
     pub colour: RGBColor,
 }
 
-/// A direction that something was found in.
+/// A direction with a detection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
     /// Angle from broadside, degrees.
@@ -34,7 +34,7 @@ pub struct DirectionAxis<'a> {
     pub about: &'a str,
     /// The curves, the one that matters most last.
     pub curves: &'a [Curve],
-    /// What was found, and by which method.
+    /// The detections.
     pub found: &'a [Mark],
 }
 
@@ -119,7 +119,7 @@ impl DirectionAxis<'_> {
         Ok(())
     }
 
-    /// The directions worth showing: those in which the first curve has anything to say, and some room beside them.
+    /// The directions of the first curve, and a margin.
     fn span_degrees(&self) -> (f64, f64) {
         let loud = self.curves.first().into_iter().flat_map(|c| &c.points).filter(|(_, db)| *db > -12.0);
         let ends = |(low, high): (f64, f64), (x, _): &(f64, f64)| (low.min(*x), high.max(*x));

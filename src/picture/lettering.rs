@@ -9,9 +9,7 @@ use plotters_backend::{
 };
 use std::convert::Infallible;
 
-/// The upright face.
 pub(super) const NORMAL: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans.ttf");
-/// The bold face.
 pub(super) const BOLD: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf");
 
 /// A size of text over that of its em square.

@@ -102,7 +102,7 @@ impl MapCells<'_> {
         }
     }
 
-    /// RGB pixels, top row first. Where several cells fall on a pixel the most telling one wins: the brightest, a hit, a false alarm.
+    /// RGB pixels, top row first. Of several cells on a pixel the brightest, a hit or a false alarm wins.
     fn paint(&self, width: usize, height: usize) -> Vec<u8> {
         let (bins, columns) = self.dim();
         // The cells under pixel i of n, at least one.

@@ -31,7 +31,7 @@ pub struct Panels<'a> {
     pub last: &'a RangeAngleMap,
     /// Lambda of the whole array ("target"), where it is known.
     pub target: Option<&'a RangeAngleMap>,
-    /// What a method makes of the two ends.
+    /// Lambda of a method's output.
     pub output: &'a RangeAngleMap,
     /// Name of the method.
     pub method: &'a str,
@@ -143,7 +143,7 @@ impl<'a> Panels<'a> {
     /// The three figures of the tables for this scene, then the scene's notes.
     fn figures_and_notes<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Result<(), PictureError> {
         let Some(target) = self.target else { return text::paragraphs(area, (0, 0), &self.scene.notes, 18, &INK) };
-        // What was found in a recording says nothing of what it holds.
+        // Detections in a recording are no ground truth.
         let has_echoes = !self.scene.is_silent() || self.objects_title != "Scene";
         let metrics = Metrics::of_echoes(has_echoes, target, self.output, self.eta);
         let percent = |part: f64| format!("{:.2} %", 100.0 * part);

@@ -14,7 +14,7 @@ use ndarray::{ArrayView1, Axis};
 use num_complex::Complex64;
 use plotters::style::RGBColor;
 
-/// Most things found that are drawn.
+/// Largest number of detections that are drawn.
 const MOST_DRAWN: usize = 64;
 
 /// Columns that a snapshot's curves are padded to.

@@ -46,7 +46,7 @@ impl Default for Interferer {
 }
 
 impl Interferer {
-    /// The default one where `radar` sees it: as far ahead, as a part of the maximum range, as before table 3.1's.
+    /// The default interferer, at the same fraction of the maximum range of `radar` as for table 3.1.
     pub fn before(radar: &Radar) -> Self {
         let far = radar.max_range_metres() / Radar::default().max_range_metres();
         let Interferer { x_metres, y_metres, .. } = Interferer::default();
@@ -63,9 +63,9 @@ pub struct Mirror {
     pub x_metres: f64,
     /// The same point ahead of the array, metres.
     pub y_metres: f64,
-    /// Where the plane leads from there: 0 along the array, 90 straight ahead.
+    /// Direction of the plane: 0 along the array, 90 straight ahead.
     pub direction_degrees: f64,
-    /// Part of an amplitude that it reflects.
+    /// Amplitude reflection coefficient.
     pub reflection: f64,
 }
 
@@ -136,7 +136,7 @@ impl Disturbances {
         self.is_none() && radar.gaps() == 0
     }
 
-    /// The elements as `radar` has them: those at the gaps of its line are dead.
+    /// The elements, with those at gaps of `radar` dead.
     pub fn elements_of(&self, radar: &Radar) -> Cow<'_, BuiltArray> {
         let Some(antennas) = radar.antennas.as_ref().filter(|antennas| antennas.gaps() > 0) else {
             return Cow::Borrowed(&self.elements);

@@ -8,15 +8,14 @@ use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
 
 const FINE: usize = 8;
-/// Steps to a bin while looking for the peak.
+/// Steps per bin in the search of the peak.
 const STEPS_PER_BIN: f64 = 4.0;
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
 
-/// A ripple below this is not reported as a side lobe: it is below every floor but the exact one. A blob that the near field draws out
-/// falls without a valley until far beyond it.
+/// Weakest side lobe that is reported: weaker ones lie below every floor but the exact one.
 pub const LEAST_LOBE: Decibels = Decibels(-100.0);
 
-/// What one reflector leaves on the map of one aperture.
+/// The blob of one reflector on the map of one aperture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blob {
     /// The peak.
@@ -61,7 +60,7 @@ impl Profile {
         self.cells[if upward { step % len } else { (len - step % len) % len }]
     }
 
-    /// Fine steps to where it falls below half power on one side.
+    /// Fine steps to half power on one side.
     fn half_power(&self, upward: bool) -> f64 {
         let level = self.cells[0] * std::f64::consts::FRAC_1_SQRT_2;
         let half = self.cells.len() / 2;
@@ -74,8 +73,8 @@ impl Profile {
         }
     }
 
-    /// Fine steps to, and height of, the first side lobe on one side: the highest point beyond the first valley, if that lies below half
-    /// power. A blob drawn out by the near field ripples higher up.
+    /// Fine steps to, and height of, the first side lobe on one side: the highest point beyond the first valley below half power. Higher
+    /// valleys are ripples of the near field.
     fn side_lobe(&self, upward: bool) -> Option<(f64, f64)> {
         let half = self.cells.len() / 2;
         let at = |step: usize| self.at(step, upward);

@@ -1,4 +1,4 @@
-//! A chirp and its echoes as frequencies against time: what is sent, what returns, and the beat as their difference.
+//! Frequencies of a chirp, its echoes and their beats over time.
 //!
 //! The samples depend on the bandwidth and on the number of samples alone: the beat turns `2 R B / c` times in a chirp, for any duration
 //! (thesis section 2.1). The thesis' radar has no duration; [`Radar::chirp_seconds`] gives it one. The chirp here is the one that table 3.1
@@ -20,7 +20,7 @@ pub struct ChirpShape {
     pub samples: usize,
 }
 
-/// What one pair of antennas hears of one object.
+/// The beat of one object at one pair of antennas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeatTone {
     /// Index of the object in the scene.
@@ -71,7 +71,7 @@ pub fn delay_seconds(range_metres: f64) -> f64 {
     2.0 * range_metres / SPEED_OF_LIGHT
 }
 
-/// What a pair of antennas hears of every object, nearest first. A line, a cluster or a body is heard at each of its reflectors.
+/// The beats of all objects at a pair of antennas, nearest first: one for each reflector of a line, a cluster or a body.
 pub fn heard(radar: &Radar, scene: &Scene, element: usize) -> Vec<BeatTone> {
     let pair = radar.pair(element);
     let mut all: Vec<BeatTone> = scene

@@ -25,7 +25,7 @@ pub fn comb_teeth(radar: &Radar, place: Polar, count: usize) -> Vec<f64> {
     others.filter_map(|turns| direction_of(radar, place.range_metres, here + turns as f64 * turn_metres)).collect()
 }
 
-/// How much farther a place is from the first end than from the last, metres: grows with cos(theta) at any range.
+/// Distance of a place from the first end less that from the last, metres: grows with cos(theta) at any range.
 fn ends_difference_metres(radar: &Radar, place: Polar) -> f64 {
     let sin = (1.0 - place.cos_theta.powi(2)).max(0.0).sqrt();
     let (x, y) = (place.range_metres * place.cos_theta, place.range_metres * sin);
@@ -33,7 +33,7 @@ fn ends_difference_metres(radar: &Radar, place: Polar) -> f64 {
     first - last
 }
 
-/// The direction at `range_metres` in which the ends' distances differ by so much; `None` where they nowhere do.
+/// The direction at `range_metres` with this difference of the ends' distances, if any.
 fn direction_of(radar: &Radar, range_metres: f64, difference_metres: f64) -> Option<f64> {
     let beyond = |cos_theta: f64| ends_difference_metres(radar, Polar { range_metres, cos_theta }) - difference_metres;
     let (mut low, mut high) = (-1.0, 1.0);

@@ -30,8 +30,8 @@ pub struct Consequences {
     pub full_far_field_metres: f64,
     /// The same for one end, its elements taken for antennas that send and hear ([`Radar::plane_beyond_metres`]).
     pub end_far_field_metres: f64,
-    /// By how much a range changes from one side of the whole array to the other, at most, in bins: beyond one, a blob off broadside
-    /// migrates through range bins. This is so where each element transmits for itself; with a common transmitter it is half.
+    /// Largest change of range across the whole array, in bins: beyond one, a blob off broadside migrates through range bins. With a common
+    /// transmitter it would be half.
     pub migration_bins: f64,
     /// Cosine at which a blob stands over the true one ([`squint_factor`]).
     pub squint_factor: f64,

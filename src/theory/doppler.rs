@@ -1,4 +1,4 @@
-//! Where a range-Doppler map shows an object, and what follows from a radar's chirps.
+//! Place of an object in a range-Doppler map.
 
 use crate::radar::Radar;
 use crate::scene::{Object, Scene};
@@ -39,7 +39,7 @@ impl DopplerBlob {
     }
 }
 
-/// What follows where objects move too fast for the radar's chirps; `None` where each has its velocity in the map.
+/// A sentence on objects beyond the unambiguous velocity; `None` without such objects.
 pub fn folded(radar: &Radar, scene: &Scene) -> Option<String> {
     let mut blobs = scene.objects.iter().enumerate().map(|(i, o)| (i, o, DopplerBlob::of(radar, o)));
     let (index, object, blob) = blobs.find(|(.., blob)| blob.is_folded())?;

@@ -2,7 +2,7 @@
 
 use crate::bounds::PositionBound;
 
-/// The ellipse of one standard deviation of an unbiased estimator's errors at best.
+/// The ellipse of one standard deviation of an efficient unbiased estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipse {
     /// Half the longer axis, metres.

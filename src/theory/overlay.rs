@@ -5,13 +5,13 @@ use crate::maps::Aperture;
 use crate::radar::{Decibels, Polar, Radar};
 use crate::scene::Reflector;
 
-/// How far below its peak a streak is followed.
+/// Level of a streak's ends below its peak.
 pub const STREAK: Decibels = Decibels(20.0);
 const TEETH_DRAWN: usize = 3;
-/// Wrap partners are looked for up to so many maximum ranges.
+/// Farthest wrap partners, in maximum ranges.
 const WRAPS: f64 = 3.0;
 
-/// What is to be drawn over the map of one aperture for one reflector. Nothing of it comes from a simulated map.
+/// Predictions for one reflector, drawn over the map of one aperture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overlay {
     /// Where the reflector stands as the middle of the aperture sees it; its range is the true one, not wrapped.

@@ -5,7 +5,7 @@
 use crate::radar::{Decibels, WindowFunction};
 use std::f64::consts::PI;
 
-/// Steps to a bin while looking for lobes.
+/// Steps per bin in the search of lobes.
 const FINE_STEPS: f64 = 64.0;
 
 /// The transform of a symmetric window over a few points.

@@ -6,9 +6,8 @@ use ndarray::ArrayView2;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// What every element of an aperture contributes to one cell of its range-angle map (thesis section 3.1: both transforms, one cell).
-///
-/// Under the aperture's window the contributions sum to the cell of [`crate::maps::angle_transform`].
+/// Contributions of the elements of an aperture to one cell of its range-angle map (thesis section 3.1). Under the aperture's window they sum to
+/// the cell of [`crate::maps::angle_transform`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Phasors {
     /// The first element of the aperture.
@@ -64,8 +63,8 @@ impl Phasors {
         self.contributions.iter().sum()
     }
 
-    /// Each contribution turned back by the phase of `of_point`'s: what a near point contributes becomes a straight line. A
-    /// contribution of nothing in `of_point` turns nothing.
+    /// Each contribution times the conjugate phase of `of_point`'s, which straightens the chain of a near point. Zeros in `of_point` turn
+    /// nothing.
     pub fn focused(&self, of_point: &Phasors) -> Phasors {
         let turned = self.contributions.iter().zip(&of_point.contributions).map(|(own, point)| {
             let length = point.norm();

@@ -1,4 +1,4 @@
-//! Beam squint: why the map shows blobs off broadside in another column than their true direction's.
+//! Beam squint: the offset between a blob's column and the true direction.
 //!
 //! Equation 3.3 turns the carrier's phase `s q` times a wavelength, and the beat's phase `2 B n1 / N c` times a metre. Both change
 //! from element to element, and the angle transform can't separate them: sample `n1` hears the wave number
@@ -18,8 +18,8 @@ pub fn squint_factor(radar: &Radar) -> f64 {
 /// Where the blob of a reflector at (`x_metres`, `y_metres`) stands on the map of an aperture: the range from the aperture's middle,
 /// and the squinted cosine seen from there.
 ///
-/// The middle of the streak of a near reflector; [`super::Blob`] finds the very peak, which for table 3.1 lies up to half a bin and one
-/// column beside it where the reflector is much nearer than the aperture's far field.
+/// It is the middle of a near reflector's streak. The peak ([`super::Blob`]) lies up to half a bin and one column beside it for table 3.1,
+/// where the reflector is much nearer than the aperture's far field.
 pub fn blob_cell(radar: &Radar, x_metres: f64, y_metres: f64, aperture: Aperture) -> MapPlace {
     cell_seen_from(radar, x_metres, y_metres, centre_metres(radar, aperture))
 }

@@ -126,7 +126,7 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
     ))
 }
 
-/// Refuses a scene of a later format before its unknown keys are.
+/// Refuses a scene of a later format before its unknown keys.
 fn check_format(text: &str, document: &DeTable<'_>) -> Result<(), SceneTextError> {
     let Some(format) = document.get("format") else { return Ok(()) };
     let number = match format.get_ref() {

@@ -1,6 +1,5 @@
-//! Scenes that no training and no constant of a method knows: they say how far a choice made on the other kinds holds.
-//!
-//! Nothing here is shared with the generators of the other kinds, so that a change of theirs leaves these scenes as they are.
+//! Scenes apart from all training and tuning, which test how well choices made on the other kinds generalise. They share no code with the
+//! other generators, so that changes there leave them as they are.
 
 use crate::scene::{Object, Point};
 use rand::RngExt;
@@ -12,7 +11,7 @@ use std::ops::Range;
 
 type Place = [f64; 2];
 
-/// A kind of scene that nothing is trained on or chosen by.
+/// A kind of scene for tests alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Beyond {
