@@ -121,7 +121,7 @@ pub const ALL: &[Figure] = &[
         true,
         waves::angle_spectra,
         "Angle spectrum at one range with 12 and with 1024 elements: two points at cos θ = 0.35 and 0.5, merged and apart.",
-        "The range is not given; at 20 m chosen here the array is in its near field, so each point is a plateau of some 40 columns, and 2.6 % nearer to the middle (the squint of the thesis' convention).",
+        "The range is not given; at 20 m chosen here the array is in its near field, so each point is a plateau of about 40 columns, and 2.6 % nearer to the middle (the squint of the thesis' convention).",
     ),
     figure(
         "2-8",
@@ -275,7 +275,7 @@ pub const ALL: &[Figure] = &[
         true,
         outputs::hidden,
         "A point hidden behind a line for one end.",
-        "Above, points cast no shadows: what hides the point are the line's side lobes, through which the whole array sees it. Below, a wall hides a point from the last end, to which its echo is 40 dB weaker, and not from the first. Every map is normalised by itself, over some 200 dB, so that 40 dB are a fifth of Λ.",
+        "Above, points cast no shadows: what hides the point are the line's side lobes, through which the whole array sees it. Below, a wall hides a point from the last end, to which its echo is 40 dB weaker, and not from the first. Every map is normalised by itself, over about 200 dB, so that 40 dB are a fifth of Λ.",
     ),
     figure(
         "6-1",
