@@ -17,7 +17,7 @@ use crate::bounds::PositionBound;
 use crate::picture::ColourMap;
 use crate::radar::{Layout, Radar};
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, Grid, Pos2, Rect, Sense, Stroke, TextureOptions, Ui, pos2, vec2};
+use eframe::egui::{ComboBox, Grid, Sense, Stroke, TextureOptions, Ui, vec2};
 use ellipse::ellipse;
 
 /// What is chosen, and what came of it.
@@ -152,11 +152,10 @@ fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
     let bar = Bar::new(colour_table(ColourMap::Viridis), 0.0, 1.0, "likeness");
     let right = axes::RIGHT;
     let x = Axis::new(-half[0], half[0], "cos θ off, columns");
-    let chart = Chart { name: "Ambiguity function", x, y: Axis::new(-half[1], half[1], "range off, m") };
+    let mut chart = Chart::new("Ambiguity function", x, Axis::new(-half[1], half[1], "range off, m"));
+    chart.image(texture, half.map(|half| -half), half);
     let map = area.with_max_x(area.right() - right + 12.0);
     let drawn = chart.show(ui, map, Sense::hover());
-    let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-    drawn.painter().image(texture, drawn.rect, whole, Color32::WHITE);
     let cross = drawn.at([0.0, 0.0]);
     for (width, colour) in [(3.0, theme::MARK_EDGE), (1.4, theme::MARK)] {
         for corner in [vec2(5.0, 5.0), vec2(5.0, -5.0)] {
@@ -164,9 +163,7 @@ fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
         }
     }
     bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
-    let Some(pos) = drawn.response.hover_pos() else { return };
-    let said = likeness_at(result, half, drawn.x_at(pos), drawn.y_at(pos));
-    drawn.response.on_hover_text_at_pointer(said);
+    drawn.tell(|[columns, metres]| Some(likeness_at(result, half, columns, metres)));
 }
 
 /// What is told of a place, columns and metres from the reflector.

@@ -15,7 +15,8 @@ use crate::picture::ColourMap;
 use crate::radar::{MAX_CHIRPS, Radar};
 use crate::scene::Scene;
 use crate::theory::doppler::{DopplerBlob, folded};
-use eframe::egui::{self, Color32, Pos2, Rect, Sense, Slider, Stroke, TextureOptions, Ui, pos2, vec2};
+use eframe::egui::{self, Rect, Sense, Slider, Stroke, TextureOptions, Ui, vec2};
+use egui_plot::{LineStyle, VLine};
 
 /// Chirps that the button of an empty map asks for.
 const FIRST_CHIRPS: usize = 128;
@@ -235,16 +236,14 @@ fn map(ui: &mut Ui, input: &Input<'_>, result: &DopplerResult, texture: egui::Te
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
     let x = Axis::new(velocities[0] - beyond, velocities[1] + beyond, "radial velocity, m/s");
-    let chart = Chart { name: "Range-Doppler map", x, y: Axis::new(ranges[0], ranges[1], "range, m") };
-    let drawn = chart.show(ui, area.with_max_x(area.right() - axes::RIGHT + 12.0), Sense::hover());
-    let corners = Rect::from_two_pos(drawn.at([velocities[0], ranges[0]]), drawn.at([velocities[1], ranges[1]]));
-    let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-    drawn.painter().image(texture, corners, whole, Color32::WHITE);
+    let mut chart = Chart::new("Range-Doppler map", x, Axis::new(ranges[0], ranges[1], "range, m"));
+    chart.image(texture, [velocities[0], ranges[0]], [velocities[1], ranges[1]]);
     let most = radar.unambiguous_velocity_metres_per_second();
     let stroke = Stroke::new(1.2, ui.visuals().warn_fg_color);
     for edge in [-most, most] {
-        drawn.line([[edge, ranges[0]], [edge, ranges[1]]], stroke, Some([6.0, 4.0]));
+        chart.add(VLine::new("", edge).stroke(stroke).style(LineStyle::dashed_dense()));
     }
+    let drawn = chart.show(ui, area.with_max_x(area.right() - axes::RIGHT + 12.0), Sense::hover());
     if input.marks {
         marks(ui, input, &drawn, radar);
     }
@@ -254,14 +253,11 @@ fn map(ui: &mut Ui, input: &Input<'_>, result: &DopplerResult, texture: egui::Te
     };
     let bar = Bar::new(colour_table(input.colours), low, high, title);
     bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
-    let Some(pos) = drawn.response.hover_pos() else { return };
-    if let Some(told) = told(result, drawn.x_at(pos), drawn.y_at(pos)) {
-        drawn.response.on_hover_text_at_pointer(told);
-    }
+    drawn.tell(|[velocity, range]| told(result, velocity, range));
 }
 
 /// A ring where the formulas have each object; dashed where its velocity folds.
-fn marks(ui: &Ui, input: &Input<'_>, drawn: &Drawn<'_>, radar: &Radar) {
+fn marks(ui: &Ui, input: &Input<'_>, drawn: &Drawn, radar: &Radar) {
     for (index, object) in input.scene.objects.iter().take(MARKS).enumerate() {
         let blob = DopplerBlob::of(radar, object);
         let at = drawn.at([blob.apparent_velocity_metres_per_second, blob.apparent_range_metres]);

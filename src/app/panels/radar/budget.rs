@@ -8,6 +8,7 @@ use crate::app::widgets::theme::Inks;
 use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
 use crate::radar::{LinkBudget, Radar};
 use eframe::egui::{CollapsingHeader, Grid, Label, Sense, Stroke, Ui, vec2};
+use egui_plot::{HLine, LineStyle};
 
 /// An object whose SNR the link budget tells.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,22 +183,22 @@ fn curve(ui: &mut Ui, radar: &Radar) {
     let size = vec2(ui.available_width().min(CHART[1]), CHART[0]);
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let (x, y) = (Axis::new(0.0, most, "range, m"), Axis::new(LEAST_DB, high, "SNR, dB"));
-    let drawn = Chart { name: "SNR against range", x, y }.show(ui, area, Sense::hover());
+    let mut chart = Chart::new("SNR against range", x, y);
     let inks = Inks::of(ui.visuals());
     let points = |of: f64| {
         (1..=POINTS).map(move |i| f64::from(i) / f64::from(POINTS) * most).map(move |range| [range, at(range, of)])
     };
-    drawn.line([[0.0, DETECTION_SNR.0], [most, DETECTION_SNR.0]], Stroke::new(1.0, inks.grid_text), Some([4.0, 4.0]));
-    drawn.upright(radar.max_range_metres(), Stroke::new(1.0, inks.ends[0].gamma_multiply(0.6)));
-    drawn.line(points(sample), Stroke::new(1.5, inks.ends[1]), Some([6.0, 3.0]));
-    drawn.line(points(array), Stroke::new(2.0, inks.selected), None);
-    drawn.dot([falls, DETECTION_SNR.0], 4.0, inks.selected);
-    if let Some(pos) = drawn.response.hover_pos() {
-        let range = drawn.x_at(pos).max(most * 1e-3);
+    let detection = HLine::new("", DETECTION_SNR.0).stroke(Stroke::new(1.0, inks.grid_text));
+    chart.add(detection.style(LineStyle::dashed_dense()));
+    chart.upright(radar.max_range_metres(), Stroke::new(1.0, inks.ends[0].gamma_multiply(0.6)));
+    chart.line(points(sample), Stroke::new(1.5, inks.ends[1]), LineStyle::dashed_dense());
+    chart.line(points(array), Stroke::new(2.0, inks.selected), LineStyle::Solid);
+    chart.dot([falls, DETECTION_SNR.0], 4.0, inks.selected);
+    chart.show(ui, area, Sense::hover()).tell(|[range, _]| {
+        let range = range.max(most * 1e-3);
         let [received, sample, array] = [at_one_metre.received.0, sample, array].map(|of| at(range, of));
-        let told = format!("{range:.1} m: {received:.1} dBm\n{sample:.1} dB a sample, {array:.1} dB by the array");
-        drawn.response.on_hover_text_at_pointer(told);
-    }
+        Some(format!("{range:.1} m: {received:.1} dBm\n{sample:.1} dB a sample, {array:.1} dB by the array"))
+    });
     ui.weak("Line: by the whole array. Dashes: in a sample. Upright: where ranges wrap around.");
 }
 
