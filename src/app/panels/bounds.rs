@@ -9,6 +9,7 @@ use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::direction::direction;
+use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::significant;
 use crate::app::widgets::textures::{Texture, colour_table};
@@ -17,7 +18,7 @@ use crate::bounds::PositionBound;
 use crate::picture::ColourMap;
 use crate::radar::{Layout, Radar};
 use eframe::egui;
-use eframe::egui::{ComboBox, Grid, Sense, Stroke, TextureOptions, Ui, vec2};
+use eframe::egui::{Grid, Sense, Stroke, TextureOptions, Ui, vec2};
 use ellipse::ellipse;
 
 /// What is chosen, and what came of it.
@@ -104,27 +105,19 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut BoundsMemory) -> Vec<Com
 
 fn choices(ui: &mut Ui, settings: &mut BoundsSettings, most: usize) {
     ui.horizontal_wrapped(|ui| {
-        let label = ui.label("Seen by").on_hover_text("Which elements listen");
-        let combo = ComboBox::from_id_salt("elements").selected_text(settings.elements.name()).show_ui(ui, |ui| {
-            let count = if let Elements::Random(count) = settings.elements { count } else { 24 };
-            for choice in [Elements::TwoEnds, Elements::OneEnd, Elements::Random(count), Elements::Mimo, Elements::All]
-            {
-                ui.selectable_value(&mut settings.elements, choice, choice.name());
-            }
-        });
-        combo.response.labelled_by(label.id);
+        let count = if let Elements::Random(count) = settings.elements { count } else { 24 };
+        let offered = [Elements::TwoEnds, Elements::OneEnd, Elements::Random(count), Elements::Mimo, Elements::All];
+        choice(ui, "Seen by", "Which elements listen", &mut settings.elements, offered, |e| e.name().to_owned());
         if let Elements::Random(count) = &mut settings.elements {
             ui.add(NumberField::new(count).range(2..=most).suffix(" of them")).on_hover_text("How many elements");
-            let label = ui.label("seed");
-            ui.add(NumberField::new(&mut settings.seed).speed(0.05)).labelled_by(label.id);
+            labelled(ui, "seed", "", NumberField::new(&mut settings.seed).speed(0.05));
         }
-        let label = ui.label("SNR").on_hover_text("Of one sample, averaged over the elements");
-        ui.add(NumberField::new(&mut settings.snr.0).range(-40.0..=120.0).speed(0.5).suffix(" dB"))
-            .labelled_by(label.id);
-        let label = ui.label("±").on_hover_text("What the picture spans around the reflector");
-        ui.add(NumberField::new(&mut settings.columns).range(1.0..=512.0).speed(0.2).suffix(" columns"))
-            .labelled_by(label.id);
-        ui.add(NumberField::new(&mut settings.bins).range(0.5..=64.0).speed(0.1).suffix(" bins")).labelled_by(label.id);
+        let snr = NumberField::new(&mut settings.snr.0).range(-40.0..=120.0).speed(0.5).suffix(" dB");
+        labelled(ui, "SNR", "Of one sample, averaged over the elements", snr);
+        let columns = NumberField::new(&mut settings.columns).range(1.0..=512.0).speed(0.2).suffix(" columns");
+        let columns = labelled(ui, "±", "What the picture spans around the reflector", columns);
+        let bins = NumberField::new(&mut settings.bins).range(0.5..=64.0).speed(0.1).suffix(" bins");
+        ui.add(bins).labelled_by(columns.id);
     });
 }
 

@@ -6,6 +6,7 @@ use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::{Jobs, Wants};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView, MethodSlot, State, ViewCommand, WorkCommand};
 use crate::app::widgets::entry::button;
+use crate::app::widgets::labelled::{choice_told, labelled};
 use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
@@ -174,7 +175,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         }
         if compare.layout != Layout::Beside {
             for (label, map) in ["of", "and"].into_iter().zip(&mut compare.maps) {
-                choose_map(ui, label, map);
+                choice_told(ui, label, "", map, Compare::OFFERED, |kind| (kind.title().to_owned(), kind.describe()));
             }
         }
         button(ui, "Flip maps", ViewCommand::Flip, true, asked);
@@ -203,20 +204,9 @@ fn method(
     choose: impl Fn(&'static str) -> Command,
     asked: &mut Vec<Command>,
 ) {
-    let label = ui.label(label);
-    let combo = ComboBox::from_id_salt(("method", label.id)).width(100.0).height(LIST_HEIGHT).selected_text(chosen);
-    let combo = combo.show_ui(ui, |ui| method_list(ui, methods, chosen, choose, asked));
-    combo.response.labelled_by(label.id);
-}
-
-fn choose_map(ui: &mut Ui, label: &str, map: &mut MapKind) {
-    let label = ui.label(label);
-    let combo = ComboBox::from_id_salt(("map", label.id)).width(110.0).selected_text(map.title()).show_ui(ui, |ui| {
-        for kind in Compare::OFFERED {
-            ui.selectable_value(map, kind, kind.title()).on_hover_text(kind.describe());
-        }
-    });
-    combo.response.labelled_by(label.id);
+    let combo = ComboBox::from_id_salt(label).width(100.0).height(LIST_HEIGHT).selected_text(chosen);
+    let list = |ui: &mut Ui| combo.show_ui(ui, |ui| method_list(ui, methods, chosen, choose, asked)).response;
+    labelled(ui, label, "", list);
 }
 
 #[cfg(test)]

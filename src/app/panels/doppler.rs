@@ -7,6 +7,7 @@ use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::colour_bar::Bar;
+use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
@@ -120,16 +121,15 @@ fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let mut radar = input.radar.clone();
     ui.add_enabled_ui(!input.is_recorded, |ui| {
         ui.horizontal_wrapped(|ui| {
-            let label = ui.label("Chirps").on_hover_text("Chirps that are sent one after another: columns of the map");
-            ui.add(NumberField::new(&mut radar.chirps).range(1..=MAX_CHIRPS).speed(0.5)).labelled_by(label.id);
+            let count = NumberField::new(&mut radar.chirps).range(1..=MAX_CHIRPS).speed(0.5);
+            labelled(ui, "Chirps", "Chirps that are sent one after another: columns of the map", count);
             let tooltip =
                 "From the beginning of a chirp to that of the next. Half as long makes twice the velocity unambiguous.";
-            let label = ui.label("Interval").on_hover_text(tooltip);
             let mut microseconds = 1e6 * radar.chirp_interval_seconds;
             let least = 1e6 * radar.chirp_seconds;
             let most = MOST_INTERVAL_MICROSECONDS.max(least);
             let field = NumberField::new(&mut microseconds).range(least..=most).speed(0.05).suffix(" µs");
-            if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
+            if labelled(ui, "Interval", tooltip, field).changed() {
                 radar.chirp_interval_seconds = (1e-6 * microseconds).max(radar.chirp_seconds);
             }
         });
@@ -161,10 +161,8 @@ fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             }
             let mut seconds = input.seconds;
             let slider = Slider::new(&mut seconds, 0.0..=TIMELINE_SECONDS).fixed_decimals(2).suffix(" s");
-            let label = ui.label("Time");
             let tooltip = "Time at which the scene is looked at; its file has time 0";
-            let response = ui.add(slider).labelled_by(label.id).on_hover_text(tooltip);
-            if response.changed() {
+            if labelled(ui, "Time", tooltip, slider).changed() {
                 asked.push(ViewCommand::SetTime(seconds).into());
             }
             if input.seconds > 0.0 && ui.button("Back to 0 s").clicked() {
@@ -182,9 +180,9 @@ fn frames_played(ui: &mut Ui, input: &Input<'_>, [frame, count]: [u64; 2], asked
             asked.push(ViewCommand::TogglePlay.into());
         }
         let mut chosen = frame;
-        let label = ui.label(format!("Frame of {count}")).on_hover_text("Which frame of the file all maps show");
-        let slider = ui.add(Slider::new(&mut chosen, 0..=count - 1)).labelled_by(label.id);
-        if slider.changed() && chosen != frame {
+        let slider = Slider::new(&mut chosen, 0..=count - 1);
+        let tooltip = "Which frame of the file all maps show";
+        if labelled(ui, format!("Frame of {count}"), tooltip, slider).changed() && chosen != frame {
             asked.push(DocumentCommand::ReadAnotherWay(Way::Frame(chosen)).into());
         }
     });

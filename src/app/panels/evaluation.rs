@@ -3,6 +3,7 @@
 use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::EvaluationRow;
 use crate::app::state::{Command, EvaluationChoice, ExportCommand, WorkCommand};
+use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::method_menu::{Offered, method_menu};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
@@ -121,10 +122,8 @@ fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut EvaluationMemory) {
             for ((chosen, what), number) in memory.sets.iter_mut().zip(SETS).zip(1..) {
                 ui.checkbox(chosen, format!("set {number}")).on_hover_text(what);
             }
-            let label = ui.label("scenes a set");
-            ui.add(NumberField::new(&mut memory.count).range(1..=1000)).labelled_by(label.id);
-            let label = ui.label("seed");
-            ui.add(NumberField::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+            labelled(ui, "scenes a set", "", NumberField::new(&mut memory.count).range(1..=1000));
+            labelled(ui, "seed", "", NumberField::new(&mut memory.seed).speed(0.05));
         });
     });
 }

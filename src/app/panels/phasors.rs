@@ -7,6 +7,7 @@ use crate::app::state::{Command, PhasorMap, PhasorSettings, State, ViewCommand};
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::direction::direction;
+use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::theme::{self, Inks};
 use crate::radar::{End, Radar};
 use crate::theory::Phasors;
@@ -127,9 +128,8 @@ fn play(ui: &mut Ui, result: &PhasorsResult, memory: &mut PhasorsMemory) {
             ui.ctx().request_repaint();
         }
         let mut drawn = drawn_count(memory.part.unwrap_or(1.0), count);
-        let label = ui.label("Elements").on_hover_text("How many elements of the aperture are added, from the left");
-        let slider = ui.add(Slider::new(&mut drawn, 0..=count)).labelled_by(label.id);
-        if slider.changed() {
+        let tooltip = "How many elements of the aperture are added, from the left";
+        if labelled(ui, "Elements", tooltip, Slider::new(&mut drawn, 0..=count)).changed() {
             memory.is_playing = false;
             memory.part = (drawn < count).then(|| drawn as f32 / count as f32);
         }

@@ -2,10 +2,11 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, DocumentCommand, Way};
+use crate::app::widgets::labelled::{choice_told, labelled};
 use crate::app::widgets::theme;
 use crate::recording::raw::boards;
 use crate::recording::{Offer, Origin, Recording};
-use eframe::egui::{self, ComboBox, Pos2, Rect, ScrollArea, Sense, Shape, Slider, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Pos2, Rect, ScrollArea, Sense, Shape, Slider, Stroke, Ui, pos2, vec2};
 
 /// Size of a small range profile, and how far below its peak it is drawn, decibels.
 const PROFILE: egui::Vec2 = vec2(180.0, 44.0);
@@ -115,11 +116,10 @@ fn frames(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        let label =
-            ui.label(format!("Frame of {}", origin.frames)).on_hover_text("Which frame of the file the maps show");
         let mut frame = origin.frame;
-        let slider = ui.add(Slider::new(&mut frame, 0..=origin.frames - 1)).labelled_by(label.id);
-        if slider.changed() && frame != origin.frame {
+        let slider = Slider::new(&mut frame, 0..=origin.frames - 1);
+        let tooltip = "Which frame of the file the maps show";
+        if labelled(ui, format!("Frame of {}", origin.frames), tooltip, slider).changed() && frame != origin.frame {
             asked.push(Way::Frame(frame));
         }
     });
@@ -130,22 +130,14 @@ fn board(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        let label = ui
-            .label("Antennas of")
-            .on_hover_text("The board whose antennas are taken; the guide of its maker says the places");
-        let taken = origin.board.unwrap_or("the .cfg");
-        let shown = ComboBox::from_id_salt("board").selected_text(taken).show_ui(ui, |ui| {
-            for board in boards::ALL {
-                if ui
-                    .selectable_label(origin.board == Some(board.name), board.name)
-                    .on_hover_text(board.guide)
-                    .clicked()
-                {
-                    asked.push(Way::Board(board.name));
-                }
-            }
-        });
-        shown.response.labelled_by(label.id);
+        let tooltip = "The board whose antennas are taken; the guide of its maker says the places";
+        let mut taken = origin.board.unwrap_or("the .cfg");
+        let guide = |name: &str| boards::ALL.iter().find(|board| board.name == name).map_or("", |board| board.guide);
+        let offered = boards::ALL.iter().map(|board| board.name);
+        choice_told(ui, "Antennas of", tooltip, &mut taken, offered, |name| ((*name).to_owned(), guide(name)));
+        if origin.board != Some(taken) && boards::ALL.iter().any(|board| board.name == taken) {
+            asked.push(Way::Board(taken));
+        }
     });
 }
 

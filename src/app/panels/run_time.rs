@@ -4,13 +4,14 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, WorkCommand};
 use crate::app::widgets::axes::{Axis, Tick};
 use crate::app::widgets::chart::Chart;
+use crate::app::widgets::labelled::choice;
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
 use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
 use crate::radar::Radar;
 use crate::signal::{Algorithm, Precision};
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, Sense, Ui};
+use eframe::egui::{Color32, Sense, Ui};
 use egui_plot::{HLine, LineStyle, MarkerShape, Points};
 use std::collections::BTreeSet;
 
@@ -107,18 +108,13 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Co
 fn filter(ui: &mut Ui, rows: &[FrontRow], memory: &mut RunTimeMemory) {
     let counts: BTreeSet<usize> = rows.iter().map(|r| r.reflectors).collect();
     ui.horizontal_wrapped(|ui| {
-        let text = |count: Option<usize>| match count {
+        let text = |count: &Option<usize>| match count {
             None => "all".to_owned(),
             Some(count) => count.to_string(),
         };
-        let label = ui.label("Reflectors");
-        let combo = ComboBox::from_id_salt("reflectors").width(60.0).selected_text(text(memory.reflectors));
-        let combo = combo.show_ui(ui, |ui| {
-            for choice in std::iter::once(None).chain(counts.into_iter().map(Some)) {
-                ui.selectable_value(&mut memory.reflectors, choice, text(choice));
-            }
-        });
-        combo.response.labelled_by(label.id).on_hover_text("Draw the measurements of so many reflectors");
+        let offered = std::iter::once(None).chain(counts.into_iter().map(Some));
+        let tooltip = "Draw the measurements of so many reflectors";
+        choice(ui, "Reflectors", tooltip, &mut memory.reflectors, offered, text);
         if rows.iter().any(|r| r.task == FrontTask::Drag) {
             ui.selectable_value(&mut memory.task, FrontTask::Scratch, "from scratch");
             ui.selectable_value(&mut memory.task, FrontTask::Drag, "one dragged");

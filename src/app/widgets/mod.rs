@@ -10,6 +10,7 @@ pub mod focus_ring;
 pub mod icons;
 pub mod inline;
 pub mod kind_boxes;
+pub mod labelled;
 pub mod legend;
 pub mod levels;
 pub mod list_rows;

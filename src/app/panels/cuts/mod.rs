@@ -11,12 +11,13 @@ use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Span};
 use crate::app::widgets::direction::direction;
 use crate::app::widgets::entry::button;
+use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::levels::lowest_db;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
 use crate::radar::Radar;
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
+use eframe::egui::{Color32, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
 use egui_plot::LineStyle;
 use markers::{Markers, NAMES};
 use std::collections::{BTreeMap, BTreeSet};
@@ -176,15 +177,9 @@ fn marks(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory) {
             }
         }
     } else {
-        let label = ui.label("Read");
-        let lines = lines(input, &memory.hidden);
-        let name = memory.read.map_or_else(String::new, Line::name);
-        let combo = ComboBox::from_id_salt("read").selected_text(name).show_ui(ui, |ui| {
-            for line in lines {
-                ui.selectable_value(&mut memory.read, Some(line), line.name());
-            }
-        });
-        combo.response.labelled_by(label.id).on_hover_text("The line that the markers measure");
+        let lines = lines(input, &memory.hidden).into_iter().map(Some);
+        let name = |line: &Option<Line>| line.map_or_else(String::new, Line::name);
+        choice(ui, "Read", "The line that the markers measure", &mut memory.read, lines, name);
         if ui.button("No markers").on_hover_text("Take the markers away").clicked() {
             memory.views.values_mut().for_each(|view| view.markers = Markers::default());
         }
@@ -292,10 +287,9 @@ fn readings(ui: &mut Ui, area: Rect, cut: Cut, whole: Span, markers: &mut Marker
                 let digits = if cut == Cut::Angle { 4 } else { 3 };
                 for (place, name) in markers.places.iter_mut().zip(NAMES) {
                     let Some(place) = place else { continue };
-                    let label = ui.label(format!("{name}, {}", cut.unit()));
                     let step = (whole.high - whole.low) / 1000.0;
                     let drag = NumberField::new(place).range(whole.low..=whole.high).speed(step).fixed_decimals(digits);
-                    ui.add(drag).labelled_by(label.id);
+                    labelled(ui, format!("{name}, {}", cut.unit()), "", drag);
                 }
             });
             for line in said {

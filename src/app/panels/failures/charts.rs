@@ -5,11 +5,12 @@ use super::points::{Dot, Grouping, Points, Subject};
 use crate::app::jobs::RowTable;
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::{Chart, Drawn};
+use crate::app::widgets::labelled::choice;
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::theme::Inks;
 use crate::evaluate::rows::Column;
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, Mesh, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
+use eframe::egui::{Color32, Mesh, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
 use egui_plot::{Bar, BarChart, LineStyle, Span};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -100,47 +101,28 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
     for (view, name, tip) in View::ALL {
         ui.selectable_value(&mut memory.view, view, name).on_hover_text(tip);
     }
-    let column = |ui: &mut Ui, id: &str, name: &str, column: &mut Column| {
-        let label = ui.label(name);
-        let combo = ComboBox::from_id_salt(id).selected_text(column.name()).width(150.0).show_ui(ui, |ui| {
-            for &other in Column::FIGURES {
-                ui.selectable_value(column, other, other.name());
-            }
-        });
-        combo.response.labelled_by(label.id);
+    let column = |ui: &mut Ui, name: &str, column: &mut Column| {
+        choice(ui, name, "", column, Column::FIGURES.iter().copied(), |column| column.name().to_owned());
     };
     if !matches!(memory.view, View::None | View::Shared) {
-        let label = ui.label("Colour");
-        let chosen = Grouping::ALL.iter().find(|(of, _)| *of == memory.grouping).map_or("", |(_, name)| name);
-        let combo = ComboBox::from_id_salt("grouping").selected_text(chosen).width(90.0).show_ui(ui, |ui| {
-            for (grouping, name) in Grouping::ALL {
-                ui.selectable_value(&mut memory.grouping, grouping, name);
-            }
-        });
-        combo.response.labelled_by(label.id);
+        choice(ui, "Colour", "", &mut memory.grouping, Grouping::ALL, |grouping| grouping.name().to_owned());
     }
     match memory.view {
         View::None | View::Shared => {}
-        View::Histogram => column(ui, "histogram", "of", &mut memory.y),
+        View::Histogram => column(ui, "of", &mut memory.y),
         View::Columns => {
-            column(ui, "scatter y", "of", &mut memory.y);
-            column(ui, "scatter x", "over", &mut memory.x);
+            column(ui, "of", &mut memory.y);
+            column(ui, "over", &mut memory.x);
         }
         View::Methods => {
-            column(ui, "methods", "of", &mut memory.y);
+            column(ui, "of", &mut memory.y);
             let mut names = table.methods().iter();
-            for (chosen, (id, name)) in memory.methods.iter_mut().zip([("method a", "A"), ("method b", "B")]) {
+            for (chosen, name) in memory.methods.iter_mut().zip(["A", "B"]) {
                 let other = names.next();
                 if !table.methods().contains(chosen) {
                     *chosen = other.cloned().unwrap_or_default();
                 }
-                let label = ui.label(name);
-                let combo = ComboBox::from_id_salt(id).selected_text(chosen.as_str()).show_ui(ui, |ui| {
-                    for method in table.methods() {
-                        ui.selectable_value(chosen, method.clone(), method);
-                    }
-                });
-                combo.response.labelled_by(label.id);
+                choice(ui, name, "", chosen, table.methods().iter().cloned(), String::clone);
             }
         }
     }
