@@ -12,6 +12,7 @@ use crate::app::widgets::direction::direction;
 use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::significant;
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
 use crate::bounds::PositionBound;
@@ -65,12 +66,11 @@ impl Content for BoundsPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut BoundsMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
     if !input.has_subject {
         ui.centered_and_justified(|ui| ui.weak("Place a reflector ahead of the array to see its bounds."));
-        return asked;
+        return Vec::new();
     }
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         let mut settings = input.settings;
         choices(ui, &mut settings, input.elements);
         if settings != input.settings {
@@ -99,8 +99,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut BoundsMemory) -> Vec<Com
             ui.allocate_ui(vec2(size.x, 0.44 * size.y), |ui| picture(ui, result, texture));
             bound(ui, result);
         }
-    });
-    asked
+    })
 }
 
 fn choices(ui: &mut Ui, settings: &mut BoundsSettings, most: usize) {

@@ -9,8 +9,8 @@ use crate::app::widgets::entry::button;
 use crate::app::widgets::labelled::{choice_told, labelled};
 use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
 use crate::app::widgets::numbers::percent;
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::progress::progress;
-use eframe::egui;
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 
 /// A map, and what stands above it.
@@ -104,9 +104,8 @@ fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map::HandMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(6, 4)).show(ui, |ui| {
-        choices(ui, &input, &mut asked);
+    padded(ui, |ui, asked| {
+        choices(ui, &input, asked);
         let area = ui.available_rect_before_wrap();
         let Input { compare, maps, .. } = input;
         let places = match compare.layout {
@@ -132,8 +131,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map:
                 asked.extend(map::show(ui, map, view, memory));
             });
         }
-    });
-    asked
+    })
 }
 
 /// Two columns of maps, as many rows as it takes.
@@ -212,6 +210,7 @@ fn method(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use eframe::egui;
     use crate::app::state::EditCommand;
     use crate::app::state::Projection;
     use crate::app::widgets::seen;

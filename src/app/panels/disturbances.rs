@@ -3,10 +3,10 @@
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::labelled::{Quantity, labelled};
+use crate::app::widgets::padded::scrolled;
 use crate::radar::Radar;
 use crate::scene::{Disturbances, Interferer, Mirror};
-use eframe::egui;
-use eframe::egui::{Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, Ui};
 
 /// What is shown.
 pub struct Input<'a> {
@@ -34,19 +34,15 @@ impl Content for DisturbancesPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            if input.is_recorded {
-                ui.weak("A recording has the disturbances that it was made with.");
-                return;
-            }
-            interferer(ui, &input, &mut asked);
-            ui.add_space(8.0);
-            mirror(ui, input.disturbances.mirror, &mut asked);
-        });
-    });
-    asked
+    scrolled(ui, |ui, asked| {
+        if input.is_recorded {
+            ui.weak("A recording has the disturbances that it was made with.");
+            return;
+        }
+        interferer(ui, &input, asked);
+        ui.add_space(8.0);
+        mirror(ui, input.disturbances.mirror, asked);
+    })
 }
 
 fn metres(name: &'static str, tooltip: &'static str) -> Quantity {
@@ -123,6 +119,7 @@ fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use eframe::egui;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 

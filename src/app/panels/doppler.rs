@@ -7,8 +7,10 @@ use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::colour_bar::Bar;
+use crate::app::widgets::entry::{press, tick};
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
 use crate::maps::Normalisation;
@@ -93,15 +95,14 @@ impl Content for DopplerPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
-        chirps(ui, &input, &mut asked);
+    padded(ui, |ui, asked| {
+        chirps(ui, &input, asked);
         match (input.frames, input.is_recorded) {
-            (Some(frames), _) => frames_played(ui, &input, frames, &mut asked),
+            (Some(frames), _) => frames_played(ui, &input, frames, asked),
             (None, true) => {}
-            (None, false) => timeline(ui, &input, &mut asked),
+            (None, false) => timeline(ui, &input, asked),
         }
-        said(ui, &input, &mut asked);
+        said(ui, &input, asked);
         match input.result {
             _ if !input.is_recorded && input.radar.chirps < 2 => {}
             None if input.is_recorded => {}
@@ -112,8 +113,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Co
                 map(ui, &input, result, texture);
             }
         }
-    });
-    asked
+    })
 }
 
 /// How many chirps, how far apart, and what follows.
@@ -156,9 +156,13 @@ fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.add_enabled_ui(input.scene.is_moving(), |ui| {
         ui.horizontal_wrapped(|ui| {
             let label = if input.is_playing { "Pause" } else { "Play" };
-            if ui.button(label).on_hover_text("Let every object move by its velocity; all maps follow").clicked() {
-                asked.push(ViewCommand::TogglePlay.into());
-            }
+            press(
+                ui,
+                label,
+                "Let every object move by its velocity; all maps follow",
+                || ViewCommand::TogglePlay,
+                asked,
+            );
             let mut seconds = input.seconds;
             let slider = Slider::new(&mut seconds, 0.0..=TIMELINE_SECONDS).fixed_decimals(2).suffix(" s");
             let tooltip = "Time at which the scene is looked at; its file has time 0";
@@ -176,9 +180,13 @@ fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 fn frames_played(ui: &mut Ui, input: &Input<'_>, [frame, count]: [u64; 2], asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let label = if input.is_playing { "Pause" } else { "Play" };
-        if ui.button(label).on_hover_text("Show one frame after another; all maps and methods follow").clicked() {
-            asked.push(ViewCommand::TogglePlay.into());
-        }
+        press(
+            ui,
+            label,
+            "Show one frame after another; all maps and methods follow",
+            || ViewCommand::TogglePlay,
+            asked,
+        );
         let mut chosen = frame;
         let slider = Slider::new(&mut chosen, 0..=count - 1);
         let tooltip = "Which frame of the file all maps show";
@@ -199,10 +207,10 @@ fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             Some(_) => "The loops of the recording's frame.",
         };
         ui.weak(text);
-        let mut is_out = input.static_clutter_out;
         let tooltip = "The mean over the loops, which holds all that stands still";
-        if input.result.is_some() && ui.checkbox(&mut is_out, "Static clutter out").on_hover_text(tooltip).changed() {
-            asked.push(ViewCommand::TakeOutStaticClutter(is_out).into());
+        if input.result.is_some() {
+            let out = input.static_clutter_out;
+            tick(ui, out, "Static clutter out", tooltip, ViewCommand::TakeOutStaticClutter, asked);
         }
     } else if input.radar.chirps < 2 {
         ui.horizontal_wrapped(|ui| {

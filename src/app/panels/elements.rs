@@ -8,11 +8,12 @@ use crate::app::content::{Content, Cx};
 use crate::app::jobs::Calibrated;
 use crate::app::jobs::{CalibrationQuery, Jobs};
 use crate::app::state::{Command, RadarCommand, State};
+use crate::app::widgets::entry::press;
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::padded::scrolled;
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
-use eframe::egui;
-use eframe::egui::{Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, Ui};
 use std::sync::Arc;
 
 /// What is shown.
@@ -64,23 +65,19 @@ impl Content for ElementsPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ElementsMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
     memory.chosen = memory.chosen.min(input.radar.elements - 1);
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            summary(ui, &input, &mut asked);
-            if let Some((n, error)) = strip::show(ui, input.radar, input.elements, &mut memory.chosen) {
-                asked.push(with(&input, n, |e| *e = error));
-            }
-            one(ui, &input, memory, &mut asked);
-            ui.separator();
-            draw_from_seed(ui, &input, memory, &mut asked);
-            list::show(ui, input.radar, input.elements, &mut memory.list, &mut asked);
-            ui.separator();
-            calibration(ui, &input, &mut asked);
-        });
-    });
-    asked
+    scrolled(ui, |ui, asked| {
+        summary(ui, &input, asked);
+        if let Some((n, error)) = strip::show(ui, input.radar, input.elements, &mut memory.chosen) {
+            asked.push(with(&input, n, |e| *e = error));
+        }
+        one(ui, &input, memory, asked);
+        ui.separator();
+        draw_from_seed(ui, &input, memory, asked);
+        list::show(ui, input.radar, input.elements, &mut memory.list, asked);
+        ui.separator();
+        calibration(ui, &input, asked);
+    })
 }
 
 /// The array with one element changed.
@@ -215,14 +212,19 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         }
     });
     let tooltip = "Divide every element's samples by what was found of it";
-    if ui.button("Calibrate on this reflector").on_hover_text(tooltip).clicked() {
-        asked.push(RadarCommand::SetElements(Arc::new(found.left.clone())).into());
-    }
+    press(
+        ui,
+        "Calibrate on this reflector",
+        tooltip,
+        || RadarCommand::SetElements(Arc::new(found.left.clone())),
+        asked,
+    );
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use eframe::egui;
     use crate::scene::Reflector;
     use crate::signal::{Floor, calibrate, simulate_built};
     use eframe::egui::{Key, pos2, vec2};

@@ -8,6 +8,7 @@ use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::direction::direction;
 use crate::app::widgets::labelled::labelled;
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::theme::{self, Inks};
 use crate::radar::{End, Radar};
 use crate::theory::Phasors;
@@ -67,8 +68,7 @@ impl Content for PhasorsPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut PhasorsMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         let mut settings = input.settings;
         choices(ui, &input, &mut settings);
         if settings != input.settings {
@@ -83,8 +83,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut PhasorsMemory) -> Vec<Co
                 chart(ui, input.radar, result, memory.part.unwrap_or(1.0));
             }
         }
-    });
-    asked
+    })
 }
 
 fn choices(ui: &mut Ui, input: &Input<'_>, settings: &mut PhasorSettings) {

@@ -9,11 +9,11 @@ mod table;
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::labelled::{Quantity, labelled};
+use crate::app::widgets::padded::scrolled_both;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
 pub use budget::Selected;
-use eframe::egui;
-use eframe::egui::{Align, Color32, ComboBox, Grid, Label, Layout, RichText, ScrollArea, TextStyle, Ui, vec2};
+use eframe::egui::{Align, Color32, ComboBox, Grid, Label, Layout, RichText, TextStyle, Ui, vec2};
 use table::{GAP, Table, number};
 
 /// What is shown.
@@ -73,41 +73,37 @@ impl Content for RadarPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
-            match input.measured {
-                Some(measured) => _ = ui.weak(measured.told()),
-                None => preset(ui, input.radar, &mut asked),
+    scrolled_both(ui, |ui, asked| {
+        match input.measured {
+            Some(measured) => _ = ui.weak(measured.told()),
+            None => preset(ui, input.radar, asked),
+        }
+        ui.add_space(4.0);
+        let mut radar = input.radar.clone();
+        let follows = Consequences::of(&radar);
+        let constants = input.measured.is_none();
+        let free = Free { constants, ends: input.measured.is_none_or(|m| m.by_all_elements) };
+        let table = Table::that_fits(ui, NAMES);
+        match table.consequence_width {
+            Some(_) => {
+                _ = Grid::new("radar").num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
+                    for heading in ["Constant", "Value", "Consequence"] {
+                        ui.strong(heading);
+                    }
+                    ui.end_row();
+                    rows(ui, table, &mut radar, &follows, free);
+                })
             }
-            ui.add_space(4.0);
-            let mut radar = input.radar.clone();
-            let follows = Consequences::of(&radar);
-            let constants = input.measured.is_none();
-            let free = Free { constants, ends: input.measured.is_none_or(|m| m.by_all_elements) };
-            let table = Table::that_fits(ui, NAMES);
-            match table.consequence_width {
-                Some(_) => {
-                    _ = Grid::new("radar").num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
-                        for heading in ["Constant", "Value", "Consequence"] {
-                            ui.strong(heading);
-                        }
-                        ui.end_row();
-                        rows(ui, table, &mut radar, &follows, free);
-                    })
-                }
-                None => rows(ui, table, &mut radar, &follows, free),
-            }
-            strip::show(ui, &mut radar, free.constants);
-            places::show(ui, &mut radar, free.constants);
-            budget::show(ui, table, &mut radar, input.selected.as_ref());
-            radar.end_elements = radar.end_elements.min(radar.elements / 2);
-            if radar != *input.radar {
-                asked.push(RadarCommand::Set(Box::new(radar)).into());
-            }
-        });
-    });
-    asked
+            None => rows(ui, table, &mut radar, &follows, free),
+        }
+        strip::show(ui, &mut radar, free.constants);
+        places::show(ui, &mut radar, free.constants);
+        budget::show(ui, table, &mut radar, input.selected.as_ref());
+        radar.end_elements = radar.end_elements.min(radar.elements / 2);
+        if radar != *input.radar {
+            asked.push(RadarCommand::Set(Box::new(radar)).into());
+        }
+    })
 }
 
 /// Radars to start from.

@@ -6,6 +6,7 @@ use crate::app::widgets::axes::{Axis, Tick};
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::labelled::choice;
 use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
 use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
 use crate::radar::Radar;
@@ -68,8 +69,7 @@ impl Content for RunTimePanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         ui.horizontal_wrapped(|ui| {
             let tip = "Time how long three maps take, and how wrong they are, by algorithm and precision; leave the \
                        machine alone meanwhile";
@@ -100,8 +100,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Co
         } else if input.progress.is_none() {
             ui.weak("Nothing measured yet.");
         }
-    });
-    asked
+    })
 }
 
 /// Which rows are drawn.

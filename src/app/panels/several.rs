@@ -6,6 +6,7 @@ use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, Vari
 use crate::app::widgets::labelled::{choice, choice_told, labelled};
 use crate::app::widgets::method_menu::{Offered, method_lines};
 use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::textures::Texture;
 use crate::radar::Radar;
 use eframe::egui;
@@ -56,9 +57,8 @@ impl Content for SeveralPanel {
 
 /// Draws the panel. A click on a map puts its value before the scene.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut SeveralMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(8, 6)).show(ui, |ui| {
-        choices(ui, &input, &mut asked);
+    padded(ui, |ui, asked| {
+        choices(ui, &input, asked);
         if input.veiled {
             ui.weak("Hidden until you have predicted.");
             return;
@@ -73,10 +73,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut SeveralMemory) -> Vec<Co
         for (index, (small, texture)) in input.maps.iter().zip(&mut memory.textures).enumerate() {
             let corner = vec2((index % columns) as f32 * size.x, (index / columns) as f32 * size.y);
             let place = Rect::from_min_size(area.min + corner, size).shrink(3.0);
-            tile(ui, place, small, texture, input.several.parameter, &mut asked);
+            tile(ui, place, small, texture, input.several.parameter, asked);
         }
-    });
-    asked
+    })
 }
 
 /// How many columns make the largest maps twice as wide as high, and the size of each.

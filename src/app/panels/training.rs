@@ -7,9 +7,9 @@ use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::entry::button;
 use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::progress::progress;
 use crate::app::widgets::theme;
-use eframe::egui;
 use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
 use std::path::Path;
@@ -69,17 +69,16 @@ impl Content for TrainingPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut TrainingMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         ui.horizontal_wrapped(|ui| {
-            button(ui, "Open training log…", WorkCommand::OpenLog, true, &mut asked);
+            button(ui, "Open training log…", WorkCommand::OpenLog, true, asked);
             match input.running {
                 Some(part) => {
                     if progress(ui, part, 140.0, "Stop the training; its last checkpoint stays") {
                         asked.push(WorkCommand::CancelTraining.into());
                     }
                 }
-                None => start(ui, memory, &mut asked),
+                None => start(ui, memory, asked),
             }
         });
         if let Some(note) = input.note {
@@ -89,8 +88,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut TrainingMemory) -> Vec<C
             Some(log) => curves(ui, log),
             None => _ = ui.weak(waiting(&input)),
         }
-    });
-    asked
+    })
 }
 
 /// What stands where there is no curve yet.

@@ -80,54 +80,35 @@ impl<'a> Chart<'a> {
     }
 
     /// Draws it into `area`.
-    pub fn show(self, ui: &mut Ui, area: Rect, sense: Sense) -> Drawn {
-        let Chart { name, x, mut y, has_one_scale, is_zoomable, items } = self;
+    pub fn show(mut self, ui: &mut Ui, area: Rect, sense: Sense) -> Drawn {
+        let (left, right) = self.beside(ui.painter(), area);
+        let Chart { name, x, y, has_one_scale, is_zoomable, items } = self;
         let painter = ui.painter().clone();
-        let height = (area.height() - AROUND[0] - axes::BOTTOM).max(20.0);
-        let y_marks = y.upwards(height);
-        if axes::width(&painter, y.title) > height {
-            y.title = "";
-        }
-        let labels = y_marks.iter().map(|t| axes::width(&painter, &t.text)).fold(0.0, f32::max);
-        let left = labels + 8.0 + if y.title.is_empty() { 0.0 } else { TITLE[1] };
-        let width = (area.width() - TITLE[0] - left - AROUND[1]).max(20.0);
-        let x_marks = x.across(&painter, width);
-        // What half a label reaches beyond a place, points.
-        let beyond = |t: &Tick, room: f32| axes::width(&painter, &t.text) / 2.0 - room;
-        let right = x_marks.last().map_or(0.0, |t| beyond(t, (1.0 - x.part(t.value)) * width) + 1.0).max(AROUND[1]);
-        let is_crowded = x_marks.first().is_some_and(|t| beyond(t, x.part(t.value) * width) > 2.0);
-        if is_crowded && y_marks.first().is_some_and(|t| y.part(t.value) * height < 8.0) {
-            // The lowest label must not run into that of the other axis.
-            y.low -= f64::from(8.0 / height) * (y.high - y.low);
-        }
         let rect = Rect::from_min_max(area.min + vec2(TITLE[0], AROUND[0]), area.max - vec2(right, 0.0));
         let mut inside = ui.new_child(UiBuilder::new().id_salt(name).max_rect(rect));
-        let across = move |axis: Axis<'_>, length| axis.across(&painter, length);
-        let upwards = |axis: Axis<'_>, length| axis.upwards(length);
         let mut plot = Plot::new(name)
             .custom_x_axes(vec![hints(ui, AxisHints::new_x(), x).min_thickness(axes::BOTTOM)])
             .custom_y_axes(vec![hints(ui, AxisHints::new_y(), y).min_thickness(left)])
-            .x_grid_spacer(move |input| marks(x, input, &across))
-            .y_grid_spacer(move |input| marks(y, input, &upwards))
+            .x_grid_spacer(move |input| marks(x, input, |axis, length| axis.across(&painter, length)))
+            .y_grid_spacer(move |input| marks(y, input, |axis, length| axis.upwards(length)))
             .grid_spacing(1.0..=2.0)
             .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color.gamma_multiply(0.6))
             .allow_zoom(is_zoomable)
             .allow_drag(is_zoomable)
+            .allow_double_click_reset(is_zoomable)
             .allow_scroll(false)
             .allow_boxed_zoom(false)
             .allow_axis_zoom_drag(false)
-            .allow_double_click_reset(is_zoomable)
-            .include_x(x.low)
-            .include_x(x.high)
-            .include_y(y.low)
-            .include_y(y.high)
             .set_margin_fraction(egui::Vec2::ZERO)
+            .min_size(vec2(20.0, 20.0))
             .show_x(false)
             .show_y(false)
-            .min_size(vec2(20.0, 20.0))
             .sense(sense);
         if has_one_scale {
             plot = plot.data_aspect(1.0);
+        }
+        for (x, y) in [(x.low, y.low), (x.high, y.high)] {
+            plot = plot.include_x(x).include_y(y);
         }
         let shown = plot.show(&mut inside, move |plot| {
             if !is_zoomable {
@@ -141,6 +122,29 @@ impl<'a> Chart<'a> {
         let rect = *transform.frame();
         let painter = ui.painter().with_clip_rect(rect.expand(1.0).intersect(ui.clip_rect()));
         Drawn { rect, response, transform, painter }
+    }
+
+    /// What labels and titles take left and right of the chart. Leaves out a title that has no room, and begins below the lowest label
+    /// where that would run into one of the other axis.
+    fn beside(&mut self, painter: &Painter, area: Rect) -> (f32, f32) {
+        let Chart { x, y, .. } = self;
+        let height = (area.height() - AROUND[0] - axes::BOTTOM).max(20.0);
+        if axes::width(painter, y.title) > height {
+            y.title = "";
+        }
+        let y_marks = y.upwards(height);
+        let labels = y_marks.iter().map(|t| axes::width(painter, &t.text)).fold(0.0, f32::max);
+        let left = labels + 8.0 + if y.title.is_empty() { 0.0 } else { TITLE[1] };
+        let width = (area.width() - TITLE[0] - left - AROUND[1]).max(20.0);
+        let x_marks = x.across(painter, width);
+        // What half a label reaches beyond a place, points.
+        let beyond = |t: &Tick, room: f32| axes::width(painter, &t.text) / 2.0 - room;
+        let right = x_marks.last().map_or(0.0, |t| beyond(t, (1.0 - x.part(t.value)) * width) + 1.0).max(AROUND[1]);
+        let is_crowded = x_marks.first().is_some_and(|t| beyond(t, x.part(t.value) * width) > 2.0);
+        if is_crowded && y_marks.first().is_some_and(|t| y.part(t.value) * height < 8.0) {
+            y.low -= f64::from(8.0 / height) * (y.high - y.low);
+        }
+        (left, right)
     }
 }
 
@@ -156,7 +160,7 @@ fn hints<'a>(ui: &Ui, hints: AxisHints<'a>, axis: Axis<'a>) -> AxisHints<'a> {
 }
 
 /// The marks of an axis of which a part is in sight.
-fn marks(axis: Axis<'_>, input: GridInput, of: &impl Fn(Axis<'_>, f32) -> Vec<Tick>) -> Vec<GridMark> {
+fn marks(axis: Axis<'_>, input: GridInput, of: impl Fn(Axis<'_>, f32) -> Vec<Tick>) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let ticks = of(Axis { low, high, ..axis }, ((high - low) / input.base_step_size) as f32);
     let step_size = ticks.windows(2).map(|w| w[1].value - w[0].value).fold(high - low, f64::min);

@@ -1,5 +1,6 @@
 //! Fields and menus behind their names, and how a number is shown.
 
+use super::entry::tipped;
 use super::number_field::NumberField;
 use eframe::egui::{ComboBox, Response, Ui, Widget, WidgetText};
 
@@ -7,11 +8,8 @@ use eframe::egui::{ComboBox, Response, Ui, Widget, WidgetText};
 pub fn labelled(ui: &mut Ui, name: impl Into<WidgetText>, tooltip: &str, widget: impl Widget) -> Response {
     let label = ui.label(name);
     let response = ui.add(widget).labelled_by(label.id);
-    if tooltip.is_empty() {
-        return response;
-    }
-    label.on_hover_text(tooltip);
-    response.on_hover_text(tooltip)
+    tipped(label, tooltip);
+    tipped(response, tooltip)
 }
 
 /// A menu behind its name, in which one of several values is chosen. `text` is what a value is called.
@@ -39,10 +37,7 @@ pub fn choice_told<T: PartialEq>(
         let menu = ComboBox::from_id_salt(name).selected_text(told(chosen).0).show_ui(ui, |ui| {
             for value in values {
                 let (text, tip) = told(&value);
-                let line = ui.selectable_value(chosen, value, text);
-                if !tip.is_empty() {
-                    line.on_hover_text(tip);
-                }
+                tipped(ui.selectable_value(chosen, value, text), tip);
             }
         });
         menu.response

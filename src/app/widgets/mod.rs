@@ -20,6 +20,7 @@ mod networks;
 pub mod nudge;
 pub mod number_field;
 pub mod numbers;
+pub mod padded;
 pub mod progress;
 #[cfg(test)]
 pub mod seen;

@@ -10,7 +10,7 @@ use crate::app::state::{Command, Cursor, CutMap, MapKind, PinnedCut, Units, View
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Span};
 use crate::app::widgets::direction::direction;
-use crate::app::widgets::entry::button;
+use crate::app::widgets::entry::{button, press};
 use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::levels::lowest_db;
 use crate::app::widgets::number_field::NumberField;
@@ -157,9 +157,7 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory, asked: &mut Vec
             let way = direction(pin.cursor.cos_theta, 1);
             let place = format!("{}: {:.2} m · {way}", index + 1, pin.cursor.range_metres);
             let tip = "A cut that stays, drawn thin; click to let it go";
-            if ui.button(format!("Unpin {place}")).on_hover_text(tip).clicked() {
-                asked.push(ViewCommand::Unpin(index).into());
-            }
+            press(ui, format!("Unpin {place}"), tip, || ViewCommand::Unpin(index), asked);
         }
         ui.add_space(6.0);
         marks(ui, input, memory);

@@ -1,6 +1,7 @@
 //! Elements from a list that was pasted, and a bent line.
 
 use crate::app::state::{Command, RadarCommand};
+use crate::app::widgets::entry::press;
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
 use crate::radar::{BuiltArray, Radar};
@@ -42,9 +43,13 @@ pub(super) fn show(
         match BuiltArray::from_list(&memory.text, radar.elements) {
             _ if memory.text.trim().is_empty() => {}
             Ok(elements) => {
-                if ui.button("Use the list").on_hover_text("Replace all elements; undo brings them back").clicked() {
-                    asked.push(RadarCommand::SetElements(Arc::new(elements)).into());
-                }
+                press(
+                    ui,
+                    "Use the list",
+                    "Replace all elements; undo brings them back",
+                    || RadarCommand::SetElements(Arc::new(elements)),
+                    asked,
+                );
             }
             Err(error) => _ = ui.colored_label(ui.visuals().error_fg_color, error.to_string()),
         }

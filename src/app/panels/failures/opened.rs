@@ -2,6 +2,7 @@
 
 use super::input::{Input, Live, Now, Searched};
 use crate::app::state::{Command, RowsCommand, SearchChoice};
+use crate::app::widgets::entry::press;
 use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::percent;
@@ -116,12 +117,14 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut OpenedMemory, asked
         ui.colored_label(ui.visuals().warn_fg_color, note);
     }
     if searched.progress.is_none() && searched.has_found {
-        if ui.button("Show").on_hover_text("Put what was found on screen; undo brings this scene back").clicked() {
-            asked.push(RowsCommand::TakeFinding.into());
-        }
-        if ui.button("Forget").on_hover_text("Forget the search; its path is no longer drawn").clicked() {
-            asked.push(RowsCommand::ForgetSearch.into());
-        }
+        press(
+            ui,
+            "Show",
+            "Put what was found on screen; undo brings this scene back",
+            || RowsCommand::TakeFinding,
+            asked,
+        );
+        press(ui, "Forget", "Forget the search; its path is no longer drawn", || RowsCommand::ForgetSearch, asked);
     }
 }
 
