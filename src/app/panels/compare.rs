@@ -210,7 +210,6 @@ fn method(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui;
     use crate::app::state::EditCommand;
     use crate::app::state::Projection;
     use crate::app::widgets::seen;
@@ -218,6 +217,7 @@ mod tests {
     use crate::radar::Radar;
     use crate::reconstruct::{Baseline, CAPON, Reconstructor};
     use crate::scene::Scene;
+    use eframe::egui;
     use eframe::egui::accesskit::Role;
     use eframe::egui::{Key, TextureId};
     use egui_kittest::Harness;

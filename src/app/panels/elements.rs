@@ -224,9 +224,9 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui;
     use crate::scene::Reflector;
     use crate::signal::{Floor, calibrate, simulate_built};
+    use eframe::egui;
     use eframe::egui::{Key, pos2, vec2};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
