@@ -7,6 +7,7 @@ use crate::app::state::{
     ViewCommand, WindowCommand,
 };
 use crate::app::widgets::entry::{arrange, button, entry, entry_called, ticked, tooltip};
+use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
 use crate::interact::Document;
 use crate::picture::ColourMap;
@@ -249,13 +250,10 @@ fn random_scenes(ui: &mut Ui, random: (u64, u32), asked: &mut Vec<Command>) {
     ui.separator();
     ui.horizontal(|ui| {
         let (mut seed, mut number) = random;
-        let label = ui.label("Next: seed");
         let tip =
             "The same kind, seed and number always give the same scene: that of the tables and of the command line";
-        let seeds = ui.add(NumberField::new(&mut seed).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
-        let label = ui.label("number");
-        let tip = "It rises by one each time";
-        let numbers = ui.add(NumberField::new(&mut number).speed(0.05)).labelled_by(label.id).on_hover_text(tip);
+        let seeds = labelled(ui, "Next: seed", tip, NumberField::new(&mut seed).speed(0.05));
+        let numbers = labelled(ui, "number", "It rises by one each time", NumberField::new(&mut number).speed(0.05));
         if seeds.changed() || numbers.changed() {
             asked.push(DocumentCommand::SetNextRandom { seed, number }.into());
         }

@@ -9,15 +9,17 @@ use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::direction::direction;
+use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::significant;
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
 use crate::bounds::PositionBound;
 use crate::picture::ColourMap;
 use crate::radar::{Layout, Radar};
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, Grid, Pos2, Rect, Sense, Stroke, TextureOptions, Ui, pos2, vec2};
+use eframe::egui::{Grid, Sense, Stroke, TextureOptions, Ui, vec2};
 use ellipse::ellipse;
 
 /// What is chosen, and what came of it.
@@ -64,12 +66,11 @@ impl Content for BoundsPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut BoundsMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
     if !input.has_subject {
         ui.centered_and_justified(|ui| ui.weak("Place a reflector ahead of the array to see its bounds."));
-        return asked;
+        return Vec::new();
     }
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         let mut settings = input.settings;
         choices(ui, &mut settings, input.elements);
         if settings != input.settings {
@@ -98,33 +99,24 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut BoundsMemory) -> Vec<Com
             ui.allocate_ui(vec2(size.x, 0.44 * size.y), |ui| picture(ui, result, texture));
             bound(ui, result);
         }
-    });
-    asked
+    })
 }
 
 fn choices(ui: &mut Ui, settings: &mut BoundsSettings, most: usize) {
     ui.horizontal_wrapped(|ui| {
-        let label = ui.label("Seen by").on_hover_text("Which elements listen");
-        let combo = ComboBox::from_id_salt("elements").selected_text(settings.elements.name()).show_ui(ui, |ui| {
-            let count = if let Elements::Random(count) = settings.elements { count } else { 24 };
-            for choice in [Elements::TwoEnds, Elements::OneEnd, Elements::Random(count), Elements::Mimo, Elements::All]
-            {
-                ui.selectable_value(&mut settings.elements, choice, choice.name());
-            }
-        });
-        combo.response.labelled_by(label.id);
+        let count = if let Elements::Random(count) = settings.elements { count } else { 24 };
+        let offered = [Elements::TwoEnds, Elements::OneEnd, Elements::Random(count), Elements::Mimo, Elements::All];
+        choice(ui, "Seen by", "Which elements listen", &mut settings.elements, offered, |e| e.name().to_owned());
         if let Elements::Random(count) = &mut settings.elements {
             ui.add(NumberField::new(count).range(2..=most).suffix(" of them")).on_hover_text("How many elements");
-            let label = ui.label("seed");
-            ui.add(NumberField::new(&mut settings.seed).speed(0.05)).labelled_by(label.id);
+            labelled(ui, "seed", "", NumberField::new(&mut settings.seed).speed(0.05));
         }
-        let label = ui.label("SNR").on_hover_text("Of one sample, averaged over the elements");
-        ui.add(NumberField::new(&mut settings.snr.0).range(-40.0..=120.0).speed(0.5).suffix(" dB"))
-            .labelled_by(label.id);
-        let label = ui.label("±").on_hover_text("What the picture spans around the reflector");
-        ui.add(NumberField::new(&mut settings.columns).range(1.0..=512.0).speed(0.2).suffix(" columns"))
-            .labelled_by(label.id);
-        ui.add(NumberField::new(&mut settings.bins).range(0.5..=64.0).speed(0.1).suffix(" bins")).labelled_by(label.id);
+        let snr = NumberField::new(&mut settings.snr.0).range(-40.0..=120.0).speed(0.5).suffix(" dB");
+        labelled(ui, "SNR", "Of one sample, averaged over the elements", snr);
+        let columns = NumberField::new(&mut settings.columns).range(1.0..=512.0).speed(0.2).suffix(" columns");
+        let columns = labelled(ui, "±", "What the picture spans around the reflector", columns);
+        let bins = NumberField::new(&mut settings.bins).range(0.5..=64.0).speed(0.1).suffix(" bins");
+        ui.add(bins).labelled_by(columns.id);
     });
 }
 
@@ -152,11 +144,10 @@ fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
     let bar = Bar::new(colour_table(ColourMap::Viridis), 0.0, 1.0, "likeness");
     let right = axes::RIGHT;
     let x = Axis::new(-half[0], half[0], "cos θ off, columns");
-    let chart = Chart { name: "Ambiguity function", x, y: Axis::new(-half[1], half[1], "range off, m") };
+    let mut chart = Chart::new("Ambiguity function", x, Axis::new(-half[1], half[1], "range off, m"));
+    chart.image(texture, half.map(|half| -half), half);
     let map = area.with_max_x(area.right() - right + 12.0);
     let drawn = chart.show(ui, map, Sense::hover());
-    let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-    drawn.painter().image(texture, drawn.rect, whole, Color32::WHITE);
     let cross = drawn.at([0.0, 0.0]);
     for (width, colour) in [(3.0, theme::MARK_EDGE), (1.4, theme::MARK)] {
         for corner in [vec2(5.0, 5.0), vec2(5.0, -5.0)] {
@@ -164,9 +155,7 @@ fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
         }
     }
     bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
-    let Some(pos) = drawn.response.hover_pos() else { return };
-    let said = likeness_at(result, half, drawn.x_at(pos), drawn.y_at(pos));
-    drawn.response.on_hover_text_at_pointer(said);
+    drawn.tell(|[columns, metres]| Some(likeness_at(result, half, columns, metres)));
 }
 
 /// What is told of a place, columns and metres from the reflector.

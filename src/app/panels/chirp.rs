@@ -14,6 +14,7 @@ use crate::radar::{Carrier, Radar};
 use crate::scene::Scene;
 use crate::theory::chirp::{BeatTone, ChirpShape, delay_seconds, heard};
 use eframe::egui::{self, Color32, CursorIcon, FontId, Rect, Sense, Stroke, Ui, vec2};
+use egui_plot::{LineStyle, PlotPoints, Points};
 
 /// The part of the chirp that the delay from the farthest range is drawn as, where delays are shorter.
 const DRAWN_DELAY: f64 = 0.25;
@@ -175,16 +176,12 @@ impl Shown<'_> {
         let (microseconds, giga) = (1e6 * chirp.duration_seconds, chirp.bandwidth_hz / 1e9);
         let title = format!("GHz above {:.4} GHz", chirp.start_hz / 1e9);
         let x = Axis::new(-0.05 * microseconds, 1.25 * microseconds, "time, µs");
-        let drawn = Chart { name: "Frequency against time", x, y: Axis::new(-0.08 * giga, 1.12 * giga, &title) }.show(
-            ui,
-            area,
-            Sense::hover(),
-        );
+        let mut chart = Chart::new("Frequency against time", x, Axis::new(-0.08 * giga, 1.12 * giga, &title));
         let stroke = Stroke::new(1.2, inks.ends[0].gamma_multiply(0.9));
         let mut beats: Vec<(usize, [f64; 2])> = Vec::new();
         for echo in self.echoes {
             let late = 1e6 * self.stretch * delay_seconds(echo.range_metres);
-            drawn.line([[late, 0.0], [late + microseconds, giga]], stroke, None);
+            chart.line([[late, 0.0], [late + microseconds, giga]], stroke, LineStyle::Solid);
             let beat = self.chirp.beat_hz(echo.range_metres) / 1e6;
             match beats.iter_mut().find(|(object, _)| *object == echo.object) {
                 Some((_, [low, high])) => (*low, *high) = (low.min(beat), high.max(beat)),
@@ -192,13 +189,12 @@ impl Shown<'_> {
                     if let Some(part) = LABEL_PLACES.get(beats.len()) {
                         let time = late + part * (microseconds - late).max(0.0);
                         let [sent, returned] = [time, time - late].map(|t| giga * t / microseconds);
-                        drawn.line([[time, returned], [time, sent]], stroke, Some([2.0, 2.0]));
+                        chart.line([[time, returned], [time, sent]], stroke, LineStyle::Dashed { length: 2.5 });
                     }
                     beats.push((echo.object, [beat, beat]));
                 }
             }
         }
-        self.tell(&drawn, &beats, stroke.color);
         if let Some(interferer) = self.input.scene.disturbances.interferer.filter(|_| !self.input.is_recorded) {
             let at = |part: f64| {
                 let seconds = part * chirp.duration_seconds;
@@ -207,14 +203,16 @@ impl Shown<'_> {
                     (chirp.sent_hz(seconds) - chirp.start_hz + chirp.interferer_above_hz(&interferer, seconds)) / 1e9,
                 ]
             };
-            drawn.line([at(0.0), at(1.25)], Stroke::new(1.6, inks.ends[1]), Some([6.0, 3.0]));
+            chart.line([at(0.0), at(1.25)], Stroke::new(1.6, inks.ends[1]), LineStyle::dashed_dense());
         }
-        drawn.line([[0.0, 0.0], [microseconds, giga]], Stroke::new(2.2, inks.selected), None);
+        chart.line([[0.0, 0.0], [microseconds, giga]], Stroke::new(2.2, inks.selected), LineStyle::Solid);
+        let drawn = chart.show(ui, area, Sense::hover());
+        self.tell(&drawn, &beats, stroke.color);
         self.handles(ui, &drawn, [microseconds, giga], asked);
     }
 
     /// The beats of each object in megahertz, above the lines: as many as have room there.
-    fn tell(&self, drawn: &Drawn<'_>, beats: &[(usize, [f64; 2])], ink: Color32) {
+    fn tell(&self, drawn: &Drawn, beats: &[(usize, [f64; 2])], ink: Color32) {
         let mut at = drawn.rect.left_top() + vec2(6.0, 3.0);
         for (object, [low, high]) in beats {
             let numbers = if high - low < 0.005 { format!("{low:.2}") } else { format!("{low:.2} to {high:.2}") };
@@ -231,7 +229,7 @@ impl Shown<'_> {
     }
 
     /// Both ends of what is sent are dragged: the beginning up and down for the carrier, the end for bandwidth and duration.
-    fn handles(&self, ui: &mut Ui, drawn: &Drawn<'_>, [microseconds, giga]: [f64; 2], asked: &mut Vec<Command>) {
+    fn handles(&self, ui: &mut Ui, drawn: &Drawn, [microseconds, giga]: [f64; 2], asked: &mut Vec<Command>) {
         let settings = self.input.settings;
         let mut radar = self.input.radar.clone();
         let size = vec2(6.0 * HANDLE, 6.0 * HANDLE);
@@ -274,13 +272,15 @@ impl Shown<'_> {
         let count = result.samples.len() as f64;
         let title = format!("beat of element {}, real part", result.element);
         let x = Axis::new(-0.05 * count, 1.25 * count, "sample");
-        let drawn = Chart { name: "Beat", x, y: Axis::new(-1.1, 1.1, &title) }.show(ui, area, Sense::hover());
+        let mut chart = Chart::new("Beat", x, Axis::new(-1.1, 1.1, &title));
         let points = || result.samples.iter().enumerate().map(|(k, s)| [k as f64, s.re / most]);
-        drawn.line(points(), Stroke::new(1.0, inks.grid_text), None);
+        chart.line(points(), Stroke::new(1.0, inks.grid_text), LineStyle::Solid);
         // Where samples stand closer than their dots, dots would be a band.
-        if f64::from(drawn.rect.width()) > 1.5 * count {
-            points().for_each(|point| drawn.dot(point, 1.6, inks.ends[0]));
+        if f64::from(area.width()) > 2.0 * count {
+            let dots: PlotPoints<'static> = points().collect();
+            chart.add(Points::new("", dots).radius(1.6).color(inks.ends[0]));
         }
+        chart.show(ui, area, Sense::hover());
     }
 
     /// Decibels of every range bin, and where the formulas have each echo.
@@ -291,22 +291,21 @@ impl Shown<'_> {
         let titles = ["range bin: turns of the beat in a chirp", "range bin"];
         let title = axes::fitting(ui.painter(), area.width() - 70.0, &titles);
         let (x, y) = (Axis::new(-0.5, bins - 0.5, title), Axis::new(-SPECTRUM_DB, 5.0, "dB"));
-        let drawn = Chart { name: "Spectrum of the beat", x, y }.show(ui, area, Sense::hover());
+        let mut chart = Chart::new("Spectrum of the beat", x, y);
         for echo in self.echoes {
             let bin = self.chirp.range_bin(self.chirp.beat_hz(echo.range_metres));
-            drawn.upright(bin, Stroke::new(1.0, inks.ends[0].gamma_multiply(0.5)));
+            chart.upright(bin, Stroke::new(1.0, inks.ends[0].gamma_multiply(0.5)));
         }
         let decibels = |amplitude: &f64| (20.0 * (amplitude / peak).log10()).max(-2.0 * SPECTRUM_DB);
         let points = result.spectrum.iter().enumerate().map(|(bin, v)| [bin as f64, decibels(v)]);
-        drawn.line(points, Stroke::new(1.5, inks.selected), None);
-        if let Some(pos) = drawn.response.hover_pos() {
-            let bin = drawn.x_at(pos).round().clamp(0.0, bins - 1.0);
+        chart.line(points, Stroke::new(1.5, inks.selected), LineStyle::Solid);
+        chart.show(ui, area, Sense::hover()).tell(|[bin, _]| {
+            let bin = bin.round().clamp(0.0, bins - 1.0);
             let level = result.spectrum.get(bin as usize).map_or(-SPECTRUM_DB, decibels);
             let beat = bin / self.chirp.duration_seconds / 1e6;
             let range = self.input.radar.range_of_bin_metres(bin);
-            let told = format!("range bin {bin:.0}: {range:.2} m, beat {beat:.3} MHz\n{level:.1} dB");
-            drawn.response.on_hover_text_at_pointer(told);
-        }
+            Some(format!("range bin {bin:.0}: {range:.2} m, beat {beat:.3} MHz\n{level:.1} dB"))
+        });
     }
 }
 

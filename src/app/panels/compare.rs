@@ -6,10 +6,11 @@ use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::{Jobs, Wants};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView, MethodSlot, State, ViewCommand, WorkCommand};
 use crate::app::widgets::entry::button;
+use crate::app::widgets::labelled::{choice_told, labelled};
 use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
 use crate::app::widgets::numbers::percent;
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::progress::progress;
-use eframe::egui;
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 
 /// A map, and what stands above it.
@@ -103,9 +104,8 @@ fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map::HandMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(6, 4)).show(ui, |ui| {
-        choices(ui, &input, &mut asked);
+    padded(ui, |ui, asked| {
+        choices(ui, &input, asked);
         let area = ui.available_rect_before_wrap();
         let Input { compare, maps, .. } = input;
         let places = match compare.layout {
@@ -131,8 +131,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map:
                 asked.extend(map::show(ui, map, view, memory));
             });
         }
-    });
-    asked
+    })
 }
 
 /// Two columns of maps, as many rows as it takes.
@@ -174,7 +173,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         }
         if compare.layout != Layout::Beside {
             for (label, map) in ["of", "and"].into_iter().zip(&mut compare.maps) {
-                choose_map(ui, label, map);
+                choice_told(ui, label, "", map, Compare::OFFERED, |kind| (kind.title().to_owned(), kind.describe()));
             }
         }
         button(ui, "Flip maps", ViewCommand::Flip, true, asked);
@@ -203,20 +202,9 @@ fn method(
     choose: impl Fn(&'static str) -> Command,
     asked: &mut Vec<Command>,
 ) {
-    let label = ui.label(label);
-    let combo = ComboBox::from_id_salt(("method", label.id)).width(100.0).height(LIST_HEIGHT).selected_text(chosen);
-    let combo = combo.show_ui(ui, |ui| method_list(ui, methods, chosen, choose, asked));
-    combo.response.labelled_by(label.id);
-}
-
-fn choose_map(ui: &mut Ui, label: &str, map: &mut MapKind) {
-    let label = ui.label(label);
-    let combo = ComboBox::from_id_salt(("map", label.id)).width(110.0).selected_text(map.title()).show_ui(ui, |ui| {
-        for kind in Compare::OFFERED {
-            ui.selectable_value(map, kind, kind.title()).on_hover_text(kind.describe());
-        }
-    });
-    combo.response.labelled_by(label.id);
+    let combo = ComboBox::from_id_salt(label).width(100.0).height(LIST_HEIGHT).selected_text(chosen);
+    let list = |ui: &mut Ui| combo.show_ui(ui, |ui| method_list(ui, methods, chosen, choose, asked)).response;
+    labelled(ui, label, "", list);
 }
 
 #[cfg(test)]
@@ -229,6 +217,7 @@ mod tests {
     use crate::radar::Radar;
     use crate::reconstruct::{Baseline, CAPON, Reconstructor};
     use crate::scene::Scene;
+    use eframe::egui;
     use eframe::egui::accesskit::Role;
     use eframe::egui::{Key, TextureId};
     use egui_kittest::Harness;

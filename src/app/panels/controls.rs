@@ -15,6 +15,7 @@ use crate::app::widgets::levels::{level, with_unit};
 use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::percent;
+use crate::app::widgets::padded::scrolled;
 use crate::app::widgets::progress::progress;
 use crate::app::widgets::setting_row::{group, row};
 use crate::evaluate::eta_text;
@@ -22,7 +23,7 @@ use crate::lesson::Uses;
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
 use eframe::egui;
-use eframe::egui::{ComboBox, Grid, ScrollArea, Slider, SliderClamping, Ui};
+use eframe::egui::{ComboBox, Grid, Slider, SliderClamping, Ui};
 use std::time::Duration;
 
 /// Between one figure and the next, points.
@@ -112,22 +113,18 @@ impl Content for ControlsPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut FalseAlarmsMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
     let settings = input.settings;
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            if input.uses.output {
-                group(ui, "Reconstruction", |ui| reconstruction(ui, &input, memory, &mut asked));
-            } else if input.uses.threshold {
-                group(ui, "Threshold", |ui| thresholds(ui, &input, None, memory, &mut asked));
-            }
-            group(ui, "Maps", |ui| {
-                maps::show(ui, input.is_recorded, settings, input.radar, input.noise_seed, &mut asked);
-            });
-            group(ui, "Display", |ui| display::show(ui, settings, input.uses, &mut asked));
+    scrolled(ui, |ui, asked| {
+        if input.uses.output {
+            group(ui, "Reconstruction", |ui| reconstruction(ui, &input, memory, asked));
+        } else if input.uses.threshold {
+            group(ui, "Threshold", |ui| thresholds(ui, &input, None, memory, asked));
+        }
+        group(ui, "Maps", |ui| {
+            maps::show(ui, input.is_recorded, settings, input.radar, input.noise_seed, asked);
         });
-    });
-    asked
+        group(ui, "Display", |ui| display::show(ui, settings, input.uses, asked));
+    })
 }
 
 fn reconstruction(ui: &mut Ui, input: &Input<'_>, memory: &mut FalseAlarmsMemory, asked: &mut Vec<Command>) {

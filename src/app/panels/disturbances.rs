@@ -2,11 +2,11 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
-use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::labelled::{Quantity, labelled};
+use crate::app::widgets::padded::scrolled;
 use crate::radar::Radar;
 use crate::scene::{Disturbances, Interferer, Mirror};
-use eframe::egui;
-use eframe::egui::{Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, Ui};
 
 /// What is shown.
 pub struct Input<'a> {
@@ -34,50 +34,32 @@ impl Content for DisturbancesPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            if input.is_recorded {
-                ui.weak("A recording has the disturbances that it was made with.");
-                return;
-            }
-            interferer(ui, &input, &mut asked);
-            ui.add_space(8.0);
-            mirror(ui, input.disturbances.mirror, &mut asked);
-        });
-    });
-    asked
+    scrolled(ui, |ui, asked| {
+        if input.is_recorded {
+            ui.weak("A recording has the disturbances that it was made with.");
+            return;
+        }
+        interferer(ui, &input, asked);
+        ui.add_space(8.0);
+        mirror(ui, input.disturbances.mirror, asked);
+    })
 }
 
-/// How a number is shown and edited.
-struct Field {
-    name: &'static str,
-    tooltip: &'static str,
-    unit: &'static str,
-    /// What the number is multiplied with on screen.
-    scale: f64,
-    low: f64,
-    high: f64,
-    speed: f64,
+fn metres(name: &'static str, tooltip: &'static str) -> Quantity {
+    Quantity::metres(name, tooltip).with(" m", [-1e4, 1e4], 0.05, 4)
 }
 
-const fn metres(name: &'static str, tooltip: &'static str) -> Field {
-    Field { name, tooltip, unit: " m", scale: 1.0, low: -1e4, high: 1e4, speed: 0.05 }
+fn percent(name: &'static str, tooltip: &'static str, low: f64, high: f64) -> Quantity {
+    metres(name, tooltip).with(" %", [low, high], 0.5, 4)
 }
 
-fn number(ui: &mut Ui, field: &Field, value: &mut f64) {
-    let label = ui.label(field.name).on_hover_text(field.tooltip);
-    let mut shown = *value * field.scale;
-    let drag = NumberField::new(&mut shown)
-        .range(field.low..=field.high)
-        .clamp_existing_to_range(false)
-        .speed(field.speed)
-        .max_decimals(4)
-        .suffix(field.unit);
-    if ui.add(drag).labelled_by(label.id).on_hover_text(field.tooltip).changed()
-        && (shown - *value * field.scale).abs() >= 0.5e-4
-    {
-        *value = shown / field.scale;
+/// A row: the name, the number. Percents are parts of 1 in `value`.
+fn number(ui: &mut Ui, quantity: Quantity, value: &mut f64) {
+    let scale = if quantity.unit == " %" { 100.0 } else { 1.0 };
+    let mut shown = *value * scale;
+    let response = labelled(ui, quantity.name, quantity.tooltip, quantity.field(&mut shown));
+    if response.changed() && (shown - *value * scale).abs() >= 0.5e-4 {
+        *value = shown / scale;
     }
     ui.end_row();
 }
@@ -92,17 +74,15 @@ fn interferer(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     }
     let Some(now) = now else { return };
     let mut edited = now;
-    let percent = |name, tooltip, low| Field { name, tooltip, unit: " %", scale: 100.0, low, high: 200.0, speed: 0.5 };
     Grid::new("interferer").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
-        number(ui, &metres("interferer's x", "Position along the array's axis"), &mut edited.x_metres);
-        number(ui, &metres("interferer's y", "Position ahead of the array"), &mut edited.y_metres);
+        number(ui, metres("interferer's x", "Position along the array's axis"), &mut edited.x_metres);
+        number(ui, metres("interferer's y", "Position ahead of the array"), &mut edited.y_metres);
         let tooltip = "Its amplitude at 1 m, in units of the radar's power; a reflector of reflectivity 1 at 1 m has 1";
-        let field = Field { name: "strength", tooltip, unit: "", scale: 1.0, low: 0.0, high: 1e3, speed: 0.005 };
-        number(ui, &field, &mut edited.strength);
+        number(ui, metres("strength", tooltip).with("", [0.0, 1e3], 0.005, 4), &mut edited.strength);
         let tooltip = "When its frequency crosses ours, as a part of the chirp";
-        number(ui, &percent("crossing time (% of chirp)", tooltip, -100.0), &mut edited.crossing);
+        number(ui, percent("crossing time (% of chirp)", tooltip, -100.0, 200.0), &mut edited.crossing);
         let tooltip = "For which part of the chirp it is received: the steeper its chirp relative to ours, the shorter";
-        number(ui, &percent("duration (% of chirp)", tooltip, 0.1), &mut edited.duration);
+        number(ui, percent("duration (% of chirp)", tooltip, 0.1, 200.0), &mut edited.duration);
     });
     if edited != now {
         asked.push(RadarCommand::SetInterferer(Some(edited)).into());
@@ -119,19 +99,17 @@ fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
     let Some(now) = now else { return };
     let mut edited = now;
     Grid::new("mirror").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
-        number(ui, &metres("mirror's x", "Of a point of the wall"), &mut edited.x_metres);
-        number(ui, &metres("mirror's y", "Of the same point"), &mut edited.y_metres);
+        number(ui, metres("mirror's x", "Of a point of the wall"), &mut edited.x_metres);
+        number(ui, metres("mirror's y", "Of the same point"), &mut edited.y_metres);
         let tooltip = "Where the wall leads: 0° straight ahead, 90° along the array to the right";
-        let field = Field { name: "direction", tooltip, unit: "°", scale: 1.0, low: -360.0, high: 360.0, speed: 0.5 };
         let before = 90.0 - now.direction_degrees;
         let mut leads = before;
-        number(ui, &field, &mut leads);
+        number(ui, metres("direction", tooltip).with("°", [-360.0, 360.0], 0.5, 4), &mut leads);
         if leads != before {
             edited.direction_degrees = 90.0 - leads;
         }
         let tooltip = "Part of an amplitude that the wall reflects; a ghost over it both ways has the square of it";
-        let field = Field { name: "reflection", tooltip, unit: " %", scale: 100.0, low: 0.0, high: 100.0, speed: 0.5 };
-        number(ui, &field, &mut edited.reflection);
+        number(ui, percent("reflection", tooltip, 0.0, 100.0), &mut edited.reflection);
     });
     if edited != now {
         asked.push(RadarCommand::SetMirror(Some(edited)).into());
@@ -141,6 +119,7 @@ fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use eframe::egui;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 

@@ -7,7 +7,10 @@ use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::colour_bar::Bar;
+use crate::app::widgets::entry::{press, tick};
+use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
 use crate::maps::Normalisation;
@@ -15,7 +18,8 @@ use crate::picture::ColourMap;
 use crate::radar::{MAX_CHIRPS, Radar};
 use crate::scene::Scene;
 use crate::theory::doppler::{DopplerBlob, folded};
-use eframe::egui::{self, Color32, Pos2, Rect, Sense, Slider, Stroke, TextureOptions, Ui, pos2, vec2};
+use eframe::egui::{self, Rect, Sense, Slider, Stroke, TextureOptions, Ui, vec2};
+use egui_plot::{LineStyle, VLine};
 
 /// Chirps that the button of an empty map asks for.
 const FIRST_CHIRPS: usize = 128;
@@ -91,15 +95,14 @@ impl Content for DopplerPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
-        chirps(ui, &input, &mut asked);
+    padded(ui, |ui, asked| {
+        chirps(ui, &input, asked);
         match (input.frames, input.is_recorded) {
-            (Some(frames), _) => frames_played(ui, &input, frames, &mut asked),
+            (Some(frames), _) => frames_played(ui, &input, frames, asked),
             (None, true) => {}
-            (None, false) => timeline(ui, &input, &mut asked),
+            (None, false) => timeline(ui, &input, asked),
         }
-        said(ui, &input, &mut asked);
+        said(ui, &input, asked);
         match input.result {
             _ if !input.is_recorded && input.radar.chirps < 2 => {}
             None if input.is_recorded => {}
@@ -110,8 +113,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Co
                 map(ui, &input, result, texture);
             }
         }
-    });
-    asked
+    })
 }
 
 /// How many chirps, how far apart, and what follows.
@@ -119,16 +121,15 @@ fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let mut radar = input.radar.clone();
     ui.add_enabled_ui(!input.is_recorded, |ui| {
         ui.horizontal_wrapped(|ui| {
-            let label = ui.label("Chirps").on_hover_text("Chirps that are sent one after another: columns of the map");
-            ui.add(NumberField::new(&mut radar.chirps).range(1..=MAX_CHIRPS).speed(0.5)).labelled_by(label.id);
+            let count = NumberField::new(&mut radar.chirps).range(1..=MAX_CHIRPS).speed(0.5);
+            labelled(ui, "Chirps", "Chirps that are sent one after another: columns of the map", count);
             let tooltip =
                 "From the beginning of a chirp to that of the next. Half as long makes twice the velocity unambiguous.";
-            let label = ui.label("Interval").on_hover_text(tooltip);
             let mut microseconds = 1e6 * radar.chirp_interval_seconds;
             let least = 1e6 * radar.chirp_seconds;
             let most = MOST_INTERVAL_MICROSECONDS.max(least);
             let field = NumberField::new(&mut microseconds).range(least..=most).speed(0.05).suffix(" µs");
-            if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
+            if labelled(ui, "Interval", tooltip, field).changed() {
                 radar.chirp_interval_seconds = (1e-6 * microseconds).max(radar.chirp_seconds);
             }
         });
@@ -155,15 +156,17 @@ fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.add_enabled_ui(input.scene.is_moving(), |ui| {
         ui.horizontal_wrapped(|ui| {
             let label = if input.is_playing { "Pause" } else { "Play" };
-            if ui.button(label).on_hover_text("Let every object move by its velocity; all maps follow").clicked() {
-                asked.push(ViewCommand::TogglePlay.into());
-            }
+            press(
+                ui,
+                label,
+                "Let every object move by its velocity; all maps follow",
+                || ViewCommand::TogglePlay,
+                asked,
+            );
             let mut seconds = input.seconds;
             let slider = Slider::new(&mut seconds, 0.0..=TIMELINE_SECONDS).fixed_decimals(2).suffix(" s");
-            let label = ui.label("Time");
             let tooltip = "Time at which the scene is looked at; its file has time 0";
-            let response = ui.add(slider).labelled_by(label.id).on_hover_text(tooltip);
-            if response.changed() {
+            if labelled(ui, "Time", tooltip, slider).changed() {
                 asked.push(ViewCommand::SetTime(seconds).into());
             }
             if input.seconds > 0.0 && ui.button("Back to 0 s").clicked() {
@@ -177,13 +180,17 @@ fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 fn frames_played(ui: &mut Ui, input: &Input<'_>, [frame, count]: [u64; 2], asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let label = if input.is_playing { "Pause" } else { "Play" };
-        if ui.button(label).on_hover_text("Show one frame after another; all maps and methods follow").clicked() {
-            asked.push(ViewCommand::TogglePlay.into());
-        }
+        press(
+            ui,
+            label,
+            "Show one frame after another; all maps and methods follow",
+            || ViewCommand::TogglePlay,
+            asked,
+        );
         let mut chosen = frame;
-        let label = ui.label(format!("Frame of {count}")).on_hover_text("Which frame of the file all maps show");
-        let slider = ui.add(Slider::new(&mut chosen, 0..=count - 1)).labelled_by(label.id);
-        if slider.changed() && chosen != frame {
+        let slider = Slider::new(&mut chosen, 0..=count - 1);
+        let tooltip = "Which frame of the file all maps show";
+        if labelled(ui, format!("Frame of {count}"), tooltip, slider).changed() && chosen != frame {
             asked.push(DocumentCommand::ReadAnotherWay(Way::Frame(chosen)).into());
         }
     });
@@ -200,10 +207,10 @@ fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             Some(_) => "The loops of the recording's frame.",
         };
         ui.weak(text);
-        let mut is_out = input.static_clutter_out;
         let tooltip = "The mean over the loops, which holds all that stands still";
-        if input.result.is_some() && ui.checkbox(&mut is_out, "Static clutter out").on_hover_text(tooltip).changed() {
-            asked.push(ViewCommand::TakeOutStaticClutter(is_out).into());
+        if input.result.is_some() {
+            let out = input.static_clutter_out;
+            tick(ui, out, "Static clutter out", tooltip, ViewCommand::TakeOutStaticClutter, asked);
         }
     } else if input.radar.chirps < 2 {
         ui.horizontal_wrapped(|ui| {
@@ -235,16 +242,14 @@ fn map(ui: &mut Ui, input: &Input<'_>, result: &DopplerResult, texture: egui::Te
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
     let x = Axis::new(velocities[0] - beyond, velocities[1] + beyond, "radial velocity, m/s");
-    let chart = Chart { name: "Range-Doppler map", x, y: Axis::new(ranges[0], ranges[1], "range, m") };
-    let drawn = chart.show(ui, area.with_max_x(area.right() - axes::RIGHT + 12.0), Sense::hover());
-    let corners = Rect::from_two_pos(drawn.at([velocities[0], ranges[0]]), drawn.at([velocities[1], ranges[1]]));
-    let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-    drawn.painter().image(texture, corners, whole, Color32::WHITE);
+    let mut chart = Chart::new("Range-Doppler map", x, Axis::new(ranges[0], ranges[1], "range, m"));
+    chart.image(texture, [velocities[0], ranges[0]], [velocities[1], ranges[1]]);
     let most = radar.unambiguous_velocity_metres_per_second();
     let stroke = Stroke::new(1.2, ui.visuals().warn_fg_color);
     for edge in [-most, most] {
-        drawn.line([[edge, ranges[0]], [edge, ranges[1]]], stroke, Some([6.0, 4.0]));
+        chart.add(VLine::new("", edge).stroke(stroke).style(LineStyle::dashed_dense()));
     }
+    let drawn = chart.show(ui, area.with_max_x(area.right() - axes::RIGHT + 12.0), Sense::hover());
     if input.marks {
         marks(ui, input, &drawn, radar);
     }
@@ -254,14 +259,11 @@ fn map(ui: &mut Ui, input: &Input<'_>, result: &DopplerResult, texture: egui::Te
     };
     let bar = Bar::new(colour_table(input.colours), low, high, title);
     bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
-    let Some(pos) = drawn.response.hover_pos() else { return };
-    if let Some(told) = told(result, drawn.x_at(pos), drawn.y_at(pos)) {
-        drawn.response.on_hover_text_at_pointer(told);
-    }
+    drawn.tell(|[velocity, range]| told(result, velocity, range));
 }
 
 /// A ring where the formulas have each object; dashed where its velocity folds.
-fn marks(ui: &Ui, input: &Input<'_>, drawn: &Drawn<'_>, radar: &Radar) {
+fn marks(ui: &Ui, input: &Input<'_>, drawn: &Drawn, radar: &Radar) {
     for (index, object) in input.scene.objects.iter().take(MARKS).enumerate() {
         let blob = DopplerBlob::of(radar, object);
         let at = drawn.at([blob.apparent_velocity_metres_per_second, blob.apparent_range_metres]);

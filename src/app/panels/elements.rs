@@ -8,10 +8,12 @@ use crate::app::content::{Content, Cx};
 use crate::app::jobs::Calibrated;
 use crate::app::jobs::{CalibrationQuery, Jobs};
 use crate::app::state::{Command, RadarCommand, State};
+use crate::app::widgets::entry::press;
+use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::padded::scrolled;
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
-use eframe::egui;
-use eframe::egui::{Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, Ui};
 use std::sync::Arc;
 
 /// What is shown.
@@ -63,23 +65,19 @@ impl Content for ElementsPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ElementsMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
     memory.chosen = memory.chosen.min(input.radar.elements - 1);
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            summary(ui, &input, &mut asked);
-            if let Some((n, error)) = strip::show(ui, input.radar, input.elements, &mut memory.chosen) {
-                asked.push(with(&input, n, |e| *e = error));
-            }
-            one(ui, &input, memory, &mut asked);
-            ui.separator();
-            draw_from_seed(ui, &input, memory, &mut asked);
-            list::show(ui, input.radar, input.elements, &mut memory.list, &mut asked);
-            ui.separator();
-            calibration(ui, &input, &mut asked);
-        });
-    });
-    asked
+    scrolled(ui, |ui, asked| {
+        summary(ui, &input, asked);
+        if let Some((n, error)) = strip::show(ui, input.radar, input.elements, &mut memory.chosen) {
+            asked.push(with(&input, n, |e| *e = error));
+        }
+        one(ui, &input, memory, asked);
+        ui.separator();
+        draw_from_seed(ui, &input, memory, asked);
+        list::show(ui, input.radar, input.elements, &mut memory.list, asked);
+        ui.separator();
+        calibration(ui, &input, asked);
+    })
 }
 
 /// The array with one element changed.
@@ -133,15 +131,9 @@ fn spread_tooltip(living: usize) -> String {
 
 /// A number that is typed or dragged; what the focus only passes through keeps its decimals.
 fn number(ui: &mut Ui, name: &str, unit: &str, value: f64, most: f64, speed: f64) -> Option<f64> {
-    let label = ui.label(name);
     let mut edited = value;
-    let drag = NumberField::new(&mut edited)
-        .range(-most..=most)
-        .clamp_existing_to_range(false)
-        .speed(speed)
-        .max_decimals(3)
-        .suffix(unit);
-    let changed = ui.add(drag).labelled_by(label.id).changed();
+    let drag = NumberField::new(&mut edited).range(-most..=most).clamp_existing_to_range(false);
+    let changed = labelled(ui, name, "", drag.speed(speed).max_decimals(3).suffix(unit)).changed();
     (changed && (edited - value).abs() >= 0.5e-3).then_some(edited)
 }
 
@@ -150,9 +142,8 @@ fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut ElementsMemory, asked: &mut 
     let n = memory.chosen;
     let error = input.elements.element(n);
     ui.horizontal_wrapped(|ui| {
-        let label = ui.label("element");
         let most = input.radar.elements - 1;
-        ui.add(NumberField::new(&mut memory.chosen).range(0..=most).speed(0.2)).labelled_by(label.id);
+        labelled(ui, "element", "", NumberField::new(&mut memory.chosen).range(0..=most).speed(0.2));
         let mut dead = error.dead;
         if ui.checkbox(&mut dead, "dead").changed() {
             asked.push(with(input, n, |e| e.dead = dead));
@@ -181,12 +172,10 @@ fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut ElementsMemory, a
             ("phases ±", phase_degrees, "°", 180.0),
             ("places ±", position_millimetres, " mm", 100.0),
         ] {
-            let label = ui.label(name).on_hover_text("Standard deviation");
-            ui.add(NumberField::new(value).range(0.0..=most).speed(0.05).max_decimals(2).suffix(unit))
-                .labelled_by(label.id);
+            let field = NumberField::new(value).range(0.0..=most).speed(0.05).max_decimals(2).suffix(unit);
+            labelled(ui, name, "Standard deviation", field);
         }
-        let label = ui.label("seed");
-        ui.add(NumberField::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+        labelled(ui, "seed", "", NumberField::new(&mut memory.seed).speed(0.05));
         let tooltip = "Give every element an error of its own; the dead stay dead";
         if ui.button("Draw").on_hover_text(tooltip).clicked() {
             let mut drawn = memory.tolerances.build(input.radar, memory.seed);
@@ -223,9 +212,13 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         }
     });
     let tooltip = "Divide every element's samples by what was found of it";
-    if ui.button("Calibrate on this reflector").on_hover_text(tooltip).clicked() {
-        asked.push(RadarCommand::SetElements(Arc::new(found.left.clone())).into());
-    }
+    press(
+        ui,
+        "Calibrate on this reflector",
+        tooltip,
+        || RadarCommand::SetElements(Arc::new(found.left.clone())),
+        asked,
+    );
 }
 
 #[cfg(test)]
@@ -233,6 +226,7 @@ mod tests {
     use super::*;
     use crate::scene::Reflector;
     use crate::signal::{Floor, calibrate, simulate_built};
+    use eframe::egui;
     use eframe::egui::{Key, pos2, vec2};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;

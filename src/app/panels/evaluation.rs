@@ -3,14 +3,15 @@
 use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::EvaluationRow;
 use crate::app::state::{Command, EvaluationChoice, ExportCommand, WorkCommand};
+use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::method_menu::{Offered, method_menu};
 use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::padded::scrolled_both;
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
 use crate::evaluate::eta_text;
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
 use crate::radar::{Radar, counted};
-use eframe::egui;
-use eframe::egui::{Grid, ScrollArea, Ui};
+use eframe::egui::{Grid, Ui};
 use std::collections::BTreeSet;
 
 /// The printed columns with their names.
@@ -76,25 +77,21 @@ impl Content for EvaluationPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut EvaluationMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
-            choices(ui, &input, memory);
-            buttons(ui, &input, memory, &mut asked);
-            if let Some(note) = input.note {
-                ui.colored_label(ui.visuals().warn_fg_color, note);
-            }
-            if let Some(other) = unlike_the_thesis(input.radar) {
-                ui.colored_label(ui.visuals().warn_fg_color, other);
-            }
-            ui.separator();
-            if input.rows.is_empty() {
-                ui.weak("Tables 4.1 to 4.3 of the thesis for the chosen methods. Scenes are random, but the same for the same seed.");
-            }
-            tables(ui, input.rows);
-        });
-    });
-    asked
+    scrolled_both(ui, |ui, asked| {
+        choices(ui, &input, memory);
+        buttons(ui, &input, memory, asked);
+        if let Some(note) = input.note {
+            ui.colored_label(ui.visuals().warn_fg_color, note);
+        }
+        if let Some(other) = unlike_the_thesis(input.radar) {
+            ui.colored_label(ui.visuals().warn_fg_color, other);
+        }
+        ui.separator();
+        if input.rows.is_empty() {
+            ui.weak("Tables 4.1 to 4.3 of the thesis for the chosen methods. Scenes are random, but the same for the same seed.");
+        }
+        tables(ui, input.rows);
+    })
 }
 
 /// How the radar differs from the one that the printed figures are of.
@@ -121,10 +118,8 @@ fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut EvaluationMemory) {
             for ((chosen, what), number) in memory.sets.iter_mut().zip(SETS).zip(1..) {
                 ui.checkbox(chosen, format!("set {number}")).on_hover_text(what);
             }
-            let label = ui.label("scenes a set");
-            ui.add(NumberField::new(&mut memory.count).range(1..=1000)).labelled_by(label.id);
-            let label = ui.label("seed");
-            ui.add(NumberField::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+            labelled(ui, "scenes a set", "", NumberField::new(&mut memory.count).range(1..=1000));
+            labelled(ui, "seed", "", NumberField::new(&mut memory.seed).speed(0.05));
         });
     });
 }

@@ -7,10 +7,10 @@ use crate::app::jobs::Wants;
 use crate::app::state::{Command, MapKind, MethodSlot};
 use crate::app::widgets::direction::{CONVENTION, angle_degrees};
 use crate::app::widgets::numbers::{plain, signed};
+use crate::app::widgets::padded::padded;
 use crate::reconstruct::Attempt;
 use crate::reconstruct::Detection;
 use crate::scene::Object;
-use eframe::egui;
 use eframe::egui::{Align, Grid, Layout, ScrollArea, Ui};
 
 /// Most lines that are shown.
@@ -72,8 +72,7 @@ impl Content for FoundPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    let mut commands = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         if let Some(method) = input.draws_only {
             ui.weak(format!("{method} draws a map and finds no echoes to list. Choose another method in Settings."));
             return;
@@ -115,10 +114,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             if more > 0 {
                 ui.weak(format!("and {more} weaker ones"));
             }
-            commands = attempts::show(ui, input.attempts, input.objects);
+            asked.extend(attempts::show(ui, input.attempts, input.objects));
         });
-    });
-    commands
+    })
 }
 
 fn line(ui: &mut Ui, number: usize, found: &Detection, has_ranges: bool) {

@@ -4,6 +4,7 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{
     Command, DocumentCommand, MapKind, Panel, Projection, RadarCommand, ViewCommand, WindowCommand,
 };
+use crate::app::widgets::padded::padded;
 use crate::maps::Normalisation;
 use crate::radar::{Carrier, Decibels, WindowFunction};
 use crate::scene::presets;
@@ -198,8 +199,7 @@ impl Content for GuidePanel {
 
 /// Draws the panel: one chapter, and the way to the others.
 pub fn show(ui: &mut Ui, memory: &mut GuideMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         turn(ui, &mut memory.open);
         ui.separator();
         let Some((chapter, steps)) = chapters().zip(CHAPTERS).nth(memory.open) else { return };
@@ -217,8 +217,7 @@ pub fn show(ui: &mut Ui, memory: &mut GuideMemory) -> Vec<Command> {
                 }
             });
         });
-    });
-    asked
+    })
 }
 
 /// Previous, contents, next.

@@ -7,13 +7,14 @@ mod slider;
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand, NewObject};
 use crate::app::widgets::direction::angle_of_place_degrees;
-use crate::app::widgets::entry::{arrange, button};
+use crate::app::widgets::entry::{arrange, button, press};
 use crate::app::widgets::numbers::signed;
+use crate::app::widgets::padded::scrolled;
 use crate::interact::{Coordinates, Editor};
 use crate::radar::{Radar, counted};
 use crate::scene::{MAX_NAME_CHARACTERS, Object, Scene};
 use eframe::egui;
-use eframe::egui::{Grid, ScrollArea, TextEdit, Ui};
+use eframe::egui::{Grid, TextEdit, Ui};
 use number::number;
 
 /// What the numbers are of, and turned into.
@@ -45,23 +46,17 @@ impl Content for InspectorPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| match input.editor.selection().is_empty() {
-            true => nothing(ui, input.editor.scene(), &mut asked),
-            false => selected(ui, &input, &mut asked),
-        });
-    });
-    asked
+    scrolled(ui, |ui, asked| match input.editor.selection().is_empty() {
+        true => nothing(ui, input.editor.scene(), asked),
+        false => selected(ui, &input, asked),
+    })
 }
 
 fn nothing(ui: &mut Ui, scene: &Scene, asked: &mut Vec<Command>) {
     if scene.objects.is_empty() {
         named(ui, scene);
         ui.weak("The scene is empty.");
-        if ui.button("Add a point").clicked() {
-            asked.push(EditCommand::Add(NewObject::Point, None).into());
-        }
+        press(ui, "Add a point", "", || EditCommand::Add(NewObject::Point, None), asked);
         return;
     }
     named(ui, scene);

@@ -8,7 +8,7 @@ mod memory;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, LessonCommand, LessonRun};
-use crate::app::widgets::entry::button;
+use crate::app::widgets::entry::{button, press};
 use crate::app::widgets::inline::inline;
 use crate::lesson::Progress;
 use answer::{answer, answered, judgement};
@@ -155,9 +155,7 @@ fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command
             asked.push(LessonCommand::Step(run.step + 1).into());
         }
         let leave = if is_last { "Finish" } else { "Exit lesson" };
-        if ui.button(leave).on_hover_text("Your scene, settings, panels and zoom come back").clicked() {
-            asked.push(LessonCommand::Leave.into());
-        }
+        press(ui, leave, "Your scene, settings, panels and zoom come back", || LessonCommand::Leave, asked);
         whole_screen(ui, presenting, asked);
     });
 }

@@ -5,12 +5,15 @@ use crate::app::jobs::PhasorsResult;
 use crate::app::jobs::{Jobs, PhasorsQuery};
 use crate::app::state::{Command, PhasorMap, PhasorSettings, State, ViewCommand};
 use crate::app::widgets::axes::Axis;
-use crate::app::widgets::chart::{Chart, Drawn, inner};
+use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::direction::direction;
+use crate::app::widgets::labelled::labelled;
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::theme::{self, Inks};
 use crate::radar::{End, Radar};
 use crate::theory::Phasors;
 use eframe::egui::{self, Color32, Sense, Slider, Stroke, Ui, vec2};
+use egui_plot::LineStyle;
 use num_complex::Complex64;
 
 /// Time in which the whole array is played, seconds.
@@ -65,8 +68,7 @@ impl Content for PhasorsPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut PhasorsMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         let mut settings = input.settings;
         choices(ui, &input, &mut settings);
         if settings != input.settings {
@@ -81,8 +83,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut PhasorsMemory) -> Vec<Co
                 chart(ui, input.radar, result, memory.part.unwrap_or(1.0));
             }
         }
-    });
-    asked
+    })
 }
 
 fn choices(ui: &mut Ui, input: &Input<'_>, settings: &mut PhasorSettings) {
@@ -126,9 +127,8 @@ fn play(ui: &mut Ui, result: &PhasorsResult, memory: &mut PhasorsMemory) {
             ui.ctx().request_repaint();
         }
         let mut drawn = drawn_count(memory.part.unwrap_or(1.0), count);
-        let label = ui.label("Elements").on_hover_text("How many elements of the aperture are added, from the left");
-        let slider = ui.add(Slider::new(&mut drawn, 0..=count)).labelled_by(label.id);
-        if slider.changed() {
+        let tooltip = "How many elements of the aperture are added, from the left";
+        if labelled(ui, "Elements", tooltip, Slider::new(&mut drawn, 0..=count)).changed() {
             memory.is_playing = false;
             memory.part = (drawn < count).then(|| drawn as f32 / count as f32);
         }
@@ -177,36 +177,32 @@ fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
     let chains: Vec<(Vec<[f64; 2]>, Kind)> =
         drawn(result).map(|(chain, kind)| (chain.chain().iter().map(place).collect(), kind)).collect();
     let corners = chains.iter().flat_map(|(chain, _)| chain.iter().copied());
-    let [x, y] = spans(ui, area, corners);
-    let chart = Chart { name: "Phasors in the complex plane", x, y };
-    let drawn = chart.show(ui, area, Sense::hover());
+    let [x, y] = spans(corners);
+    let mut chart = Chart::new("Phasors in the complex plane", x, y).with_one_scale();
     let count = drawn_count(part, result.measured.contributions.len());
     for (chain, kind) in &chains {
-        line(ui, &drawn, radar, &chain[..=count.min(chain.len() - 1)], *kind, result.measured.first_element);
+        line(ui, &mut chart, radar, &chain[..=count.min(chain.len() - 1)], *kind, result.measured.first_element);
     }
+    let drawn = chart.show(ui, area, Sense::hover());
     if let Some(end) = chains.first().and_then(|(chain, _)| chain.get(count)) {
         arrow(&drawn, *end);
     }
     legend(ui, &drawn, &chains);
 }
 
-/// Axes of one scale that hold every corner.
-fn spans(ui: &Ui, area: egui::Rect, corners: impl Iterator<Item = [f64; 2]>) -> [Axis<'static>; 2] {
+/// Axes that hold every corner.
+fn spans(corners: impl Iterator<Item = [f64; 2]>) -> [Axis<'static>; 2] {
     let (mut low, mut high) = ([0.0f64; 2], [0.0f64; 2]);
     for corner in corners {
         for i in 0..2 {
             (low[i], high[i]) = (low[i].min(corner[i]), high[i].max(corner[i]));
         }
     }
-    let rect = inner(ui.painter(), area, Axis::new(-1.0, 1.0, ""));
-    let size = [f64::from(rect.width()), f64::from(rect.height())];
-    let per_point = (0..2).map(|i| (high[i] - low[i]) / (0.86 * size[i])).fold(1e-9, f64::max);
-    let span = |i: usize| {
-        let (middle, half) = ((low[i] + high[i]) / 2.0, per_point * size[i] / 2.0);
-        (middle - half, middle + half)
+    let axis = |i: usize, title| {
+        let room = 0.08 * (high[i] - low[i]).max(1e-6);
+        Axis::new(low[i] - room, high[i] + room, title)
     };
-    let ((left, right), (bottom, top)) = (span(0), span(1));
-    [Axis::new(left, right, "real part, of the length of all contributions"), Axis::new(bottom, top, "imaginary part")]
+    [axis(0, "real part, of the length of all contributions"), axis(1, "imaginary part")]
 }
 
 /// What a chain is of.
@@ -246,9 +242,9 @@ fn drawn(result: &PhasorsResult) -> impl Iterator<Item = (&Phasors, Kind)> {
 }
 
 /// A chain; the pieces of the two ends of the array in their colours.
-fn line(ui: &Ui, drawn: &Drawn<'_>, radar: &Radar, chain: &[[f64; 2]], kind: Kind, first_element: usize) {
-    let (colour, dash) = (kind.colour(ui), (kind == Kind::Echoes).then_some([5.0, 4.0]));
-    drawn.line(chain.iter().copied(), Stroke::new(1.4, colour), dash);
+fn line(ui: &Ui, chart: &mut Chart<'_>, radar: &Radar, chain: &[[f64; 2]], kind: Kind, first_element: usize) {
+    let style = if kind == Kind::Echoes { LineStyle::dashed_dense() } else { LineStyle::Solid };
+    chart.line(chain.iter().copied(), Stroke::new(1.4, kind.colour(ui)), style);
     if kind != Kind::Measured {
         return;
     }
@@ -257,20 +253,20 @@ fn line(ui: &Ui, drawn: &Drawn<'_>, radar: &Radar, chain: &[[f64; 2]], kind: Kin
         let from = range.start.saturating_sub(first_element).min(chain.len());
         let to = (range.end + 1).saturating_sub(first_element).min(chain.len());
         if range.start >= first_element && from < to {
-            drawn.line(chain[from..to].iter().copied(), Stroke::new(3.0, colour), None);
+            chart.line(chain[from..to].iter().copied(), Stroke::new(3.0, colour), LineStyle::Solid);
         }
     }
 }
 
 /// From the origin to the end of the chain: the cell.
-fn arrow(drawn: &Drawn<'_>, end: [f64; 2]) {
+fn arrow(drawn: &Drawn, end: [f64; 2]) {
     let (from, to) = (drawn.at([0.0, 0.0]), drawn.at(end));
     for (width, colour) in [(4.0, theme::MARK_EDGE), (1.8, theme::MARK)] {
         drawn.painter().arrow(from, to - from, Stroke::new(width, colour));
     }
 }
 
-fn legend(ui: &Ui, drawn: &Drawn<'_>, chains: &[(Vec<[f64; 2]>, Kind)]) {
+fn legend(ui: &Ui, drawn: &Drawn, chains: &[(Vec<[f64; 2]>, Kind)]) {
     let mut at = drawn.rect.left_top() + vec2(8.0, 6.0);
     for (_, kind) in chains {
         let painter = drawn.painter();

@@ -8,12 +8,13 @@ mod table;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
+use crate::app::widgets::labelled::{Quantity, labelled};
+use crate::app::widgets::padded::scrolled_both;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
 pub use budget::Selected;
-use eframe::egui;
-use eframe::egui::{Align, Color32, ComboBox, Grid, Label, Layout, RichText, ScrollArea, TextStyle, Ui, vec2};
-use table::{GAP, Number, Table, number};
+use eframe::egui::{Align, Color32, ComboBox, Grid, Label, Layout, RichText, TextStyle, Ui, vec2};
+use table::{GAP, Table, number};
 
 /// What is shown.
 pub struct Input<'a> {
@@ -72,59 +73,61 @@ impl Content for RadarPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
-            match input.measured {
-                Some(measured) => _ = ui.weak(measured.told()),
-                None => preset(ui, input.radar, &mut asked),
+    scrolled_both(ui, |ui, asked| {
+        match input.measured {
+            Some(measured) => _ = ui.weak(measured.told()),
+            None => preset(ui, input.radar, asked),
+        }
+        ui.add_space(4.0);
+        let mut radar = input.radar.clone();
+        let follows = Consequences::of(&radar);
+        let constants = input.measured.is_none();
+        let free = Free { constants, ends: input.measured.is_none_or(|m| m.by_all_elements) };
+        let table = Table::that_fits(ui, NAMES);
+        match table.consequence_width {
+            Some(_) => {
+                _ = Grid::new("radar").num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
+                    for heading in ["Constant", "Value", "Consequence"] {
+                        ui.strong(heading);
+                    }
+                    ui.end_row();
+                    rows(ui, table, &mut radar, &follows, free);
+                })
             }
-            ui.add_space(4.0);
-            let mut radar = input.radar.clone();
-            let follows = Consequences::of(&radar);
-            let constants = input.measured.is_none();
-            let free = Free { constants, ends: input.measured.is_none_or(|m| m.by_all_elements) };
-            let table = Table::that_fits(ui, NAMES);
-            match table.consequence_width {
-                Some(_) => {
-                    _ = Grid::new("radar").num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
-                        for heading in ["Constant", "Value", "Consequence"] {
-                            ui.strong(heading);
-                        }
-                        ui.end_row();
-                        rows(ui, table, &mut radar, &follows, free);
-                    })
-                }
-                None => rows(ui, table, &mut radar, &follows, free),
-            }
-            strip::show(ui, &mut radar, free.constants);
-            places::show(ui, &mut radar, free.constants);
-            budget::show(ui, table, &mut radar, input.selected.as_ref());
-            radar.end_elements = radar.end_elements.min(radar.elements / 2);
-            if radar != *input.radar {
-                asked.push(RadarCommand::Set(Box::new(radar)).into());
-            }
-        });
-    });
-    asked
+            None => rows(ui, table, &mut radar, &follows, free),
+        }
+        strip::show(ui, &mut radar, free.constants);
+        places::show(ui, &mut radar, free.constants);
+        budget::show(ui, table, &mut radar, input.selected.as_ref());
+        radar.end_elements = radar.end_elements.min(radar.elements / 2);
+        if radar != *input.radar {
+            asked.push(RadarCommand::Set(Box::new(radar)).into());
+        }
+    })
 }
 
 /// Radars to start from.
 fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
     let chosen = presets::ALL.iter().find(|p| p.radar == *radar);
     ui.horizontal(|ui| {
-        let label =
-            ui.label("Start from").on_hover_text("Radars that are built, and radars that show what a constant does");
         let name = chosen.map_or("a radar of your own", |p| p.name);
-        let combo = ComboBox::from_id_salt("radar preset").width(230.0).selected_text(name).show_ui(ui, |ui| {
-            for (index, preset) in presets::ALL.iter().enumerate() {
-                let is_chosen = chosen.is_some_and(|c| c.id == preset.id);
-                if ui.selectable_label(is_chosen, preset.name).on_hover_text(preset.about).clicked() && !is_chosen {
-                    asked.push(RadarCommand::Preset(index).into());
-                }
-            }
-        });
-        combo.response.labelled_by(label.id);
+        let menu = |ui: &mut Ui| {
+            ComboBox::from_id_salt("radar preset")
+                .width(230.0)
+                .selected_text(name)
+                .show_ui(ui, |ui| {
+                    for (index, preset) in presets::ALL.iter().enumerate() {
+                        let is_chosen = chosen.is_some_and(|c| c.id == preset.id);
+                        if ui.selectable_label(is_chosen, preset.name).on_hover_text(preset.about).clicked()
+                            && !is_chosen
+                        {
+                            asked.push(RadarCommand::Preset(index).into());
+                        }
+                    }
+                })
+                .response
+        };
+        labelled(ui, "Start from", "Radars that are built, and radars that show what a constant does", menu);
     });
     about(ui, chosen.map_or(OF_YOUR_OWN, |preset| preset.about));
 }
@@ -143,78 +146,35 @@ fn about(ui: &mut Ui, text: &str) {
     });
 }
 
-const CARRIER: Number = Number {
-    name: "carrier",
-    tooltip: "Frequency that the chirps are centred on: with the spacing it decides how wide beams are",
-    unit: " GHz",
-    speed: 0.05,
-    low: 0.1,
-    high: 1000.0,
-    decimals: 3,
-};
-const BANDWIDTH: Number = Number {
-    name: "bandwidth",
-    tooltip: "How far a chirp sweeps. A range bin is the speed of light over twice the bandwidth",
-    unit: " MHz",
-    speed: 2.0,
-    low: 1.0,
-    high: 20_000.0,
-    decimals: 1,
-};
-const SAMPLES: Number = Number {
-    name: "samples",
-    tooltip: "Samples of a chirp, and range bins of a map",
-    unit: "",
-    speed: 1.0,
-    low: 1.0,
-    high: 2048.0,
-    decimals: 0,
-};
-const ELEMENTS: Number = Number {
-    name: "elements",
-    tooltip: "Elements of the whole array, and columns of a map",
-    unit: "",
-    speed: 1.0,
-    low: 6.0,
-    high: 2048.0,
-    decimals: 0,
-};
-const END_ELEMENTS: Number = Number {
-    name: "elements of an end",
-    tooltip: "Elements of each of the two ends that a reconstruction may look at",
-    unit: "",
-    speed: 0.1,
-    low: 3.0,
-    high: 1024.0,
-    decimals: 0,
-};
-const SPACING_MILLIMETRES: Number = Number {
-    name: "spacing",
-    tooltip: "Distance between neighbouring elements",
-    unit: " mm",
-    speed: 0.01,
-    low: 0.01,
-    high: 1000.0,
-    decimals: 3,
-};
-const SPACING_WAVELENGTHS: Number = Number {
-    name: "spacing / λ",
-    tooltip: "Above half a wavelength (a quarter, for the two-way carrier) a direction has grating lobes",
-    unit: " λ",
-    speed: 0.005,
-    low: 0.01,
-    high: 10.0,
-    decimals: 3,
-};
-const POWER: Number = Number {
-    name: "power",
-    tooltip: "Transmit power: with reflectivity and range it decides how strong an echo is",
-    unit: " W",
-    speed: 0.5,
-    low: 0.001,
-    high: 100_000.0,
-    decimals: 3,
-};
+const CARRIER: Quantity = Quantity::metres(
+    "carrier",
+    "Frequency that the chirps are centred on: with the spacing it decides how wide beams are",
+)
+.with(" GHz", [0.1, 1000.0], 0.05, 3);
+const BANDWIDTH: Quantity =
+    Quantity::metres("bandwidth", "How far a chirp sweeps. A range bin is the speed of light over twice the bandwidth")
+        .with(" MHz", [1.0, 20_000.0], 2.0, 1);
+const SAMPLES: Quantity =
+    Quantity::metres("samples", "Samples of a chirp, and range bins of a map").with("", [1.0, 2048.0], 1.0, 0);
+const ELEMENTS: Quantity =
+    Quantity::metres("elements", "Elements of the whole array, and columns of a map").with("", [6.0, 2048.0], 1.0, 0);
+const END_ELEMENTS: Quantity = Quantity::metres(
+    "elements of an end",
+    "Elements of each of the two ends that a reconstruction may look at",
+)
+.with("", [3.0, 1024.0], 0.1, 0);
+const SPACING_MILLIMETRES: Quantity =
+    Quantity::metres("spacing", "Distance between neighbouring elements").with(" mm", [0.01, 1000.0], 0.01, 3);
+const SPACING_WAVELENGTHS: Quantity = Quantity::metres(
+    "spacing / λ",
+    "Above half a wavelength (a quarter, for the two-way carrier) a direction has grating lobes",
+)
+.with(" λ", [0.01, 10.0], 0.005, 3);
+const POWER: Quantity = Quantity::metres(
+    "power",
+    "Transmit power: with reflectivity and range it decides how strong an echo is",
+)
+.with(" W", [0.001, 100_000.0], 0.5, 3);
 
 /// Names of the constants, as they stand in the first column.
 const NAMES: [&str; 14] = [

@@ -2,10 +2,13 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, DocumentCommand, Way};
+use crate::app::widgets::labelled::{choice_told, labelled};
+use crate::app::widgets::padded::scrolled;
 use crate::app::widgets::theme;
 use crate::recording::raw::boards;
 use crate::recording::{Offer, Origin, Recording};
-use eframe::egui::{self, ComboBox, Pos2, Rect, ScrollArea, Sense, Shape, Slider, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Sense, Slider, Ui, vec2};
+use egui_plot::{Line, Plot, PlotPoints};
 
 /// Size of a small range profile, and how far below its peak it is drawn, decibels.
 const PROFILE: egui::Vec2 = vec2(180.0, 44.0);
@@ -32,37 +35,33 @@ impl Content for RecordingPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            let Some(recording) = input.recording else {
-                ui.weak(
-                    "No recording is on screen. Drop a capture, an array or the TOML of a recording on the window.",
-                );
-                return;
-            };
-            ui.strong(&recording.name);
-            match &recording.origin {
-                None => _ = ui.weak("Read as its TOML says."),
-                Some(origin) => {
-                    match origin.offers.as_slice() {
-                        [only] if only.power.is_empty() => _ = ui.weak(&only.described),
-                        _ => layouts(ui, origin, &mut asked),
-                    }
-                    frames(ui, origin, &mut asked);
-                    board(ui, origin, &mut asked);
+    scrolled(ui, |ui, asked| {
+        let Some(recording) = input.recording else {
+            ui.weak("No recording is on screen. Drop a capture, an array or the TOML of a recording on the window.");
+            return;
+        };
+        ui.strong(&recording.name);
+        let mut ways = Vec::new();
+        match &recording.origin {
+            None => _ = ui.weak("Read as its TOML says."),
+            Some(origin) => {
+                match origin.offers.as_slice() {
+                    [only] if only.power.is_empty() => _ = ui.weak(&only.described),
+                    _ => layouts(ui, origin, &mut ways),
                 }
+                frames(ui, origin, &mut ways);
+                board(ui, origin, &mut ways);
             }
-            for doubt in &recording.doubts {
-                ui.colored_label(ui.visuals().warn_fg_color, doubt);
-            }
-            if let Some(origin) = &recording.origin {
-                ui.add_space(6.0);
-                origin.sentences.iter().for_each(|sentence| _ = ui.weak(sentence));
-            }
-        });
-    });
-    asked.into_iter().map(|way| DocumentCommand::ReadAnotherWay(way).into()).collect()
+        }
+        for doubt in &recording.doubts {
+            ui.colored_label(ui.visuals().warn_fg_color, doubt);
+        }
+        if let Some(origin) = &recording.origin {
+            ui.add_space(6.0);
+            origin.sentences.iter().for_each(|sentence| _ = ui.weak(sentence));
+        }
+        asked.extend(ways.into_iter().map(|way| Command::from(DocumentCommand::ReadAnotherWay(way))));
+    })
 }
 
 /// The layouts to choose from, the most likely first.
@@ -77,7 +76,7 @@ fn layouts(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
             };
             let tooltip = format!("Read the file so: range profile, {SHOWN_DB} dB{less}");
             let is_taken = n == origin.taken;
-            let clicked = profile(ui, offer, is_taken).on_hover_text(tooltip.as_str()).clicked();
+            let clicked = profile(ui, n, offer, is_taken).on_hover_text(tooltip.as_str()).clicked();
             ui.vertical(|ui| {
                 let text = ui.selectable_label(is_taken, &offer.described).on_hover_text(tooltip);
                 if (clicked || text.clicked()) && !is_taken {
@@ -88,26 +87,19 @@ fn layouts(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
     }
 }
 
-/// Draws a small range profile.
-fn profile(ui: &mut Ui, offer: &Offer, is_taken: bool) -> egui::Response {
-    let (rect, response) = ui.allocate_exact_size(PROFILE, Sense::click());
+/// Draws the powers of range bins as a small chart without axes.
+fn profile(ui: &mut Ui, number: usize, offer: &Offer, is_taken: bool) -> egui::Response {
+    let colour = if is_taken { theme::Inks::of(ui.visuals()).selected } else { ui.visuals().weak_text_color() };
+    let peak = offer.power.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let decibels = |power: &f64| (10.0 * (power / peak).max(f64::MIN_POSITIVE).log10()).max(-SHOWN_DB);
+    let points = offer.power.iter().enumerate().map(|(bin, power)| [bin as f64, decibels(power)]);
+    let line = Line::new("", points.collect::<PlotPoints<'static>>()).color(colour).width(1.2);
+    let plot = Plot::new(("profile", number)).width(PROFILE.x).height(PROFILE.y).min_size(PROFILE);
+    let plot = plot.show_axes(false).show_grid(false).show_x(false).show_y(false).sense(Sense::click());
+    let plot = plot.allow_zoom(false).allow_drag(false).allow_scroll(false).allow_boxed_zoom(false);
+    let response = plot.include_y(0.0).include_y(-SHOWN_DB).show(ui, |plot| plot.line(line)).response;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Range profile"));
-    let visuals = ui.visuals();
-    ui.painter().rect_filled(rect, 2.0, visuals.extreme_bg_color);
-    let colour = if is_taken { theme::MARK } else { visuals.weak_text_color() };
-    ui.painter().add(Shape::line(line(&offer.power, rect.shrink(3.0)), Stroke::new(1.2, colour)));
     response
-}
-
-/// The powers of range bins as a line, the strongest on top.
-fn line(power: &[f64], rect: Rect) -> Vec<Pos2> {
-    let peak = power.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    let last = power.len().saturating_sub(1).max(1) as f32;
-    let place = |(bin, power): (usize, &f64)| {
-        let below = (-10.0 * (power / peak).max(f64::MIN_POSITIVE).log10()).clamp(0.0, SHOWN_DB);
-        pos2(rect.left() + rect.width() * bin as f32 / last, rect.top() + rect.height() * (below / SHOWN_DB) as f32)
-    };
-    power.iter().enumerate().map(place).collect()
 }
 
 fn frames(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
@@ -115,11 +107,10 @@ fn frames(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        let label =
-            ui.label(format!("Frame of {}", origin.frames)).on_hover_text("Which frame of the file the maps show");
         let mut frame = origin.frame;
-        let slider = ui.add(Slider::new(&mut frame, 0..=origin.frames - 1)).labelled_by(label.id);
-        if slider.changed() && frame != origin.frame {
+        let slider = Slider::new(&mut frame, 0..=origin.frames - 1);
+        let tooltip = "Which frame of the file the maps show";
+        if labelled(ui, format!("Frame of {}", origin.frames), tooltip, slider).changed() && frame != origin.frame {
             asked.push(Way::Frame(frame));
         }
     });
@@ -130,22 +121,14 @@ fn board(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        let label = ui
-            .label("Antennas of")
-            .on_hover_text("The board whose antennas are taken; the guide of its maker says the places");
-        let taken = origin.board.unwrap_or("the .cfg");
-        let shown = ComboBox::from_id_salt("board").selected_text(taken).show_ui(ui, |ui| {
-            for board in boards::ALL {
-                if ui
-                    .selectable_label(origin.board == Some(board.name), board.name)
-                    .on_hover_text(board.guide)
-                    .clicked()
-                {
-                    asked.push(Way::Board(board.name));
-                }
-            }
-        });
-        shown.response.labelled_by(label.id);
+        let tooltip = "The board whose antennas are taken; the guide of its maker says the places";
+        let mut taken = origin.board.unwrap_or("the .cfg");
+        let guide = |name: &str| boards::ALL.iter().find(|board| board.name == name).map_or("", |board| board.guide);
+        let offered = boards::ALL.iter().map(|board| board.name);
+        choice_told(ui, "Antennas of", tooltip, &mut taken, offered, |name| ((*name).to_owned(), guide(name)));
+        if origin.board != Some(taken) && boards::ALL.iter().any(|board| board.name == taken) {
+            asked.push(Way::Board(taken));
+        }
     });
 }
 
@@ -200,6 +183,7 @@ mod tests {
             assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
         }
         seen::assert_readable(panel.output());
+        assert_eq!(panel.query_all_by_label("Range profile").count(), 2, "one a layout");
         panel.get_by_label("Q I in pairs").click();
         panel.run();
         assert_eq!(panel.state(), &[Command::Document(DocumentCommand::ReadAnotherWay(Way::Layout(1)))]);
@@ -209,7 +193,5 @@ mod tests {
     fn no_recording_tells_what_to_drop() {
         let panel = panel(None);
         assert!(seen::texts(panel.output()).iter().any(|t| t.text.contains("Drop a capture")));
-        let line = line(&[1.0, 100.0, 0.0], Rect::from_min_size(Pos2::ZERO, vec2(10.0, 8.0)));
-        assert_eq!(line, [pos2(0.0, 2.0), pos2(5.0, 0.0), pos2(10.0, 8.0)]);
     }
 }

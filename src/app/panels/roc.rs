@@ -12,6 +12,7 @@ use crate::evaluate::{Metrics, RocPoint, eta_text};
 use crate::maps::cfar::Cfar;
 use eframe::egui;
 use eframe::egui::{Sense, Stroke, Ui};
+use egui_plot::LineStyle;
 
 /// P_FA below this is drawn at this: a logarithmic axis has no zero.
 const MIN_DRAWN_P_FA: f64 = 1e-5;
@@ -84,21 +85,17 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     });
     let ticks = POWERS.map(|(value, text)| Tick { value, text: text.to_owned() });
     let x = Axis { ticks: Some(&ticks), ..Axis::new(MIN_DRAWN_P_FA.log10(), 0.0, "P_FA, %") };
-    let chart = Chart { name: "Receiver operating characteristic", x, y: Axis::new(0.0, 102.0, "P_D, %") };
+    let mut chart = Chart::new("Receiver operating characteristic", x, Axis::new(0.0, 102.0, "P_D, %"));
+    chart.line(roc.iter().map(place), Stroke::new(1.8, line), LineStyle::Solid);
+    if let Some(now) = &now {
+        chart.dot(place(now), 5.0, mark);
+    }
     let area = ui.available_rect_before_wrap();
     let drawn = chart.show(ui, area, Sense::hover());
-    drawn.line(roc.iter().map(place), Stroke::new(1.8, line), None);
-    if let Some(now) = &now {
-        drawn.dot(place(now), 5.0, mark);
-    }
-    if let Some(pos) = drawn.response.hover_pos() {
-        let at = drawn.x_at(pos);
-        let under = roc.iter().min_by(|a, b| (place(a)[0] - at).abs().total_cmp(&(place(b)[0] - at).abs()));
-        let say = |p: &RocPoint| {
-            format!("η = {}\nP_D {}\nP_FA {}", eta_text(p.eta), percent(p.detection), percent(p.false_alarm))
-        };
-        drawn.response.on_hover_text_at_pointer(under.map_or_else(String::new, say));
-    }
+    drawn.tell(|[at, _]| {
+        let p = roc.iter().min_by(|a, b| (place(a)[0] - at).abs().total_cmp(&(place(b)[0] - at).abs()))?;
+        Some(format!("η = {}\nP_D {}\nP_FA {}", eta_text(p.eta), percent(p.detection), percent(p.false_alarm)))
+    });
     Vec::new()
 }
 

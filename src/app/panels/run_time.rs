@@ -2,14 +2,18 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, WorkCommand};
+use crate::app::widgets::axes::{Axis, Tick};
+use crate::app::widgets::chart::Chart;
+use crate::app::widgets::labelled::choice;
 use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
 use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
 use crate::radar::Radar;
 use crate::signal::{Algorithm, Precision};
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, Ui};
-use egui_plot::{GridMark, HLine, MarkerShape, Plot, PlotPoints, Points};
+use eframe::egui::{Color32, Sense, Ui};
+use egui_plot::{HLine, LineStyle, MarkerShape, Points};
 use std::collections::BTreeSet;
 
 /// Errors below this are drawn at this: a logarithmic axis has no zero.
@@ -65,8 +69,7 @@ impl Content for RunTimePanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         ui.horizontal_wrapped(|ui| {
             let tip = "Time how long three maps take, and how wrong they are, by algorithm and precision; leave the \
                        machine alone meanwhile";
@@ -97,26 +100,20 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Co
         } else if input.progress.is_none() {
             ui.weak("Nothing measured yet.");
         }
-    });
-    asked
+    })
 }
 
 /// Which rows are drawn.
 fn filter(ui: &mut Ui, rows: &[FrontRow], memory: &mut RunTimeMemory) {
     let counts: BTreeSet<usize> = rows.iter().map(|r| r.reflectors).collect();
     ui.horizontal_wrapped(|ui| {
-        let text = |count: Option<usize>| match count {
+        let text = |count: &Option<usize>| match count {
             None => "all".to_owned(),
             Some(count) => count.to_string(),
         };
-        let label = ui.label("Reflectors");
-        let combo = ComboBox::from_id_salt("reflectors").width(60.0).selected_text(text(memory.reflectors));
-        let combo = combo.show_ui(ui, |ui| {
-            for choice in std::iter::once(None).chain(counts.into_iter().map(Some)) {
-                ui.selectable_value(&mut memory.reflectors, choice, text(choice));
-            }
-        });
-        combo.response.labelled_by(label.id).on_hover_text("Draw the measurements of so many reflectors");
+        let offered = std::iter::once(None).chain(counts.into_iter().map(Some));
+        let tooltip = "Draw the measurements of so many reflectors";
+        choice(ui, "Reflectors", tooltip, &mut memory.reflectors, offered, text);
         if rows.iter().any(|r| r.task == FrontTask::Drag) {
             ui.selectable_value(&mut memory.task, FrontTask::Scratch, "from scratch");
             ui.selectable_value(&mut memory.task, FrontTask::Drag, "one dragged");
@@ -169,35 +166,32 @@ fn series(rows: &[FrontRow], memory: &RunTimeMemory, dark: bool) -> Vec<Series> 
 fn plot(ui: &mut Ui, input: &Input<'_>, memory: &RunTimeMemory) {
     let drawn = series(input.rows, memory, ui.visuals().dark_mode);
     legend::row(ui, &drawn.iter().map(|series| series.entry.clone()).collect::<Vec<_>>());
-    let powers = |mark: GridMark| match (mark.value - mark.value.round()).abs() < 1e-6 {
-        true => power_of_ten(mark.value.round() as i32),
-        false => String::new(),
+    let places = || drawn.iter().flat_map(|series| &series.places);
+    let span = |axis: usize, low: f64, high: f64| {
+        let (low, high) = places().fold((low, high), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
+        let room = 0.05 * (high - low);
+        [low - room, high + room]
     };
-    Plot::new("run time")
-        .x_axis_label("largest error of a sample")
-        .y_axis_label("three maps, ms")
-        .x_grid_spacer(egui_plot::uniform_grid_spacer(|_| [8.0, 4.0, 2.0]))
-        .y_grid_spacer(egui_plot::uniform_grid_spacer(|_| [10.0, 1.0, 0.5]))
-        .x_axis_formatter(move |mark, _| powers(mark))
-        .y_axis_formatter(move |mark, _| powers(mark))
-        .include_x(SMALLEST_ERROR.log10())
-        .include_x(-2.0)
-        .include_y(0.0)
-        .include_y(2.0)
-        .allow_scroll(false)
-        .y_axis_min_width(36.0)
-        .show(ui, |plot| {
-            if let Some(bare) = input.bare_fft_ms {
-                let line = HLine::new("one bare transform, one thread", bare.log10());
-                plot.hline(line.color(Color32::GRAY).width(1.0).style(egui_plot::LineStyle::dashed_loose()));
-            }
-            for Series { entry, places, is_planned } in drawn {
-                let shape =
-                    if matches!(entry.sign, Sign::Circle { .. }) { MarkerShape::Circle } else { MarkerShape::Square };
-                let points = Points::new(entry.name, PlotPoints::from(places)).shape(shape).filled(!is_planned);
-                plot.points(points.radius(if is_planned { 6.5 } else { 3.5 }).color(entry.colour));
-            }
-        });
+    let powers = |[low, high]: [f64; 2], step: usize| -> Vec<Tick> {
+        let within = (low.ceil() as i32..=high.floor() as i32).filter(|power| power.rem_euclid(step as i32) == 0);
+        within.map(|power| Tick { value: f64::from(power), text: power_of_ten(power) }).collect()
+    };
+    let (x, y) = (span(0, SMALLEST_ERROR.log10(), -2.0), span(1, 0.0, 2.0));
+    let (x_marks, y_marks) = (powers(x, 4), powers(y, 1));
+    let x = Axis { ticks: Some(&x_marks), ..Axis::new(x[0], x[1], "largest error of a sample") };
+    let y = Axis { ticks: Some(&y_marks), ..Axis::new(y[0], y[1], "three maps, ms") };
+    let mut chart = Chart::new("Run time against error", x, y).with_zoom();
+    if let Some(bare) = input.bare_fft_ms {
+        let line = HLine::new("", bare.log10()).color(Color32::GRAY).width(1.0);
+        chart.add(line.style(LineStyle::dashed_loose()));
+    }
+    for Series { entry, places, is_planned } in drawn {
+        let shape = if matches!(entry.sign, Sign::Circle { .. }) { MarkerShape::Circle } else { MarkerShape::Square };
+        let points = Points::new(entry.name, places).shape(shape).filled(!is_planned);
+        chart.add(points.radius(if is_planned { 6.5 } else { 3.5 }).color(entry.colour));
+    }
+    let drawn = chart.show(ui, ui.available_rect_before_wrap(), Sense::click_and_drag());
+    drawn.tell(|[error, time]| Some(format!("error {:.1e}\n{:.3} ms", 10f64.powf(error), 10f64.powf(time))));
 }
 
 fn power_of_ten(exponent: i32) -> String {

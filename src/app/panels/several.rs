@@ -3,12 +3,14 @@
 use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::Small;
 use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, Variant, ViewCommand};
+use crate::app::widgets::labelled::{choice, choice_told, labelled};
 use crate::app::widgets::method_menu::{Offered, method_lines};
 use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::textures::Texture;
 use crate::radar::Radar;
 use eframe::egui;
-use eframe::egui::{Align2, Color32, ComboBox, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
+use eframe::egui::{Align2, Color32, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
 
 /// What is shown.
 pub struct Input<'a> {
@@ -55,9 +57,8 @@ impl Content for SeveralPanel {
 
 /// Draws the panel. A click on a map puts its value before the scene.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut SeveralMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(8, 6)).show(ui, |ui| {
-        choices(ui, &input, &mut asked);
+    padded(ui, |ui, asked| {
+        choices(ui, &input, asked);
         if input.veiled {
             ui.weak("Hidden until you have predicted.");
             return;
@@ -72,10 +73,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut SeveralMemory) -> Vec<Co
         for (index, (small, texture)) in input.maps.iter().zip(&mut memory.textures).enumerate() {
             let corner = vec2((index % columns) as f32 * size.x, (index / columns) as f32 * size.y);
             let place = Rect::from_min_size(area.min + corner, size).shrink(3.0);
-            tile(ui, place, small, texture, input.several.parameter, &mut asked);
+            tile(ui, place, small, texture, input.several.parameter, asked);
         }
-    });
-    asked
+    })
 }
 
 /// How many columns make the largest maps twice as wide as high, and the size of each.
@@ -89,22 +89,13 @@ fn grid(count: usize, area: Vec2) -> (usize, Vec2) {
 fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let mut several = input.several.clone();
     ui.horizontal_wrapped(|ui| {
-        let label = ui.label("Compare");
-        let combo = ComboBox::from_id_salt("parameter").selected_text(several.parameter.name()).show_ui(ui, |ui| {
-            for parameter in Parameter::ALL {
-                if ui.selectable_label(several.parameter == parameter, parameter.name()).clicked() {
-                    several = several.with(parameter, input.radar);
-                }
-            }
-        });
-        combo.response.labelled_by(label.id);
-        let label = ui.label("in");
-        let combo = ComboBox::from_id_salt("map").selected_text(several.map.title()).show_ui(ui, |ui| {
-            for map in [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output] {
-                ui.selectable_value(&mut several.map, map, map.title()).on_hover_text(map.describe());
-            }
-        });
-        combo.response.labelled_by(label.id);
+        let mut parameter = several.parameter;
+        choice(ui, "Compare", "", &mut parameter, Parameter::ALL, |p| p.name().to_owned());
+        if parameter != several.parameter {
+            several = several.with(parameter, input.radar);
+        }
+        let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output];
+        choice_told(ui, "in", "", &mut several.map, maps, |map| (map.title().to_owned(), map.describe()));
         match several.parameter.unit() {
             Some(unit) => numbers(ui, &mut several, unit),
             None if several.parameter == Parameter::Method => methods(ui, &mut several, input.methods),
@@ -119,15 +110,13 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 fn numbers(ui: &mut Ui, several: &mut Several, unit: &str) {
     let speed = ((several.high - several.low).abs() / 200.0).max(1e-3);
     let value = |ui: &mut Ui, name: &str, value: &mut f64| {
-        let label = ui.label(name);
         let field = NumberField::new(value).speed(speed).range(-100.0..=1e4).max_decimals(3).suffix(unit);
-        ui.add(field).labelled_by(label.id);
+        labelled(ui, name, "", field);
     };
     value(ui, "from", &mut several.low);
     value(ui, "to", &mut several.high);
-    let label = ui.label("maps");
-    ui.add(NumberField::new(&mut several.count).range(2..=crate::app::state::MAX_MAPS_AT_ONCE).speed(0.05))
-        .labelled_by(label.id);
+    let count = NumberField::new(&mut several.count).range(2..=crate::app::state::MAX_MAPS_AT_ONCE).speed(0.05);
+    labelled(ui, "maps", "", count);
 }
 
 fn methods(ui: &mut Ui, several: &mut Several, methods: Offered<'_>) {

@@ -2,9 +2,9 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::Command;
+use crate::app::widgets::padded::scrolled;
 use crate::engine::{EngineReport, StageOutcome};
-use eframe::egui;
-use eframe::egui::{Grid, Label, RichText, ScrollArea, Ui};
+use eframe::egui::{Grid, Label, RichText, Ui};
 use std::time::Duration;
 
 /// What is shown.
@@ -53,13 +53,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         ui.weak("No update yet.");
         return Vec::new();
     };
-    egui::Frame::NONE.inner_margin(8).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            // What a stage says may take several lines.
-            Grid::new("stages").num_columns(3).striped(true).show(ui, |ui| table(ui, &update));
-        });
-    });
-    Vec::new()
+    scrolled(ui, |ui, _| {
+        // What a stage says may take several lines.
+        Grid::new("stages").num_columns(3).striped(true).show(ui, |ui| table(ui, &update));
+    })
 }
 
 fn milliseconds(took: Duration) -> String {

@@ -3,13 +3,15 @@
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Log;
 use crate::app::state::{Command, WorkCommand};
+use crate::app::widgets::axes::Axis;
+use crate::app::widgets::chart::Chart;
 use crate::app::widgets::entry::button;
 use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::progress::progress;
 use crate::app::widgets::theme;
-use eframe::egui;
-use eframe::egui::{Color32, Grid, Ui};
-use egui_plot::{Line, Plot, PlotPoints};
+use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
+use egui_plot::LineStyle;
 use std::path::Path;
 
 /// What is watched.
@@ -67,17 +69,16 @@ impl Content for TrainingPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut TrainingMemory) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         ui.horizontal_wrapped(|ui| {
-            button(ui, "Open training log…", WorkCommand::OpenLog, true, &mut asked);
+            button(ui, "Open training log…", WorkCommand::OpenLog, true, asked);
             match input.running {
                 Some(part) => {
                     if progress(ui, part, 140.0, "Stop the training; its last checkpoint stays") {
                         asked.push(WorkCommand::CancelTraining.into());
                     }
                 }
-                None => start(ui, memory, &mut asked),
+                None => start(ui, memory, asked),
             }
         });
         if let Some(note) = input.note {
@@ -87,8 +88,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut TrainingMemory) -> Vec<C
             Some(log) => curves(ui, log),
             None => _ = ui.weak(waiting(&input)),
         }
-    });
-    asked
+    })
 }
 
 /// What stands where there is no curve yet.
@@ -111,21 +111,26 @@ fn curves(ui: &mut Ui, log: &Log) {
             }
         }
     });
-    let log10 = |points: &[[f64; 2]]| -> PlotPoints<'static> {
+    let log10 = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
         points.iter().filter(|p| p[1] > 0.0).map(|p| [p[0], p[1].log10()]).collect()
     };
     let lines = [("loss", Color32::GRAY), ("smoothed", theme::Inks::of(ui.visuals()).selected)];
     let entry = |(name, colour): (&str, Color32)| Entry { sign: Sign::Line, colour, name: name.to_owned() };
     legend::row(ui, &lines.map(entry));
-    Plot::new("loss")
-        .x_axis_label("step")
-        .y_axis_label("loss, powers of ten")
-        .allow_scroll(false)
-        .y_axis_min_width(36.0)
-        .show(ui, |plot| {
-            plot.line(Line::new("loss", log10(&log.loss)).color(Color32::GRAY).width(1.0));
-            plot.line(Line::new("smoothed", log10(&log.smoothed)).color(lines[1].1).width(1.8));
-        });
+    let loss = log10(&log.loss);
+    let ends = |axis: usize, room: f64| {
+        let (low, high) =
+            loss.iter().fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
+        let room = room * (high - low).max(1e-3);
+        if low <= high { [low - room, high + room] } else { [0.0, 1.0] }
+    };
+    let ([first, last], [low, high]) = (ends(0, 0.0), ends(1, 0.05));
+    let (x, y) = (Axis::new(first, last.max(first + 1.0), "step"), Axis::new(low, high, "loss, powers of ten"));
+    let mut chart = Chart::new("Loss against step", x, y).with_zoom();
+    chart.line(loss.iter().copied(), Stroke::new(1.0, Color32::GRAY), LineStyle::Solid);
+    chart.line(log10(&log.smoothed), Stroke::new(1.8, lines[1].1), LineStyle::Solid);
+    let drawn = chart.show(ui, ui.available_rect_before_wrap(), Sense::click_and_drag());
+    drawn.tell(|[step, power]| Some(format!("step {step:.0}\nloss {:.3e}", 10f64.powf(power))));
 }
 
 /// A number with as many digits as one looks at.

@@ -6,8 +6,8 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
 use crate::app::state::{Command, Cursor, MapKind, MethodSlot, Panel};
 use crate::app::widgets::direction::{CONVENTION, direction};
+use crate::app::widgets::padded::padded;
 use crate::radar::Radar;
-use eframe::egui;
 use eframe::egui::{Align, Grid, Layout, RichText, ScrollArea, Ui};
 
 /// The maps that are listed, from the inputs to the differences.
@@ -74,7 +74,7 @@ impl Content for ValuesPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| {
+    padded(ui, |ui, _| {
         if input.hidden {
             ui.weak("Hidden until you have predicted.");
             return;
@@ -103,8 +103,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
                 input.rows.iter().for_each(|row| line(ui, row, bin, column));
             });
         });
-    });
-    Vec::new()
+    })
 }
 
 fn line(ui: &mut Ui, row: &Row<'_>, bin: usize, column: usize) {

@@ -90,11 +90,6 @@ impl<'a> Axis<'a> {
         if self.slack > 0.0 { part.clamp(0.0, 1.0) } else { part }
     }
 
-    /// The value at a part of it.
-    pub fn at(&self, part: f32) -> f64 {
-        self.low + f64::from(part) * (self.high - self.low)
-    }
-
     /// Its marks along `length` points to the right: as many as have room for their labels.
     pub fn across(&self, painter: &Painter, length: f32) -> Vec<Tick> {
         let room = |ticks: &[Tick]| ticks.iter().map(|t| width(painter, &t.text) + 10.0).fold(0.0, f32::max);

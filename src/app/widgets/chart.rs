@@ -1,102 +1,194 @@
-//! Charts of lines, drawn as the maps are: the same axes, the same font, nothing over the data.
+//! Charts of egui_plot, with the axes and the font of the maps.
 
-use super::axes::{self, Axis};
+use super::axes::{self, Axis, Tick};
 use super::nudge::{pan_keys, zoom_keys};
 use eframe::egui;
-use eframe::egui::{Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{Color32, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, TextureId, Ui, UiBuilder, vec2};
+use egui_plot::{AxisHints, GridInput, GridMark, Line, LineStyle, Plot, PlotImage, PlotItem, PlotPoint, PlotPoints};
+use egui_plot::{PlotTransform, Points, VLine};
 
-/// What is drawn around the lines.
+/// Room above a chart, and at its right where no label needs more, points.
+const AROUND: [f32; 2] = [8.0, 12.0];
+
+/// Room left of the title of an axis that leads up, and what the title itself takes, points.
+const TITLE: [f32; 2] = [4.0, 20.0];
+
+/// A chart before it is drawn.
 pub struct Chart<'a> {
-    /// Name for screen readers.
-    pub name: &'a str,
-    /// To the right.
-    pub x: Axis<'a>,
-    /// Upwards.
-    pub y: Axis<'a>,
+    name: &'a str,
+    x: Axis<'a>,
+    y: Axis<'a>,
+    has_one_scale: bool,
+    is_zoomable: bool,
+    items: Vec<Box<dyn PlotItem>>,
 }
 
-/// A chart on screen, to draw into.
-pub struct Drawn<'a> {
+/// A chart on screen, to read places off and to draw over.
+pub struct Drawn {
     /// Where its lines are.
     pub rect: Rect,
     /// What the pointer does there.
     pub response: Response,
-    x: Axis<'a>,
-    y: Axis<'a>,
+    transform: PlotTransform,
     painter: Painter,
 }
 
-/// Strokes of a line and the gaps between them, points; no gaps where `None`.
-pub type Dash = Option<[f32; 2]>;
-
 impl<'a> Chart<'a> {
-    /// Draws frame, grid and axes into `area`.
-    pub fn show(self, ui: &mut Ui, area: Rect, sense: Sense) -> Drawn<'a> {
-        let Chart { name, x, y } = self;
-        let rect = inner(ui.painter(), area, y);
-        let response = ui.interact(rect, ui.scope_id().with(name), sense);
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
-        let painter = ui.painter().with_clip_rect(area);
-        painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
-        let grid = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color.gamma_multiply(0.6));
-        let (x_marks, y_marks) = axes::marks_of(&painter, rect, x, y);
-        for tick in x_marks {
-            painter.vline(rect.left() + x.part(tick.value) * rect.width(), rect.y_range(), grid);
-        }
-        for tick in y_marks {
-            painter.hline(rect.x_range(), rect.bottom() - y.part(tick.value) * rect.height(), grid);
-        }
-        axes::draw(ui, &painter, rect, x, y);
-        Drawn { rect, response, x, y, painter: ui.painter().with_clip_rect(rect.expand(1.0)) }
-    }
-}
-
-/// Where the lines go: what labels and titles leave of `area`.
-pub fn inner(painter: &Painter, area: Rect, y: Axis<'_>) -> Rect {
-    let height = (area.height() - 8.0 - axes::BOTTOM).max(20.0);
-    let marks = y.upwards(height);
-    let labels = marks.iter().map(|t| axes::width(painter, &t.text)).fold(0.0, f32::max);
-    let left = (labels + 26.0).min(area.width() / 2.0);
-    Rect::from_min_size(area.min + vec2(left, 8.0), vec2((area.width() - left - 12.0).max(20.0), height))
-}
-
-impl Drawn<'_> {
-    /// Where a point is.
-    pub fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
-        let Rect { min, max } = self.rect;
-        pos2(min.x + self.x.part(x) * (max.x - min.x), max.y - self.y.part(y) * (max.y - min.y))
+    /// A chart with a name for screen readers, without lines.
+    pub fn new(name: &'a str, x: Axis<'a>, y: Axis<'a>) -> Self {
+        Chart { name, x, y, has_one_scale: false, is_zoomable: false, items: Vec::new() }
     }
 
-    /// The x of a place.
-    pub fn x_at(&self, at: Pos2) -> f64 {
-        self.x.at((at.x - self.rect.left()) / self.rect.width())
+    /// The same, with both axes to one scale: one of them shows more than was asked for.
+    pub fn with_one_scale(self) -> Self {
+        Chart { has_one_scale: true, ..self }
     }
 
-    /// The y of a place.
-    pub fn y_at(&self, at: Pos2) -> f64 {
-        self.y.at((self.rect.bottom() - at.y) / self.rect.height())
+    /// The same, which a drag pans and a pinch or Ctrl and the wheel zooms; a double click shows all again.
+    pub fn with_zoom(self) -> Self {
+        Chart { is_zoomable: true, ..self }
+    }
+
+    /// Adds an item of egui_plot, over those before.
+    pub fn add(&mut self, item: impl PlotItem + 'static) {
+        self.items.push(Box::new(item));
     }
 
     /// A line from point to point. Points far outside are drawn just outside: a dashed line that leads away by millions of points would be
     /// made of as many dashes.
-    pub fn line(&self, points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke, dash: Dash) {
-        let around = self.rect.expand2(self.rect.size());
-        let points = points.into_iter().map(|p| self.at(p)).filter(|p| !p.any_nan());
-        let points: Vec<Pos2> = points.map(|p| p.clamp(around.min, around.max)).collect();
-        match dash {
-            None => _ = self.painter.add(Shape::line(points, stroke)),
-            Some([long, gap]) => self.painter.extend(Shape::dashed_line(&points, stroke, long, gap)),
-        }
+    pub fn line(&mut self, points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke, style: LineStyle) {
+        let within = |v: f64, axis: &Axis<'_>| v.clamp(2.0 * axis.low - axis.high, 2.0 * axis.high - axis.low);
+        let points = points.into_iter().filter(|p| !(p[0].is_nan() || p[1].is_nan()));
+        let points: PlotPoints<'static> = points.map(|[x, y]| [within(x, &self.x), within(y, &self.y)]).collect();
+        self.add(Line::new("", points).stroke(stroke).style(style));
     }
 
     /// A line from bottom to top.
-    pub fn upright(&self, x: f64, stroke: Stroke) {
-        self.painter.vline(self.at([x, 0.0]).x, self.rect.y_range(), stroke);
+    pub fn upright(&mut self, x: f64, stroke: Stroke) {
+        self.add(VLine::new("", x).stroke(stroke));
     }
 
     /// A dot.
-    pub fn dot(&self, at: [f64; 2], radius: f32, colour: Color32) {
-        self.painter.circle_filled(self.at(at), radius, colour);
+    pub fn dot(&mut self, at: [f64; 2], radius: f32, colour: Color32) {
+        self.add(Points::new("", vec![at]).radius(radius).color(colour));
+    }
+
+    /// A picture between two corners.
+    pub fn image(&mut self, texture: TextureId, [left, bottom]: [f64; 2], [right, top]: [f64; 2]) {
+        let middle = PlotPoint::new((left + right) / 2.0, (bottom + top) / 2.0);
+        self.add(PlotImage::new("", texture, middle, [(right - left) as f32, (top - bottom) as f32]));
+    }
+
+    /// Draws it into `area`.
+    pub fn show(mut self, ui: &mut Ui, area: Rect, sense: Sense) -> Drawn {
+        let (left, right) = self.beside(ui.painter(), area);
+        let Chart { name, x, y, has_one_scale, is_zoomable, items } = self;
+        let painter = ui.painter().clone();
+        let rect = Rect::from_min_max(area.min + vec2(TITLE[0], AROUND[0]), area.max - vec2(right, 0.0));
+        let mut inside = ui.new_child(UiBuilder::new().id_salt(name).max_rect(rect));
+        let mut plot = Plot::new(name)
+            .custom_x_axes(vec![hints(ui, AxisHints::new_x(), x).min_thickness(axes::BOTTOM)])
+            .custom_y_axes(vec![hints(ui, AxisHints::new_y(), y).min_thickness(left)])
+            .x_grid_spacer(move |input| marks(x, input, |axis, length| axis.across(&painter, length)))
+            .y_grid_spacer(move |input| marks(y, input, |axis, length| axis.upwards(length)))
+            .grid_spacing(1.0..=2.0)
+            .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color.gamma_multiply(0.6))
+            .allow_zoom(is_zoomable)
+            .allow_drag(is_zoomable)
+            .allow_double_click_reset(is_zoomable)
+            .allow_scroll(false)
+            .allow_boxed_zoom(false)
+            .allow_axis_zoom_drag(false)
+            .set_margin_fraction(egui::Vec2::ZERO)
+            .min_size(vec2(20.0, 20.0))
+            .show_x(false)
+            .show_y(false)
+            .sense(sense);
+        if has_one_scale {
+            plot = plot.data_aspect(1.0);
+        }
+        for (x, y) in [(x.low, y.low), (x.high, y.high)] {
+            plot = plot.include_x(x).include_y(y);
+        }
+        let shown = plot.show(&mut inside, move |plot| {
+            if !is_zoomable {
+                plot.set_plot_bounds_x(x.low..=x.high);
+                plot.set_plot_bounds_y(y.low..=y.high);
+            }
+            items.into_iter().for_each(|item| plot.add_item(item));
+        });
+        let (response, transform) = (shown.response, shown.transform);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
+        let rect = *transform.frame();
+        let painter = ui.painter().with_clip_rect(rect.expand(1.0).intersect(ui.clip_rect()));
+        Drawn { rect, response, transform, painter }
+    }
+
+    /// What labels and titles take left and right of the chart. Leaves out a title that has no room, and begins below the lowest label
+    /// where that would run into one of the other axis.
+    fn beside(&mut self, painter: &Painter, area: Rect) -> (f32, f32) {
+        let Chart { x, y, .. } = self;
+        let height = (area.height() - AROUND[0] - axes::BOTTOM).max(20.0);
+        if axes::width(painter, y.title) > height {
+            y.title = "";
+        }
+        let y_marks = y.upwards(height);
+        let labels = y_marks.iter().map(|t| axes::width(painter, &t.text)).fold(0.0, f32::max);
+        let left = labels + 8.0 + if y.title.is_empty() { 0.0 } else { TITLE[1] };
+        let width = (area.width() - TITLE[0] - left - AROUND[1]).max(20.0);
+        let x_marks = x.across(painter, width);
+        // What half a label reaches beyond a place, points.
+        let beyond = |t: &Tick, room: f32| axes::width(painter, &t.text) / 2.0 - room;
+        let right = x_marks.last().map_or(0.0, |t| beyond(t, (1.0 - x.part(t.value)) * width) + 1.0).max(AROUND[1]);
+        let is_crowded = x_marks.first().is_some_and(|t| beyond(t, x.part(t.value) * width) > 2.0);
+        if is_crowded && y_marks.first().is_some_and(|t| y.part(t.value) * height < 8.0) {
+            y.low -= f64::from(8.0 / height) * (y.high - y.low);
+        }
+        (left, right)
+    }
+}
+
+/// Title, font and labels of an axis.
+fn hints<'a>(ui: &Ui, hints: AxisHints<'a>, axis: Axis<'a>) -> AxisHints<'a> {
+    let ink = ui.visuals().weak_text_color();
+    let text = move |mark: GridMark, _: &_| match axis.ticks {
+        None => axes::tick_text(mark.value, mark.step_size),
+        Some(ticks) => ticks.iter().find(|t| t.value == mark.value).map_or_else(String::new, |t| t.text.clone()),
+    };
+    let hints = hints.label(RichText::new(axis.title).font(axes::tick_font()).color(ink)).formatter(text);
+    hints.label_spacing(0.0..=1.0).tick_label_color(ink).tick_label_font(axes::tick_font())
+}
+
+/// The marks of an axis of which a part is in sight.
+fn marks(axis: Axis<'_>, input: GridInput, of: impl Fn(Axis<'_>, f32) -> Vec<Tick>) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    let ticks = of(Axis { low, high, ..axis }, ((high - low) / input.base_step_size) as f32);
+    let step_size = ticks.windows(2).map(|w| w[1].value - w[0].value).fold(high - low, f64::min);
+    ticks.into_iter().map(|tick| GridMark { value: tick.value, step_size }).collect()
+}
+
+impl Drawn {
+    /// Where a point is.
+    pub fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
+        self.transform.position_from_point(&PlotPoint::new(x, y))
+    }
+
+    /// The x of a place.
+    pub fn x_at(&self, at: Pos2) -> f64 {
+        self.transform.value_from_position(at).x
+    }
+
+    /// The y of a place.
+    pub fn y_at(&self, at: Pos2) -> f64 {
+        self.transform.value_from_position(at).y
+    }
+
+    /// Tells at the pointer what is at its place.
+    pub fn tell(self, what: impl FnOnce([f64; 2]) -> Option<String>) {
+        let told = self.response.hover_pos().and_then(|pos| what([self.x_at(pos), self.y_at(pos)]));
+        if let Some(told) = told {
+            self.response.on_hover_text_at_pointer(told);
+        }
     }
 
     /// What else is drawn over the lines, cut off at the frame.
@@ -116,7 +208,7 @@ pub struct Span {
 
 impl Span {
     /// Follows wheel, pinch and drag over a chart, and arrow keys, `+` and `-` in one that has the focus; a double click shows `whole` again.
-    pub fn navigate(self, ui: &Ui, drawn: &Drawn<'_>, whole: Span, may_drag: bool) -> Span {
+    pub fn navigate(self, ui: &Ui, drawn: &Drawn, whole: Span, may_drag: bool) -> Span {
         if drawn.response.double_clicked() {
             return whole;
         }
@@ -183,7 +275,7 @@ mod tests {
                 let x = Axis { ticks: Some(&ticks), ..Axis::new(-5.0, 0.0, "P_FA") };
                 let y = Axis::new(0.0, 100.0, "P_D, %");
                 let area = ui.available_rect_before_wrap();
-                Chart { name: "roc", x, y }.show(ui, area, Sense::hover());
+                Chart::new("roc", x, y).show(ui, area, Sense::hover());
             });
             let texts = seen::texts(chart.output());
             assert!(["≤0.001 %", "100 %", "0", "100"].iter().all(|t| texts.iter().any(|s| s.text == *t)), "{texts:?}");
@@ -196,9 +288,10 @@ mod tests {
         let chart = Harness::builder().with_size([300.0, 200.0]).build_ui(|ui| {
             let (x, y) = (Axis::new(0.0, 1.0, "x"), Axis::new(-1.0, 0.0, "dB"));
             let area = ui.available_rect_before_wrap();
-            let drawn = Chart { name: "far", x, y }.show(ui, area, Sense::hover());
+            let mut chart = Chart::new("far", x, y);
             let points = [[0.0, 0.0], [0.3, -1e7], [0.6, f64::NAN], [1.0, -0.5]];
-            drawn.line(points, Stroke::new(1.0, Color32::WHITE), Some([6.0, 4.0]));
+            chart.line(points, Stroke::new(1.0, Color32::WHITE), LineStyle::dashed_dense());
+            chart.show(ui, area, Sense::hover());
         });
         assert!(chart.output().shapes.len() < 1000, "{} shapes", chart.output().shapes.len());
     }

@@ -2,7 +2,7 @@
 
 use crate::app::state::{Command, EditCommand, Entry};
 use crate::interact::{Alignment, Along};
-use eframe::egui::{Atom, Button, IdSalt, Role, Stroke, Ui, WidgetInfo, vec2};
+use eframe::egui::{Atom, Button, IdSalt, Response, Role, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 
 /// A menu entry; a click asks for the command and closes the menu.
 pub fn entry(ui: &mut Ui, command: impl Into<Command>, enabled: bool, asked: &mut Vec<Command>) {
@@ -67,6 +67,38 @@ pub fn button(ui: &mut Ui, label: &str, command: impl Into<Command>, enabled: bo
     if ui.add_enabled(enabled, Button::new(label)).on_hover_text(tooltip(ui, &command)).clicked() {
         asked.push(command);
     }
+}
+
+/// A button that asks for what no menu lists.
+pub fn press<C: Into<Command>>(
+    ui: &mut Ui,
+    name: impl Into<WidgetText>,
+    tooltip: &str,
+    command: impl FnOnce() -> C,
+    asked: &mut Vec<Command>,
+) {
+    if tipped(ui.button(name.into()), tooltip).clicked() {
+        asked.push(command().into());
+    }
+}
+
+/// A box that is ticked while something is `on`; `command` asks for the other.
+pub fn tick<C: Into<Command>>(
+    ui: &mut Ui,
+    mut on: bool,
+    name: &str,
+    tooltip: &str,
+    command: impl FnOnce(bool) -> C,
+    asked: &mut Vec<Command>,
+) {
+    if tipped(ui.checkbox(&mut on, name), tooltip).changed() {
+        asked.push(command(on).into());
+    }
+}
+
+/// With a tooltip; an empty one is none.
+pub fn tipped(response: Response, tooltip: &str) -> Response {
+    if tooltip.is_empty() { response } else { response.on_hover_text(tooltip) }
 }
 
 /// What a command does, and its key.

@@ -10,6 +10,7 @@ pub mod focus_ring;
 pub mod icons;
 pub mod inline;
 pub mod kind_boxes;
+pub mod labelled;
 pub mod legend;
 pub mod levels;
 pub mod list_rows;
@@ -19,6 +20,7 @@ mod networks;
 pub mod nudge;
 pub mod number_field;
 pub mod numbers;
+pub mod padded;
 pub mod progress;
 #[cfg(test)]
 pub mod seen;

@@ -31,31 +31,20 @@ pub struct Inks {
 impl Inks {
     /// The inks for light or dark.
     pub fn of(visuals: &Visuals) -> Self {
-        let rgb = Color32::from_rgb;
-        if visuals.dark_mode {
-            Inks {
-                ground: rgb(24, 28, 36),
-                beyond: rgb(14, 16, 20),
-                grid: rgb(54, 61, 75),
-                grid_text: rgb(140, 150, 168),
-                reflector: rgb(236, 240, 248),
-                selected: rgb(255, 176, 59),
-                ends: [rgb(92, 184, 255), rgb(255, 122, 148)],
-                array: rgb(140, 150, 168),
-                found: rgb(120, 230, 140),
-            }
-        } else {
-            Inks {
-                ground: rgb(252, 253, 255),
-                beyond: rgb(226, 230, 237),
-                grid: rgb(206, 212, 222),
-                grid_text: rgb(92, 102, 120),
-                reflector: rgb(30, 38, 52),
-                selected: rgb(214, 110, 0),
-                ends: [rgb(0, 112, 206), rgb(204, 32, 84)],
-                array: rgb(92, 102, 120),
-                found: rgb(0, 138, 62),
-            }
+        let ink = |dark: [u8; 3], light: [u8; 3]| {
+            let [r, g, b] = if visuals.dark_mode { dark } else { light };
+            Color32::from_rgb(r, g, b)
+        };
+        Inks {
+            ground: ink([24, 28, 36], [252, 253, 255]),
+            beyond: ink([14, 16, 20], [226, 230, 237]),
+            grid: ink([54, 61, 75], [206, 212, 222]),
+            grid_text: ink([140, 150, 168], [92, 102, 120]),
+            reflector: ink([236, 240, 248], [30, 38, 52]),
+            selected: ink([255, 176, 59], [214, 110, 0]),
+            ends: [ink([92, 184, 255], [0, 112, 206]), ink([255, 122, 148], [204, 32, 84])],
+            array: ink([140, 150, 168], [92, 102, 120]),
+            found: ink([120, 230, 140], [0, 138, 62]),
         }
     }
 }

@@ -1,10 +1,11 @@
 //! The Cramer-Rao bound of a place as an ellipse.
 
 use crate::app::widgets::axes::Axis;
-use crate::app::widgets::chart::{self, Chart};
+use crate::app::widgets::chart::Chart;
 use crate::app::widgets::theme;
 use crate::bounds::PositionBound;
 use eframe::egui::{Sense, Stroke, Ui};
+use egui_plot::LineStyle;
 use std::f64::consts::TAU;
 
 /// Where 39 % of the estimates of the best unbiased estimator would lie: one standard deviation.
@@ -16,17 +17,15 @@ pub fn ellipse(ui: &mut Ui, bound: &PositionBound) {
     }
     let colour = theme::Inks::of(ui.visuals()).selected;
     let most = |i: usize| outline.iter().map(|p| 1.2 * p[i].abs()).fold(0.0, f64::max);
-    // A millimetre is as long upwards as it is across.
-    let axis = |high: f64| Axis::new(-high, high, "error of y, mm");
-    let size = chart::inner(ui.painter(), area, axis(most(1))).size();
-    let aspect = f64::from(size.x / size.y);
-    let high = most(1).max(most(0) / aspect);
-    let x = Axis::new(-high * aspect, high * aspect, "error of x, mm");
-    let chart = Chart { name: "Ellipse of one standard deviation", x, y: axis(high) };
-    let drawn = chart.show(ui, area, Sense::hover());
-    drawn.line(outline, Stroke::new(1.8, colour), None);
-    drawn.dot([0.0, 0.0], 2.5, colour);
-    drawn.response.on_hover_text("39 % of the estimates of the best unbiased estimator lie within");
+    let axis = |i: usize, title| Axis::new(-most(i), most(i), title);
+    let (x, y) = (axis(0, "error of x, mm"), axis(1, "error of y, mm"));
+    let mut chart = Chart::new("Ellipse of one standard deviation", x, y).with_one_scale();
+    chart.line(outline, Stroke::new(1.8, colour), LineStyle::Solid);
+    chart.dot([0.0, 0.0], 2.5, colour);
+    chart
+        .show(ui, area, Sense::hover())
+        .response
+        .on_hover_text("39 % of the estimates of the best unbiased estimator lie within");
 }
 
 /// Points of the ellipse in millimetres: a circle through the Cholesky factor of the covariance.

@@ -1,6 +1,7 @@
 //! Choices beside each other, of which one is chosen.
 
 use crate::app::state::Command;
+use crate::app::widgets::entry::tipped;
 use eframe::egui::Ui;
 
 /// Draws a label a choice: `of` has the choice, its name and its tooltip. A click on another asks by `command`.
@@ -12,11 +13,7 @@ pub(super) fn choices<T: PartialEq + Copy, C: Into<Command>>(
     asked: &mut Vec<Command>,
 ) {
     for (choice, name, tooltip) in of {
-        let mut response = ui.selectable_label(choice == chosen, name);
-        if !tooltip.is_empty() {
-            response = response.on_hover_text(tooltip);
-        }
-        if response.clicked() && choice != chosen {
+        if tipped(ui.selectable_label(choice == chosen, name), tooltip).clicked() && choice != chosen {
             asked.push(command(choice).into());
         }
     }

@@ -2,6 +2,7 @@
 
 use super::choices::choices;
 use crate::app::state::{Command, DifferenceView, Directions, EditCommand, Projection, Settings, Units, ViewCommand};
+use crate::app::widgets::entry::tick;
 use crate::app::widgets::setting_row::{rarely, row_of};
 use crate::interact::Snap;
 use crate::lesson::Uses;
@@ -21,11 +22,8 @@ pub(super) fn show(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec
     row_of(ui, "Scale", "What colour bars, cuts, readouts and thresholds are told in (D)", |ui| {
         let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];
         choices(ui, settings.units, of, ViewCommand::SetUnits, asked);
-        let mut is_one = settings.one_scale;
         let tip = "Inputs, target and output on the scale of the strongest: what is weaker looks weaker";
-        if ui.checkbox(&mut is_one, "one for all").on_hover_text(tip).changed() {
-            asked.push(ViewCommand::ToggleOneScale.into());
-        }
+        tick(ui, settings.one_scale, "one for all", tip, |_| ViewCommand::ToggleOneScale, asked);
     });
     row_of(ui, "Colours", "Colours of Λ", |ui| {
         let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));
@@ -54,26 +52,19 @@ fn snap(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
 
 fn difference(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     row_of(ui, "Difference", "How the panel Difference is drawn", |ui| {
-        let DifferenceView { mut absolute, whole } = settings.difference;
+        let DifferenceView { absolute, whole } = settings.difference;
         let tip = "Its absolute value, or output minus target";
-        if ui.checkbox(&mut absolute, "absolute").on_hover_text(tip).changed() {
-            asked.push(ViewCommand::ToggleAbsoluteDifference.into());
-        }
-        let mut fits = !whole;
+        tick(ui, absolute, "absolute", tip, |_| ViewCommand::ToggleAbsoluteDifference, asked);
         let tip = "On a scale that just holds it, or on one up to 1";
-        if ui.checkbox(&mut fits, "automatic scale").on_hover_text(tip).changed() {
-            asked.push(ViewCommand::ToggleWholeDifference.into());
-        }
+        tick(ui, !whole, "automatic scale", tip, |_| ViewCommand::ToggleWholeDifference, asked);
     });
 }
 
 /// What is drawn over maps and scene.
 fn marks(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>) {
     row_of(ui, "Mark", "What is drawn over maps and scene", |ui| {
-        let mut mark = |ui: &mut Ui, mut on: bool, name: &str, tooltip: &str, command: ViewCommand| {
-            if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
-                asked.push(command.into());
-            }
+        let mut mark = |ui: &mut Ui, on, name: &str, tooltip: &str, command: ViewCommand| {
+            tick(ui, on, name, tooltip, |_| command, asked);
         };
         let tooltip = "The scene's own reflectors, over every map (R)";
         mark(ui, settings.show_reflectors, "reflectors", tooltip, ViewCommand::ToggleReflectors);
@@ -89,10 +80,7 @@ fn marks(ui: &mut Ui, settings: &Settings, uses: Uses, asked: &mut Vec<Command>)
 
 fn failures(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     row_of(ui, "Failures", "Kinds of failure", |ui| {
-        let mut marked = settings.show_kinds;
         let tip = "What became of every object: found, missed, merged, on the wrong tooth; and ghosts (H)";
-        if ui.checkbox(&mut marked, "mark").on_hover_text(tip).changed() {
-            asked.push(ViewCommand::ToggleKinds.into());
-        }
+        tick(ui, settings.show_kinds, "mark", tip, |_| ViewCommand::ToggleKinds, asked);
     });
 }

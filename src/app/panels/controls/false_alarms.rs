@@ -2,6 +2,7 @@
 
 use crate::app::state::{Command, ThresholdChoice, WorkCommand};
 use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
+use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
 use crate::app::widgets::setting_row::{rarely, row, row_of};
@@ -95,10 +96,8 @@ fn choose(ui: &mut Ui, memory: &mut FalseAlarmsMemory) {
             kind_boxes(ui, Kind::all().filter(|kind| *kind != Kind::Noise), &mut memory.kinds);
         });
         menu.on_hover_text("Kinds of scenes that the method is tried on: choose those that it is to be used on");
-        let label = ui.label("of each");
         let tip = memory.price();
-        let field = NumberField::new(&mut memory.count).range(1..=100_000);
-        ui.add(field).labelled_by(label.id).on_hover_text(tip);
+        labelled(ui, "of each", &tip, NumberField::new(&mut memory.count).range(1..=100_000));
     });
 }
 

@@ -4,12 +4,13 @@ use super::measure::{Width, value_at, width_at};
 use super::trace::{Cut, Trace};
 use crate::app::state::Units;
 use crate::app::widgets::axes;
-use crate::app::widgets::chart::{Drawn, Span};
+use crate::app::widgets::chart::{Chart, Drawn, Span};
 use crate::app::widgets::direction::{angle_degrees, direction};
 use crate::app::widgets::levels;
 use crate::app::widgets::numbers::{signed, significant};
 use crate::radar::Radar;
 use eframe::egui::{Align2, Color32, CursorIcon, Stroke, Ui, pos2, vec2};
+use egui_plot::LineStyle;
 
 /// How near the pointer must be to a marker to drag it, points.
 const MARKER_REACH_POINTS: f32 = 7.0;
@@ -48,7 +49,7 @@ impl Markers {
     }
 
     /// Follows the pointer: a click places one, a drag moves the one under it.
-    pub fn follow(&mut self, ui: &Ui, drawn: &Drawn<'_>, whole: Span) {
+    pub fn follow(&mut self, ui: &Ui, drawn: &Drawn, whole: Span) {
         let x_of = |place: f64| drawn.at([place, 0.0]).x;
         let under = |at: f32| {
             let away = |i: &usize| self.places[*i].map_or(f32::INFINITY, |place| (x_of(place) - at).abs());
@@ -73,11 +74,11 @@ impl Markers {
     }
 
     /// Draws them with their names, over the lines.
-    pub fn draw(&self, drawn: &Drawn<'_>, ink: Color32) {
+    pub fn draw(&self, drawn: &Drawn, ink: Color32) {
         for (place, name) in self.places.into_iter().zip(NAMES) {
             let Some(place) = place else { continue };
-            drawn.upright(place, Stroke::new(1.5, ink));
             let at = pos2(drawn.at([place, 0.0]).x, drawn.rect.top());
+            drawn.painter().vline(at.x, drawn.rect.y_range(), Stroke::new(1.5, ink));
             if drawn.rect.x_range().contains(at.x) {
                 axes::text_on_patch(drawn.painter(), at + vec2(6.0, 3.0), Align2::LEFT_TOP, name);
             }
@@ -143,14 +144,14 @@ fn extent(cut: Cut, low: f64, high: f64, cells: f64) -> String {
 }
 
 /// Draws the width of the peak at each marker, where the line has fallen by 3 dB. `y_of` turns decibels into what the chart counts.
-pub fn draw_widths(drawn: &Drawn<'_>, trace: &Trace, markers: &Markers, ink: Color32, y_of: impl Fn(f64) -> f64) {
+pub fn draw_widths(chart: &mut Chart<'_>, trace: &Trace, markers: &Markers, ink: Color32, y_of: impl Fn(f64) -> f64) {
     let Some(points) = trace.decibels() else { return };
     for place in markers.places.into_iter().flatten() {
         let Some(width) = width_at(&points, place) else { continue };
         let y = y_of(width.level_db);
-        drawn.line([[width.low, y], [width.high, y]], Stroke::new(2.5, ink), None);
-        drawn.dot([width.low, y], 3.0, ink);
-        drawn.dot([width.high, y], 3.0, ink);
+        chart.line([[width.low, y], [width.high, y]], Stroke::new(2.5, ink), LineStyle::Solid);
+        chart.dot([width.low, y], 3.0, ink);
+        chart.dot([width.high, y], 3.0, ink);
     }
 }
 

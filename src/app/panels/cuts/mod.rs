@@ -8,15 +8,17 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
 use crate::app::state::{Command, Cursor, CutMap, MapKind, PinnedCut, Units, ViewCommand};
 use crate::app::widgets::axes::{self, Axis};
-use crate::app::widgets::chart::{Chart, Dash, Drawn, Span};
+use crate::app::widgets::chart::{Chart, Span};
 use crate::app::widgets::direction::direction;
-use crate::app::widgets::entry::button;
+use crate::app::widgets::entry::{button, press};
+use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::levels::lowest_db;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
 use crate::radar::Radar;
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
+use eframe::egui::{Color32, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
+use egui_plot::LineStyle;
 use markers::{Markers, NAMES};
 use std::collections::{BTreeMap, BTreeSet};
 use trace::{Cut, Trace};
@@ -155,9 +157,7 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory, asked: &mut Vec
             let way = direction(pin.cursor.cos_theta, 1);
             let place = format!("{}: {:.2} m · {way}", index + 1, pin.cursor.range_metres);
             let tip = "A cut that stays, drawn thin; click to let it go";
-            if ui.button(format!("Unpin {place}")).on_hover_text(tip).clicked() {
-                asked.push(ViewCommand::Unpin(index).into());
-            }
+            press(ui, format!("Unpin {place}"), tip, || ViewCommand::Unpin(index), asked);
         }
         ui.add_space(6.0);
         marks(ui, input, memory);
@@ -175,15 +175,9 @@ fn marks(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory) {
             }
         }
     } else {
-        let label = ui.label("Read");
-        let lines = lines(input, &memory.hidden);
-        let name = memory.read.map_or_else(String::new, Line::name);
-        let combo = ComboBox::from_id_salt("read").selected_text(name).show_ui(ui, |ui| {
-            for line in lines {
-                ui.selectable_value(&mut memory.read, Some(line), line.name());
-            }
-        });
-        combo.response.labelled_by(label.id).on_hover_text("The line that the markers measure");
+        let lines = lines(input, &memory.hidden).into_iter().map(Some);
+        let name = |line: &Option<Line>| line.map_or_else(String::new, Line::name);
+        choice(ui, "Read", "The line that the markers measure", &mut memory.read, lines, name);
         if ui.button("No markers").on_hover_text("Take the markers away").clicked() {
             memory.views.values_mut().for_each(|view| view.markers = Markers::default());
         }
@@ -211,11 +205,11 @@ fn colour(ui: &Ui, kind: MapKind) -> Color32 {
 }
 
 /// Lines differ by dash as well as by colour.
-fn dash(kind: MapKind) -> Dash {
+fn style(kind: MapKind) -> LineStyle {
     match kind {
-        MapKind::Input0 => Some([7.0, 3.0]),
-        MapKind::Input1 => Some([2.5, 2.5]),
-        _ => None,
+        MapKind::Input0 => LineStyle::Dashed { length: 7.0 },
+        MapKind::Input1 => LineStyle::Dashed { length: 3.0 },
+        _ => LineStyle::Solid,
     }
 }
 
@@ -231,25 +225,31 @@ fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut CutsMemory, cut
     let span = view.span.unwrap_or(whole);
     let range_db = traces.iter().filter_map(Trace::range_db).fold(1.0, f64::max);
     let y = match input.units {
-        Units::Lambda => Axis::new(0.0, 1.05, "Λ"),
+        Units::Lambda => Axis::new(0.0, 1.05, "brightness Λ"),
         // What is lower is no echo.
         Units::Decibels => Axis::new(lowest_db(range_db), -0.05 * lowest_db(range_db), "relative to the peak, dB"),
     };
     let title = cut.title(input.radar, &input.cursor);
     let title = axes::fitting(ui.painter(), area.width() - 20.0, &[&title, cut.unit()]);
-    let chart = Chart { name: cut.name(), x: Axis::new(span.low, span.high, title), y };
-    let drawn = chart.show(ui, area, Sense::click_and_drag());
-    view.markers.follow(ui, &drawn, whole);
-    let turned = span.navigate(ui, &drawn, whole, !view.markers.is_held());
-    view.span = (turned != whole).then_some(turned);
+    let mut chart = Chart::new(cut.name(), Axis::new(span.low, span.high, title), y);
     for trace in &traces {
         let Some(points) = trace.points(input.units) else { continue };
         let (width, fade) = if trace.pin.is_some() { (1.0, 0.6) } else { (1.6, 1.0) };
         let stroke = Stroke::new(width, colour(ui, trace.kind).gamma_multiply(fade));
-        drawn.line(in_sight(&points, span), stroke, dash(trace.kind));
+        chart.line(in_sight(&points, span), stroke, style(trace.kind));
     }
-    drawn.upright(cut.position(input.radar, &input.cursor), Stroke::new(1.0, ui.visuals().weak_text_color()));
-    measured(ui, input.units, &drawn, read, &view.markers);
+    chart.upright(cut.position(input.radar, &input.cursor), Stroke::new(1.0, ui.visuals().weak_text_color()));
+    let ink = Inks::of(ui.visuals()).selected;
+    if let Some(trace) = read {
+        let range = trace.range_db().unwrap_or(1.0);
+        let y_of = |db: f64| if input.units == Units::Decibels { db } else { 1.0 + db / range };
+        markers::draw_widths(&mut chart, trace, &view.markers, ink, y_of);
+    }
+    let drawn = chart.show(ui, area, Sense::click_and_drag());
+    view.markers.follow(ui, &drawn, whole);
+    let turned = span.navigate(ui, &drawn, whole, !view.markers.is_held());
+    view.span = (turned != whole).then_some(turned);
+    view.markers.draw(&drawn, ink);
     memory.views.insert(cut, view);
 }
 
@@ -271,17 +271,6 @@ fn in_sight(points: &[[f64; 2]], span: Span) -> Vec<[f64; 2]> {
     points[first.min(last)..last].to_vec()
 }
 
-/// Markers over the lines, and how wide the peaks under them are.
-fn measured(ui: &Ui, units: Units, drawn: &Drawn<'_>, read: Option<&Trace>, markers: &Markers) {
-    let ink = Inks::of(ui.visuals()).selected;
-    if let Some(trace) = read {
-        let range = trace.range_db().unwrap_or(1.0);
-        let y_of = |db: f64| if units == Units::Decibels { db } else { 1.0 + db / range };
-        markers::draw_widths(drawn, trace, markers, ink, y_of);
-    }
-    markers.draw(drawn, ink);
-}
-
 /// The markers' places, to be typed, and what they read, at the foot of `area`; what is left of it.
 fn readings(ui: &mut Ui, area: Rect, cut: Cut, whole: Span, markers: &mut Markers, said: &[String]) -> Rect {
     let (font, ink) = (axes::tick_font(), ui.visuals().text_color());
@@ -296,10 +285,9 @@ fn readings(ui: &mut Ui, area: Rect, cut: Cut, whole: Span, markers: &mut Marker
                 let digits = if cut == Cut::Angle { 4 } else { 3 };
                 for (place, name) in markers.places.iter_mut().zip(NAMES) {
                     let Some(place) = place else { continue };
-                    let label = ui.label(format!("{name}, {}", cut.unit()));
                     let step = (whole.high - whole.low) / 1000.0;
                     let drag = NumberField::new(place).range(whole.low..=whole.high).speed(step).fixed_decimals(digits);
-                    ui.add(drag).labelled_by(label.id);
+                    labelled(ui, format!("{name}, {}", cut.unit()), "", drag);
                 }
             });
             for line in said {

@@ -214,9 +214,9 @@ fn a_cut_has_several_labels_none_cut_off_at_any_size() {
 /// Inputs and target differ by more than their hues.
 #[test]
 fn lines_differ_by_dash() {
-    let dashes = [MapKind::Input0, MapKind::Input1, MapKind::Target].map(dash);
-    for (i, dash) in dashes.iter().enumerate() {
-        assert!(!dashes[i + 1..].contains(dash), "{dashes:?}");
+    let styles = [MapKind::Input0, MapKind::Input1, MapKind::Target].map(style);
+    for (i, style) in styles.iter().enumerate() {
+        assert!(!styles[i + 1..].contains(style), "{styles:?}");
     }
 }
 

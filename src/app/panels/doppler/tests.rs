@@ -2,7 +2,7 @@ use super::*;
 use crate::app::widgets::seen;
 use crate::maps::LogMap;
 use crate::scene::{Object, Point};
-use eframe::egui::ColorImage;
+use eframe::egui::{Color32, ColorImage};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;

@@ -1,9 +1,11 @@
 //! Elements from a list that was pasted, and a bent line.
 
 use crate::app::state::{Command, RadarCommand};
+use crate::app::widgets::entry::press;
+use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
 use crate::radar::{BuiltArray, Radar};
-use eframe::egui::{CollapsingHeader, Color32, RichText, TextEdit, Ui};
+use eframe::egui::{CollapsingHeader, TextEdit, Ui};
 use std::sync::Arc;
 
 /// What the list remembers.
@@ -36,31 +38,30 @@ pub(super) fn show(
     bend(ui, radar, elements, memory, asked);
     let tooltip = "One line an element from the leftmost, as a spreadsheet copies it. Missing numbers are 0";
     CollapsingHeader::new("From a list").id_salt("elements from a list").show(ui, |ui| {
-        let label = ui.label(EXAMPLE).on_hover_text(tooltip);
         let lines = TextEdit::multiline(&mut memory.text).desired_rows(4).desired_width(f32::INFINITY).code_editor();
-        ui.add(lines).labelled_by(label.id);
+        labelled(ui, EXAMPLE, tooltip, lines);
         match BuiltArray::from_list(&memory.text, radar.elements) {
             _ if memory.text.trim().is_empty() => {}
             Ok(elements) => {
-                if ui.button("Use the list").on_hover_text("Replace all elements; undo brings them back").clicked() {
-                    asked.push(RadarCommand::SetElements(Arc::new(elements)).into());
-                }
+                press(
+                    ui,
+                    "Use the list",
+                    "Replace all elements; undo brings them back",
+                    || RadarCommand::SetElements(Arc::new(elements)),
+                    asked,
+                );
             }
-            Err(error) => _ = ui.label(RichText::new(error.to_string()).color(problem_ink(ui))),
+            Err(error) => _ = ui.colored_label(ui.visuals().error_fg_color, error.to_string()),
         }
     });
-}
-
-fn problem_ink(ui: &Ui) -> Color32 {
-    ui.visuals().error_fg_color
 }
 
 /// Elements on a bent bumper.
 fn bend(ui: &mut Ui, radar: &Radar, elements: &BuiltArray, memory: &mut ElementListMemory, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        let label = ui.label("ends back by").on_hover_text("How far the ends of a bent line stand behind its middle");
         let field = NumberField::new(&mut memory.back_millimetres).range(-1000.0..=1000.0).speed(0.05);
-        ui.add(field.max_decimals(2).suffix(" mm")).labelled_by(label.id);
+        let tooltip = "How far the ends of a bent line stand behind its middle";
+        labelled(ui, "ends back by", tooltip, field.max_decimals(2).suffix(" mm"));
         let tooltip =
             "Put the elements on a parabola. Maps and methods still take them for a straight line: compare the target";
         if ui.button("Bend").on_hover_text(tooltip).clicked() {

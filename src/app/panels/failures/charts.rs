@@ -5,11 +5,13 @@ use super::points::{Dot, Grouping, Points, Subject};
 use crate::app::jobs::RowTable;
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::{Chart, Drawn};
+use crate::app::widgets::labelled::choice;
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::theme::Inks;
 use crate::evaluate::rows::Column;
 use eframe::egui;
-use eframe::egui::{Color32, ComboBox, Mesh, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
+use eframe::egui::{Color32, Mesh, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
+use egui_plot::{Bar, BarChart, LineStyle, Span};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -99,47 +101,28 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
     for (view, name, tip) in View::ALL {
         ui.selectable_value(&mut memory.view, view, name).on_hover_text(tip);
     }
-    let column = |ui: &mut Ui, id: &str, name: &str, column: &mut Column| {
-        let label = ui.label(name);
-        let combo = ComboBox::from_id_salt(id).selected_text(column.name()).width(150.0).show_ui(ui, |ui| {
-            for &other in Column::FIGURES {
-                ui.selectable_value(column, other, other.name());
-            }
-        });
-        combo.response.labelled_by(label.id);
+    let column = |ui: &mut Ui, name: &str, column: &mut Column| {
+        choice(ui, name, "", column, Column::FIGURES.iter().copied(), |column| column.name().to_owned());
     };
     if !matches!(memory.view, View::None | View::Shared) {
-        let label = ui.label("Colour");
-        let chosen = Grouping::ALL.iter().find(|(of, _)| *of == memory.grouping).map_or("", |(_, name)| name);
-        let combo = ComboBox::from_id_salt("grouping").selected_text(chosen).width(90.0).show_ui(ui, |ui| {
-            for (grouping, name) in Grouping::ALL {
-                ui.selectable_value(&mut memory.grouping, grouping, name);
-            }
-        });
-        combo.response.labelled_by(label.id);
+        choice(ui, "Colour", "", &mut memory.grouping, Grouping::ALL, |grouping| grouping.name().to_owned());
     }
     match memory.view {
         View::None | View::Shared => {}
-        View::Histogram => column(ui, "histogram", "of", &mut memory.y),
+        View::Histogram => column(ui, "of", &mut memory.y),
         View::Columns => {
-            column(ui, "scatter y", "of", &mut memory.y);
-            column(ui, "scatter x", "over", &mut memory.x);
+            column(ui, "of", &mut memory.y);
+            column(ui, "over", &mut memory.x);
         }
         View::Methods => {
-            column(ui, "methods", "of", &mut memory.y);
+            column(ui, "of", &mut memory.y);
             let mut names = table.methods().iter();
-            for (chosen, (id, name)) in memory.methods.iter_mut().zip([("method a", "A"), ("method b", "B")]) {
+            for (chosen, name) in memory.methods.iter_mut().zip(["A", "B"]) {
                 let other = names.next();
                 if !table.methods().contains(chosen) {
                     *chosen = other.cloned().unwrap_or_default();
                 }
-                let label = ui.label(name);
-                let combo = ComboBox::from_id_salt(id).selected_text(chosen.as_str()).show_ui(ui, |ui| {
-                    for method in table.methods() {
-                        ui.selectable_value(chosen, method.clone(), method);
-                    }
-                });
-                combo.response.labelled_by(label.id);
+                choice(ui, name, "", chosen, table.methods().iter().cloned(), String::clone);
             }
         }
     }
@@ -184,22 +167,24 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut 
     }
     let [[left, right], [bottom, top]] = points.spans;
     let (x, y) = (Axis::new(left, right, &titles[0]), Axis::new(bottom, top, &titles[1]));
-    let drawn = Chart { name: "Chart of rows", x, y }.show(ui, area, Sense::click_and_drag());
-    match &points.bars {
-        Some(_) => bars(ui, &drawn, points, boxed),
-        None if memory.view == View::Methods => {
-            let (low, high) = (left.max(bottom), right.min(top));
-            let equal = Stroke::new(1.0, ui.visuals().weak_text_color());
-            drawn.line([[low, low], [high, high]].into_iter().filter(|_| low < high), equal, Some([4.0, 4.0]));
-            dots(ui, &drawn, points, (stamp, grouping), boxed, &mut memory.mesh);
-        }
-        None => dots(ui, &drawn, points, (stamp, grouping), boxed, &mut memory.mesh),
+    let mut chart = Chart::new("Chart of rows", x, y);
+    bars(ui, &mut chart, points, boxed);
+    if memory.view == View::Methods {
+        let (low, high) = (left.max(bottom), right.min(top));
+        let equal = Stroke::new(1.0, ui.visuals().weak_text_color());
+        let ends = [[low, low], [high, high]].into_iter().filter(|_| low < high);
+        chart.line(ends, equal, LineStyle::dashed_dense());
     }
-    if let Some(dot) = points.dots.iter().find(|dot| input.opened.is_some_and(|row| dot.rows.contains(&row))) {
-        let stroke = Stroke::new(2.0, ui.visuals().strong_text_color());
-        match &points.bars {
-            Some(_) => drawn.upright(dot.at[0], stroke),
-            None => _ = drawn.painter().circle_stroke(drawn.at(dot.at), 5.0, stroke),
+    let opened = points.dots.iter().find(|dot| input.opened.is_some_and(|row| dot.rows.contains(&row)));
+    let around = Stroke::new(2.0, ui.visuals().strong_text_color());
+    if let Some(dot) = opened.filter(|_| points.bars.is_some()) {
+        chart.upright(dot.at[0], around);
+    }
+    let drawn = chart.show(ui, area, Sense::click_and_drag());
+    if points.bars.is_none() {
+        dots(ui, &drawn, points, (stamp, grouping), boxed, &mut memory.mesh);
+        if let Some(dot) = opened {
+            drawn.painter().circle_stroke(drawn.at(dot.at), 5.0, around);
         }
     }
     let answer = Answer {
@@ -237,42 +222,38 @@ fn colour_of(ui: &Ui, group: usize, groups: usize) -> Color32 {
     if groups > 1 { Color32::from_rgb(r, g, b) } else { Inks::of(ui.visuals()).ends[0] }
 }
 
-fn bars(ui: &Ui, drawn: &Drawn<'_>, points: &Points, boxed: Option<&Boxed>) {
+fn bars(ui: &Ui, chart: &mut Chart<'_>, points: &Points, boxed: Option<&Boxed>) {
     let Some(bars) = &points.bars else { return };
-    let inks = Inks::of(ui.visuals());
     let wide = (bars.high - bars.low).max(f64::MIN_POSITIVE) / bars.counts.len() as f64;
-    for (i, count) in bars.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
-        let from = bars.low + wide * i as f64;
-        // Each group's part of a bar stands on those before it.
-        let inside = |dot: &&Dot| (((dot.at[0] - bars.low) / wide) as usize).min(bars.counts.len() - 1) == i;
-        let mut below = 0;
-        for group in 0..points.groups.len() {
-            let own = match points.groups.len() {
-                1 => *count,
-                _ => points.dots.iter().filter(inside).filter(|dot| dot.group == group).count(),
-            };
-            let (foot, top) = (below as f64, (below + own) as f64);
-            below += own;
-            let bar = Rect::from_two_pos(drawn.at([from, foot]), drawn.at([from + wide, top]));
-            let colour = colour_of(ui, group, points.groups.len());
-            drawn.painter().rect_filled(bar.expand2(Vec2::new(0.5, 0.0)), 0.0, colour);
-        }
+    let place = |dot: &Dot| (((dot.at[0] - bars.low) / wide) as usize).min(bars.counts.len() - 1);
+    // Each group's part of a bar stands on those before it.
+    let mut below = vec![0usize; bars.counts.len()];
+    for group in 0..points.groups.len() {
+        let mut own = vec![0usize; bars.counts.len()];
+        points.dots.iter().filter(|dot| dot.group == group).for_each(|dot| own[place(dot)] += 1);
+        let bar = |(i, (own, below)): (usize, (&usize, &usize))| {
+            let bar = Bar::new(bars.low + wide * (i as f64 + 0.5), *own as f64).width(wide);
+            bar.base_offset(*below as f64).stroke(Stroke::NONE)
+        };
+        let each = own.iter().zip(&below).enumerate().filter(|(_, (own, _))| **own > 0).map(bar);
+        let colour = colour_of(ui, group, points.groups.len());
+        chart.add(BarChart::new(points.groups[group].clone(), each.collect()).color(colour));
+        below.iter_mut().zip(own).for_each(|(below, own)| *below += own);
     }
     let chosen = points.dots.iter().filter(|dot| boxed.is_some_and(|b| b.rows.contains(&dot.rows[0])));
-    let ends = chosen
-        .map(|dot| dot.at[0])
-        .fold(None, |ends: Option<(f64, f64)>, x| Some(ends.map_or((x, x), |(low, high)| (low.min(x), high.max(x)))));
-    if let Some((low, high)) = ends {
-        let (from, to) = (drawn.at([low, 0.0]).x - 2.0, drawn.at([high, 0.0]).x + 2.0);
-        let range = Rect::from_x_y_ranges(from..=to, drawn.rect.y_range());
-        drawn.painter().rect_filled(range, 0.0, inks.selected.gamma_multiply(0.25));
+    let (low, high) =
+        chosen.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), dot| (a.min(dot.at[0]), b.max(dot.at[0])));
+    if low <= high {
+        let ink = Inks::of(ui.visuals()).selected.gamma_multiply(0.25);
+        let room = 0.1 * wide;
+        chart.add(Span::new("", low - room..=high + room).fill(ink).border_color(ink));
     }
 }
 
 /// All dots as one mesh, which stays as long as nothing changed.
 fn dots(
     ui: &Ui,
-    drawn: &Drawn<'_>,
+    drawn: &Drawn,
     points: &Points,
     (stamp, grouping): (u64, Grouping),
     boxed: Option<&Boxed>,
@@ -296,19 +277,19 @@ fn dots(
     }
 }
 
-fn nearest(drawn: &Drawn<'_>, points: &Points, at: Pos2) -> Option<Dot> {
+fn nearest(drawn: &Drawn, points: &Points, at: Pos2) -> Option<Dot> {
     let away = |dot: &&Dot| drawn.at(dot.at).distance(at);
     let nearest = points.dots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
     (points.bars.is_none() && away(&nearest) <= DOT_REACH_POINTS).then_some(*nearest)
 }
 
-fn clicked(drawn: &Drawn<'_>, points: &Points) -> Option<usize> {
+fn clicked(drawn: &Drawn, points: &Points) -> Option<usize> {
     let at = drawn.response.interact_pointer_pos().filter(|_| drawn.response.clicked())?;
     nearest(drawn, points, at).map(|dot| dot.rows[0])
 }
 
 /// Which row the pointer is at.
-fn told(drawn: &Drawn<'_>, points: &Points, table: &RowTable) {
+fn told(drawn: &Drawn, points: &Points, table: &RowTable) {
     let at = drawn.response.hover_pos().filter(|_| !drawn.response.dragged());
     let row = at.and_then(|at| nearest(drawn, points, at)).and_then(|dot| table.rows().get(dot.rows[0]));
     if let Some(row) = row {
@@ -317,7 +298,7 @@ fn told(drawn: &Drawn<'_>, points: &Points, table: &RowTable) {
 }
 
 /// Draws the box that is being dragged; the rows in it once it is let go. Over a histogram it is as high as that.
-fn rubber_box(ui: &Ui, drawn: &Drawn<'_>, points: &Points, start: &mut Option<Pos2>) -> Option<HashSet<usize>> {
+fn rubber_box(ui: &Ui, drawn: &Drawn, points: &Points, start: &mut Option<Pos2>) -> Option<HashSet<usize>> {
     let (origin, now) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos()));
     if drawn.response.drag_started() {
         *start = origin.or(now);

@@ -3,6 +3,7 @@
 use super::input::Input;
 use crate::app::state::{Command, FailureChoice, RowsCommand};
 use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
+use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::method_menu::method_menu;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
@@ -71,10 +72,8 @@ fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mu
         }
     });
     menu.on_hover_text("Kinds of scenes to try them on");
-    let label = ui.label("of each");
-    ui.add(NumberField::new(&mut memory.count).range(1..=100_000)).labelled_by(label.id);
-    let label = ui.label("seed");
-    ui.add(NumberField::new(&mut memory.seed).speed(0.05)).labelled_by(label.id);
+    labelled(ui, "of each", "", NumberField::new(&mut memory.count).range(1..=100_000));
+    labelled(ui, "seed", "", NumberField::new(&mut memory.seed).speed(0.05));
 }
 
 /// Try, or in its place Cancel.

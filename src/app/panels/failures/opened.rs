@@ -2,13 +2,15 @@
 
 use super::input::{Input, Live, Now, Searched};
 use crate::app::state::{Command, RowsCommand, SearchChoice};
+use crate::app::widgets::entry::press;
+use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::percent;
 use crate::app::widgets::progress::progress;
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
 use crate::evaluate::worsen::{Aim, WorseningMeasure, WorseningSearch};
-use eframe::egui::{Button, ComboBox, Grid, TextEdit, Ui};
+use eframe::egui::{Button, Grid, TextEdit, Ui};
 
 /// What is chosen, and what was written.
 pub struct OpenedMemory {
@@ -33,9 +35,8 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &m
     ui.horizontal_wrapped(|ui| {
         search(ui, &input.search, memory, asked);
         ui.separator();
-        let label = ui.label("Note");
-        ui.add(TextEdit::singleline(&mut memory.note).hint_text("why it is kept").desired_width(160.0))
-            .labelled_by(label.id);
+        let note = TextEdit::singleline(&mut memory.note).hint_text("why it is kept").desired_width(160.0);
+        labelled(ui, "Note", "", note);
         let folder = input.own.map_or_else(|| "a folder that you choose first".to_owned(), |f| f.display().to_string());
         let keep = ui.add_enabled(input.own.is_some(), Button::new("Keep"));
         let tip = format!("Add the scene on screen to your own scenes, with the note: {folder}");
@@ -95,19 +96,11 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut OpenedMemory, asked
             asked.push(RowsCommand::CancelSearch.into());
         }
     } else {
-        let label = ui.label("Look by");
-        let combo = ComboBox::from_id_salt("measure").selected_text(name(memory.measure)).show_ui(ui, |ui| {
-            for measure in WorseningMeasure::ALL {
-                ui.selectable_value(&mut memory.measure, measure, name(measure));
-            }
-        });
-        combo.response.labelled_by(label.id);
-        let label = ui.label("within");
+        let of = |measure: &WorseningMeasure| name(*measure).to_owned();
+        choice(ui, "Look by", "", &mut memory.measure, WorseningMeasure::ALL, of);
         let within = NumberField::new(&mut memory.within_metres).range(0.01..=100.0).speed(0.02).suffix(" m");
-        ui.add(within).labelled_by(label.id);
-        let label = ui.label("in");
-        let tries = NumberField::new(&mut memory.tries).range(1..=100_000).suffix(" tries");
-        ui.add(tries).labelled_by(label.id);
+        labelled(ui, "within", "", within);
+        labelled(ui, "in", "", NumberField::new(&mut memory.tries).range(1..=100_000).suffix(" tries"));
         let worse = "Look near the scene on screen for one that the method in use does worse on; the way there is drawn on the scene";
         let repair = "Look for the smallest move of its objects after which the method in use is right";
         for (title, tip, aim) in [("Worse", worse, Aim::Worsen), ("Repair", repair, Aim::Repair)] {
@@ -124,12 +117,14 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut OpenedMemory, asked
         ui.colored_label(ui.visuals().warn_fg_color, note);
     }
     if searched.progress.is_none() && searched.has_found {
-        if ui.button("Show").on_hover_text("Put what was found on screen; undo brings this scene back").clicked() {
-            asked.push(RowsCommand::TakeFinding.into());
-        }
-        if ui.button("Forget").on_hover_text("Forget the search; its path is no longer drawn").clicked() {
-            asked.push(RowsCommand::ForgetSearch.into());
-        }
+        press(
+            ui,
+            "Show",
+            "Put what was found on screen; undo brings this scene back",
+            || RowsCommand::TakeFinding,
+            asked,
+        );
+        press(ui, "Forget", "Forget the search; its path is no longer drawn", || RowsCommand::ForgetSearch, asked);
     }
 }
 

@@ -32,9 +32,17 @@ pub enum Grouping {
 }
 
 impl Grouping {
-    /// All, with their names.
-    pub const ALL: [(Grouping, &'static str); 3] =
-        [(Grouping::None, "one colour"), (Grouping::Method, "method"), (Grouping::Set, "set")];
+    /// All.
+    pub const ALL: [Grouping; 3] = [Grouping::None, Grouping::Method, Grouping::Set];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Grouping::None => "one colour",
+            Grouping::Method => "method",
+            Grouping::Set => "set",
+        }
+    }
 
     fn of(self, row: &Row) -> String {
         match self {

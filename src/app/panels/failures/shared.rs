@@ -1,6 +1,7 @@
 //! What the bad rows have in common: rules, each a filter that a click applies.
 
 use crate::app::jobs::RowTable;
+use crate::app::widgets::labelled::labelled;
 use crate::evaluate::rows::Row;
 use crate::evaluate::statistics::{Rule, SharedTrait, USUALLY_BAD, rules};
 use crate::platform::Instant;
@@ -56,10 +57,9 @@ fn chosen(rows: &[Row]) -> Vec<Row> {
 /// Draws it; the filter to apply, if a rule was clicked.
 pub fn show(ui: &mut Ui, table: &RowTable, memory: &mut SharedRulesMemory) -> Option<String> {
     ui.horizontal(|ui| {
-        let label = ui.label("Bad is");
         let tip = "A filter: which rows are bad. Rules speak of what is known before a method answers.";
         let edit = TextEdit::singleline(&mut memory.bad).desired_width(f32::INFINITY);
-        let _labelled = ui.add(edit).on_hover_text(tip).labelled_by(label.id);
+        labelled(ui, "Bad is", tip, edit);
     });
     memory.update(ui, table);
     let shared = match memory.found.as_ref()? {

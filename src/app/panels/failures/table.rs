@@ -143,13 +143,8 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>, room: f32) -> Option<usize>
         (-1, _) => 0,
         _ if by == 0 => return None,
         (_, Some(now)) => now.saturating_add_signed(by).min(last),
-        (_, None) => {
-            if by > 0 {
-                0
-            } else {
-                last
-            }
-        }
+        (_, None) if by > 0 => 0,
+        (_, None) => last,
     };
     (Some(to) != now).then(|| input.shown[to])
 }

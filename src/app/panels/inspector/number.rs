@@ -1,7 +1,8 @@
 //! A number of the selected objects.
 
-use super::look::{Look, look};
+use super::look::look;
 use super::slider;
+use crate::app::widgets::labelled::Quantity;
 use crate::app::widgets::number_field::NumberField;
 use crate::interact::{FieldChange, SharedField};
 use eframe::egui::Ui;
@@ -26,11 +27,11 @@ pub fn number(ui: &mut Ui, shared: &SharedField, metres_per_point: f64) -> Optio
         asked.unwrap_or(base)
     };
     let mut drag = NumberField::from_get_set(get_set)
-        .range(look.low..=look.high)
+        .range(look.range[0]..=look.range[1])
         .clamp_existing_to_range(false)
         .speed(look.speed)
-        .max_decimals(if look.digits == 0 { 0 } else { 6 })
-        .min_decimals(look.digits)
+        .max_decimals(if look.decimals == 0 { 0 } else { 6 })
+        .min_decimals(look.decimals)
         .suffix(look.unit);
     if !shared.is_same {
         drag = drag.standing_for("various");
@@ -59,7 +60,7 @@ pub fn number(ui: &mut Ui, shared: &SharedField, metres_per_point: f64) -> Optio
 
 /// A length that a drag left, with as many digits as a point of the canvas is worth; `None` for one that has no more than three decimals
 /// anyway, as those that are typed.
-fn rounded(value: f64, look: &Look, metres_per_point: f64) -> Option<String> {
+fn rounded(value: f64, look: &Quantity, metres_per_point: f64) -> Option<String> {
     if look.unit != " m" || (1e3 * value - (1e3 * value).round()).abs() < 1e-6 {
         return None;
     }

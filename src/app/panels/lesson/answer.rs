@@ -3,6 +3,7 @@
 use super::large::{LARGE_TEXT_RATIO, large};
 use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand, LessonRun};
+use crate::app::widgets::entry::press;
 use crate::app::widgets::inline::inline;
 use crate::app::widgets::number_field::{NumberField, Wanted};
 use crate::app::widgets::theme;
@@ -49,9 +50,7 @@ pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked
         }
         Answer::Choice { options, .. } => {
             for (index, option) in options.iter().enumerate() {
-                if ui.button(option).clicked() {
-                    asked.push(LessonCommand::Predict(Guess::Choice(index + 1)).into());
-                }
+                press(ui, option, "", || LessonCommand::Predict(Guess::Choice(index + 1)), asked);
             }
         }
         Answer::Threshold { .. } => {
@@ -60,9 +59,7 @@ pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked
                 let field = NumberField::new(&mut memory.eta).range(0.0..=1.0).speed(0.005).max_decimals(2);
                 let field = ui.add(field);
                 ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("threshold in numbers"));
-                if ui.button("Answer").clicked() {
-                    asked.push(LessonCommand::Predict(Guess::Eta(memory.eta)).into());
-                }
+                press(ui, "Answer", "", || LessonCommand::Predict(Guess::Eta(memory.eta)), asked);
             });
         }
     }

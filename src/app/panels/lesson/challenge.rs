@@ -3,6 +3,7 @@
 use super::answer::Symbol;
 use super::large::large;
 use crate::app::state::{Command, LessonCommand, LessonRun};
+use crate::app::widgets::entry::press;
 use crate::app::widgets::theme;
 use crate::lesson::{Challenge, Measured};
 use eframe::egui;
@@ -31,16 +32,18 @@ pub fn requirements(
     }
     if run.gave_up {
         ui.label("The solution was shown: the challenge counts as unsolved.");
-        if ui.button("Start this step again").on_hover_text("Puts the step's scene and radar back").clicked() {
-            asked.push(LessonCommand::Step(run.step).into());
-        }
+        press(
+            ui,
+            "Start this step again",
+            "Puts the step's scene and radar back",
+            || LessonCommand::Step(run.step),
+            asked,
+        );
     } else if run.is_met() {
         ui.label(large(ui, "Solved. Keep experimenting or continue.").strong());
     } else {
         let tip = "Puts a scene and a radar on screen that meet it; the challenge then counts as unsolved";
-        if ui.button("Show a solution").on_hover_text(tip).clicked() {
-            asked.push(LessonCommand::ShowSolution.into());
-        }
+        press(ui, "Show a solution", tip, || LessonCommand::ShowSolution, asked);
     }
 }
 

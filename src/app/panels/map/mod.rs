@@ -141,52 +141,6 @@ pub struct Shown {
     pub kinds: bool,
 }
 
-#[cfg(test)]
-impl<'a> Input<'a> {
-    /// A map without a picture.
-    pub fn bare(
-        kind: MapKind,
-        radar: &'a Radar,
-        projection: Projection,
-        scene: &'a Scene,
-        selection: &'a Selection,
-    ) -> Input<'a> {
-        Input {
-            kind,
-            radar,
-            scene,
-            selection,
-            projection,
-            other_view: MapView::default(),
-            colours: ColourMap::Grey,
-            units: Units::Lambda,
-            directions: Directions::Cosine,
-            difference: DifferenceView::default(),
-            texture: None,
-            pictured: projection,
-            end: 1.0,
-            sentence: None,
-            stale: false,
-            old: EARLIER_SCENE.to_owned(),
-            cells: None,
-            marks: Marks { objects: &[], found: &[] },
-            kinds: None,
-            told_apart: None,
-            cfar: None,
-            over: None,
-            theory: None,
-            cursor: None,
-            note: None,
-            line: None,
-            shown: Shown::default(),
-            error: None,
-            veil: None,
-            axes: true,
-            places: None,
-        }
-    }
-}
-
 /// What is said of a map of an earlier scene.
 pub const EARLIER_SCENE: &str = "Previous scene; updating…";
 

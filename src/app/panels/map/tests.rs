@@ -1,5 +1,50 @@
 //! Maps as they are shown: what is told when there is none, and labels that stay inside.
 
+impl<'a> Input<'a> {
+    /// A map without a picture.
+    pub fn bare(
+        kind: MapKind,
+        radar: &'a Radar,
+        projection: Projection,
+        scene: &'a Scene,
+        selection: &'a Selection,
+    ) -> Input<'a> {
+        Input {
+            kind,
+            radar,
+            scene,
+            selection,
+            projection,
+            other_view: MapView::default(),
+            colours: ColourMap::Grey,
+            units: Units::Lambda,
+            directions: Directions::Cosine,
+            difference: DifferenceView::default(),
+            texture: None,
+            pictured: projection,
+            end: 1.0,
+            sentence: None,
+            stale: false,
+            old: EARLIER_SCENE.to_owned(),
+            cells: None,
+            marks: Marks { objects: &[], found: &[] },
+            kinds: None,
+            told_apart: None,
+            cfar: None,
+            over: None,
+            theory: None,
+            cursor: None,
+            note: None,
+            line: None,
+            shown: Shown::default(),
+            error: None,
+            veil: None,
+            axes: true,
+            places: None,
+        }
+    }
+}
+
 use super::*;
 use crate::app::widgets::seen;
 use crate::maps::{LambdaScale, RangeAngleMap};

@@ -1,13 +1,15 @@
 //! The link budget in the panel of the radar: its numbers, SNR against range, and the SNR of what is selected.
 
-use super::table::{GAP, Number, Table, number};
+use super::table::{GAP, Table, number};
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::Chart;
+use crate::app::widgets::labelled::{Quantity, labelled};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
 use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
 use crate::radar::{LinkBudget, Radar};
 use eframe::egui::{CollapsingHeader, Grid, Label, Sense, Stroke, Ui, vec2};
+use egui_plot::{HLine, LineStyle};
 
 /// An object whose SNR the link budget tells.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,42 +47,26 @@ const WITHOUT: &str = "None: the thesis' convention. A sample's amplitude is P �
 /// What the figures leave out.
 const LEFT_OUT: &str = "Ends and array add their elements in phase, as a map does beyond the far field. What is lost between two cells is left out.";
 
-const TRANSMIT_POWER: Number = Number {
-    name: "transmit power",
-    tooltip: "What a transmitter sends. No sample depends on it: it says how strong the noise beneath them is",
-    unit: " dBm",
-    speed: 0.2,
-    low: -100.0,
-    high: 150.0,
-    decimals: 1,
-};
-const ANTENNA_GAIN: Number = Number {
-    name: "antenna gain",
-    tooltip: "Of one element straight ahead, for sending and for hearing",
-    unit: " dBi",
-    speed: 0.1,
-    low: -50.0,
-    high: 100.0,
-    decimals: 1,
-};
-const NOISE_FIGURE: Number = Number {
-    name: "noise figure",
-    tooltip: "What a receiver adds to the noise that it is given. Below 0 dB it would take some away",
-    unit: " dB",
-    speed: 0.1,
-    low: 0.0,
-    high: 100.0,
-    decimals: 1,
-};
-const CHIRP: Number = Number {
-    name: "chirp",
-    tooltip: "Time that the samples span. The receiver's bandwidth is the rate at which they are taken",
-    unit: " µs",
-    speed: 0.1,
-    low: 0.1,
-    high: 1e5,
-    decimals: 2,
-};
+const TRANSMIT_POWER: Quantity = Quantity::metres(
+    "transmit power",
+    "What a transmitter sends. No sample depends on it: it says how strong the noise beneath them is",
+)
+.with(" dBm", [-100.0, 150.0], 0.2, 1);
+const ANTENNA_GAIN: Quantity = Quantity::metres(
+    "antenna gain",
+    "Of one element straight ahead, for sending and for hearing",
+)
+.with(" dBi", [-50.0, 100.0], 0.1, 1);
+const NOISE_FIGURE: Quantity = Quantity::metres(
+    "noise figure",
+    "What a receiver adds to the noise that it is given. Below 0 dB it would take some away",
+)
+.with(" dB", [0.0, 100.0], 0.1, 1);
+const CHIRP: Quantity = Quantity::metres(
+    "chirp",
+    "Time that the samples span. The receiver's bandwidth is the rate at which they are taken",
+)
+.with(" µs", [0.1, 1e5], 0.1, 2);
 
 /// Draws the group.
 pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Option<&Selected>) {
@@ -166,9 +152,8 @@ fn curve(ui: &mut Ui, radar: &Radar) {
     ui.horizontal(|ui| {
         let tooltip =
             "Radar cross section of the object whose SNR is drawn. A car has about 10 dBsm, a person 0, a post -10";
-        let label = ui.label("cross section").on_hover_text(tooltip);
         let field = NumberField::new(&mut dbsm).range(-100.0..=100.0).speed(0.2).max_decimals(1).suffix(" dBsm");
-        if ui.add(field).labelled_by(label.id).on_hover_text(tooltip).changed() {
+        if labelled(ui, "cross section", tooltip, field).changed() {
             ui.data_mut(|d| d.insert_temp(id, dbsm));
         }
     });
@@ -182,22 +167,22 @@ fn curve(ui: &mut Ui, radar: &Radar) {
     let size = vec2(ui.available_width().min(CHART[1]), CHART[0]);
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let (x, y) = (Axis::new(0.0, most, "range, m"), Axis::new(LEAST_DB, high, "SNR, dB"));
-    let drawn = Chart { name: "SNR against range", x, y }.show(ui, area, Sense::hover());
+    let mut chart = Chart::new("SNR against range", x, y);
     let inks = Inks::of(ui.visuals());
     let points = |of: f64| {
         (1..=POINTS).map(move |i| f64::from(i) / f64::from(POINTS) * most).map(move |range| [range, at(range, of)])
     };
-    drawn.line([[0.0, DETECTION_SNR.0], [most, DETECTION_SNR.0]], Stroke::new(1.0, inks.grid_text), Some([4.0, 4.0]));
-    drawn.upright(radar.max_range_metres(), Stroke::new(1.0, inks.ends[0].gamma_multiply(0.6)));
-    drawn.line(points(sample), Stroke::new(1.5, inks.ends[1]), Some([6.0, 3.0]));
-    drawn.line(points(array), Stroke::new(2.0, inks.selected), None);
-    drawn.dot([falls, DETECTION_SNR.0], 4.0, inks.selected);
-    if let Some(pos) = drawn.response.hover_pos() {
-        let range = drawn.x_at(pos).max(most * 1e-3);
+    let detection = HLine::new("", DETECTION_SNR.0).stroke(Stroke::new(1.0, inks.grid_text));
+    chart.add(detection.style(LineStyle::dashed_dense()));
+    chart.upright(radar.max_range_metres(), Stroke::new(1.0, inks.ends[0].gamma_multiply(0.6)));
+    chart.line(points(sample), Stroke::new(1.5, inks.ends[1]), LineStyle::dashed_dense());
+    chart.line(points(array), Stroke::new(2.0, inks.selected), LineStyle::Solid);
+    chart.dot([falls, DETECTION_SNR.0], 4.0, inks.selected);
+    chart.show(ui, area, Sense::hover()).tell(|[range, _]| {
+        let range = range.max(most * 1e-3);
         let [received, sample, array] = [at_one_metre.received.0, sample, array].map(|of| at(range, of));
-        let told = format!("{range:.1} m: {received:.1} dBm\n{sample:.1} dB a sample, {array:.1} dB by the array");
-        drawn.response.on_hover_text_at_pointer(told);
-    }
+        Some(format!("{range:.1} m: {received:.1} dBm\n{sample:.1} dB a sample, {array:.1} dB by the array"))
+    });
     ui.weak("Line: by the whole array. Dashes: in a sample. Upright: where ranges wrap around.");
 }
 

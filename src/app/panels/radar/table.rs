@@ -1,6 +1,6 @@
 //! The rows of the panel of the radar: a name, a value, and what follows from it.
 
-use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::labelled::Quantity;
 use eframe::egui::{Color32, Id, Label, TextStyle, Ui};
 
 /// Between two columns, points.
@@ -61,34 +61,18 @@ impl Table {
     }
 }
 
-/// A number of the radar.
-pub(super) struct Number {
-    pub name: &'static str,
-    pub tooltip: &'static str,
-    pub unit: &'static str,
-    pub speed: f64,
-    pub low: f64,
-    pub high: f64,
-    pub decimals: usize,
-}
-
 /// A row: name, the number in its unit, what follows. The number as it is after an edit, where there was one.
 pub(super) fn number(
     ui: &mut Ui,
     table: Table,
-    field: &Number,
+    field: &Quantity,
     value: f64,
     consequence: &str,
     is_free: bool,
 ) -> Option<f64> {
     let mut edited = value;
     let changed = table.row(ui, (field.name, field.tooltip), consequence, |ui, label| {
-        let number = NumberField::new(&mut edited)
-            .range(field.low..=field.high)
-            .clamp_existing_to_range(false)
-            .speed(field.speed)
-            .max_decimals(field.decimals)
-            .suffix(field.unit);
+        let number = field.field(&mut edited);
         ui.add_enabled(is_free, number).labelled_by(label).on_hover_text(field.tooltip).changed()
     });
     let step = 10f64.powi(-(field.decimals as i32));

@@ -1,5 +1,6 @@
 use super::*;
 use crate::app::widgets::seen;
+use eframe::egui;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 

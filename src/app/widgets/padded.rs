@@ -1,0 +1,25 @@
+//! The margin of panels, and the scroll bars of those that grow with their content.
+
+use crate::app::state::Command;
+use eframe::egui::{Frame, Margin, ScrollArea, Ui};
+
+/// Draws a panel's content within a margin; what it asks for.
+pub fn padded(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
+    let mut asked = Vec::new();
+    Frame::NONE.inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| content(ui, &mut asked));
+    asked
+}
+
+/// The same, scrolled upwards and downwards where there is little room.
+pub fn scrolled(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
+    scrolled_by(ScrollArea::vertical(), ui, content)
+}
+
+/// The same, scrolled to all sides.
+pub fn scrolled_both(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
+    scrolled_by(ScrollArea::both(), ui, content)
+}
+
+fn scrolled_by(area: ScrollArea, ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
+    padded(ui, |ui, asked| _ = area.auto_shrink(false).show(ui, |ui| content(ui, asked)))
+}
