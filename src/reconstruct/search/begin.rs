@@ -1,8 +1,7 @@
-//! Where walls begin: rows between two points, over two, from the edge of a wall, or long lines as a whole, and which of them are borne out.
+//! Where walls begin: rows over two points, from the edge of a wall, or long lines as a whole, and which of them are borne out.
 
 use super::grow::{Grower, tried};
 use super::on_wall::is_on;
-use super::propose::between::Between;
 use super::propose::edges::Edges;
 use super::propose::source::Unexplained;
 use super::propose::strides::Strides;
@@ -33,9 +32,6 @@ const LEAST_OF_LINE: f64 = 0.45;
 
 /// Fewest reflectors of such a line.
 const LEAST_OF_LINE_REFLECTORS: usize = 50;
-
-/// A row between two points that explains this part of the energy in its range bins is the one; else others are looked for beside it.
-const CONVINCING: f64 = 0.85;
 
 /// Echoes that the look for rows over one point takes as long as.
 const LOOK_A_POINT: usize = 20;
@@ -106,20 +102,12 @@ impl Grower<'_> {
         }
     }
 
-    /// A wall between two points, over two of them or from one alone; the last takes longest.
+    /// A wall over two points or from one alone; the last takes longest.
     fn next_from_points(&self, left: &Left, all: &Unexplained, seeds: &Seeds) -> Option<Fit> {
         self.bench.work.spend(LOOK_A_POINT * all.points_metres.len());
-        let are_long = all.echoes().are_long();
-        let between = if are_long { self.proposed(Part::Between, &Between, all) } else { Vec::new() };
-        let between = self.best_begun(left, &between);
-        if let Some(row) = between.filter(|row| row.part > CONVINCING)
-            && let Some(wall) = self.borne_out(left, seeds, &[row.atom])
-        {
-            return Some(wall);
-        }
-        let rows: Vec<Atom> =
-            between.iter().map(|row| row.atom).chain(self.proposed(Part::Strides, &Strides, all)).collect();
+        let rows = self.proposed(Part::Strides, &Strides, all);
         self.borne_out(left, seeds, &rows).or_else(|| {
+            let are_long = all.echoes().are_long();
             let from_edges = if are_long { self.proposed(Part::Edges, &Edges, all) } else { Vec::new() };
             self.borne_out(left, seeds, &from_edges)
         })

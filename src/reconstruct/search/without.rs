@@ -4,8 +4,6 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Part {
-    /// Source: lines between two points.
-    Between,
     /// Source: lines over two neighbouring points.
     Strides,
     /// Source: lines from one point.
@@ -39,7 +37,6 @@ pub enum Part {
 }
 
 const PARTS: &[(&str, Part)] = &[
-    ("between", Part::Between),
     ("strides", Part::Strides),
     ("edges", Part::Edges),
     ("settled-ends", Part::SettledEnds),

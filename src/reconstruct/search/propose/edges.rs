@@ -35,7 +35,7 @@ const BEHIND: f64 = 0.5;
 const WITHIN_RADIANS: f64 = 0.01;
 
 /// Shortest step, metres: rows of closer reflectors are all alike.
-pub const LEAST_STEP_METRES: f64 = 0.03;
+const LEAST_STEP_METRES: f64 = 0.03;
 
 /// From one row of a look to the next, wavelengths over the first few reflectors: one direction is looked into, so that steps may be finer
 /// than over pairs.

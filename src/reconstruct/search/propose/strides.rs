@@ -43,7 +43,7 @@ const MOST_GRIDS: usize = 48;
 const MOST_FOLLOWED: usize = 3000;
 
 /// Most reflectors of a row.
-pub const MOST_REFLECTORS: usize = 140;
+const MOST_REFLECTORS: usize = 140;
 
 /// Growth of the row from one look to the next.
 const GROWTH: f64 = 1.4;
@@ -253,7 +253,7 @@ impl Followed {
 }
 
 /// A row where its echoes add up to most.
-pub struct Climbed {
+struct Climbed {
     row: Row,
     added: f64,
     all: f64,
@@ -266,7 +266,7 @@ impl Climbed {
     }
 
     /// Its first `count` reflectors, over which it was moved.
-    pub fn stride(&self, count: usize) -> Stride {
+    fn stride(&self, count: usize) -> Stride {
         let [x_metres, y_metres] = self.row.first_metres;
         let [dx_metres, dy_metres] = self.row.step_metres;
         let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
@@ -283,7 +283,7 @@ struct Slope {
 }
 
 /// `row` moved so that the echoes of its first `count` reflectors add up to most; `None` where it crosses the array's axis.
-pub fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbed> {
+fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbed> {
     let mut slope = slope(beams, &row, count)?;
     let mut damping = 1e-2;
     for _ in 0..MOVES {
