@@ -117,7 +117,7 @@ impl App {
         let dialogs = if options.own_dialogs { Dialogs::of_the_window() } else { Dialogs::of_the_system() };
         let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
         theme::apply(ctx, state.settings.theme);
-        state.settings.method = options.method.unwrap_or(state.settings.method);
+        options.method.into_iter().for_each(|method| state.settings.method = method);
         if let Some(zoom) = kept.zoom {
             ctx.set_zoom_factor(zoom);
         }
@@ -347,6 +347,7 @@ impl eframe::App for App {
         let arrangement = std::mem::replace(state.kept_arrangement(), Arrangement::empty());
         let kept = KeptSettings {
             settings: state.settings.clone(),
+            view: Some(state.settings.view.clone()),
             arrangement,
             recent: state.recent.clone(),
             progress: state.progress.clone(),

@@ -122,10 +122,10 @@ fn show_solution(state: &mut State) {
 /// Ends the lesson: scene, radar, settings, panels and what is visible of scene and maps are again what they were before.
 fn leave(state: &mut State) {
     let Some(run) = state.lesson.take() else { return };
-    let after = state.settings.clone();
+    let after = state.settings.view.clone();
     let Before { setup, scene_view, map_views, .. } = run.before;
     while state.editor.history().depth() > setup.depth && state.editor.undo() {}
-    state.settings.take_back(&setup.settings, &after);
+    state.settings.take_back(&setup.view, &after);
     (state.scene_view, state.map_views) = (scene_view, map_views);
     state.kept_arrangement().open_again(&run.closed);
     state.kept_arrangement().switch(run.before.task);

@@ -2,7 +2,7 @@
 
 use super::work;
 use crate::app::jobs::{FailuresPlan, Jobs, Purpose, is_table_of_rows, keep, tell};
-use crate::app::state::{Conditions, FailureChoice, OpenedRow, Panel, RowsCommand, State};
+use crate::app::state::{FailureChoice, OpenedRow, Panel, RowsCommand, State};
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::sets::{Folder, SceneSet};
 use crate::evaluate::worsen::Aim;
@@ -44,11 +44,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
 }
 
 fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPlan, String> {
-    let conditions = Conditions {
-        floor: state.settings.floor,
-        normalisation: state.settings.normalisation,
-        radar: state.radar().clone(),
-    };
     let mut sets: Vec<SceneSet> = choice.kinds.iter().copied().map(SceneSet::Generated).collect();
     if choice.own {
         let folder = jobs.own_scenes(state).ok_or("There is no folder of your own scenes: choose one first.")?;
@@ -57,7 +52,10 @@ fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPl
         sets.push(SceneSet::Folder(folder));
     }
     let methods = state.methods.all.iter().filter(|m| choice.methods.contains(&m.name())).cloned().collect();
-    Ok(FailuresPlan { campaign: Campaign { count: choice.count, ..conditions.campaign(choice.seed) }, sets, methods })
+    // Rows are judged by thresholds.
+    let campaign = state.settings.campaign(state.radar());
+    let campaign = Campaign { count: choice.count, seed: choice.seed, cfar: None, ..campaign };
+    Ok(FailuresPlan { campaign, sets, methods })
 }
 
 /// Puts a row's scene on screen as another document, its floor and method in the settings. One undo takes back all of it, and a walk along
@@ -81,11 +79,8 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
         Some(method) => {
             state.settings.method = row.method.to_string();
             // Its own threshold, raised to where noise does not reach, or the one that the row was judged at.
-            let eta = &mut state.settings.method_eta;
-            match method.reads_eta() || method.eta() <= row.eta {
-                true => _ = eta.remove(&*row.method),
-                false => _ = eta.insert(row.method.to_string(), row.eta),
-            }
+            let is_own = method.reads_eta() || method.eta() <= row.eta;
+            state.settings.set_method_eta(&row.method, (!is_own).then_some(row.eta));
         }
         None => state.notices.info(format!("There is no method \"{}\" here; the one in use stays.", row.method)),
     }

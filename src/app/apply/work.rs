@@ -43,15 +43,7 @@ pub fn watch(state: &mut State, jobs: &mut Jobs, log: PathBuf) {
 }
 
 fn evaluation_plan(state: &State, choice: &EvaluationChoice) -> EvaluationPlan {
-    let campaign = Campaign {
-        radar: state.radar().clone(),
-        count: choice.count,
-        seed: choice.seed,
-        floor: state.settings.floor,
-        normalisation: state.settings.normalisation,
-        cfar: state.settings.cfar,
-        ..Campaign::default()
-    };
+    let campaign = Campaign { count: choice.count, seed: choice.seed, ..state.settings.campaign(state.radar()) };
     let methods = state.methods.all.iter().filter(|m| choice.methods.contains(&m.name())).cloned().collect();
     EvaluationPlan { campaign, sets: choice.sets.clone(), methods }
 }

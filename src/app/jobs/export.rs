@@ -8,7 +8,7 @@ use crate::app::state::{MethodSlot, State};
 use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::maps::archive::{write_maps, write_recorded_maps};
-use crate::picture::{PictureFormat, Style, compose, compose_recording, maps_of};
+use crate::picture::{PictureFormat, compose, compose_recording, maps_of};
 use crate::platform;
 use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
@@ -68,19 +68,13 @@ impl Exports {
             return Err("There is no method to draw the output of.".to_owned());
         };
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
-        let (recording, floor) = (seen_recording(state), state.settings.floor);
-        let style = Style {
-            floor,
-            normalisation: state.settings.normalisation,
-            colours: state.settings.colours,
-            eta: state.settings.method_eta.get(method.name()).copied(),
-        };
+        let (recording, style) = (seen_recording(state), state.settings.style(method.name()));
         self.begin(path, move |path| {
             let bytes = match recording {
                 Some(recording) => compose_recording(&recording, method.as_ref(), &style, format),
                 None => {
                     let seed = scene.noise_seed;
-                    let signal = signal::simulate(&radar, &scene, floor, seed).map_err(|e| e.to_string())?;
+                    let signal = signal::simulate(&radar, &scene, style.floor, seed).map_err(|e| e.to_string())?;
                     compose(&radar, &scene, &signal, method.as_ref(), &style, format)
                 }
             };

@@ -1,7 +1,7 @@
 //! Commands that choose what is shown: maps, scales, the floor, the detector, the radar's signal, colours, lessons and the window itself.
 
 use super::super::command::{Command, LessonCommand, RadarCommand, ViewCommand, WindowCommand, WorkCommand};
-use super::super::settings::{Directions, Projection, Units};
+use super::super::{Directions, Projection, Units};
 use super::entry::{Entry, command, entries, entry, key, shift};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Statistic;
