@@ -221,23 +221,12 @@ impl SharedView {
 
     /// Puts what the text tells into a view; the rest of it stays.
     pub fn show_in(self, view: &mut View) {
-        let SharedView { floor, normalisation, colours, target_eta, .. } = self;
         view.set_method_eta(&self.method, self.eta);
         view.detect_by(self.cfar);
-        let projection = if self.cartesian { Projection::Cartesian } else { Projection::RangeAngle };
-        let (show_reflectors, show_theory, method) = (self.marks, self.theory, self.method);
-        let kept = std::mem::take(view);
-        *view = View {
-            floor,
-            normalisation,
-            colours,
-            projection,
-            target_eta,
-            method,
-            show_reflectors,
-            show_theory,
-            ..kept
-        };
+        (view.floor, view.normalisation, view.colours) = (self.floor, self.normalisation, self.colours);
+        (view.target_eta, view.show_reflectors, view.show_theory) = (self.target_eta, self.marks, self.theory);
+        view.projection = if self.cartesian { Projection::Cartesian } else { Projection::RangeAngle };
+        view.method = self.method;
     }
 
     /// Holds what comes from outside to what the app can show.

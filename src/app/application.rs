@@ -82,7 +82,7 @@ impl App {
     /// Starts workers and opens the scene asked for, an unsaved one of an earlier run, or the default.
     ///
     /// # Errors
-    /// When the system can't start a thread or create the frame log.
+    /// When the frame log or the autosave can't be created.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::Result<Self> {
         let ctx = &creation.egui_ctx;
         let methods = if options.methods.is_empty() { crate::methods::all() } else { options.methods };
@@ -130,7 +130,7 @@ impl App {
         Ok(App {
             state,
             jobs,
-            panels: Panels::start(platform::waker(ctx))?,
+            panels: Panels::start(platform::waker(ctx)),
             memory: ChromeMemory { palette, ..ChromeMemory::default() },
             asked,
             frame_log,

@@ -225,6 +225,14 @@ mod tests {
         }
     }
 
+    #[test]
+    fn how_scenes_are_looked_at_is_kept() {
+        let mut storage = InMemory::default();
+        let view = View { one_scale: true, method: "capon".to_owned(), ..View::default() };
+        KeptSettings { view: Some(view.clone()), ..KeptSettings::default() }.write(&mut storage);
+        assert_eq!(read(Some(&storage), None).0.settings.view, view);
+    }
+
     /// Laid out as version 0.1.0 wrote it; never to be rewritten.
     const OF_0_1_0: &str = include_str!("../../tests/data/program-0.1.0/settings.ron");
 

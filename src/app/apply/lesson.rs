@@ -1,6 +1,6 @@
 //! Commands of lessons: begin, predict, go on, leave.
 
-use crate::app::jobs::{Jobs, Purpose};
+use crate::app::jobs::Jobs;
 use crate::app::state::lesson_focus::{control_of, map_of};
 use crate::app::state::{Arrangement, Before, LessonCommand, LessonRun, MapViews, Panel, State, Task};
 use crate::interact::{Document, SelectionMode};
@@ -13,8 +13,11 @@ use std::sync::Arc;
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: LessonCommand) {
     match command {
         LessonCommand::Begin(index) => begin_shipped(state, index),
-        LessonCommand::Open => jobs.choose_file(state, Purpose::OpenLesson),
-        LessonCommand::OpenFile(path) => jobs.lessons.open(path),
+        LessonCommand::OpenFile(path) => {
+            if let Err(error) = jobs.lessons.open(path) {
+                state.notices.error(format!("The lesson can't be read: {error}"));
+            }
+        }
         LessonCommand::Take { id, lesson } => begin(state, id, lesson),
         LessonCommand::Step(step) => go_to(state, step),
         LessonCommand::Predict(guess) => {

@@ -1,7 +1,7 @@
 //! Commands about rows: try methods, open a row, look for worse, keep.
 
 use super::work;
-use crate::app::jobs::{FailuresPlan, Jobs, Purpose, is_table_of_rows, keep, tell};
+use crate::app::jobs::{FailuresPlan, Jobs, is_table_of_rows, keep, tell};
 use crate::app::state::{FailureChoice, OpenedRow, Panel, RowsCommand, State};
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::sets::{Folder, SceneSet};
@@ -17,7 +17,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
             Err(error) => state.notices.error(error),
         },
         RowsCommand::CancelTrying => jobs.failures.cancel(),
-        RowsCommand::Open => jobs.choose_file(state, Purpose::OpenRows),
         RowsCommand::OpenTable(path) if !is_table_of_rows(&path) => work::watch(state, jobs, path),
         RowsCommand::OpenFile(path) | RowsCommand::OpenTable(path) => {
             jobs.failures.open(path);
@@ -25,7 +24,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
                 state.arrangement.set_open(Panel::Failures, true);
             }
         }
-        RowsCommand::Save => jobs.choose_file(state, Purpose::SaveRows),
         RowsCommand::SaveTo(path) => tell(state, jobs.exports.rows(jobs.failures.table(), path)),
         RowsCommand::Clear => jobs.failures.clear(),
         RowsCommand::BringBack => jobs.failures.bring_back(),
@@ -35,7 +33,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
         RowsCommand::TakeFinding => take_finding(state, jobs),
         RowsCommand::ForgetSearch => jobs.failures.search.forget(),
         RowsCommand::KeepScene(note) => keep_scene(state, jobs, &note),
-        RowsCommand::ChooseOwnScenes => jobs.choose_file(state, Purpose::OwnScenes),
         RowsCommand::SetOwnScenes(path) => {
             let folder = if fs::is_dir(&path) { Some(path.as_path()) } else { path.parent() };
             state.settings.own_scenes = folder.map(Path::to_path_buf);
@@ -52,9 +49,8 @@ fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPl
         sets.push(SceneSet::Folder(folder));
     }
     let methods = state.methods.all.iter().filter(|m| choice.methods.contains(&m.name())).cloned().collect();
-    // Rows are judged by thresholds.
     let campaign = state.settings.campaign(state.radar());
-    let campaign = Campaign { count: choice.count, seed: choice.seed, cfar: None, ..campaign };
+    let campaign = Campaign { count: choice.count, seed: choice.seed, ..campaign };
     Ok(FailuresPlan { campaign, sets, methods })
 }
 

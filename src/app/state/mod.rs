@@ -1,6 +1,9 @@
 //! What the app holds, without any drawing and without any work: the scene, what the user chose, where the panels are, and every
 //! command by name.
 
+#[macro_use]
+mod named;
+
 mod arrangement;
 mod bounds_settings;
 mod chirp_settings;
@@ -34,8 +37,8 @@ pub use arrangement::Arrangement;
 pub use bounds_settings::{BoundsSettings, Elements};
 pub use chirp_settings::ChirpSettings;
 pub use command::{
-    Command, DocumentCommand, EditCommand, EvaluationChoice, ExportCommand, LessonCommand, NewObject, RadarCommand,
-    RowsCommand, ThresholdChoice, ViewCommand, Way, WindowCommand, WorkCommand,
+    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, Purpose, RadarCommand, RowsCommand,
+    ThresholdChoice, ViewCommand, Way, WindowCommand, WorkCommand,
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
 pub use compare::{Compare, Layout};
