@@ -3,7 +3,9 @@
 use crate::evaluate::campaign::Campaign;
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
-use crate::picture::{ColourMap, Style};
+use crate::picture::ColourMap;
+#[cfg(feature = "pictures")]
+use crate::picture::Style;
 use crate::radar::{DecibelMilliwatts, Decibels, Radar};
 use crate::signal::Floor;
 use serde::{Deserialize, Serialize};
@@ -173,6 +175,7 @@ impl View {
     }
 
     /// How pictures of a method's maps are drawn.
+    #[cfg(feature = "pictures")]
     pub fn style(&self, method: &str) -> Style {
         let View { floor, normalisation, colours, .. } = *self;
         Style { floor, normalisation, colours, eta: self.method_eta.get(method).copied() }
