@@ -51,6 +51,7 @@
 //! | [`engine`], [`interact`] | edits of a scene | only those maps that changed and are looked at |
 //! | [`picture`] | a scene and its maps | colours and panels, without a display |
 //! | [`lesson`] | lesson files | questions, judged on the maps |
+//! | [`view`] | | how a scene is looked at: floor, normalisation, method, thresholds, colours, marks |
 //! | [`share`] | what is on screen | one line of text, and back |
 //! | [`figures`] | the thesis' scenes | every figure of the thesis, as sheets of panels |
 //! | [`files`], [`commands`] | | whole-or-nothing files, the command line |
@@ -89,3 +90,4 @@ pub mod share;
 pub mod signal;
 pub mod task;
 pub mod theory;
+pub mod view;

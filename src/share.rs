@@ -9,6 +9,7 @@ use crate::picture::ColourMap;
 use crate::scene::SceneError;
 use crate::scene::file::{SceneFile, SceneTextError, from_toml_beside, to_toml_beside};
 use crate::signal::Floor;
+use crate::view::{Projection, View};
 use base64::Engine;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use flate2::Compression;
@@ -197,6 +198,37 @@ fn unpack(packed: &[u8]) -> Result<String, ShareError> {
 }
 
 impl SharedView {
+    /// What a text tells of a view: its colours, conditions and method, the visible parts of maps over either coordinates, and a lesson.
+    pub fn of(view: &View, parts: [VisiblePart; 2], lesson: Option<LessonPlace>) -> SharedView {
+        let View { floor, normalisation, colours, projection, target_eta, cfar, .. } = *view;
+        let [range_angle_part, cartesian_part] = parts;
+        SharedView {
+            floor,
+            normalisation,
+            colours,
+            cartesian: projection == Projection::Cartesian,
+            range_angle_part,
+            cartesian_part,
+            target_eta,
+            cfar,
+            eta: view.method_eta.get(&view.method).copied(),
+            method: view.method.clone(),
+            marks: view.show_reflectors,
+            theory: view.show_theory,
+            lesson,
+        }
+    }
+
+    /// Puts what the text tells into a view; the rest of it stays.
+    pub fn show_in(self, view: &mut View) {
+        view.set_method_eta(&self.method, self.eta);
+        view.detect_by(self.cfar);
+        (view.floor, view.normalisation, view.colours) = (self.floor, self.normalisation, self.colours);
+        (view.target_eta, view.show_reflectors, view.show_theory) = (self.target_eta, self.marks, self.theory);
+        view.projection = if self.cartesian { Projection::Cartesian } else { Projection::RangeAngle };
+        view.method = self.method;
+    }
+
     /// Holds what comes from outside to what the app can show.
     fn check(&self) -> Result<(), ShareError> {
         let wrong = |field, problem: String| Err(ShareError::View { field, problem });

@@ -82,7 +82,7 @@ impl App {
     /// Starts workers and opens the scene asked for, an unsaved one of an earlier run, or the default.
     ///
     /// # Errors
-    /// When the system can't start a thread or create the frame log.
+    /// When the frame log or the autosave can't be created.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::Result<Self> {
         let ctx = &creation.egui_ctx;
         let methods = if options.methods.is_empty() { crate::methods::all() } else { options.methods };
@@ -117,7 +117,7 @@ impl App {
         let dialogs = if options.own_dialogs { Dialogs::of_the_window() } else { Dialogs::of_the_system() };
         let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
         theme::apply(ctx, state.settings.theme);
-        state.settings.method = options.method.unwrap_or(state.settings.method);
+        options.method.into_iter().for_each(|method| state.settings.method = method);
         if let Some(zoom) = kept.zoom {
             ctx.set_zoom_factor(zoom);
         }
@@ -130,7 +130,7 @@ impl App {
         Ok(App {
             state,
             jobs,
-            panels: Panels::start(platform::waker(ctx))?,
+            panels: Panels::start(platform::waker(ctx)),
             memory: ChromeMemory { palette, ..ChromeMemory::default() },
             asked,
             frame_log,
@@ -347,6 +347,7 @@ impl eframe::App for App {
         let arrangement = std::mem::replace(state.kept_arrangement(), Arrangement::empty());
         let kept = KeptSettings {
             settings: state.settings.clone(),
+            view: Some(state.settings.view.clone()),
             arrangement,
             recent: state.recent.clone(),
             progress: state.progress.clone(),

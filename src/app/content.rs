@@ -71,11 +71,8 @@ pub struct Held<C: Content> {
 
 impl<C: Content> Held<C> {
     /// Starts the worker of its value, which waits; `wake` is called from its thread.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Box<dyn AnyPanel>> {
-        Ok(Box::new(Held::<C> { memory: C::Remembers::default(), derived: Derived::start(wake)? }))
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
+        Box::new(Held::<C> { memory: C::Remembers::default(), derived: Derived::start(wake) })
     }
 
     /// The value.
@@ -227,7 +224,7 @@ mod tests {
             held.polled().poll();
             asked.extend(held.draw(ui, state, jobs, Panel::Guide));
         };
-        let held = Held::<CountPanel>::start(|| ()).unwrap();
+        let held = Held::<CountPanel>::start(|| ());
         let mut drawn = Harness::new_ui_state(draw, (app, held, Vec::new()));
         while drawn.state().1.is_busy() {
             std::thread::yield_now();

@@ -221,8 +221,7 @@ impl App {
     /// Whether something runs that was started in a tool's panel.
     pub fn is_at_work(&self) -> bool {
         let jobs = &self.jobs;
-        jobs.evaluation.progress().is_some()
-            || jobs.thresholds.progress().is_some()
+        jobs.thresholds.progress().is_some()
             || jobs.failures.progress().is_some()
             || jobs.failures.search.progress().is_some()
             || jobs.run_time.progress().is_some()
@@ -231,7 +230,7 @@ impl App {
 
     /// What the evaluation has found, as CSV.
     pub fn evaluation_csv(&self) -> String {
-        super::jobs::evaluation_to_csv(self.jobs.evaluation.rows())
+        super::jobs::evaluation_to_csv(&super::jobs::evaluated(self.rows()))
     }
 
     /// The rows of the panel Evaluate.

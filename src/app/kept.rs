@@ -1,6 +1,6 @@
 //! What is kept from one start to the next, and what happens where it can't be kept or read.
 
-use super::state::{Arrangement, MethodTimes, Settings};
+use super::state::{Arrangement, MethodTimes, Settings, View};
 use crate::files::write_bytes;
 use crate::lesson::Progress;
 use crate::platform::{self, fs};
@@ -25,6 +25,8 @@ const MOST_BYTES: u64 = 16 << 20;
 #[serde(default)]
 pub(super) struct KeptSettings {
     pub settings: Settings,
+    /// How scenes are looked at; it stood among the settings up to version 0.1.0.
+    pub view: Option<View>,
     #[serde(alias = "layout")]
     pub arrangement: Arrangement,
     pub recent: Vec<PathBuf>,
@@ -36,6 +38,12 @@ pub(super) struct KeptSettings {
     pub captions_seen: bool,
     /// Names of the commands that the palette ran last.
     pub recent_commands: Vec<String>,
+}
+
+/// Where version 0.1.0 keeps how scenes are looked at.
+#[derive(Deserialize)]
+struct OlderSettings {
+    settings: View,
 }
 
 impl KeptSettings {
@@ -60,6 +68,8 @@ pub(super) fn read(
         _ => None,
     };
     let mut kept = kept.unwrap_or_default();
+    let older = || eframe::get_value(storage, eframe::APP_KEY).map(|older: OlderSettings| older.settings);
+    kept.settings.view = kept.view.take().or_else(older).unwrap_or_default();
     kept.arrangement.join_views();
     (kept, captions, problem)
 }
@@ -213,6 +223,14 @@ mod tests {
             let told = problems(place.as_deref());
             assert!(told.len() == 1 && told[0].contains("can't be kept"), "{told:?}");
         }
+    }
+
+    #[test]
+    fn how_scenes_are_looked_at_is_kept() {
+        let mut storage = InMemory::default();
+        let view = View { one_scale: true, method: "capon".to_owned(), ..View::default() };
+        KeptSettings { view: Some(view.clone()), ..KeptSettings::default() }.write(&mut storage);
+        assert_eq!(read(Some(&storage), None).0.settings.view, view);
     }
 
     /// Laid out as version 0.1.0 wrote it; never to be rewritten.

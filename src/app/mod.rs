@@ -37,9 +37,9 @@ pub use page::{open_page, options_of};
 pub use application::{APP_ID, App, Options};
 pub use state::{
     Arrangement, BoundsSettings, Brightness, ChirpSettings, Command, Compare, Cursor, DifferenceView, Directions,
-    DocumentCommand, EditCommand, Elements, Entry, EvaluationChoice, ExportCommand, FailureChoice, Layout,
-    LessonCommand, MapKind, NewObject, Panel, Projection, RadarCommand, RowsCommand, SearchChoice, Settings,
-    ThresholdChoice, Units, ViewCommand, Way, WindowCommand, WorkCommand, listed, listed_on_a_page,
+    DocumentCommand, EditCommand, Elements, Entry, ExportCommand, FailureChoice, Layout, LessonCommand, MapKind,
+    NewObject, Panel, Projection, Purpose, RadarCommand, RowsCommand, SearchChoice, Settings, ThresholdChoice, Units,
+    ViewCommand, Way, WindowCommand, WorkCommand, listed, listed_on_a_page,
 };
 
 /// Why the app did not open.

@@ -3,7 +3,7 @@
 use super::challenge::Challenge;
 use super::fault::Fault;
 use super::question::Question;
-use super::stage::View;
+use super::stage::StepView;
 use crate::files::read_bounded;
 use crate::radar::Radar;
 use crate::scene::presets::Preset;
@@ -50,7 +50,7 @@ pub struct Step {
     pub radar: Radar,
     /// How it is looked at.
     #[serde(default)]
-    pub view: View,
+    pub view: StepView,
     /// The prediction, made before the maps are shown.
     #[serde(default)]
     pub predict: Option<Question>,

@@ -27,7 +27,7 @@ pub use criterion::Measured;
 pub use file::{Lesson, LessonError, LessonTextError, Step};
 pub use progress::Progress;
 pub use question::{Guess, Judgement, Question, Truth};
-pub use stage::{Cell, MapName, Stage, View};
+pub use stage::{Cell, MapName, Stage, StepView};
 pub use uses::Uses;
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// Floor, normalisation, method and detector of a step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct View {
+pub struct StepView {
     /// Noise of the scene.
     pub floor: Floor,
     /// Seed of the floor's noise.
@@ -27,10 +27,10 @@ pub struct View {
     pub cfar: Option<Cfar>,
 }
 
-impl Default for View {
+impl Default for StepView {
     /// No floor and 100 dB, so that noise hides no effect; `live` reconstructs.
     fn default() -> Self {
-        View {
+        StepView {
             floor: Floor::Exact,
             seed: 0,
             normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)),
@@ -82,7 +82,7 @@ impl Stage {
     /// Simulates `scene` and, where `with_output`, reconstructs it.
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. A method that fails leaves its reason in [`Stage::map`].
-    pub fn new(radar: &Radar, scene: &Scene, view: &View, with_output: bool) -> Result<Stage, SceneError> {
+    pub fn new(radar: &Radar, scene: &Scene, view: &StepView, with_output: bool) -> Result<Stage, SceneError> {
         let signal = signal::simulate(radar, scene, view.floor, view.seed)?;
         let log = LogMaps::of_signal(radar, &signal);
         let maps = [log.first, log.last, log.full].map(|m| m.normalise(view.normalisation));
@@ -178,7 +178,8 @@ mod tests {
     #[test]
     fn a_blob_stands_where_it_is_expected_even_at_end_fire() {
         for (x, y) in [(0.0, 20.0), (-16.6, 11.0), (25.0, 6.0), (3.0, 60.0)] {
-            let stage = Stage::new(&Radar::default(), &Scene::of_points([(x, y)]), &View::default(), false).unwrap();
+            let stage =
+                Stage::new(&Radar::default(), &Scene::of_points([(x, y)]), &StepView::default(), false).unwrap();
             let map = stage.map(MapName::Target).unwrap();
             let (expected, (found, lambda)) =
                 (stage.expected(&stage.scene.objects[0]), stage.blob(map, &stage.scene.objects[0]));

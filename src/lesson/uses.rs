@@ -2,7 +2,7 @@
 
 use super::file::Lesson;
 use super::question::Answer;
-use super::stage::View;
+use super::stage::StepView;
 
 /// What a lesson needs beside scene, radar and the maps of ends and whole array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,7 @@ impl Uses {
 impl Lesson {
     /// What the lesson's steps need.
     pub fn uses(&self) -> Uses {
-        let usual = View::default().method;
+        let usual = StepView::default().method;
         let output = self.steps.iter().any(|step| {
             step.view.method != usual
                 || step.predict.as_ref().is_some_and(|question| question.needs_output())

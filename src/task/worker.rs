@@ -116,14 +116,13 @@ fn serve<Q: Send + 'static, T: Send + 'static>(name: String, shared: Arc<Shared<
 impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
     /// A worker whose thread is called `name` and starts with the first request. `start` makes the state that `work` keeps from request to
     /// request; `wake` is called from the thread after each reply.
-    /// # Errors
-    /// None at present: a thread that can't be started is told with the first reply.
+    /// A thread that can't be started is told with the first reply.
     pub fn spawn<S: 'static>(
         name: &str,
         start: impl Fn() -> S + Send + Sync + 'static,
         work: impl Fn(&mut S, Q, &Task) -> T + Send + Sync + 'static,
         wake: impl Fn() + Send + Sync + 'static,
-    ) -> std::io::Result<Self> {
+    ) -> Self {
         let (start, work) = (Arc::new(start), Arc::new(work));
         let again = move || -> Step<Q, T> {
             let (start, work) = (start.clone(), work.clone());
@@ -135,7 +134,7 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         };
         let slot = Slot { pending: None, running: None, replies: Vec::new(), generation: 0, stop: false };
         let (step, wake) = (Box::new(again), Box::new(wake));
-        Ok(Worker { shared: Arc::new(Shared { slot: Mutex::new(slot), ready: Condvar::new(), step, wake }), place })
+        Worker { shared: Arc::new(Shared { slot: Mutex::new(slot), ready: Condvar::new(), step, wake }), place }
     }
 
     fn begin(&self) {
@@ -299,8 +298,7 @@ mod tests {
                 n
             },
             move || wake.send(()).unwrap(),
-        )
-        .unwrap();
+        );
         worker.request(1);
         entered.1.recv().unwrap();
         for n in 2..=9 {
@@ -324,7 +322,7 @@ mod tests {
         let (wake, woken) = mpsc::channel();
         let (start, started) = mpsc::channel();
         let state = move || start.send(std::thread::current().id()).unwrap();
-        let worker = Worker::spawn("test", state, |(), n: u32, _| n, move || wake.send(()).unwrap()).unwrap();
+        let worker = Worker::spawn("test", state, |(), n: u32, _| n, move || wake.send(()).unwrap());
         assert!(started.recv_timeout(Duration::from_millis(50)).is_err());
         worker.request(3);
         assert!(matches!(wait(&worker, &woken)[..], [Reply::Done { result: 3, .. }]));
@@ -339,7 +337,7 @@ mod tests {
             assert!(n != 13, "unlucky {n}");
             *count
         };
-        let worker = Worker::spawn("test", || 0, work, move || wake.send(()).unwrap()).unwrap();
+        let worker = Worker::spawn("test", || 0, work, move || wake.send(()).unwrap());
         let ask = |n| {
             worker.request(n);
             wait(&worker, &woken).remove(0)
@@ -360,7 +358,7 @@ mod tests {
                 std::thread::yield_now();
             }
         };
-        let worker = Worker::spawn("test", || (), work, move || wake.send(()).unwrap()).unwrap();
+        let worker = Worker::spawn("test", || (), work, move || wake.send(()).unwrap());
         worker.request(());
         entered.recv().unwrap();
         assert_eq!(worker.progress(), Some(0.0));

@@ -2,8 +2,8 @@
 
 use crate::session::{Session, step_until};
 use apertura::app::{
-    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ThresholdChoice, ViewCommand,
-    WindowCommand, WorkCommand,
+    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, Purpose, RadarCommand, ThresholdChoice,
+    ViewCommand, WindowCommand, WorkCommand,
 };
 use apertura::engine::{StageOutcome, StageReport};
 use apertura::evaluate::threshold::ThresholdSearch;
@@ -321,7 +321,7 @@ fn the_window_exports_what_apertura_maps_writes() {
 #[test]
 fn open_shows_the_windows_own_dialog_where_the_system_has_none() {
     let mut s = Session::start();
-    s.ask(DocumentCommand::Open);
+    s.ask(Purpose::Open);
     assert!(s.app.query_all_by_label_contains("Open a scene").next().is_some());
     s.app.get_by_label("scene.toml").click();
     s.settle();

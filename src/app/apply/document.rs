@@ -1,7 +1,7 @@
 //! Commands that put another scene on screen, or this one in a file.
 
 use super::{saving, shared};
-use crate::app::jobs::{Jobs, Purpose};
+use crate::app::jobs::Jobs;
 use crate::app::state::{DocumentCommand, MapKind, Panel, Settings, State, Way};
 use crate::interact::Document;
 #[cfg(feature = "live")]
@@ -23,10 +23,8 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) {
             let file = SceneFile { radar: state.radar().clone(), ..SceneFile::default() };
             state.set_document("new scene", Document::shipped(file));
         }
-        DocumentCommand::Open => jobs.choose_file(state, Purpose::Open),
         DocumentCommand::OpenPath(path) => open(state, path),
         DocumentCommand::Save => saving::save_again(state, jobs),
-        DocumentCommand::SaveAs => jobs.choose_file(state, Purpose::SaveScene),
         DocumentCommand::SaveTo(path) => saving::save(state, path),
         DocumentCommand::AnswerSave(answer) => saving::answer(state, jobs, answer),
         DocumentCommand::Recover(id) => state.scene_view.fit |= state.editor.recover(id),

@@ -2,7 +2,7 @@
 
 use super::effect::Effect;
 use super::{map_picture, shared};
-use crate::app::jobs::{Jobs, Purpose, evaluation_to_csv, tell};
+use crate::app::jobs::{Jobs, evaluated, evaluation_to_csv, tell};
 use crate::app::state::{ExportCommand, State};
 
 /// Does such a command, but for what the clipboard has to do.
@@ -11,12 +11,9 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: ExportCommand) -> Opti
         ExportCommand::CopyMap(kind) => return map_picture::copy(state, jobs, kind).map(Effect::CopyImage),
         ExportCommand::CopyShared => return shared::text(state).map(Effect::Copy),
         ExportCommand::CopyLink => return shared::link(state).map(Effect::Copy),
-        ExportCommand::CopyEvaluation => return Some(Effect::Copy(evaluation_to_csv(jobs.evaluation.rows()))),
-        ExportCommand::Picture => return choose(state, jobs, Purpose::ExportPicture),
-        ExportCommand::Maps => return choose(state, jobs, Purpose::ExportMaps),
-        ExportCommand::Metrics => return choose(state, jobs, Purpose::ExportMetrics),
-        ExportCommand::RecordDrag => return choose(state, jobs, Purpose::RecordDrag),
-        ExportCommand::DrawLesson => return choose(state, jobs, Purpose::DrawLesson),
+        ExportCommand::CopyEvaluation => {
+            return Some(Effect::Copy(evaluation_to_csv(&evaluated(jobs.failures.table().rows()))));
+        }
         ExportCommand::StopRecording => {
             let given_up = jobs.recorder.cancel();
             Ok(given_up.unwrap_or_else(|| "Nothing is recorded.".to_owned()))
@@ -28,10 +25,5 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: ExportCommand) -> Opti
         ExportCommand::MetricsTo(path) => jobs.exports.metrics(state, &jobs.pipeline, path),
     };
     tell(state, said);
-    None
-}
-
-fn choose(state: &mut State, jobs: &mut Jobs, purpose: Purpose) -> Option<Effect> {
-    jobs.choose_file(state, purpose);
     None
 }

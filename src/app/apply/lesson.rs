@@ -1,6 +1,6 @@
 //! Commands of lessons: begin, predict, go on, leave.
 
-use crate::app::jobs::{Jobs, Purpose};
+use crate::app::jobs::Jobs;
 use crate::app::state::lesson_focus::{control_of, map_of};
 use crate::app::state::{Arrangement, Before, LessonCommand, LessonRun, MapViews, Panel, State, Task};
 use crate::interact::{Document, SelectionMode};
@@ -13,8 +13,11 @@ use std::sync::Arc;
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: LessonCommand) {
     match command {
         LessonCommand::Begin(index) => begin_shipped(state, index),
-        LessonCommand::Open => jobs.choose_file(state, Purpose::OpenLesson),
-        LessonCommand::OpenFile(path) => jobs.lessons.open(path),
+        LessonCommand::OpenFile(path) => {
+            if let Err(error) = jobs.lessons.open(path) {
+                state.notices.error(format!("The lesson can't be read: {error}"));
+            }
+        }
         LessonCommand::Take { id, lesson } => begin(state, id, lesson),
         LessonCommand::Step(step) => go_to(state, step),
         LessonCommand::Predict(guess) => {
@@ -122,10 +125,10 @@ fn show_solution(state: &mut State) {
 /// Ends the lesson: scene, radar, settings, panels and what is visible of scene and maps are again what they were before.
 fn leave(state: &mut State) {
     let Some(run) = state.lesson.take() else { return };
-    let after = state.settings.clone();
+    let after = state.settings.view.clone();
     let Before { setup, scene_view, map_views, .. } = run.before;
     while state.editor.history().depth() > setup.depth && state.editor.undo() {}
-    state.settings.take_back(&setup.settings, &after);
+    state.settings.take_back(&setup.view, &after);
     (state.scene_view, state.map_views) = (scene_view, map_views);
     state.kept_arrangement().open_again(&run.closed);
     state.kept_arrangement().switch(run.before.task);

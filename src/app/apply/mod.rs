@@ -38,6 +38,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Eff
         Command::Work(command) => work::apply(state, jobs, command),
         Command::Export(command) => return export::apply(state, jobs, command),
         Command::Window(command) => return window::apply(state, command),
+        Command::AskFile(purpose) => jobs.choose_file(state, purpose),
         Command::Guided(commands) => guided(state, jobs, commands),
     }
     None

@@ -1,8 +1,8 @@
 //! Commands about rows: try methods, open a row, look for worse, keep.
 
 use super::work;
-use crate::app::jobs::{FailuresPlan, Jobs, Purpose, is_table_of_rows, keep, tell};
-use crate::app::state::{Conditions, FailureChoice, OpenedRow, Panel, RowsCommand, State};
+use crate::app::jobs::{FailuresPlan, Jobs, is_table_of_rows, keep, tell};
+use crate::app::state::{FailureChoice, OpenedRow, Panel, RowsCommand, State};
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::sets::{Folder, SceneSet};
 use crate::evaluate::worsen::Aim;
@@ -17,7 +17,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
             Err(error) => state.notices.error(error),
         },
         RowsCommand::CancelTrying => jobs.failures.cancel(),
-        RowsCommand::Open => jobs.choose_file(state, Purpose::OpenRows),
         RowsCommand::OpenTable(path) if !is_table_of_rows(&path) => work::watch(state, jobs, path),
         RowsCommand::OpenFile(path) | RowsCommand::OpenTable(path) => {
             jobs.failures.open(path);
@@ -25,7 +24,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
                 state.arrangement.set_open(Panel::Failures, true);
             }
         }
-        RowsCommand::Save => jobs.choose_file(state, Purpose::SaveRows),
         RowsCommand::SaveTo(path) => tell(state, jobs.exports.rows(jobs.failures.table(), path)),
         RowsCommand::Clear => jobs.failures.clear(),
         RowsCommand::BringBack => jobs.failures.bring_back(),
@@ -35,7 +33,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
         RowsCommand::TakeFinding => take_finding(state, jobs),
         RowsCommand::ForgetSearch => jobs.failures.search.forget(),
         RowsCommand::KeepScene(note) => keep_scene(state, jobs, &note),
-        RowsCommand::ChooseOwnScenes => jobs.choose_file(state, Purpose::OwnScenes),
         RowsCommand::SetOwnScenes(path) => {
             let folder = if fs::is_dir(&path) { Some(path.as_path()) } else { path.parent() };
             state.settings.own_scenes = folder.map(Path::to_path_buf);
@@ -44,11 +41,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
 }
 
 fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPlan, String> {
-    let conditions = Conditions {
-        floor: state.settings.floor,
-        normalisation: state.settings.normalisation,
-        radar: state.radar().clone(),
-    };
     let mut sets: Vec<SceneSet> = choice.kinds.iter().copied().map(SceneSet::Generated).collect();
     if choice.own {
         let folder = jobs.own_scenes(state).ok_or("There is no folder of your own scenes: choose one first.")?;
@@ -57,7 +49,9 @@ fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPl
         sets.push(SceneSet::Folder(folder));
     }
     let methods = state.methods.all.iter().filter(|m| choice.methods.contains(&m.name())).cloned().collect();
-    Ok(FailuresPlan { campaign: Campaign { count: choice.count, ..conditions.campaign(choice.seed) }, sets, methods })
+    let campaign = state.settings.campaign(state.radar());
+    let campaign = Campaign { count: choice.count, seed: choice.seed, ..campaign };
+    Ok(FailuresPlan { campaign, sets, methods })
 }
 
 /// Puts a row's scene on screen as another document, its floor and method in the settings. One undo takes back all of it, and a walk along
@@ -81,11 +75,8 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
         Some(method) => {
             state.settings.method = row.method.to_string();
             // Its own threshold, raised to where noise does not reach, or the one that the row was judged at.
-            let eta = &mut state.settings.method_eta;
-            match method.reads_eta() || method.eta() <= row.eta {
-                true => _ = eta.remove(&*row.method),
-                false => _ = eta.insert(row.method.to_string(), row.eta),
-            }
+            let is_own = method.reads_eta() || method.eta() <= row.eta;
+            state.settings.set_method_eta(&row.method, (!is_own).then_some(row.eta));
         }
         None => state.notices.info(format!("There is no method \"{}\" here; the one in use stays.", row.method)),
     }

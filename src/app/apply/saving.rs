@@ -1,7 +1,7 @@
 //! Writing the scene to a file, and the question before one that can't hold all of it or that another program has written to.
 
-use crate::app::jobs::{Jobs, Purpose};
-use crate::app::state::{Doubt, SaveAnswer, SaveQuestion, State};
+use crate::app::jobs::Jobs;
+use crate::app::state::{Doubt, Purpose, SaveAnswer, SaveQuestion, State};
 use crate::interact::Saved;
 use crate::platform::fs;
 use std::path::{Path, PathBuf};

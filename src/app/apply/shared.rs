@@ -1,7 +1,7 @@
 //! What is on screen as a line of text, and back.
 
 use super::lesson;
-use crate::app::state::{MapView, Projection, State};
+use crate::app::state::{MapView, State, View};
 use crate::interact::Document;
 use crate::lesson::shipped;
 use crate::platform;
@@ -58,25 +58,12 @@ pub fn of(state: &State) -> Result<String, ShareError> {
 }
 
 fn share(state: &State) -> SharedScene {
-    let settings = &state.settings;
     let method = state.method().map_or_else(String::new, |m| m.name().to_owned());
     let is_shipped = |id: &str| shipped::ALL.iter().any(|s| s.id == id);
     let lesson = state.lesson.as_ref().filter(|run| is_shipped(&run.id));
-    let view = SharedView {
-        floor: settings.floor,
-        normalisation: settings.normalisation,
-        colours: settings.colours,
-        cartesian: settings.projection == Projection::Cartesian,
-        range_angle_part: by_column(state.radar(), part(state.map_views.range_angle)),
-        cartesian_part: part(state.map_views.cartesian),
-        target_eta: settings.target_eta,
-        cfar: settings.cfar,
-        eta: settings.method_eta.get(&method).copied(),
-        method,
-        marks: settings.show_reflectors,
-        theory: settings.show_theory,
-        lesson: lesson.map(|run| LessonPlace { id: run.id.clone(), step: run.step + 1 }),
-    };
+    let lesson = lesson.map(|run| LessonPlace { id: run.id.clone(), step: run.step + 1 });
+    let parts = [by_column(state.radar(), part(state.map_views.range_angle)), part(state.map_views.cartesian)];
+    let view = SharedView::of(&View { method, ..state.settings.view.clone() }, parts, lesson);
     SharedScene { file: state.editor.document().to_file(), view }
 }
 
@@ -127,20 +114,7 @@ fn look(state: &mut State, view: SharedView) {
     let seen = |part: VisiblePart| MapView { low: pos2(part.left, part.bottom), high: pos2(part.right, part.top) };
     state.map_views.range_angle = seen(by_column(state.radar(), view.range_angle_part));
     state.map_views.cartesian = seen(view.cartesian_part);
-    let settings = &mut state.settings;
-    settings.floor = view.floor;
-    settings.normalisation = view.normalisation;
-    settings.colours = view.colours;
-    settings.projection = if view.cartesian { Projection::Cartesian } else { Projection::RangeAngle };
-    settings.target_eta = view.target_eta;
-    settings.detect_by(view.cfar);
-    match view.eta {
-        Some(eta) => _ = settings.method_eta.insert(view.method.clone(), eta),
-        None => _ = settings.method_eta.remove(&view.method),
-    }
-    settings.method = view.method;
-    settings.show_reflectors = view.marks;
-    settings.show_theory = view.theory;
+    view.show_in(&mut state.settings);
 }
 
 #[cfg(test)]

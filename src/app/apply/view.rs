@@ -25,9 +25,11 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::SetFloor(floor) => settings.set_floor(floor),
         ViewCommand::SetTargetEta(eta) => settings.target_eta = eta,
         ViewCommand::SetCfar(cfar) => settings.detect_by(cfar),
-        ViewCommand::Detect(by) => settings.detect_by(by.map(|statistic| Cfar { statistic, ..settings.last_cfar })),
-        ViewCommand::SetMethodEta(method, Some(eta)) => _ = settings.method_eta.insert(method.to_owned(), eta),
-        ViewCommand::SetMethodEta(method, None) => _ = settings.method_eta.remove(method),
+        ViewCommand::Detect(by) => {
+            let last = settings.last_cfar;
+            settings.detect_by(by.map(|statistic| Cfar { statistic, ..last }));
+        }
+        ViewCommand::SetMethodEta(method, eta) => settings.set_method_eta(method, eta),
         ViewCommand::SetBounds(bounds) => settings.bounds = bounds,
         ViewCommand::SetChirp(chirp) => settings.chirp = chirp,
         ViewCommand::SetTime(seconds) => state.timeline.set(state.editor.scene(), seconds),

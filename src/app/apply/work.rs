@@ -1,8 +1,7 @@
 //! Commands that start long work, or stop it.
 
-use crate::app::jobs::{EvaluationPlan, Jobs, Purpose, RunTimePlan, ThresholdPlan, TimesPlan, tell};
-use crate::app::state::{EvaluationChoice, MethodSlot, Panel, State, WorkCommand};
-use crate::evaluate::campaign::Campaign;
+use crate::app::jobs::{Jobs, RunTimePlan, ThresholdPlan, TimesPlan, tell};
+use crate::app::state::{MethodSlot, Panel, State, WorkCommand};
 use std::path::PathBuf;
 
 /// Does such a command.
@@ -19,8 +18,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
         WorkCommand::CancelMethodTimes => jobs.method_times.cancel(),
         WorkCommand::CancelMethod => jobs.pipeline.method_mut(MethodSlot::First).cancel(),
         WorkCommand::CancelSecond => jobs.pipeline.method_mut(MethodSlot::Second).cancel(),
-        WorkCommand::Evaluate(choice) => jobs.evaluation.begin(evaluation_plan(state, &choice)),
-        WorkCommand::CancelEvaluation => jobs.evaluation.cancel(),
         WorkCommand::FindThreshold(choice) => {
             ThresholdPlan::of(state, choice).into_iter().for_each(|plan| jobs.thresholds.begin(plan));
         }
@@ -29,7 +26,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
             jobs.run_time.begin(RunTimePlan { radar: state.radar().clone(), thorough });
         }
         WorkCommand::CancelMeasurement => jobs.run_time.cancel(),
-        WorkCommand::OpenLog => jobs.choose_file(state, Purpose::OpenLog),
         WorkCommand::WatchLog(path) => watch(state, jobs, path),
         WorkCommand::Train(recipe) => train(state, jobs, recipe),
         WorkCommand::CancelTraining => jobs.training.cancel(),
@@ -40,20 +36,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
 pub fn watch(state: &mut State, jobs: &mut Jobs, log: PathBuf) {
     jobs.training.follow(log);
     state.arrangement.set_open(Panel::Training, true);
-}
-
-fn evaluation_plan(state: &State, choice: &EvaluationChoice) -> EvaluationPlan {
-    let campaign = Campaign {
-        radar: state.radar().clone(),
-        count: choice.count,
-        seed: choice.seed,
-        floor: state.settings.floor,
-        normalisation: state.settings.normalisation,
-        cfar: state.settings.cfar,
-        ..Campaign::default()
-    };
-    let methods = state.methods.all.iter().filter(|m| choice.methods.contains(&m.name())).cloned().collect();
-    EvaluationPlan { campaign, sets: choice.sets.clone(), methods }
 }
 
 #[cfg(feature = "network")]

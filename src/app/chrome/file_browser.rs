@@ -1,6 +1,7 @@
 //! A folder on screen, to choose a file from or to name a new one in.
 
-use crate::app::jobs::{Purpose, Question};
+use crate::app::jobs::Question;
+use crate::app::state::Purpose;
 use crate::platform::fs;
 use eframe::egui;
 use eframe::egui::{Button, Context, Id, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui};

@@ -1,8 +1,8 @@
 //! A file dialog in the window, for systems that have none of their own.
 
 use super::file_browser::{Answer, Browser};
-use crate::app::jobs::{Purpose, Question};
-use crate::app::state::Command;
+use crate::app::jobs::Question;
+use crate::app::state::{Command, Purpose};
 use crate::platform::fs;
 use eframe::egui::{Context, Id, Modal, Ui};
 use std::path::{Path, PathBuf};

@@ -3,8 +3,8 @@
 use super::column::MAX_COLUMN_WIDTH_POINTS;
 use super::unsaved;
 use crate::app::state::{
-    Command, DocumentCommand, EditCommand, ExportCommand, HelpPage, MapKind, NewObject, Panel, Projection, Task,
-    ViewCommand, WindowCommand,
+    Command, DocumentCommand, EditCommand, ExportCommand, HelpPage, MapKind, NewObject, Panel, Projection, Purpose,
+    Task, ViewCommand, WindowCommand,
 };
 use crate::app::widgets::entry::{arrange, button, entry, entry_called, ticked, tooltip};
 use crate::app::widgets::labelled::labelled;
@@ -164,7 +164,7 @@ fn entries(ui: &mut Ui, commands: impl IntoIterator<Item = Command>, asked: &mut
 fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let recent = input.recent;
     ui.set_min_width(220.0);
-    entries(ui, [Command::Document(DocumentCommand::New), Command::Document(DocumentCommand::Open)], asked);
+    entries(ui, [Command::Document(DocumentCommand::New), Command::AskFile(Purpose::Open)], asked);
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for path in recent {
@@ -182,7 +182,7 @@ fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         ui,
         [
             Command::Document(DocumentCommand::Save),
-            Command::Document(DocumentCommand::SaveAs),
+            Command::AskFile(Purpose::SaveScene),
             Command::Export(ExportCommand::CopyShared),
             Command::Export(ExportCommand::CopyLink),
         ],
@@ -192,13 +192,13 @@ fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     entries(
         ui,
         [
-            Command::Export(ExportCommand::Picture),
-            Command::Export(ExportCommand::Maps),
-            Command::Export(ExportCommand::Metrics),
+            Command::AskFile(Purpose::ExportPicture),
+            Command::AskFile(Purpose::ExportMaps),
+            Command::AskFile(Purpose::ExportMetrics),
         ],
         asked,
     );
-    entries(ui, [Command::Export(ExportCommand::RecordDrag), Command::Export(ExportCommand::DrawLesson)], asked);
+    entries(ui, [Command::AskFile(Purpose::RecordDrag), Command::AskFile(Purpose::DrawLesson)], asked);
     entry(ui, ExportCommand::StopRecording, input.is_recording, asked);
     ui.separator();
     entry(ui, WindowCommand::Quit, true, asked);

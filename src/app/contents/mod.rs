@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// Starts what draws each panel of the list.
 macro_rules! starts {
     ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:ident $(of $tile:ident)?, $key:ident, $title:literal, $help:literal;)*) => {
-        fn start(panel: Panel, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Box<dyn AnyPanel>> {
+        fn start(panel: Panel, wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
             match panel {
                 Panel::Map(_) => Held::<panels::map::MapPanel>::start(wake),
                 $(Panel::$name => Held::<panels::$($drawn_by)::+>::start(wake),)*
@@ -32,12 +32,8 @@ pub struct Panels(BTreeMap<Panel, Box<dyn AnyPanel>>);
 
 impl Panels {
     /// Starts the workers of what is computed for each, which wait; `wake` is called from their threads.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Panels> {
-        let started = |panel: Panel| Ok((panel, start(panel, wake.clone())?));
-        Panel::all().into_iter().map(started).collect::<std::io::Result<_>>().map(Panels)
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Panels {
+        Panels(Panel::all().into_iter().map(|panel| (panel, start(panel, wake.clone()))).collect())
     }
 
     /// Takes in what was computed since the last frame. Returns messages for the user.

@@ -42,7 +42,7 @@ impl Query for ChirpQuery {
 
     fn compute(&self, kept: &mut KeptSignal, _: &Task) -> Result<ChirpResult, Failure> {
         let ChirpQuery { source, element } = self;
-        let row = kept.of(source)?.samples.slice(s![*element..element + 1, ..]);
+        let row = kept.try_of(source.clone(), Source::every_element)?.samples.slice(s![*element..element + 1, ..]);
         let profile = channels_range_transform(&source.radar, row).profiles;
         let samples = row.iter().copied().collect();
         let spectrum = profile.iter().map(|cell| cell.norm()).collect();

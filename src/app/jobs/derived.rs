@@ -68,16 +68,13 @@ pub struct Derived<Q: Query> {
 
 impl<Q: Query> Derived<Q> {
     /// Starts the worker, which waits; `wake` is called from its thread.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Self {
         let work = |state: &mut Q::State, query: Q, task: &Task| {
             let value = query.compute(state, task);
             (query, value)
         };
-        let worker = Worker::spawn(Q::THREAD, Q::State::default, work, wake)?;
-        Ok(Derived { worker, asked: None, made: None, waiting: Vec::new(), requests: 0 })
+        let worker = Worker::spawn(Q::THREAD, Q::State::default, work, wake);
+        Derived { worker, asked: None, made: None, waiting: Vec::new(), requests: 0 }
     }
 
     /// Asks for the value that a panel of this frame draws, unless it was asked for last; `None` where none draws it.
@@ -210,7 +207,7 @@ mod tests {
 
     #[test]
     fn a_value_is_computed_once() {
-        let mut squares = Derived::start(|| ()).unwrap();
+        let mut squares = Derived::start(|| ());
         for _ in 0..3 {
             squares.ask(Some(Square(4)));
             rest(&mut squares);
@@ -220,7 +217,7 @@ mod tests {
 
     #[test]
     fn what_comes_back_unchanged_is_not_computed_again() {
-        let mut squares = Derived::start(|| ()).unwrap();
+        let mut squares = Derived::start(|| ());
         for query in [Some(Square(4)), None, Some(Square(4))] {
             let is_drawn = query.is_some();
             squares.ask(query);
@@ -232,7 +229,7 @@ mod tests {
 
     #[test]
     fn what_changed_out_of_sight_is_not_drawn() {
-        let mut squares = Derived::start(|| ()).unwrap();
+        let mut squares = Derived::start(|| ());
         squares.ask(Some(Square(4)));
         rest(&mut squares);
         squares.ask(None);
@@ -244,7 +241,7 @@ mod tests {
 
     #[test]
     fn a_value_is_old_until_its_successor_is_there() {
-        let mut squares = Derived::start(|| ()).unwrap();
+        let mut squares = Derived::start(|| ());
         squares.ask(Some(Square(4)));
         rest(&mut squares);
         squares.ask(Some(Square(5)));
@@ -260,7 +257,7 @@ mod tests {
 
     #[test]
     fn a_panic_takes_the_place_of_the_value() {
-        let mut squares = Derived::start(|| ()).unwrap();
+        let mut squares = Derived::start(|| ());
         squares.ask(Some(Square(13)));
         assert_eq!(rest(&mut squares), None);
         assert_eq!(squares.value(), Some(Err("no luck")));

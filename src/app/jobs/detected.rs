@@ -1,5 +1,7 @@
 //! What a detector with a constant false-alarm rate finds in the maps on screen; computed only while one is in use.
 
+use super::memo::Memo;
+use crate::app::shared::Shared;
 use crate::engine::EngineFrame;
 use crate::maps::cfar::Cfar;
 use crate::maps::{LambdaScale, RangeAngleMap};
@@ -19,18 +21,10 @@ pub struct Detected {
     pub error: Option<String>,
 }
 
-/// One map's detections, and what they belong to.
-struct KeptDetections {
-    map: Arc<RangeAngleMap>,
-    scale: LambdaScale,
-    cfar: Cfar,
-    detected: Arc<RangeAngleMap>,
-}
-
 /// Detects, and keeps what it found last: target, then both outputs.
 #[derive(Default)]
 pub struct Detector {
-    kept: [Option<KeptDetections>; 3],
+    kept: [Memo<(Shared<RangeAngleMap>, LambdaScale, Cfar), Arc<RangeAngleMap>>; 3],
 }
 
 impl Detector {
@@ -44,7 +38,7 @@ impl Detector {
     ) -> Detected {
         let mut detected = Detected::default();
         let Some(cfar) = cfar else {
-            self.kept = [None, None, None];
+            self.kept = Default::default();
             return detected;
         };
         let Some(full) = frame.full.as_ref() else {
@@ -54,27 +48,15 @@ impl Detector {
         };
         let target = Some(&full.lambda).filter(|_| target_is_wanted);
         let mut found = [target, outputs[0], outputs[1]].into_iter().enumerate().map(|(slot, map)| {
-            self.find(slot, map?, full.scale, cfar).map_err(|error| detected.error = Some(error)).ok()
+            let found = self.kept[slot].try_of((map?.into(), full.scale, cfar), |(map, scale, cfar)| {
+                let detected = cfar.detect_lambda(map, *scale).map_err(|e| sentence(&e.to_string()))?;
+                Ok(Arc::new(detected.as_map()))
+            });
+            found.cloned().map_err(|error: String| detected.error = Some(error)).ok()
         });
         let [target, first, second] = [0; 3].map(|_| found.next().flatten());
         drop(found);
         Detected { target, outputs: [first, second], ..detected }
-    }
-
-    fn find(
-        &mut self,
-        slot: usize,
-        map: &Arc<RangeAngleMap>,
-        scale: LambdaScale,
-        cfar: Cfar,
-    ) -> Result<Arc<RangeAngleMap>, String> {
-        let last = self.kept[slot].as_ref();
-        if let Some(kept) = last.filter(|k| Arc::ptr_eq(&k.map, map) && (k.scale, k.cfar) == (scale, cfar)) {
-            return Ok(kept.detected.clone());
-        }
-        let detected = Arc::new(cfar.detect_lambda(map, scale).map_err(|e| sentence(&e.to_string()))?.as_map());
-        self.kept[slot] = Some(KeptDetections { map: map.clone(), scale, cfar, detected: detected.clone() });
-        Ok(detected)
     }
 }
 

@@ -1,12 +1,9 @@
 //! Which file? The system's dialogs, off the UI thread; what is chosen comes back as a command. Where the system has none, the user who asks
 //! is told, so that the window shows its own.
 
-mod purpose;
-
-use crate::app::state::{Command, DocumentCommand, RowsCommand};
+use crate::app::state::{Command, DocumentCommand, Purpose, RowsCommand};
 use crate::platform::{self, FileQuestion, Instant};
 use eframe::egui::DroppedFile;
-pub use purpose::Purpose;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,6 +1,7 @@
 //! The range-Doppler map on screen.
 
 use super::derived::{Failure, Query};
+use super::memo::Memo;
 use super::source::Source;
 use crate::app::state::State;
 use crate::app::widgets::textures::colour_table;
@@ -51,20 +52,17 @@ pub struct DopplerResult {
 impl Query for DopplerQuery {
     type Value = DopplerResult;
     /// The decades of the last scene or recording, and the radar: colours and normalisation are chosen among many for one.
-    type State = Option<(Source, bool, DopplerMade)>;
+    type State = Memo<(Source, bool), DopplerMade>;
     const THREAD: &'static str = "range-Doppler";
     const WHAT: &'static str = "Computing the range-Doppler map";
     const ADVICE: &'static str = "Change the scene to try again.";
 
     fn compute(&self, kept: &mut Self::State, task: &Task) -> Result<DopplerResult, Failure> {
         let DopplerQuery { source, static_clutter_out, normalisation, colours } = self;
-        let made = match kept.take() {
-            Some((of, is_out, made)) if of == *source && is_out == *static_clutter_out => made,
-            _ => source_map(source, *static_clutter_out, task)?,
-        };
+        let of = (source.clone(), *static_clutter_out);
+        let made = kept.try_of(of, |(source, is_out)| source_map(source, *is_out, task))?;
         let DopplerMade { radar, knows_interval, decades } = made.clone();
         let image = picture(&decades.normalise(*normalisation), *colours);
-        *kept = Some((source.clone(), *static_clutter_out, made));
         Ok(DopplerResult { radar, knows_interval, decades, image })
     }
 }

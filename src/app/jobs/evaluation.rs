@@ -1,14 +1,9 @@
-//! Methods on the tables' test scenes, in the background.
+//! Tables 4.1 to 4.3 of the rows there are: every method on every test set.
 
-use super::rows::{Plan, Stopped, Teller};
-use crate::evaluate::campaign::{Campaign, CampaignError};
-use crate::evaluate::sets::SceneSet;
+use crate::evaluate::rows::{Row, Text};
 use crate::evaluate::tables::{Estimate, Tally};
-use crate::reconstruct::Reconstructor;
 use crate::scene::generate::Kind;
-use std::fmt::Write;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::collections::BTreeMap;
 
 /// One method on one test set.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +11,7 @@ pub struct EvaluationRow {
     /// Test set, 1 to 3.
     pub set: usize,
     /// Name of the method.
-    pub method: &'static str,
+    pub method: Text,
     /// The optimisers that trained the method's weights; empty without weights.
     pub optimiser: String,
     /// The threshold it was judged at; the mean where each answer has its own.
@@ -39,104 +34,88 @@ pub struct EvaluationRow {
     pub median_milliseconds: f64,
 }
 
-/// What is to be evaluated.
-pub struct EvaluationPlan {
-    /// Radar, floor, scenes.
-    pub campaign: Campaign,
-    /// Test sets, 1 to 3.
-    pub sets: Vec<usize>,
-    /// The methods.
-    pub methods: Vec<Arc<dyn Reconstructor>>,
+/// Every method on every test set of which there are rows.
+pub fn evaluated(rows: &[Row]) -> Vec<EvaluationRow> {
+    let sets = Kind::TEST_SETS.map(|kind| kind.to_string());
+    let mut found: BTreeMap<(usize, &Text), Vec<&Row>> = BTreeMap::new();
+    for row in rows {
+        if let Some(set) = sets.iter().position(|set| row.set == *set.as_str()) {
+            found.entry((set + 1, &row.method)).or_default().push(row);
+        }
+    }
+    found.into_iter().map(|((set, method), rows)| evaluated_on(set, method, rows)).collect()
 }
 
-impl EvaluationPlan {
-    /// Maps to be made in all.
-    fn maps(&self) -> usize {
-        self.sets.len() * self.methods.len() * self.campaign.count as usize
+fn evaluated_on(set: usize, method: &Text, rows: Vec<&Row>) -> EvaluationRow {
+    let has_cfar = rows.iter().all(|row| row.cfar_false_alarm.is_some());
+    let tally = Tally::of(rows);
+    EvaluationRow {
+        set,
+        method: method.clone(),
+        optimiser: tally.optimiser().to_owned(),
+        eta: tally.eta(),
+        one_eta: tally.has_one_eta(),
+        scenes: tally.scenes(),
+        squared_error: tally.squared_error(),
+        detection: tally.detection(),
+        false_alarm: tally.false_alarm(),
+        detection_at_printed: Some(tally.detection_at_printed()).filter(|d| d.mean.is_finite()),
+        cfar: has_cfar.then(|| [tally.cfar_detection(), tally.cfar_false_alarm()]),
+        median_milliseconds: tally.median_milliseconds(),
     }
+}
+
+/// Name of a column of the CSV, and what a row has there.
+type CsvColumn = (&'static str, fn(&EvaluationRow) -> String);
+
+/// The columns; the last two stand there where a detector of constant false-alarm rate was in use.
+const CSV_COLUMNS: [CsvColumn; 18] = [
+    ("set", |r| r.set.to_string()),
+    ("method", |r| r.method.to_string()),
+    ("eta", |r| r.eta.to_string()),
+    ("scenes", |r| r.scenes.to_string()),
+    ("squared_error", |r| r.squared_error.mean.to_string()),
+    ("squared_error_se", |r| r.squared_error.standard_error.to_string()),
+    ("detection", |r| r.detection.mean.to_string()),
+    ("detection_se", |r| r.detection.standard_error.to_string()),
+    ("false_alarm", |r| r.false_alarm.mean.to_string()),
+    ("false_alarm_se", |r| r.false_alarm.standard_error.to_string()),
+    ("detection_at_printed_false_alarm", |r| mean_of(r.detection_at_printed)),
+    ("median_milliseconds", |r| format!("{:.3}", r.median_milliseconds)),
+    ("optimiser", |r| format!("\"{}\"", r.optimiser)),
+    ("squared_error_median", |r| r.squared_error.median.to_string()),
+    ("detection_median", |r| r.detection.median.to_string()),
+    ("false_alarm_median", |r| r.false_alarm.median.to_string()),
+    ("cfar_detection", |r| mean_of(r.cfar.map(|rates| rates[0]))),
+    ("cfar_false_alarm", |r| mean_of(r.cfar.map(|rates| rates[1]))),
+];
+
+fn mean_of(estimate: Option<Estimate>) -> String {
+    estimate.map_or_else(String::new, |estimate| estimate.mean.to_string())
 }
 
 /// The rows as CSV; rates as fractions.
 pub fn to_csv(rows: &[EvaluationRow]) -> String {
-    let mut text = String::from(
-        "set,method,eta,scenes,squared_error,squared_error_se,detection,detection_se,false_alarm,false_alarm_se,\
-         detection_at_printed_false_alarm,median_milliseconds,optimiser,squared_error_median,detection_median,\
-         false_alarm_median",
-    );
-    let has_cfar = rows.iter().any(|r| r.cfar.is_some());
-    text.push_str(if has_cfar { ",cfar_detection,cfar_false_alarm\n" } else { "\n" });
-    for r in rows {
-        let at = r.detection_at_printed.map_or_else(String::new, |d| d.mean.to_string());
-        // Writing to a string can't fail.
-        let cfar = |rates: [Estimate; 2]| format!(",{},{}", rates[0].mean, rates[1].mean);
-        let cfar = r.cfar.map_or_else(|| if has_cfar { ",,".to_owned() } else { String::new() }, cfar);
-        let _ = writeln!(
-            text,
-            "{},{},{},{},{},{},{},{},{},{},{at},{:.3},\"{}\",{},{},{}{cfar}",
-            r.set,
-            r.method,
-            r.eta,
-            r.scenes,
-            r.squared_error.mean,
-            r.squared_error.standard_error,
-            r.detection.mean,
-            r.detection.standard_error,
-            r.false_alarm.mean,
-            r.false_alarm.standard_error,
-            r.median_milliseconds,
-            r.optimiser,
-            r.squared_error.median,
-            r.detection.median,
-            r.false_alarm.median
-        );
-    }
-    text
+    let has_cfar = rows.iter().any(|row| row.cfar.is_some());
+    let columns = &CSV_COLUMNS[..CSV_COLUMNS.len() - if has_cfar { 0 } else { 2 }];
+    let heading = columns.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>();
+    let lines = rows.iter().map(|row| columns.iter().map(|(_, cell)| cell(row)).collect());
+    [heading].into_iter().chain(lines).map(|cells| cells.join(",") + "\n").collect()
 }
 
-impl Plan for EvaluationPlan {
-    type Row = EvaluationRow;
-    type End = ();
-    const THREAD: &'static str = "evaluation";
-    const WHAT: &'static str = "The evaluation";
-    const ADVICE: &'static str = "Leave the method out, or try another seed.";
+#[cfg(test)]
+mod tests {
+    use super::super::some_row;
+    use super::*;
 
-    /// One method after another, so that each is on screen as soon as it is finished. The scenes are simulated anew for each: that is
-    /// a small part of the time.
-    fn run(&self, teller: &Teller<'_, EvaluationRow>) -> Result<(), Stopped> {
-        let (done, total) = (AtomicUsize::new(0), self.maps().max(1));
-        let on_map = || {
-            let maps = done.fetch_add(1, Ordering::Relaxed) + 1;
-            teller.part(maps as f32 / total as f32);
-        };
-        for &set in &self.sets {
-            let kind = [Kind::Set1, Kind::Set2, Kind::Set3][set - 1];
-            for method in &self.methods {
-                let (sets, methods) = ([SceneSet::Generated(kind)], [method.as_ref()]);
-                let rows = self.campaign.run(&sets, &methods, teller.task, |_| on_map()).map_err(stopped)?;
-                let tally = Tally::of(&rows);
-                if tally.scenes() == 0 {
-                    continue;
-                }
-                teller.row(EvaluationRow {
-                    set,
-                    method: method.name(),
-                    optimiser: tally.optimiser().to_owned(),
-                    eta: tally.eta(),
-                    one_eta: tally.has_one_eta(),
-                    scenes: tally.scenes(),
-                    squared_error: tally.squared_error(),
-                    detection: tally.detection(),
-                    false_alarm: tally.false_alarm(),
-                    detection_at_printed: Some(tally.detection_at_printed()).filter(|d| d.mean.is_finite()),
-                    cfar: self.campaign.cfar.map(|_| [tally.cfar_detection(), tally.cfar_false_alarm()]),
-                    median_milliseconds: tally.median_milliseconds(),
-                });
-            }
-        }
-        Ok(())
+    #[test]
+    fn rows_of_test_sets_become_the_printed_tables() {
+        let other = Row { set: "walls".into(), ..some_row(2, "live") };
+        let rows = [some_row(0, "live"), some_row(1, "live"), some_row(0, "capon"), other];
+        let found = evaluated(&rows);
+        let told: Vec<(usize, &str, usize)> = found.iter().map(|row| (row.set, &*row.method, row.scenes)).collect();
+        assert_eq!(told, [(1, "capon", 1), (1, "live", 2)]);
+        let csv = to_csv(&found);
+        assert!(csv.starts_with("set,method,") && csv.lines().count() == 3 && !csv.contains("cfar"), "{csv}");
     }
-}
-
-fn stopped(error: CampaignError) -> Stopped {
-    if error.is_cancelled() { Stopped::Cancelled } else { Stopped::Failed(error.to_string()) }
 }

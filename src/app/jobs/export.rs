@@ -1,23 +1,19 @@
 //! Pictures, arrays and figures for other programs, written on threads of their own.
 
-use super::dialogs::Purpose;
+use super::background::Background;
 use super::failures::{RowTable, write_rows_to};
 use super::pipeline::Pipeline;
 use super::recorded::seen_by;
-use crate::app::state::{MethodSlot, State};
+use crate::app::state::{MethodSlot, Purpose, State};
 use crate::files::write_bytes;
 use crate::maps::Normalisation;
 use crate::maps::archive::{write_maps, write_recorded_maps};
-use crate::picture::{PictureFormat, Style, compose, compose_recording, maps_of};
-use crate::platform;
+use crate::picture::{PictureFormat, compose, compose_recording, maps_of};
 use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
 use crate::signal;
-use crate::task::panic_message;
 use eframe::egui::Context;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, channel};
 
 /// What came of an export.
 pub struct Export {
@@ -42,20 +38,17 @@ impl Export {
 }
 
 /// Exports under way.
-pub struct Exports {
-    wake: Context,
-    done: (Sender<Export>, Receiver<Export>),
-}
+pub struct Exports(Background<Export>);
 
 impl Exports {
     /// Nothing yet; `wake` draws another frame when one is finished.
     pub fn new(wake: Context) -> Self {
-        Exports { wake, done: channel() }
+        Exports(Background::new(wake))
     }
 
     /// What has been finished since the last call.
     pub fn finished(&self) -> Vec<Export> {
-        self.done.1.try_iter().collect()
+        self.0.finished()
     }
 
     /// Draws the panels that `apertura maps` draws, with the method and the settings on screen, as PNG or SVG. Returns what to tell.
@@ -68,19 +61,13 @@ impl Exports {
             return Err("There is no method to draw the output of.".to_owned());
         };
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
-        let (recording, floor) = (seen_recording(state), state.settings.floor);
-        let style = Style {
-            floor,
-            normalisation: state.settings.normalisation,
-            colours: state.settings.colours,
-            eta: state.settings.method_eta.get(method.name()).copied(),
-        };
+        let (recording, style) = (seen_recording(state), state.settings.style(method.name()));
         self.begin(path, move |path| {
             let bytes = match recording {
                 Some(recording) => compose_recording(&recording, method.as_ref(), &style, format),
                 None => {
                     let seed = scene.noise_seed;
-                    let signal = signal::simulate(&radar, &scene, floor, seed).map_err(|e| e.to_string())?;
+                    let signal = signal::simulate(&radar, &scene, style.floor, seed).map_err(|e| e.to_string())?;
                     compose(&radar, &scene, &signal, method.as_ref(), &style, format)
                 }
             };
@@ -137,8 +124,13 @@ impl Exports {
         path: PathBuf,
         write: impl FnOnce(&Path) -> Result<Option<String>, String> + Send + 'static,
     ) -> Result<String, String> {
-        let name = path.display().to_string();
-        match in_background(self.done.0.clone(), self.wake.clone(), path, write) {
+        let (name, of) = (path.display().to_string(), path.clone());
+        let work = move || {
+            let written = write(&path);
+            Export { path, written }
+        };
+        let failed = |why| Export { path: of, written: Err(format!("failed: {why}")) };
+        match self.0.begin("export", work, failed) {
             Ok(()) => Ok(format!("Exporting {name}…")),
             Err(error) => Err(format!("{name}: the export could not be started: {error}")),
         }
@@ -166,24 +158,6 @@ fn write_recording(
     let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
     write_recorded_maps(path, &recording.radar, &ends, full.as_ref(), output).map_err(|e| e.to_string())?;
     Ok(found.err().map(|why| format!("without the output: {why}")))
-}
-
-/// Writes a file on a thread of its own; a panic there is an error like any other.
-fn in_background(
-    done: Sender<Export>,
-    wake: Context,
-    path: PathBuf,
-    write: impl FnOnce(&Path) -> Result<Option<String>, String> + Send + 'static,
-) -> std::io::Result<()> {
-    let wake = platform::waker(&wake);
-    let work = move || {
-        let written = catch_unwind(AssertUnwindSafe(|| write(&path)))
-            .unwrap_or_else(|panic| Err(format!("failed: {}", panic_message(panic.as_ref()))));
-        // The window may be gone by now.
-        let _closed = done.send(Export { path, written });
-        wake();
-    };
-    platform::spawn("export", work)
 }
 
 fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {

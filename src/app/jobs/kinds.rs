@@ -1,6 +1,7 @@
 //! What kind of failure: what became of every object in the outputs on screen, and what isn't there.
 
 use super::derived::{Derived, Failure, Query};
+use super::memo::Memo;
 use super::pipeline::Pipeline;
 use super::scene_maps::Truth;
 use super::source::Source;
@@ -12,7 +13,6 @@ use crate::evaluate::failure::{Fate, Ghost};
 use crate::evaluate::median_bound_metres;
 use crate::maps::RangeAngleMap;
 use crate::scene::Scene;
-use crate::signal::Floor;
 use crate::task::Task;
 
 /// An output, and the threshold that says what of it is detected.
@@ -28,7 +28,6 @@ struct Output {
 #[derive(Clone, PartialEq)]
 pub struct KindsQuery {
     truth: Truth,
-    floor: Floor,
     outputs: [Option<Output>; 2],
 }
 
@@ -67,16 +66,14 @@ type Made = [Option<Fates>; 2];
 #[derive(Default)]
 pub struct KeptFates {
     /// Footprints of the last target: several outputs and thresholds are judged by the same.
-    footprints: Option<(Shared<RangeAngleMap>, Footprints)>,
+    footprints: Memo<Shared<RangeAngleMap>, Footprints>,
     last: Made,
 }
 
 impl KeptFates {
     fn footprints(&mut self, truth: &Truth) -> &Footprints {
         let Truth { source: Source { radar, scene, .. }, target, scale } = truth;
-        let fresh = || (target.clone(), Footprints::new(radar, scene, target, *scale));
-        let last = self.footprints.take().filter(|(of, _)| of == target);
-        &self.footprints.insert(last.unwrap_or_else(fresh)).1
+        self.footprints.of(target.clone(), |target| Footprints::new(radar, scene, target, *scale))
     }
 }
 
@@ -96,7 +93,7 @@ impl KindsQuery {
             Some(Output { lambda: pair.output.clone(), judged: judged.into(), eta })
         };
         let outputs = MethodSlot::BOTH.map(output);
-        Some(KindsQuery { outputs, truth, floor: state.settings.floor })
+        Some(KindsQuery { outputs, truth })
     }
 }
 
@@ -132,7 +129,7 @@ pub fn fates_of<'a>(
 }
 
 fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
-    let Truth { source: Source { radar, scene, .. }, target, .. } = &request.truth;
+    let Truth { source: Source { radar, scene, floor, .. }, target, .. } = &request.truth;
     let fates = |output: &Output| {
         let failures = footprints.judge_cells(target, &output.lambda, &output.judged.above(output.eta));
         let brightest = |cells: &[CellIndex]| {
@@ -144,7 +141,7 @@ fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
         let ghosts = failures.ghosts.iter().map(|ghost| verdict(None, &ghost.cells));
         let verdicts = objects.chain(ghosts).collect();
         let (scene, target) = (scene.clone(), target.clone());
-        let bound_metres = median_bound_metres(radar, &scene, &failures, request.floor);
+        let bound_metres = median_bound_metres(radar, &scene, &failures, *floor);
         Fates { scene, verdicts, failures, eta: output.eta, bound_metres, output: output.lambda.clone(), target }
     };
     request.outputs.each_ref().map(|output| output.as_ref().map(fates))
@@ -199,11 +196,7 @@ mod tests {
         output.lambda.slice_mut(ndarray::s![400..404, 200..210]).fill(0.95);
         output.lambda[[402, 205]] = 1.0;
         let judged = Shared::new(output.clone());
-        let request = KindsQuery {
-            floor: Floor::Exact,
-            truth,
-            outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None],
-        };
+        let request = KindsQuery { truth, outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None] };
         let Truth { source: Source { radar, scene, .. }, target, scale } = &request.truth;
         let footprints = Footprints::new(radar, scene, target, *scale);
         let [Some(fates), None] = judge(&footprints, &request) else { panic!("of the first alone") };

@@ -1,15 +1,17 @@
 //! Predictions judged and challenges measured, off the UI thread.
 
+use super::background::Background;
 use crate::app::shared::Shared;
-use crate::app::state::{Command, LessonCommand, LessonRun, State};
+use crate::app::state::{LessonCommand, LessonRun, State};
 use crate::app::widgets::textures::colour_table;
-use crate::lesson::{Guess, Judgement, Lesson, LessonError, MapName, Measured, Stage, Step};
+use crate::lesson::{Guess, Judgement, Lesson, MapName, Measured, Stage, Step};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
+use crate::platform;
 use crate::radar::Radar;
 use crate::scene::Scene;
 use crate::task::{Reply, Task, Worker};
-use eframe::egui::ColorImage;
+use eframe::egui::{ColorImage, Context};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -64,70 +66,45 @@ fn picture(radar: &Radar, map: &RangeAngleMap) -> Arc<ColorImage> {
     Arc::new(ColorImage::new([cells.ncols(), cells.nrows()], pixels))
 }
 
-/// Reads lesson files and tries them out.
-type Reader = Worker<PathBuf, (PathBuf, Result<Lesson, LessonError>)>;
-
-/// The workers, what the first was asked last, and what is to be explained.
+/// The worker, what it was asked last, what is to be explained, and lesson files that are read and tried out.
 pub struct Lessons {
     worker: Worker<Request, (Request, Outcome)>,
-    /// Started when the first file is opened.
-    reader: Option<Reader>,
-    wake: Arc<dyn Fn() + Send + Sync>,
-    /// Why no reader could be started.
-    failed: Option<String>,
+    opened: Background<Result<LessonCommand, String>>,
     asked: Option<Request>,
     hidden: Option<Arc<ColorImage>>,
 }
 
 impl Lessons {
-    /// Starts the worker, which waits; `wake` is called from its thread.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Lessons> {
-        let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(wake);
-        let again = wake.clone();
+    /// Starts the worker, which waits; `wake` draws another frame.
+    pub fn start(wake: &Context) -> Lessons {
         let work = |_: &mut (), request: Request, _: &Task| {
             let outcome = work(&request);
             (request, outcome)
         };
-        let worker = Worker::spawn("lessons", || (), work, move || again())?;
-        Ok(Lessons { worker, reader: None, wake, failed: None, asked: None, hidden: None })
+        let worker = Worker::spawn("lessons", || (), work, platform::waker(wake));
+        Lessons { worker, opened: Background::new(wake.clone()), asked: None, hidden: None }
     }
 
-    /// Reads a lesson file and tries its steps out; [`Lessons::poll_files`] says what came of it.
-    pub fn open(&mut self, path: PathBuf) {
-        if self.reader.is_none() {
-            let wake = self.wake.clone();
-            let work = |_: &mut (), path: PathBuf, _: &Task| {
-                let lesson = Lesson::load(&path);
-                (path, lesson)
-            };
-            match Worker::spawn("lesson files", || (), work, move || wake()) {
-                Ok(reader) => self.reader = Some(reader),
-                Err(error) => self.failed = Some(format!("The lesson can't be read: {error}")),
-            }
-        }
-        if let Some(reader) = &self.reader {
-            reader.request(path);
-        }
+    /// Reads a lesson file and tries its steps out; [`Lessons::opened`] says what came of it.
+    ///
+    /// # Errors
+    /// When the system can't start a thread.
+    pub fn open(&self, path: PathBuf) -> std::io::Result<()> {
+        let work = move || match Lesson::load(&path) {
+            Ok(lesson) => Ok(LessonCommand::Take { id: path.display().to_string(), lesson: Arc::new(lesson) }),
+            Err(error) => Err(format!("{error}\nNo lesson was opened.")),
+        };
+        self.opened.begin("lesson files", work, |why| Err(format!("The lesson can't be tried out ({why}).")))
     }
 
     /// Whether a file is being tried out.
     pub fn is_reading(&self) -> bool {
-        self.reader.as_ref().is_some_and(Worker::is_busy)
+        self.opened.is_busy()
     }
 
-    /// Takes in files that were tried out: lessons to begin, and messages for the user.
-    pub fn poll_files(&mut self) -> (Vec<Command>, Vec<String>) {
-        let (mut begun, mut errors) = (Vec::new(), Vec::from_iter(self.failed.take()));
-        for reply in self.reader.iter().flat_map(Worker::replies) {
-            match reply {
-                Reply::Done { result: (path, Ok(lesson)), .. } => {
-                    begun.push(LessonCommand::Take { id: path.display().to_string(), lesson: Arc::new(lesson) }.into());
-                }
-                Reply::Done { result: (_, Err(error)), .. } => errors.push(format!("{error}\nNo lesson was opened.")),
-                Reply::Panicked { message, .. } => errors.push(format!("The lesson can't be tried out ({message}).")),
-            }
-        }
-        (begun, errors)
+    /// Files that were tried out: lessons to begin, or why there is none.
+    pub fn opened(&self) -> Vec<Result<LessonCommand, String>> {
+        self.opened.finished()
     }
 
     /// Asks for what the lesson on screen needs, if that changed.

@@ -32,13 +32,10 @@ pub struct MapsJob {
 
 impl MapsJob {
     /// Starts the worker; `wake` is called from its thread when there is something to show.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<MapsJob> {
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> MapsJob {
         let work = |state: &mut MapsState, request: MapsRequest, task: &Task| state.work(request, task);
-        let worker = Worker::spawn("maps", MapsState::default, work, wake)?;
-        Ok(MapsJob {
+        let worker = Worker::spawn("maps", MapsState::default, work, wake);
+        MapsJob {
             worker,
             settling: Task::default(),
             gave_up: false,
@@ -50,7 +47,7 @@ impl MapsJob {
             took: None,
             scene_error: None,
             requests: 0,
-        })
+        }
     }
 
     /// Takes in what the worker made; `on_maps` is called with all maps that arrived. Returns messages for the user.

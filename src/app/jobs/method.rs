@@ -1,5 +1,6 @@
 //! One method at work on the scene on screen: what it was asked for, what it made last, or why it made nothing.
 
+use super::memo::Memo;
 use super::scene_maps::{MapsRequest, MapsResult, Pair};
 use super::source::Source;
 use crate::app::shared::Shared;
@@ -12,6 +13,7 @@ use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstruction
 use crate::scene::Reflector;
 use crate::signal::TwoEnds;
 use crate::task::{Reply, Task, Worker};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// A reconstruction that is slower than this is cancelled when the scene has moved on, unless it is being dragged: then the last one
@@ -143,23 +145,21 @@ type MethodReply = (MethodRequest, Result<Answer, ReconstructError>);
 struct MethodWorker {
     /// Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
     threads: Option<rayon::ThreadPool>,
-    /// The method asked last, and the same with a memory.
-    follower: Option<(Shared<dyn Reconstructor>, Shared<dyn Reconstructor>)>,
+    /// The method asked last, with a memory where it can have one.
+    follower: Memo<Shared<dyn Reconstructor>, Option<Arc<dyn Reconstructor>>>,
 }
 
 impl MethodWorker {
     fn new(thread: &'static str) -> MethodWorker {
-        MethodWorker { threads: platform::pool(thread), follower: None }
+        MethodWorker { threads: platform::pool(thread), follower: Memo::default() }
     }
 
     fn work(&mut self, q: MethodRequest, task: &Task) -> MethodReply {
-        if self.follower.as_ref().is_none_or(|(of, _)| *of != q.method) {
-            self.follower = q.method.following().map(|follower| (q.method.clone(), follower.into()));
-        }
-        let method = self.follower.as_ref().map_or(&q.method, |(_, follower)| follower);
+        let follower = self.follower.of(q.method.clone(), |method| method.following());
+        let method = follower.as_deref().unwrap_or(&**q.method);
         let result = match &self.threads {
-            Some(threads) => threads.install(|| reconstruct(&q, &***method, task)),
-            None => reconstruct(&q, &***method, task),
+            Some(threads) => threads.install(|| reconstruct(&q, method, task)),
+            None => reconstruct(&q, method, task),
         };
         (q, result)
     }
@@ -181,13 +181,10 @@ pub struct MethodJob {
 
 impl MethodJob {
     /// Starts the worker's `thread`; `wake` is called from it when there is something to show.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(thread: &'static str, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<MethodJob> {
+    pub fn start(thread: &'static str, wake: impl Fn() + Send + Sync + 'static) -> MethodJob {
         let work = |kept: &mut MethodWorker, q: MethodRequest, task: &Task| kept.work(q, task);
-        let worker = Worker::spawn(thread, move || MethodWorker::new(thread), work, wake)?;
-        Ok(MethodJob { worker, asked: None, outdated: None, was_drawn: false, output: None, refusal: None, time: None })
+        let worker = Worker::spawn(thread, move || MethodWorker::new(thread), work, wake);
+        MethodJob { worker, asked: None, outdated: None, was_drawn: false, output: None, refusal: None, time: None }
     }
 
     /// Takes in what the worker made of the `latest` maps or earlier ones. Returns messages for the user.

@@ -2,6 +2,7 @@
 //! polled at the beginning of the next.
 
 mod age;
+mod background;
 mod bounds;
 mod calibration;
 mod camera;
@@ -17,6 +18,7 @@ mod frame_log;
 mod kinds;
 mod lessons;
 mod maps;
+mod memo;
 mod method;
 mod method_times;
 mod one_scale;
@@ -44,9 +46,9 @@ pub use calibration::Calibrated;
 pub use calibration::CalibrationQuery;
 pub use chirp::{ChirpQuery, ChirpResult};
 pub use derived::{Derived, Failure, Polled, Query};
-pub use dialogs::{Dialogs, Purpose, Question};
+pub use dialogs::{Dialogs, Question};
 pub use doppler::{DopplerQuery, DopplerResult};
-pub use evaluation::{EvaluationPlan, EvaluationRow, to_csv as evaluation_to_csv};
+pub use evaluation::{EvaluationRow, evaluated, to_csv as evaluation_to_csv};
 pub use export::Exports;
 #[cfg(test)]
 pub use failures::some_row;
@@ -57,6 +59,7 @@ pub use frame_log::FrameLog;
 use kinds::KindsQuery;
 pub use kinds::{Fates, Verdict, fates_of};
 pub use lessons::Lessons;
+pub use memo::Memo;
 pub use method::Refusal;
 pub use method_times::TimesPlan;
 pub use phasors::{PhasorsQuery, PhasorsResult};
@@ -72,7 +75,7 @@ pub use theory::TheoryResult;
 pub use thresholds::ThresholdPlan;
 pub use training::{Log, Training};
 
-use crate::app::state::{Command, Panel, RowsCommand, State, ViewCommand};
+use crate::app::state::{Command, Panel, Purpose, RowsCommand, State, ViewCommand};
 use crate::interact::Autosave;
 use crate::platform::{self, Instant};
 use eframe::egui::{Context, DroppedFile};
@@ -87,8 +90,6 @@ const BAR: Duration = Duration::from_millis(100);
 pub struct Jobs {
     /// Maps, pictures, outputs.
     pub pipeline: Pipeline,
-    /// Methods on test sets.
-    pub evaluation: RowJob<EvaluationPlan>,
     /// Thresholds that keep a rate of false alarms.
     pub thresholds: RowJob<ThresholdPlan>,
     /// Methods on many scenes, row by row.
@@ -126,23 +127,22 @@ impl Jobs {
     /// Starts every thread. `folder` is where the autosave is kept; without it there is none.
     ///
     /// # Errors
-    /// When the system can't start a thread.
+    /// When no autosave can be kept in `folder`.
     pub fn start(ctx: &Context, folder: Option<&Path>, dialogs: Dialogs) -> std::io::Result<Jobs> {
         let wake = platform::waker(ctx);
         Ok(Jobs {
-            pipeline: Pipeline::start(wake.clone())?,
-            evaluation: RowJob::start(wake.clone())?,
-            thresholds: RowJob::start(wake.clone())?,
-            failures: Failures::start(folder, wake.clone())?,
-            run_time: RowJob::start(wake.clone())?,
-            method_times: RowJob::start(wake.clone())?,
-            training: Training::start(wake.clone())?,
-            several: SeveralMaps::start(wake.clone())?,
-            kinds: Derived::start(wake.clone())?,
-            theory: Derived::start(wake.clone())?,
-            lessons: Lessons::start(wake)?,
+            pipeline: Pipeline::start(wake.clone()),
+            thresholds: RowJob::start(wake.clone()),
+            failures: Failures::start(folder, ctx),
+            run_time: RowJob::start(wake.clone()),
+            method_times: RowJob::start(wake.clone()),
+            training: Training::start(wake.clone()),
+            several: SeveralMaps::start(wake.clone()),
+            kinds: Derived::start(wake.clone()),
+            theory: Derived::start(wake),
+            lessons: Lessons::start(ctx),
             exports: Exports::new(ctx.clone()),
-            recorder: Recorder::start(ctx.clone())?,
+            recorder: Recorder::start(ctx.clone()),
             dialogs,
             autosave: folder.map(Autosave::claim).transpose()?,
             wake: ctx.clone(),
@@ -157,7 +157,6 @@ impl Jobs {
         errors.extend(self.pipeline.poll());
         errors.extend(self.kinds.poll());
         errors.extend(self.theory.poll());
-        errors.extend(self.evaluation.poll());
         errors.extend(self.failures.poll());
         let (found, failed) = self.failures.search.poll();
         errors.extend(failed);
@@ -168,8 +167,13 @@ impl Jobs {
         errors.extend(self.training.poll());
         errors.extend(self.several.poll());
         errors.extend(self.lessons.poll(state));
-        let (begun, failed) = self.lessons.poll_files();
-        errors.extend(failed);
+        let mut chosen = self.chosen(state);
+        for opened in self.lessons.opened() {
+            match opened {
+                Ok(lesson) => chosen.push(lesson.into()),
+                Err(error) => errors.push(error),
+            }
+        }
         errors.into_iter().for_each(|e| state.notices.error(e));
         for export in self.exports.finished() {
             tell(state, export.message());
@@ -177,8 +181,6 @@ impl Jobs {
         for said in self.recorder.poll() {
             tell(state, said);
         }
-        let mut chosen = self.chosen(state);
-        chosen.extend(begun);
         for kept in self.thresholds.take_rows() {
             state.notices.info(kept.told);
             chosen.push(ViewCommand::SetMethodEta(kept.method, Some(kept.eta)).into());

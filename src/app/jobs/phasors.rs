@@ -63,7 +63,7 @@ impl Query for PhasorsQuery {
         let exact = |scene: &Scene| {
             signal::simulate(radar, scene, Floor::Exact, 0).map_err(|e| e.to_string()).map(|signal| chain(&signal))
         };
-        let measured = chain(kept.of(source)?);
+        let measured = chain(kept.try_of(source.clone(), Source::every_element)?);
         let focused = match settings.focused {
             true => Some(measured.focused(&exact(&Scene::of_points([(place.x_metres, place.y_metres)]))?)),
             false => None,

@@ -35,13 +35,10 @@ pub struct Pipeline {
 
 impl Pipeline {
     /// Starts the workers; `wake` is called from their threads when there is something to show.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Pipeline> {
-        let maps = MapsJob::start(wake.clone())?;
-        let methods = [MethodJob::start("reconstruction", wake.clone())?, MethodJob::start("second method", wake)?];
-        Ok(Pipeline { maps, methods })
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Pipeline {
+        let maps = MapsJob::start(wake.clone());
+        let methods = [MethodJob::start("reconstruction", wake.clone()), MethodJob::start("second method", wake)];
+        Pipeline { maps, methods }
     }
 
     /// The threshold of either method's output: the user's, or what fits the output on screen, or the method's own.
@@ -77,17 +74,19 @@ impl Pipeline {
 
     /// Asks the workers for what the panels of this frame need, if that changed.
     pub fn ask(&mut self, state: &State, wants: Wants) {
-        let looked_at = LookedAt::of(state, wants);
+        let pictures = state.pictured();
+        let drawn = pictures.iter().any(|kind| kind.slot() == Some(MethodSlot::First)) || state.marks_output();
+        let read = [drawn || wants.output, wants.second];
         let source = Source::of(state);
         for slot in MethodSlot::BOTH {
             let method = state.method_in(slot).map(|method| method.name());
-            self.methods[slot as usize].look(looked_at.outputs[slot as usize], &source, method);
+            self.methods[slot as usize].look(read[slot as usize], &source, method);
         }
-        let request = self.maps_request(state, source, &looked_at);
+        let request = self.maps_request(state, source, (pictures, read), wants);
         let is_recorded = request.source.recording.is_some();
         self.maps.ask(request, state.editor.dragged().is_some());
         for slot in MethodSlot::BOTH {
-            match looked_at.outputs[slot as usize] {
+            match read[slot as usize] {
                 true => self.ask_method(state, slot, slot == MethodSlot::First && (wants.listed || is_recorded)),
                 false if slot == MethodSlot::Second => self.methods[slot as usize].rest(),
                 false => {}
@@ -95,10 +94,17 @@ impl Pipeline {
         }
     }
 
-    fn maps_request(&self, state: &State, source: Source, looked_at: &LookedAt) -> MapsRequest {
-        let map = |kind| looked_at.pictures.contains(&kind);
-        let all = looked_at.wants.every_map;
-        let output = looked_at.outputs.contains(&true);
+    /// The request for the pictures in sight, the outputs that are `read` and what else is wanted.
+    fn maps_request(
+        &self,
+        state: &State,
+        source: Source,
+        (pictures, read): (BTreeSet<MapKind>, [bool; 2]),
+        wants: Wants,
+    ) -> MapsRequest {
+        let map = |kind| pictures.contains(&kind);
+        let all = wants.every_map;
+        let output = read.contains(&true);
         let settings = &state.settings;
         let on_one_scale = settings.one_scale && (map(MapKind::Input0) || map(MapKind::Input1) || all);
         let wanted = MapRequest {
@@ -114,7 +120,7 @@ impl Pipeline {
                 || map(MapKind::Unexplained),
             ends: output,
         };
-        let is_read = |slot: MethodSlot| looked_at.outputs[slot as usize];
+        let is_read = |slot: MethodSlot| read[slot as usize];
         let pair = |slot: MethodSlot| {
             let output = self.method(slot).output().filter(|o| o.radar() == state.radar());
             output.filter(|_| is_read(slot)).map(|o| o.pair.clone())
@@ -125,7 +131,7 @@ impl Pipeline {
             document: state.editor.document().id(),
             wanted,
             at_rest: false,
-            pictures: looked_at.pictures.clone(),
+            pictures,
             pairs: MethodSlot::BOTH.map(pair),
             colours: settings.colours,
             projection: settings.projection,
@@ -136,7 +142,7 @@ impl Pipeline {
             cfar: settings.cfar,
             etas: MethodSlot::BOTH.map(|slot| if is_read(slot) { self.eta(state, slot) } else { TARGET_ETA }),
             scores: output && (source.recording.is_some() || !source.scene.objects.is_empty() || is_noise),
-            roc: looked_at.wants.roc,
+            roc: wants.roc,
             source,
         }
     }
@@ -297,23 +303,5 @@ impl Wants {
             listed: self.listed || other.listed,
             roc: self.roc || other.roc,
         }
-    }
-}
-
-/// What the panels in sight need.
-struct LookedAt {
-    /// Maps whose pictures are drawn.
-    pictures: BTreeSet<MapKind>,
-    /// Whether each method's output is read.
-    outputs: [bool; 2],
-    /// What else is read.
-    wants: Wants,
-}
-
-impl LookedAt {
-    fn of(state: &State, wants: Wants) -> LookedAt {
-        let pictures = state.pictured();
-        let drawn = pictures.iter().any(|kind| kind.slot() == Some(MethodSlot::First)) || state.marks_output();
-        LookedAt { outputs: [drawn || wants.output, wants.second], pictures, wants }
     }
 }

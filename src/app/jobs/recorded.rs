@@ -1,5 +1,7 @@
 //! A recording in the place of a scene: its maps, and what the reflectors laid over it leave unexplained.
 
+use super::memo::Memo;
+use crate::app::shared::Shared;
 use crate::engine::{EngineFrame, EngineReport, EngineStage, MapRequest, ReadyMap, StageOutcome, StageReport};
 use crate::maps::{LambdaScale, LogMap, Normalisation, RangeAngleMap};
 use crate::picture::maps_of;
@@ -21,25 +23,16 @@ pub struct Unexplained {
     pub explained: f64,
 }
 
-/// What one scene leaves of the recording.
-struct Left {
-    of: Arc<Scene>,
-    /// The map of it and the part that the scene explains, or why it can't be fitted.
-    map: Result<(LogMap, f64), String>,
-}
-
-/// The maps of one recording, kept until another radar looks at it.
+/// The maps of one recording, seen by one radar with what is wrong with its elements.
 pub struct RecordedMaps {
-    recording: Arc<Recording>,
-    elements: BuiltArray,
     /// The recording as the radar on screen takes it: with that radar's window and ends.
     seen: Recording,
     ends: Arc<TwoEnds>,
     logs: [Option<LogMap>; 3],
-    normalisation: Option<Normalisation>,
-    ready: [Option<ReadyMap>; 3],
-    left: Option<Left>,
-    shown: Option<Result<Unexplained, String>>,
+    ready: Memo<Normalisation, [Option<ReadyMap>; 3]>,
+    /// The map of what the last scene leaves and the part that it explains, or why it can't be fitted.
+    left: Memo<Shared<Scene>, Result<(LogMap, f64), String>>,
+    shown: Memo<(Shared<Scene>, Normalisation), Result<Unexplained, String>>,
     took: Duration,
 }
 
@@ -76,32 +69,24 @@ impl RecordedMaps {
         let ([first, last], full) = maps_of(&seen);
         let ends = Arc::new(seen.two_ends());
         RecordedMaps {
-            recording: recording.clone(),
-            elements: elements.clone(),
             seen,
             ends,
             logs: [Some(first), Some(last), full],
-            normalisation: None,
-            ready: [None, None, None],
-            left: None,
-            shown: None,
+            ready: Memo::default(),
+            left: Memo::default(),
+            shown: Memo::default(),
             took: start.elapsed(),
         }
-    }
-
-    /// Whether these are the maps of `recording` seen by `radar` with `elements`.
-    pub fn is_of(&self, recording: &Arc<Recording>, radar: &Radar, elements: &BuiltArray) -> bool {
-        Arc::ptr_eq(&self.recording, recording) && self.seen.radar == *radar && self.elements == *elements
     }
 
     /// The maps that are wanted; what did not change since the last call is the same `Arc` as then.
     pub fn frame(&mut self, wanted: &MapRequest) -> EngineFrame {
         let start = Instant::now();
-        if self.normalisation.replace(wanted.normalisation) != Some(wanted.normalisation) {
-            let ready = |log: &Option<LogMap>| log.as_ref().map(|log| ready(log, log.scale(wanted.normalisation)));
-            self.ready = [0, 1, 2].map(|i| ready(&self.logs[i]));
-            self.shown = None;
-        }
+        let [first, last, full] = self.ready.of(wanted.normalisation, |normalisation| {
+            self.logs.each_ref().map(|log| log.as_ref().map(|log| ready(log, log.scale(*normalisation))))
+        });
+        let [first, last, full] = [(first, wanted.first), (last, wanted.last), (full, wanted.full)]
+            .map(|(map, is)| map.clone().filter(|_| is));
         let took = std::mem::take(&mut self.took);
         let stage =
             |stage, took, what: &str| StageReport { stage, took, outcome: StageOutcome::Computed(what.to_owned()) };
@@ -115,37 +100,32 @@ impl RecordedMaps {
             ],
         };
         EngineFrame {
-            first: self.ready[0].clone().filter(|_| wanted.first),
-            last: self.ready[1].clone().filter(|_| wanted.last),
-            full: self.ready[2].clone().filter(|_| wanted.full),
+            first,
+            last,
+            full,
             ends: Some(self.ends.clone()).filter(|_| wanted.ends),
             settled: true,
             report: EngineReport { stages, total: took + start.elapsed() },
         }
     }
 
-    /// What the reflectors of `scene` leave, in the scale of the last [`RecordedMaps::frame`].
+    /// What the reflectors of `scene` leave, in the scale of the recording's own map.
     ///
     /// # Errors
     /// Why they can't be fitted.
-    pub fn unexplained(&mut self, scene: &Arc<Scene>) -> Result<Unexplained, String> {
-        if !self.left.as_ref().is_some_and(|left| Arc::ptr_eq(&left.of, scene)) {
-            let map = explain(&self.seen, scene).map_err(|e| e.to_string()).map(|found| {
-                let ([first, _], full) = maps_of(&found.residual);
-                (full.unwrap_or(first), found.explained)
-            });
-            (self.left, self.shown) = (Some(Left { of: scene.clone(), map }), None);
-        }
-        if self.shown.is_none() {
-            let whole = self.logs[2].as_ref().or(self.logs[0].as_ref());
-            let scale = whole.zip(self.normalisation).map(|(log, normalisation)| log.scale(normalisation));
-            self.shown = self.left.as_ref().map(|left| {
-                let (log, explained) = left.map.as_ref().map_err(String::clone)?;
-                let scale = scale.ok_or_else(|| "the recording has no map yet".to_owned())?;
-                Ok(Unexplained { map: ready(log, scale), explained: *explained })
-            });
-        }
-        self.shown.clone().unwrap_or_else(|| Err("nothing was fitted".to_owned()))
+    pub fn unexplained(&mut self, scene: &Arc<Scene>, normalisation: Normalisation) -> Result<Unexplained, String> {
+        let left = self.left.of(scene.into(), |scene| {
+            let found = explain(&self.seen, scene).map_err(|e| e.to_string())?;
+            let ([first, _], full) = maps_of(&found.residual);
+            Ok((full.unwrap_or(first), found.explained))
+        });
+        let whole = self.logs[2].as_ref().or(self.logs[0].as_ref());
+        let shown = self.shown.of((scene.into(), normalisation), |_| {
+            let (log, explained) = left.as_ref().map_err(String::clone)?;
+            let scale = whole.ok_or_else(|| "the recording has no map".to_owned())?.scale(normalisation);
+            Ok(Unexplained { map: ready(log, scale), explained: *explained })
+        });
+        shown.clone()
     }
 }
 
@@ -182,9 +162,9 @@ mod tests {
         let (radar, recording) = recorded();
         let mut maps = RecordedMaps::new(&recording, &radar, &BuiltArray::default());
         let full = maps.frame(&WANTED).full.unwrap();
-        let nothing = maps.unexplained(&Arc::default()).unwrap();
+        let nothing = maps.unexplained(&Arc::default(), WANTED.normalisation).unwrap();
         assert_eq!((nothing.map.lambda, nothing.explained), (full.lambda.clone(), 0.0));
-        let left = maps.unexplained(&Arc::new(Scene::of_points([(0.0, 3.0)]))).unwrap();
+        let left = maps.unexplained(&Arc::new(Scene::of_points([(0.0, 3.0)])), WANTED.normalisation).unwrap();
         let cell = |x: f64, y: f64| {
             let place = radar.polar_of(x, y);
             let bin = radar.bin_of_range(place.range_metres).round() as usize;
@@ -207,12 +187,7 @@ mod tests {
     #[test]
     fn a_radar_of_other_ends_has_maps_of_its_own() {
         let (radar, recording) = recorded();
-        let maps = RecordedMaps::new(&recording, &radar, &BuiltArray::default());
         let hamming = Radar { window: crate::radar::WindowFunction::Hamming, end_elements: 9, ..radar.clone() };
-        assert!(
-            maps.is_of(&recording, &radar, &BuiltArray::default())
-                && !maps.is_of(&recording, &hamming, &BuiltArray::default())
-        );
         assert_eq!(
             RecordedMaps::new(&recording, &hamming, &BuiltArray::default()).frame(&WANTED).ends.unwrap().first.nrows(),
             9
@@ -236,7 +211,10 @@ mod tests {
     fn two_ends_are_explained_by_their_own_map() {
         let mut maps = of_two_ends();
         let frame = maps.frame(&WANTED);
-        assert_eq!(maps.unexplained(&Arc::default()).unwrap().map.lambda, frame.first.unwrap().lambda);
+        assert_eq!(
+            maps.unexplained(&Arc::default(), WANTED.normalisation).unwrap().map.lambda,
+            frame.first.unwrap().lambda
+        );
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Pictures for slides: a drag as an animation, a lesson's steps as pictures. Both can be stopped, and say where they wrote.
 
+use super::background::Background;
 use super::camera::Camera;
 use crate::app::state::State;
 use crate::files::write_bytes;
@@ -10,15 +11,14 @@ use crate::platform::{self, Instant};
 use crate::radar::counted;
 use crate::scene::Scene;
 use crate::signal;
-use crate::task::{Reply, Task, Worker, panic_message};
+use crate::task::{Reply, Task, Worker};
 use eframe::egui::{ColorImage, Context};
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::imageops::{FilterType, resize};
 use image::{Delay, Frame, RgbaImage};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
 
 /// Time from frame to frame.
@@ -74,18 +74,16 @@ pub struct Recorder {
     camera: Camera,
     recording: Option<Recording>,
     steps: Worker<Steps, Told>,
-    done: (Sender<Told>, Receiver<Told>),
+    recorded: Background<Told>,
 }
 
 impl Recorder {
     /// Starts the worker that draws lessons; `wake` draws another frame.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: Context) -> std::io::Result<Recorder> {
+    pub fn start(wake: Context) -> Recorder {
         let work = |_: &mut (), steps: Steps, task: &Task| draw_steps(&steps, task);
-        let steps = Worker::spawn("lesson pictures", || (), work, platform::waker(&wake))?;
-        Ok(Recorder { camera: Camera::new(wake.clone()), wake, recording: None, steps, done: channel() })
+        let steps = Worker::spawn("lesson pictures", || (), work, platform::waker(&wake));
+        let recorded = Background::new(wake.clone());
+        Recorder { camera: Camera::new(wake.clone()), wake, recording: None, steps, recorded }
     }
 
     /// Records the next drag into `path`, a GIF. Returns what to tell.
@@ -99,16 +97,10 @@ impl Recorder {
         path.set_extension("gif");
         let (frames, arriving) = sync_channel(WAITING);
         let task = Task::default();
-        let (done, wake) = (self.done.0.clone(), platform::waker(&self.wake));
         let (theirs, to) = (task.clone(), path.clone());
-        let work = move || {
-            let written = catch_unwind(AssertUnwindSafe(|| animate(&to, &arriving, &theirs)))
-                .unwrap_or_else(|panic| Err(format!("failed: {}", panic_message(panic.as_ref()))));
-            // The window may be gone by now.
-            let _closed = done.send(written);
-            wake();
-        };
-        platform::spawn("recording", work)
+        let work = move || animate(&to, &arriving, &theirs);
+        self.recorded
+            .begin("recording", work, |why| Err(format!("failed: {why}")))
             .map_err(|e| format!("{}: the recording can't be started: {e}", path.display()))?;
         let said = format!(
             "Drag something now: it is recorded as {}, without frames in which a map is of an earlier scene. \"Stop recording\" gives it up.",
@@ -176,8 +168,8 @@ impl Recorder {
 
     /// What was finished since the last call: where it was written, or why not.
     pub fn poll(&mut self) -> Vec<Told> {
-        let mut told: Vec<_> =
-            self.done.1.try_iter().filter(|told| told.as_ref().err().is_none_or(|e| !e.is_empty())).collect();
+        let mut told = self.recorded.finished();
+        told.retain(|told| told.as_ref().err().is_none_or(|e| !e.is_empty()));
         told.extend(self.steps.replies().into_iter().map(|reply| match reply {
             Reply::Done { result, .. } => result,
             Reply::Panicked { message, .. } => Err(format!("Drawing the lesson failed ({message}).")),
@@ -334,7 +326,7 @@ mod tests {
     #[test]
     fn no_frame_is_taken_while_a_map_is_dimmed() {
         let folder = tempfile::tempdir().unwrap();
-        let mut recorder = Recorder::start(Context::default()).unwrap();
+        let mut recorder = Recorder::start(Context::default());
         recorder.record_drag(folder.path().join("a")).unwrap();
         let began = Instant::now();
         for (tenth, is_dimmed) in [false, true, true, false, true].into_iter().enumerate() {
@@ -348,7 +340,7 @@ mod tests {
     #[test]
     fn a_recording_lasts_from_the_drag_until_its_maps_have_come() {
         let folder = tempfile::tempdir().unwrap();
-        let mut recorder = Recorder::start(Context::default()).unwrap();
+        let mut recorder = Recorder::start(Context::default());
         recorder.record_drag(folder.path().join("a")).unwrap();
         let began = Instant::now();
         let at = |ms: u64| began + Duration::from_millis(ms);

@@ -72,10 +72,7 @@ pub struct RowJob<P: Plan> {
 
 impl<P: Plan> RowJob<P> {
     /// Starts the thread, which waits; `wake` is called from it.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Self> {
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Self {
         let each = wake.clone();
         let run =
             move |threads: &mut Option<rayon::ThreadPool>, (plan, rows): (Arc<P>, Sender<P::Row>), task: &Task| {
@@ -86,8 +83,8 @@ impl<P: Plan> RowJob<P> {
                 }
             };
         // Threads of its own: on shared ones the maps would wait for it.
-        let worker = Worker::spawn(P::THREAD, || platform::pool(P::THREAD), run, wake)?;
-        Ok(RowJob { worker, plan: None, arriving: None, rows: Vec::new(), end: None, note: None })
+        let worker = Worker::spawn(P::THREAD, || platform::pool(P::THREAD), run, wake);
+        RowJob { worker, plan: None, arriving: None, rows: Vec::new(), end: None, note: None }
     }
 
     /// Begins afresh with `plan`.
@@ -197,7 +194,7 @@ mod tests {
 
     #[test]
     fn rows_stay_however_the_work_ends() {
-        let mut job = RowJob::start(|| ()).unwrap();
+        let mut job = RowJob::start(|| ());
         for (count, note, told) in [
             (2, None, None),
             (3, Some("three"), None),

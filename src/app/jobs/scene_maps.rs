@@ -1,6 +1,7 @@
 //! The maps of a scene, their pictures and their figures: what the maps worker is asked for, and what it makes.
 
 use super::detected::{DETECTED, Detected, Detector};
+use super::memo::Memo;
 use super::one_scale::{OneScale, Rescaled};
 use super::painter::{Painter, Picture, largest_difference};
 use super::recorded::{RecordedMaps, Unexplained};
@@ -13,6 +14,8 @@ use crate::evaluate::{Metrics, Roc, RocPoint, blobs, squared_error};
 use crate::maps::cfar::Cfar;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::picture::ColourMap;
+use crate::radar::{BuiltArray, Radar};
+use crate::recording::Recording;
 use crate::signal::Unfinished;
 use crate::task::Task;
 use std::collections::{BTreeMap, BTreeSet};
@@ -126,27 +129,14 @@ impl MapsResult {
 /// State that the maps worker keeps.
 #[derive(Default)]
 pub struct MapsState {
-    engine: Option<Engine>,
-    recorded: Option<RecordedMaps>,
+    engine: Memo<Radar, Engine>,
+    recorded: Memo<(Shared<Recording>, Radar, BuiltArray), RecordedMaps>,
     painter: Painter,
     one_scale: OneScale,
     detector: Detector,
-    scores: [Option<ScoresOf>; 2],
-    roc: Option<RocOf>,
-}
-
-/// Figures, and what they belong to.
-struct ScoresOf {
-    pair: Pair,
-    etas: [f32; 2],
-    cfar: Option<Cfar>,
-    scores: Scores,
-}
-
-/// A characteristic and the maps it belongs to.
-struct RocOf {
-    pair: Pair,
-    points: Arc<Vec<RocPoint>>,
+    /// Of a pair, at the thresholds of target and output or by a detector.
+    scores: [Memo<(Pair, [f32; 2], Option<Cfar>), Scores>; 2],
+    roc: Memo<Pair, Arc<Vec<RocPoint>>>,
 }
 
 impl MapsState {
@@ -178,12 +168,12 @@ impl MapsState {
         let is_silent = request.source.recording.is_none() && request.source.scene.is_silent();
         let mut scores = [None, None];
         for (slot, pair) in request.pairs.iter().enumerate().filter(|_| request.scores) {
-            let judged = Judged {
-                etas: [request.target_eta, request.etas[slot]],
-                cfar: request.cfar,
-                detected: detected.target.as_ref().zip(detected.outputs[slot].as_ref()),
-            };
-            scores[slot] = pair.as_ref().and_then(|pair| scored(&mut self.scores[slot], is_silent, pair, &judged));
+            let Some(pair) = pair else { continue };
+            let detected = detected.target.as_ref().zip(detected.outputs[slot].as_ref());
+            let of = (pair.clone(), [request.target_eta, request.etas[slot]], request.cfar);
+            let kept = self.scores[slot]
+                .try_of(of, |(pair, etas, cfar)| scored(is_silent, pair, *etas, *cfar, detected).ok_or(()));
+            scores[slot] = kept.ok().copied();
         }
         let roc = request.pairs[0].as_ref().filter(|_| request.roc).and_then(|pair| self.roc(is_silent, pair));
         let painted = self.painter.painted;
@@ -200,20 +190,15 @@ impl MapsState {
         let MapsRequest { source: Source { radar, scene, recording, .. }, wanted, .. } = request;
         if let Some(recording) = recording {
             scene.validate(radar)?;
-            let elements = &scene.disturbances.elements;
-            let maps = match &mut self.recorded {
-                Some(maps) if maps.is_of(recording, radar, elements) => maps,
-                slot => slot.insert(RecordedMaps::new(recording, radar, elements)),
-            };
+            let seen = (recording.clone(), radar.clone(), scene.disturbances.elements.clone());
+            let maps =
+                self.recorded.of(seen, |(recording, radar, elements)| RecordedMaps::new(recording, radar, elements));
             let frame = maps.frame(wanted);
             let looked_at = request.pictures.contains(&MapKind::Unexplained);
-            return Ok((frame, looked_at.then(|| maps.unexplained(scene))));
+            return Ok((frame, looked_at.then(|| maps.unexplained(scene, wanted.normalisation))));
         }
-        self.recorded = None;
-        let engine = match &mut self.engine {
-            Some(engine) if engine.radar() == radar => engine,
-            slot => slot.insert(Engine::new(radar.clone())),
-        };
+        self.recorded = Memo::default();
+        let engine = self.engine.of(radar.clone(), |radar| Engine::new(radar.clone()));
         let frame = match request.at_rest {
             true => engine.settle_for(task, scene, wanted)?,
             false => engine.update_for(task, scene, wanted)?,
@@ -222,22 +207,21 @@ impl MapsState {
     }
 
     fn roc(&mut self, is_silent: bool, pair: &Pair) -> Option<Arc<Vec<RocPoint>>> {
-        if let Some(last) = self.roc.as_ref().filter(|r| r.pair == *pair) {
-            return Some(last.points.clone());
-        }
-        let points: Arc<Vec<RocPoint>> =
-            Arc::new(Roc::of_echoes(!is_silent, pair.target.as_ref()?, &pair.output).points().collect());
-        self.roc = Some(RocOf { pair: pair.clone(), points: points.clone() });
-        Some(points)
+        let target = pair.target.as_ref()?;
+        let points = |pair: &Pair| Arc::new(Roc::of_echoes(!is_silent, target, &pair.output).points().collect());
+        Some(self.roc.of(pair.clone(), points).clone())
     }
 }
 
-/// Figures of a pair, which are kept; `None` where there is nothing to compare the output with.
-fn scored(kept: &mut Option<ScoresOf>, is_silent: bool, pair: &Pair, judged: &Judged<'_>) -> Option<Scores> {
-    let Judged { etas, cfar, detected } = *judged;
-    if let Some(last) = kept.as_ref().filter(|s| s.pair == *pair && (s.etas, s.cfar) == (etas, cfar)) {
-        return Some(last.scores);
-    }
+/// Figures of a pair at the thresholds of target and output, or by what a detector found in them; `None` where there is nothing to compare
+/// the output with.
+fn scored(
+    is_silent: bool,
+    pair: &Pair,
+    etas: [f32; 2],
+    cfar: Option<Cfar>,
+    detected: Option<(&Arc<RangeAngleMap>, &Arc<RangeAngleMap>)>,
+) -> Option<Scores> {
     let target = pair.target.as_ref()?;
     let (above, [target_eta, output_eta]) = match cfar {
         None => ((&**target, &*pair.output), etas),
@@ -246,23 +230,11 @@ fn scored(kept: &mut Option<ScoresOf>, is_silent: bool, pair: &Pair, judged: &Ju
     // What the map of the target shows is what hits and misses are counted against.
     let truth = if cfar.is_some() { above.0 } else { target };
     let metrics = Metrics::of_echoes(!is_silent, truth, above.1, output_eta);
-    let scores = Scores {
+    Some(Scores {
         metrics: Metrics { squared_error: squared_error(target, &pair.output), ..metrics },
         target_blobs: blobs(above.0, target_eta),
         output_blobs: blobs(above.1, output_eta),
-    };
-    *kept = Some(ScoresOf { pair: pair.clone(), etas, cfar, scores });
-    Some(scores)
-}
-
-/// What says which cells are detected.
-struct Judged<'a> {
-    /// Thresholds of target and output.
-    etas: [f32; 2],
-    /// The detector in their place, if one is in use.
-    cfar: Option<Cfar>,
-    /// What it found in target and output.
-    detected: Option<(&'a Arc<RangeAngleMap>, &'a Arc<RangeAngleMap>)>,
+    })
 }
 
 /// The largest difference of the other method's output, where both differences are looked at.

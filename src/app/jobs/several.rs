@@ -63,17 +63,14 @@ pub struct SeveralMaps {
 
 impl SeveralMaps {
     /// Starts the worker, which waits; `wake` is called from its thread.
-    ///
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<SeveralMaps> {
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> SeveralMaps {
         let (done, arriving) = channel();
         let each = wake.clone();
         let work = move |_: &mut (), (number, request): (u64, Request), task: &Task| {
             make(number, &request, task, &done, &each)
         };
-        let worker = Worker::spawn("several maps", || (), work, wake)?;
-        Ok(SeveralMaps { worker, arriving, asked: None, shown: Vec::new(), requests: 0 })
+        let worker = Worker::spawn("several maps", || (), work, wake);
+        SeveralMaps { worker, arriving, asked: None, shown: Vec::new(), requests: 0 }
     }
 
     /// Asks for the maps of the panel, if they changed; called while it is on screen.

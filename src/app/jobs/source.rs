@@ -1,5 +1,6 @@
 //! Where the samples on screen come from.
 
+use super::memo::Memo;
 use super::recorded::seen_by;
 use crate::app::shared::Shared;
 use crate::app::state::State;
@@ -45,6 +46,14 @@ impl Source {
         }
     }
 
+    /// The samples of every element, for what shows every element.
+    ///
+    /// # Errors
+    /// As [`Source::signal`].
+    pub fn every_element(&self) -> Result<BeatSignal, String> {
+        self.signal("The recording has the two ends alone; every element is needed here.")
+    }
+
     /// The samples of every element.
     ///
     /// # Errors
@@ -61,26 +70,8 @@ impl Source {
     }
 }
 
-/// Why a recording of the two ends shows nothing that every element is needed for.
-pub const EVERY_ELEMENT: &str = "The recording has the two ends alone; every element is needed here.";
-
 /// The samples of the last source: cursor, element and colours are chosen among many of one.
-#[derive(Default)]
-pub struct KeptSignal(Option<(Source, BeatSignal)>);
-
-impl KeptSignal {
-    /// The samples of `source`, simulated where they are not those of the last.
-    ///
-    /// # Errors
-    /// As [`Source::signal`].
-    pub fn of(&mut self, source: &Source) -> Result<&BeatSignal, String> {
-        let kept = match self.0.take() {
-            Some((of, signal)) if of == *source => (of, signal),
-            _ => (source.clone(), source.signal(EVERY_ELEMENT)?),
-        };
-        Ok(&self.0.insert(kept).1)
-    }
-}
+pub type KeptSignal = Memo<Source, BeatSignal>;
 
 #[cfg(test)]
 mod tests {
@@ -92,11 +83,13 @@ mod tests {
         let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
         let source = Source { radar, scene, recording: None, floor: Floor::Thesis };
         let mut kept = KeptSignal::default();
-        let at = |kept: &mut KeptSignal, source: &Source| kept.of(source).unwrap().samples.as_ptr();
+        let at = |kept: &mut KeptSignal, source: &Source| {
+            kept.try_of(source.clone(), Source::every_element).unwrap().samples.as_ptr()
+        };
         let first = at(&mut kept, &source);
         assert_eq!(at(&mut kept, &source.clone()), first);
         let moved = Source { scene: Shared::new(Scene::of_points([(0.3, 0.9)])), ..source };
-        let before = kept.of(&moved).unwrap().samples.clone();
-        assert_ne!(before, KeptSignal::default().of(&Source { floor: Floor::Exact, ..moved }).unwrap().samples);
+        let before = kept.try_of(moved.clone(), Source::every_element).unwrap().samples.clone();
+        assert_ne!(before, Source { floor: Floor::Exact, ..moved }.every_element().unwrap().samples);
     }
 }

@@ -96,13 +96,13 @@ pub struct Training {
 
 impl Training {
     /// Starts the thread that reads logs, which waits; `wake` is called from it.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Training> {
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Training {
         let read = |_: &mut (), path: PathBuf, _: &Task| {
             let text = read_log(&path).map_err(|e| format!("{}: {e}", path.display()))?;
             Log::parse(&text).map_err(|e| format!("{}: {e}", path.display()))
         };
-        let worker = Worker::spawn("training log", || (), read, wake)?;
-        Ok(Training { worker, path: None, looked: None, log: None, note: None, started: None, own: false })
+        let worker = Worker::spawn("training log", || (), read, wake);
+        Training { worker, path: None, looked: None, log: None, note: None, started: None, own: false }
     }
 
     /// The log that is followed.
@@ -246,7 +246,7 @@ mod tests {
     #[test]
     fn a_training_stopped_before_its_first_line_is_not_looked_for() {
         let (wake, woken) = std::sync::mpsc::channel();
-        let mut training = Training::start(move || wake.send(()).unwrap()).unwrap();
+        let mut training = Training::start(move || wake.send(()).unwrap());
         let missing = PathBuf::from("/there/is/no/log.csv");
         training.follow(missing.clone());
         training.own = true;

@@ -1,18 +1,15 @@
 //! Methods on the tables' test scenes, beside what the thesis prints.
 
-use crate::app::content::{Content, Cx, Nothing, offered};
-use crate::app::jobs::EvaluationRow;
-use crate::app::state::{Command, EvaluationChoice, ExportCommand, WorkCommand};
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::method_menu::{Offered, method_menu};
-use crate::app::widgets::number_field::NumberField;
+use crate::app::content::{Content, Cx, Nothing};
+use crate::app::jobs::{EvaluationRow, Memo, evaluated};
+use crate::app::state::{Command, ExportCommand, FailureChoice, RowsCommand};
 use crate::app::widgets::padded::scrolled_both;
 use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
 use crate::evaluate::eta_text;
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
 use crate::radar::{Radar, counted};
+use crate::scene::generate::Kind;
 use eframe::egui::{Grid, Ui};
-use std::collections::BTreeSet;
 
 /// The printed columns with their names.
 const PRINTED: [(&str, [Printed; 3]); 3] = [
@@ -24,62 +21,50 @@ const PRINTED: [(&str, [Printed; 3]); 3] = [
 /// What the test sets hold.
 const SETS: [&str; 3] = ["one point", "3 to 6 points", "points and lines"];
 
-/// What can be chosen, and what was found.
+/// What was found, and what can be tried.
 pub struct Input<'a> {
-    /// The methods to choose from.
-    pub methods: Offered<'a>,
-    /// The method in use: evaluated where no others are chosen.
+    /// The method in use, which can be tried on the test sets from here.
     pub method: Option<&'static str>,
     /// The radar of what was found, or else of what would be.
     pub radar: &'a Radar,
-    /// The part that is done, while it runs.
+    /// The part that is done, while methods are tried.
     pub progress: Option<f32>,
-    /// What is finished.
+    /// What the rows come to.
     pub rows: &'a [EvaluationRow],
     /// How the last run ended, if not well.
     pub note: Option<&'a str>,
 }
 
-/// What is chosen.
-pub struct EvaluationMemory {
-    methods: BTreeSet<&'static str>,
-    sets: [bool; 3],
-    count: u32,
-    seed: u64,
-}
-
-impl Default for EvaluationMemory {
-    fn default() -> Self {
-        EvaluationMemory { methods: BTreeSet::new(), sets: [true; 3], count: 10, seed: 0 }
-    }
-}
+/// Scenes of each set that the button tries.
+const SCENES_A_SET: u32 = 10;
 
 /// Draws [`Panel::Evaluation`](crate::app::state::Panel::Evaluation).
 pub struct EvaluationPanel;
 
 impl Content for EvaluationPanel {
     type Asks = Nothing;
-    type Remembers = EvaluationMemory;
+    /// What the rows of this version come to.
+    type Remembers = Memo<u64, Vec<EvaluationRow>>;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let (state, job) = (&*cx.state, &cx.jobs.evaluation);
+        let (state, job) = (&*cx.state, &cx.jobs.failures);
+        let table = job.table();
+        let rows = &*cx.memory.of(table.version(), |_| evaluated(table.rows()));
         let input = Input {
-            methods: offered(state, cx.jobs),
             method: state.method().map(|m| m.name()),
-            radar: job.plan().map_or(state.radar(), |plan| &plan.campaign.radar),
+            radar: if rows.is_empty() { state.radar() } else { &table.conditions().radar },
             progress: job.progress(),
-            rows: job.rows(),
+            rows,
             note: job.note(),
         };
-        show(ui, input, cx.memory)
+        show(ui, input)
     }
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut EvaluationMemory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     scrolled_both(ui, |ui, asked| {
-        choices(ui, &input, memory);
-        buttons(ui, &input, memory, asked);
+        buttons(ui, &input, asked);
         if let Some(note) = input.note {
             ui.colored_label(ui.visuals().warn_fg_color, note);
         }
@@ -88,7 +73,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut EvaluationMemory) -> Vec
         }
         ui.separator();
         if input.rows.is_empty() {
-            ui.weak("Tables 4.1 to 4.3 of the thesis for the chosen methods. Scenes are random, but the same for the same seed.");
+            ui.weak("Tables 4.1 to 4.3 of the thesis for the methods that were tried on sets 1 to 3. Rows tries any method on any number of scenes.");
         }
         tables(ui, input.rows);
     })
@@ -106,43 +91,23 @@ fn unlike_the_thesis(radar: &Radar) -> Option<String> {
     Some(format!("With {what}: the printed figures are of table 3.1 and don't compare."))
 }
 
-fn choices(ui: &mut Ui, input: &Input<'_>, memory: &mut EvaluationMemory) {
-    let known = |name: &&'static str| input.methods.all.iter().any(|m| m.name() == *name);
-    memory.methods.retain(known);
-    if memory.methods.is_empty() {
-        memory.methods.extend(input.method);
-    }
-    ui.add_enabled_ui(input.progress.is_none(), |ui| {
-        ui.horizontal_wrapped(|ui| {
-            method_menu(ui, input.methods, &mut memory.methods, "Methods to evaluate");
-            for ((chosen, what), number) in memory.sets.iter_mut().zip(SETS).zip(1..) {
-                ui.checkbox(chosen, format!("set {number}")).on_hover_text(what);
-            }
-            labelled(ui, "scenes a set", "", NumberField::new(&mut memory.count).range(1..=1000));
-            labelled(ui, "seed", "", NumberField::new(&mut memory.seed).speed(0.05));
-        });
-    });
-}
-
-fn buttons(ui: &mut Ui, input: &Input<'_>, memory: &EvaluationMemory, asked: &mut Vec<Command>) {
+fn buttons(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let sets: Vec<usize> = (1..=3).filter(|set| memory.sets[set - 1]).collect();
-        let ready = !sets.is_empty() && !memory.methods.is_empty();
-        let tip = "Run the chosen methods over the chosen sets, in the background";
         let tips = [
-            if ready { tip } else { "Choose a method and a set first" },
+            "Try the method in use on ten scenes of each set, in the background",
             "Stop after this map; the rows that are finished stay",
         ];
-        match start_or_cancel(ui, "Evaluate", input.progress.is_some(), ready, tips) {
-            Some(Pressed::Start) => {
-                let methods = memory.methods.iter().copied().collect();
-                let (count, seed) = (memory.count, memory.seed);
-                asked.push(WorkCommand::Evaluate(EvaluationChoice { methods, sets, count, seed }).into());
+        match (start_or_cancel(ui, "Evaluate", input.progress.is_some(), input.method.is_some(), tips), input.method) {
+            (Some(Pressed::Start), Some(method)) => {
+                let (methods, kinds) = (vec![method], Kind::TEST_SETS.to_vec());
+                let choice = FailureChoice { methods, kinds, own: false, count: SCENES_A_SET, seed: 0 };
+                asked.push(RowsCommand::Try(choice).into());
             }
-            Some(Pressed::Cancel) => asked.push(WorkCommand::CancelEvaluation.into()),
-            None => {}
+            (Some(Pressed::Cancel), _) => asked.push(RowsCommand::CancelTrying.into()),
+            _ => {}
         }
-        if !input.rows.is_empty() && ui.button("Copy as CSV").on_hover_text("Copy the rows to the clipboard").clicked()
+        if !input.rows.is_empty()
+            && ui.button("Copy as CSV").on_hover_text("Copy the tables to the clipboard").clicked()
         {
             asked.push(ExportCommand::CopyEvaluation.into());
         }
@@ -226,35 +191,21 @@ mod tests {
     use super::*;
     use crate::app::widgets::seen;
     use crate::radar::{Carrier, WindowFunction};
-    use crate::reconstruct::{Baseline, CAPON, Reconstructor};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
-    use std::sync::Arc;
 
     #[test]
-    fn what_is_chosen_is_asked_for() {
-        let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
+    fn the_method_in_use_is_tried_on_the_test_sets() {
         let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
-        let draw = |ui: &mut Ui, state: &mut (EvaluationMemory, Vec<Command>)| {
-            let method = Some("capon");
-            let input = Input {
-                methods: Offered::untimed(&methods),
-                method,
-                radar: &radar,
-                progress: None,
-                rows: &[],
-                note: None,
-            };
-            let commands = show(ui, input, &mut state.0);
-            state.1.extend(commands);
+        let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
+            let input = Input { method: Some("capon"), radar: &radar, progress: None, rows: &[], note: None };
+            asked.extend(show(ui, input));
         };
-        let mut evaluation = Harness::builder().with_size([700.0, 300.0]).build_ui_state(draw, Default::default());
-        evaluation.get_by_label("set 2").click();
-        evaluation.step();
+        let mut evaluation = Harness::builder().with_size([700.0, 300.0]).build_ui_state(draw, Vec::new());
         evaluation.get_by_label("Evaluate").click();
         evaluation.step();
-        let choice = EvaluationChoice { methods: vec!["capon"], sets: vec![1, 3], count: 10, seed: 0 };
-        assert_eq!(evaluation.state().1, [Command::Work(WorkCommand::Evaluate(choice))]);
+        let [Command::Rows(RowsCommand::Try(choice))] = evaluation.state().as_slice() else { panic!("one choice") };
+        assert_eq!((choice.methods.as_slice(), choice.kinds.as_slice()), (&["capon"][..], &Kind::TEST_SETS[..]));
         let _told = evaluation.get_by_label_contains("With a two-way carrier");
     }
 
@@ -263,7 +214,7 @@ mod tests {
         let estimate = |mean, standard_error| Estimate { mean, standard_error, median: mean };
         let row = EvaluationRow {
             set: 3,
-            method: "linear-prediction",
+            method: "linear-prediction".into(),
             optimiser: "AdamW, then Muon".into(),
             eta: 0.851_234_5,
             one_eta: true,
@@ -278,9 +229,7 @@ mod tests {
         let radar = Radar::default();
         let evaluation = Harness::builder().with_size([460.0, 480.0]).build_ui(move |ui| {
             let rows = std::slice::from_ref(&row);
-            let input =
-                Input { methods: Offered::untimed(&[]), method: None, radar: &radar, progress: None, rows, note: None };
-            _ = show(ui, input, &mut EvaluationMemory::default());
+            _ = show(ui, Input { method: None, radar: &radar, progress: None, rows, note: None });
         });
         seen::assert_readable(evaluation.output());
         let texts = seen::texts(evaluation.output());

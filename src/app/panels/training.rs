@@ -2,7 +2,7 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Log;
-use crate::app::state::{Command, WorkCommand};
+use crate::app::state::{Command, Purpose, WorkCommand};
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::entry::button;
@@ -71,7 +71,7 @@ impl Content for TrainingPanel {
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut TrainingMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         ui.horizontal_wrapped(|ui| {
-            button(ui, "Open training log…", WorkCommand::OpenLog, true, asked);
+            button(ui, "Open training log…", Purpose::OpenLog, true, asked);
             match input.running {
                 Some(part) => {
                     if progress(ui, part, 140.0, "Stop the training; its last checkpoint stays") {

@@ -3,29 +3,17 @@
 use super::panel::MapKind;
 use serde::{Deserialize, Serialize};
 
-/// How the maps are laid out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Layout {
-    /// Both outputs above, their differences from the target below.
-    #[default]
-    Beside,
-    /// One of two maps, in the same place as the other.
-    Flip,
-    /// One of two maps left of an edge, the other right of it.
-    Swipe,
-}
-
-impl Layout {
-    /// All of them, in the order they are offered.
-    pub const ALL: [Layout; 3] = [Layout::Beside, Layout::Flip, Layout::Swipe];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Layout::Beside => "Side by side",
-            Layout::Flip => "Flip",
-            Layout::Swipe => "Swipe",
-        }
+named! {
+    /// How the maps are laid out.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    pub enum Layout {
+        /// Both outputs above, their differences from the target below.
+        #[default]
+        Beside = "Side by side",
+        /// One of two maps, in the same place as the other.
+        Flip = "Flip",
+        /// One of two maps left of an edge, the other right of it.
+        Swipe = "Swipe",
     }
 }
 

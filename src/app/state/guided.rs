@@ -1,15 +1,15 @@
-//! What the guide set up, so that undo takes all of it back: the scene, its radar, and the settings.
+//! What the guide set up, so that undo takes all of it back: the scene, its radar, and how they are looked at.
 
-use super::settings::Settings;
 use crate::radar::Radar;
 use crate::scene::Scene;
+use crate::view::View;
 use std::sync::Arc;
 
 /// Everything that a button of the guide changes, at one moment.
 #[derive(Debug, Clone)]
 pub struct Setup {
-    /// What the user chose.
-    pub settings: Settings,
+    /// How it was looked at.
+    pub view: View,
     /// The radar.
     pub radar: Radar,
     /// The scene.

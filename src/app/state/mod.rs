@@ -1,6 +1,9 @@
 //! What the app holds, without any drawing and without any work: the scene, what the user chose, where the panels are, and every
 //! command by name.
 
+#[macro_use]
+mod named;
+
 mod arrangement;
 mod bounds_settings;
 mod chirp_settings;
@@ -29,12 +32,13 @@ mod timeline;
 mod toggles;
 mod view;
 
+pub use crate::view::{DifferenceView, Directions, Projection, Units, View};
 pub use arrangement::Arrangement;
 pub use bounds_settings::{BoundsSettings, Elements};
 pub use chirp_settings::ChirpSettings;
 pub use command::{
-    Command, DocumentCommand, EditCommand, EvaluationChoice, ExportCommand, LessonCommand, NewObject, RadarCommand,
-    RowsCommand, ThresholdChoice, ViewCommand, Way, WindowCommand, WorkCommand,
+    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, Purpose, RadarCommand, RowsCommand,
+    ThresholdChoice, ViewCommand, Way, WindowCommand, WorkCommand,
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
 pub use compare::{Compare, Layout};
@@ -49,7 +53,7 @@ pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
 pub use phasor_settings::{PhasorMap, PhasorSettings};
 pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
-pub use settings::{Brightness, DifferenceView, Directions, Projection, Settings, Units};
+pub use settings::{Brightness, Settings};
 pub use several::{MAX_MAPS as MAX_MAPS_AT_ONCE, Parameter, Several, Variant};
 pub use synonyms::{menu_path, synonyms};
 pub use task_layouts::Task;
@@ -242,7 +246,7 @@ impl State {
     /// Everything that the guide may change, as it is.
     pub fn setup(&self) -> Setup {
         Setup {
-            settings: self.settings.clone(),
+            view: self.settings.view.clone(),
             radar: self.radar().clone(),
             scene: self.editor.scene().clone(),
             depth: self.editor.history().depth(),
@@ -261,7 +265,7 @@ impl State {
             return;
         };
         while self.editor.history().depth() > step.before.depth && self.editor.undo() {}
-        self.settings.take_back(&step.before.settings, &step.after.settings);
+        self.settings.take_back(&step.before.view, &step.after.view);
     }
 
     /// Does again what was undone last.
@@ -271,7 +275,7 @@ impl State {
             return;
         };
         while self.editor.history().depth() < step.after.depth && self.editor.redo() {}
-        self.settings.take_back(&step.after.settings, &step.before.settings);
+        self.settings.take_back(&step.after.view, &step.before.view);
     }
 
     /// Puts a file among the recent ones.

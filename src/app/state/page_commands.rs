@@ -1,6 +1,6 @@
 //! The list of commands as a page in a browser has it: some keys belong to the browser, and some commands to a desktop.
 
-use super::command::{Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WindowCommand, WorkCommand};
+use super::command::{Command, DocumentCommand, ExportCommand, LessonCommand, Purpose, WindowCommand};
 use super::panel::Panel;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
@@ -12,8 +12,7 @@ fn needs_a_desktop(command: &Command) -> bool {
             WindowCommand::Quit
                 | WindowCommand::TogglePanel(Panel::Training)
                 | WindowCommand::Maximise(Panel::Training)
-        ) | Command::Work(WorkCommand::OpenLog)
-            | Command::Rows(RowsCommand::ChooseOwnScenes)
+        ) | Command::AskFile(Purpose::OpenLog | Purpose::OwnScenes)
     )
 }
 

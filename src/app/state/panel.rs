@@ -210,33 +210,43 @@ impl Panel {
     }
 }
 
-/// One of the maps on screen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub enum MapKind {
-    /// The first end's map.
-    Input0,
-    /// The last end's map.
-    Input1,
-    /// The whole array's map.
-    Target,
-    /// The map that the chosen method makes from the two ends.
-    Output,
-    /// Target > eta'.
-    TargetAbove,
-    /// Output > eta.
-    OutputAbove,
-    /// Output minus target.
-    Difference,
-    /// A recording minus the reflectors laid over it.
-    Unexplained,
-    /// How far off the method expects its output to be.
-    Doubt,
-    /// What the second method of the panel "Compare" makes of the two ends.
-    Second,
-    /// Second output > its eta.
-    SecondAbove,
-    /// Second output minus target.
-    SecondDifference,
+/// The maps on screen: the name of each, its title, and what it shows.
+macro_rules! map_kinds {
+    ($($kind:ident, $title:literal, $help:literal;)*) => {
+        /// One of the maps on screen.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        pub enum MapKind {
+            $(#[doc = $help] $kind,)*
+        }
+
+        impl MapKind {
+            /// Title of its panel.
+            pub fn title(self) -> &'static str {
+                match self { $(MapKind::$kind => $title,)* }
+            }
+
+            /// What it shows, for tooltips.
+            pub fn describe(self) -> &'static str {
+                match self { $(MapKind::$kind => $help,)* }
+            }
+        }
+    };
+}
+
+map_kinds! {
+    Input0, "Input 0", "What the elements at the left end of the array see";
+    Input1, "Input 1", "What the elements at the right end of the array see";
+    Target, "Target", "What all elements see: the map that a reconstruction aims for";
+    Output, "Output", "What the chosen method makes of the two ends";
+    TargetAbove, "Target > η'", "Cells where the target exceeds η'";
+    OutputAbove, "Output > η", "Cells where the output exceeds η: hits, false alarms, and what it misses of the target";
+    Difference, "Difference", "Output minus target: red where the output is too bright, blue where it is too dark";
+    Unexplained, "Unexplained", "What reflectors laid over a recording leave of it: their echoes are fitted and taken off";
+    Doubt, "Doubt", "How far off the method expects its output to be: nine of ten cells are nearer to the target than this, on scenes and over \
+        noise like those it was trained on";
+    Second, "Second output", "What the second method makes of the two ends";
+    SecondAbove, "Second output > η", "Cells where the second output exceeds its η";
+    SecondDifference, "Second difference", "Second output minus target";
 }
 
 /// Which of the two methods on screen.
@@ -274,49 +284,6 @@ impl MapKind {
         MapKind::Doubt,
         MapKind::Unexplained,
     ];
-
-    /// Title of its panel.
-    pub fn title(self) -> &'static str {
-        match self {
-            MapKind::Input0 => "Input 0",
-            MapKind::Input1 => "Input 1",
-            MapKind::Target => "Target",
-            MapKind::Output => "Output",
-            MapKind::TargetAbove => "Target > η'",
-            MapKind::OutputAbove => "Output > η",
-            MapKind::Difference => "Difference",
-            MapKind::Unexplained => "Unexplained",
-            MapKind::Doubt => "Doubt",
-            MapKind::Second => "Second output",
-            MapKind::SecondAbove => "Second output > η",
-            MapKind::SecondDifference => "Second difference",
-        }
-    }
-
-    /// What it shows, for tooltips.
-    pub fn describe(self) -> &'static str {
-        match self {
-            MapKind::Input0 => "What the elements at the left end of the array see",
-            MapKind::Input1 => "What the elements at the right end of the array see",
-            MapKind::Target => "What all elements see: the map that a reconstruction aims for",
-            MapKind::Output => "What the chosen method makes of the two ends",
-            MapKind::TargetAbove => "Cells where the target exceeds η'",
-            MapKind::OutputAbove => {
-                "Cells where the output exceeds η: hits, false alarms, and what it misses of the target"
-            }
-            MapKind::Difference => "Output minus target: red where the output is too bright, blue where it is too dark",
-            MapKind::Unexplained => {
-                "What reflectors laid over a recording leave of it: their echoes are fitted and taken off"
-            }
-            MapKind::Doubt => {
-                "How far off the method expects its output to be: nine of ten cells are nearer to the target than this, on scenes and over \
-                 noise like those it was trained on"
-            }
-            MapKind::Second => "What the second method makes of the two ends",
-            MapKind::SecondAbove => "Cells where the second output exceeds its η",
-            MapKind::SecondDifference => "Second output minus target",
-        }
-    }
 
     /// The method of whose output it is made, if it is made of one.
     pub fn slot(self) -> Option<MethodSlot> {

@@ -4,31 +4,21 @@ use crate::maps::Aperture;
 use crate::radar::End;
 use serde::{Deserialize, Serialize};
 
-/// The map whose cell is taken apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum PhasorMap {
-    /// That of the whole array.
-    #[default]
-    Target,
-    /// That of the first end.
-    Input0,
-    /// That of the last end.
-    Input1,
+named! {
+    /// The map whose cell is taken apart.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    pub enum PhasorMap {
+        /// That of the first end.
+        Input0 = "Input 0",
+        /// That of the last end.
+        Input1 = "Input 1",
+        /// That of the whole array.
+        #[default]
+        Target = "Target",
+    }
 }
 
 impl PhasorMap {
-    /// All, in reading order.
-    pub const ALL: [PhasorMap; 3] = [PhasorMap::Input0, PhasorMap::Input1, PhasorMap::Target];
-
-    /// Name of the map.
-    pub fn name(self) -> &'static str {
-        match self {
-            PhasorMap::Target => "Target",
-            PhasorMap::Input0 => "Input 0",
-            PhasorMap::Input1 => "Input 1",
-        }
-    }
-
     /// The elements that make it.
     pub fn aperture(self) -> Aperture {
         match self {

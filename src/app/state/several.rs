@@ -20,55 +20,31 @@ const FLOORS: [(&str, Floor); 4] = [
     ("SNR 20 dB", Floor::Snr(Decibels(20.0))),
 ];
 
-/// What differs from map to map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Parameter {
-    /// The window of both transforms.
-    #[default]
-    Window,
-    /// Swept bandwidth, GHz.
-    Bandwidth,
-    /// Elements of each end.
-    EndElements,
-    /// Distance between elements, wavelengths.
-    Spacing,
-    /// What lies beneath the reflectors.
-    Floor,
-    /// Signal-to-noise ratio of a sample, dB.
-    Snr,
-    /// One of the radars that come with the program.
-    Radar,
-    /// The reconstruction method.
-    Method,
+named! {
+    /// What differs from map to map.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    pub enum Parameter {
+        /// The window of both transforms.
+        #[default]
+        Window = "window",
+        /// Swept bandwidth, GHz.
+        Bandwidth = "bandwidth",
+        /// Elements of each end.
+        EndElements = "elements of an end",
+        /// Distance between elements, wavelengths.
+        Spacing = "element spacing",
+        /// What lies beneath the reflectors.
+        Floor = "floor",
+        /// Signal-to-noise ratio of a sample, dB.
+        Snr = "SNR",
+        /// One of the radars that come with the program.
+        Radar = "radar",
+        /// The reconstruction method.
+        Method = "method",
+    }
 }
 
 impl Parameter {
-    /// All of them, in the order they are offered.
-    pub const ALL: [Parameter; 8] = [
-        Parameter::Window,
-        Parameter::Bandwidth,
-        Parameter::EndElements,
-        Parameter::Spacing,
-        Parameter::Floor,
-        Parameter::Snr,
-        Parameter::Radar,
-        Parameter::Method,
-    ];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Parameter::Window => "window",
-            Parameter::Bandwidth => "bandwidth",
-            Parameter::EndElements => "elements of an end",
-            Parameter::Spacing => "element spacing",
-            Parameter::Floor => "floor",
-            Parameter::Snr => "SNR",
-            Parameter::Radar => "radar",
-            Parameter::Method => "method",
-        }
-    }
-
     /// Unit of its numbers, where it has numbers.
     pub fn unit(self) -> Option<&'static str> {
         match self {

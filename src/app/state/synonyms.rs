@@ -1,6 +1,8 @@
 //! Other words that may be typed in the palette, and where menus have what is found.
 
-use super::command::{Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, ViewCommand, WindowCommand};
+use super::command::{
+    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, Purpose, ViewCommand, WindowCommand,
+};
 use super::panel::Panel;
 use crate::scene::presets;
 
@@ -9,8 +11,7 @@ pub fn synonyms(command: &Command) -> &'static str {
     match command {
         Command::Document(command) => match command {
             DocumentCommand::New => "empty clear",
-            DocumentCommand::Open => "load file import",
-            DocumentCommand::Save | DocumentCommand::SaveAs => "write store file",
+            DocumentCommand::Save => "write store file",
             DocumentCommand::Preset(_) => "example scene demo",
             DocumentCommand::Recording(_) => "measured data samples real radar",
             DocumentCommand::RandomScene(_) => "generate test set example",
@@ -30,15 +31,25 @@ pub fn synonyms(command: &Command) -> &'static str {
         Command::Lesson(LessonCommand::Present) => "projector beamer class fullscreen teach slides",
         Command::Lesson(_) => "teach learn tutorial course",
         Command::Export(command) => match command {
-            ExportCommand::Picture => "screenshot png svg image save print",
-            ExportCommand::Maps => "numpy npz data arrays save",
-            ExportCommand::Metrics => "csv numbers figures save",
-            ExportCommand::RecordDrag => "gif animation video movie",
             ExportCommand::CopyShared => "share link send",
             ExportCommand::CopyLink => "share text send url",
             _ => "",
         },
         Command::Window(command) => window_words(command),
+        Command::AskFile(purpose) => file_words(*purpose),
+        _ => "",
+    }
+}
+
+fn file_words(purpose: Purpose) -> &'static str {
+    match purpose {
+        Purpose::Open => "load file import",
+        Purpose::SaveScene => "write store file",
+        Purpose::OpenLesson => "teach learn tutorial course",
+        Purpose::ExportPicture => "screenshot png svg image save print",
+        Purpose::ExportMaps => "numpy npz data arrays save",
+        Purpose::ExportMetrics => "csv numbers figures save",
+        Purpose::RecordDrag => "gif animation video movie",
         _ => "",
     }
 }
@@ -100,7 +111,7 @@ fn window_words(command: &WindowCommand) -> &'static str {
 pub fn menu_path(command: &Command) -> &'static [&'static str] {
     match command {
         Command::Document(command) => match command {
-            DocumentCommand::New | DocumentCommand::Open | DocumentCommand::Save | DocumentCommand::SaveAs => &["File"],
+            DocumentCommand::New | DocumentCommand::Save => &["File"],
             DocumentCommand::Preset(index) if presets::ALL.get(*index).is_some_and(presets::Preset::is_failure) => {
                 &["Tools", "Failures explained"]
             }
@@ -110,15 +121,15 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
             _ => &[],
         },
         Command::Edit(command) => edit_menus(command),
-        Command::Export(
-            ExportCommand::Picture
-            | ExportCommand::Maps
-            | ExportCommand::Metrics
-            | ExportCommand::RecordDrag
-            | ExportCommand::DrawLesson
-            | ExportCommand::StopRecording
-            | ExportCommand::CopyShared
-            | ExportCommand::CopyLink,
+        Command::Export(ExportCommand::StopRecording | ExportCommand::CopyShared | ExportCommand::CopyLink)
+        | Command::AskFile(
+            Purpose::Open
+            | Purpose::SaveScene
+            | Purpose::ExportPicture
+            | Purpose::ExportMaps
+            | Purpose::ExportMetrics
+            | Purpose::RecordDrag
+            | Purpose::DrawLesson,
         ) => &["File"],
         Command::View(command) => view_menus(command),
         Command::Window(command) => window_menus(command),

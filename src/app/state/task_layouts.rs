@@ -5,34 +5,23 @@ use eframe::egui;
 use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
-/// What the window is used for: each task has an arrangement of panels of its own, kept as the user leaves it.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Task {
-    /// The scene, its settings and all maps.
-    #[default]
-    Explore,
-    /// Two methods on one scene, large.
-    Compare,
-    /// Rows of scenes on which methods fail, with the maps of the one that is open.
-    Failures,
-    /// A lesson, the scene and the maps that lessons ask about.
-    Teach,
+named! {
+    /// What the window is used for: each task has an arrangement of panels of its own, kept as the user leaves it.
+    #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+    pub enum Task {
+        /// The scene, its settings and all maps.
+        #[default]
+        Explore = "Explore",
+        /// Two methods on one scene, large.
+        Compare = "Compare",
+        /// Rows of scenes on which methods fail, with the maps of the one that is open.
+        Failures = "Failures",
+        /// A lesson, the scene and the maps that lessons ask about.
+        Teach = "Teach",
+    }
 }
 
 impl Task {
-    /// All, in the order of their keys.
-    pub const ALL: [Task; 4] = [Task::Explore, Task::Compare, Task::Failures, Task::Teach];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Task::Explore => "Explore",
-            Task::Compare => "Compare",
-            Task::Failures => "Failures",
-            Task::Teach => "Teach",
-        }
-    }
-
     /// What it shows.
     pub fn describe(self) -> &'static str {
         match self {

@@ -1,8 +1,8 @@
 //! Which commands switch something, and whether it is on: menus tick it.
 
 use super::command::{Command, EditCommand, ViewCommand, WindowCommand};
-use super::settings::{Brightness, Projection, Units};
-use super::{Panel, State};
+use super::settings::Brightness;
+use super::{Panel, Projection, State, Units};
 
 impl State {
     /// Whether what a command switches is on; `None` for a command that switches nothing.

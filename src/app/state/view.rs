@@ -1,8 +1,8 @@
 //! What part of the maps and of the scene is shown, and where the pointer is in all of them.
 
-use super::settings::Projection;
 use crate::interact::Place;
 use crate::radar::{Polar, Radar};
+use crate::view::Projection;
 use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 /// The visible part of a map, as fractions of its width and height; y counts upwards.

@@ -1,6 +1,6 @@
 //! The networks for the radar on screen, in the menu of methods; where there is none, how one is trained.
 
-use crate::app::state::{Command, DocumentCommand};
+use crate::app::state::{Command, Purpose};
 use crate::network::live::size::LiveSize;
 use crate::radar::{Radar, counted};
 use crate::reconstruct::{Family, Reconstructor};
@@ -24,7 +24,7 @@ pub fn networks(ui: &mut Ui, all: &[Arc<dyn Reconstructor>], radar: &Radar, aske
         let tip = "Weights of the live network for any radar, as training/train_live.py writes them (.safetensors)";
         if ui.small_button("Open weights…").on_hover_text(tip).clicked() {
             ui.close();
-            asked.push(DocumentCommand::Open.into());
+            asked.push(Purpose::Open.into());
         }
     });
     if fitting.is_empty() {
@@ -86,7 +86,7 @@ mod tests {
         assert!(says(&menu, "live") && !says(&menu, "train_live.py"), "{:?}", seen::texts(menu.output()));
         menu.get_by_label("Open weights…").click();
         menu.run();
-        assert_eq!(menu.state(), &[Command::from(DocumentCommand::Open)]);
+        assert_eq!(menu.state(), &[Command::AskFile(Purpose::Open)]);
     }
 
     #[test]

@@ -71,8 +71,7 @@ fn drags(radar: &Radar) -> Result<Vec<MouseRow>, CommandError> {
         move || Engine::new(own.clone()),
         |engine, (scene, wanted): Asked, _| engine.update(&scene, &wanted),
         move || wake.send(()).unwrap_or_default(),
-    )
-    .map_err(CommandError::failed)?;
+    );
     let mut rows = Vec::new();
     for reflectors in REFLECTORS {
         for convention in MapConvention::BOTH {

@@ -18,10 +18,10 @@ use crate::app::state::{Conditions, State};
 use crate::evaluate::campaign::{Campaign, Unfit};
 use crate::evaluate::rows::{FORMAT, Row, WHY_NO_OTHER_FORMAT};
 use crate::evaluate::sets::SceneSet;
-use crate::platform::Instant;
-use crate::platform::fs;
+use crate::platform::{self, Instant, fs};
 use crate::reconstruct::Reconstructor;
 use crate::signal::Floor;
+use eframe::egui::Context;
 use search::Search;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -102,18 +102,19 @@ pub struct Failures {
 }
 
 impl Failures {
-    /// Starts the threads and reads what the last session left in `folder`; `wake` is called from them.
-    pub fn start(folder: Option<&Path>, wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Failures> {
-        let thumbnails = Thumbnails::start(wake.clone())?;
-        let run = RowJob::start(wake.clone())?;
-        let store = Store::start(wake.clone())?;
+    /// Starts the threads and reads what the last session left in `folder`; `ctx` draws another frame.
+    pub fn start(folder: Option<&Path>, ctx: &Context) -> Failures {
+        let wake = platform::waker(ctx);
+        let thumbnails = Thumbnails::start(wake.clone());
+        let run = RowJob::start(wake.clone());
+        let store = Store::new(ctx.clone());
         let file = folder.map(|folder| folder.join(FILE));
         if let Some(file) = file.as_ref().filter(|file| fs::exists(file)) {
             store.read(file.clone(), true);
         }
-        let search = Search::start(wake)?;
+        let search = Search::start(wake);
         let table = RowTable::default();
-        Ok(Failures { run, table, before: None, thumbnails, store, search, file, kept: 0, written: None })
+        Failures { run, table, before: None, thumbnails, store, search, file, kept: 0, written: None }
     }
 
     /// Tries what `plan` says. Rows made under the same conditions stay; others, and those of an older format, make room, as figures don't

@@ -60,9 +60,9 @@ pub struct Search {
 
 impl Search {
     /// Starts the worker, which waits; `wake` is called from its thread.
-    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Search> {
-        let job = RowJob::start(wake)?;
-        Ok(Search { job, subject: None, trails: Vec::new(), drawn: 0, told: true })
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Search {
+        let job = RowJob::start(wake);
+        Search { job, subject: None, trails: Vec::new(), drawn: 0, told: true }
     }
 
     /// Searches near the scene on screen.

@@ -1,12 +1,13 @@
 //! Rows on disk: as CSV, and beside it how they were made, where that isn't as the tables' scenes are.
 
+use crate::app::jobs::background::Background;
 use crate::app::state::Conditions;
 use crate::evaluate::rows::{Column, Row, WHY_NO_OTHER_FORMAT, read_rows, write_rows};
 use crate::files::{read_bounded, write_atomically, write_bytes};
 use crate::platform::fs::{self, File};
 use crate::radar::Radar;
 use crate::scene::generate::{Purpose, Reading};
-use crate::task::{Reply, Worker};
+use eframe::egui::Context;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -115,13 +116,6 @@ fn read_conditions(bytes: &[u8]) -> Result<Conditions, String> {
     Ok(conditions)
 }
 
-/// What the thread is asked for.
-#[expect(clippy::large_enum_variant, reason = "one request at a time is under way")]
-enum Request {
-    Read { path: PathBuf, own: bool },
-    Write { path: PathBuf, rows: Arc<Vec<Row>>, conditions: Conditions, version: u64 },
-}
-
 /// What came of it.
 #[expect(clippy::large_enum_variant, reason = "one answer at a time is under way")]
 pub enum Done {
@@ -140,49 +134,46 @@ pub enum Done {
     Unwritten(String),
 }
 
-/// Reads and writes rows on a thread of its own.
-pub struct Store {
-    worker: Worker<Request, Done>,
-}
+/// Reads and writes rows on threads of their own.
+pub struct Store(Background<Done>);
 
 impl Store {
-    /// Starts the thread, which waits; `wake` is called from it.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> io::Result<Store> {
-        let work = |_: &mut (), request, _: &crate::task::Task| match request {
-            Request::Read { path, own } => {
-                let kept = read(&path);
-                Done::Read { path, own, kept }
-            }
-            Request::Write { path, rows, conditions, version } => match write(&path, &rows, &conditions) {
-                Ok(()) => Done::Wrote(version),
-                Err(error) => Done::Unwritten(error),
-            },
-        };
-        Ok(Store { worker: Worker::spawn("rows", || (), work, wake)? })
+    /// Nothing yet; `wake` draws another frame when something is read or written.
+    pub fn new(wake: Context) -> Store {
+        Store(Background::new(wake))
     }
 
     /// Reads a file.
     pub fn read(&self, path: PathBuf, own: bool) {
-        self.worker.request(Request::Read { path, own });
+        self.begin(move || {
+            let kept = read(&path);
+            Done::Read { path, own, kept }
+        });
     }
 
     /// Writes the app's own file.
     pub fn write(&self, path: PathBuf, rows: Arc<Vec<Row>>, conditions: Conditions, version: u64) {
-        self.worker.request(Request::Write { path, rows, conditions, version });
+        self.begin(move || match write(&path, &rows, &conditions) {
+            Ok(()) => Done::Wrote(version),
+            Err(error) => Done::Unwritten(error),
+        });
+    }
+
+    fn begin(&self, work: impl FnOnce() -> Done + Send + 'static) {
+        let failed = |why| Done::Unwritten(format!("failed: {why}"));
+        if let Err(error) = self.0.begin("rows", work, failed) {
+            tracing::error!("rows can't be read or written: {error}");
+        }
     }
 
     /// Whether it reads or writes.
     pub fn is_busy(&self) -> bool {
-        self.worker.is_busy()
+        self.0.is_busy()
     }
 
     /// What is done.
     pub fn poll(&self) -> Vec<Done> {
-        let done = |reply| match reply {
-            Reply::Done { result, .. } => result,
-            Reply::Panicked { message, .. } => Done::Unwritten(format!("failed: {message}")),
-        };
-        self.worker.replies().into_iter().map(done).collect()
+        self.0.finished()
     }
 }
 

@@ -130,8 +130,8 @@ pub struct Thumbnails {
 
 impl Thumbnails {
     /// Starts the thread, which waits; `wake` is called from it.
-    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> std::io::Result<Thumbnails> {
-        Ok(Thumbnails { album: Album::default(), job: RowJob::start(wake)?, asked: Vec::new() })
+    pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Thumbnails {
+        Thumbnails { album: Album::default(), job: RowJob::start(wake), asked: Vec::new() }
     }
 
     /// Asks for those of `rows` that are missing, unless it was asked for all of them already.

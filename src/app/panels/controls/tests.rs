@@ -1,5 +1,5 @@
 use super::*;
-use crate::app::state::{EditCommand, RadarCommand};
+use crate::app::state::{EditCommand, RadarCommand, View};
 use crate::app::widgets::seen;
 use crate::evaluate::Metrics;
 use crate::interact::Snap;
@@ -68,7 +68,8 @@ fn every_method_of_the_list_says_in_a_line_what_it_is() {
 
 #[test]
 fn thresholds_are_told_in_decibels_where_these_are_chosen() {
-    let settings = Settings { units: Units::Decibels, target_eta: 0.9, ..Settings::default() };
+    let settings =
+        Settings { view: View { units: Units::Decibels, target_eta: 0.9, ..View::default() }, ..Settings::default() };
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
         let (radar, method, noise_seed, run) =
             (&Radar::default(), Some(&Baseline as &dyn Reconstructor), 0, Run::default());
@@ -117,7 +118,7 @@ fn every_click_is_one_command() {
 #[test]
 fn the_focus_passes_through_a_threshold_without_rounding_it() {
     assert_eq!((moved(0.851, 0.851), moved(0.851, 0.85)), (None, Some(0.85)));
-    let settings = Settings { target_eta: 0.851_234_5, ..Settings::default() };
+    let settings = Settings { view: View { target_eta: 0.851_234_5, ..View::default() }, ..Settings::default() };
     let (radar, capon) = (Radar::default(), CAPON);
     let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
         let (eta, run) = (0.763_194_2, Run::default());
@@ -245,7 +246,7 @@ fn what_a_lesson_does_not_use_is_not_shown() {
 /// The panel with a detector in use.
 fn detecting(cfar: Option<Cfar>, error: Option<&'static str>) -> Harness<'static, Vec<Command>> {
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let settings = Settings { cfar, ..Settings::default() };
+        let settings = Settings { view: View { cfar, ..View::default() }, ..Settings::default() };
         let radar = Radar::default();
         let input = Input {
             is_recorded: false,

@@ -1,7 +1,7 @@
 //! Which methods are tried on which scenes, and where the rows come from and go to.
 
 use super::input::Input;
-use crate::app::state::{Command, FailureChoice, RowsCommand};
+use crate::app::state::{Command, FailureChoice, Purpose, RowsCommand};
 use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::method_menu::method_menu;
@@ -67,7 +67,7 @@ fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mu
         let folder = input.own.map_or_else(|| "none is chosen".to_owned(), |path| path.display().to_string());
         ui.checkbox(&mut memory.own, "own scenes").on_hover_text(format!("The folder of your own scenes: {folder}"));
         if ui.button("Another folder…").on_hover_text("Pick any scene of the folder").clicked() {
-            asked.push(RowsCommand::ChooseOwnScenes.into());
+            asked.push(Purpose::OwnScenes.into());
             ui.close();
         }
     });
@@ -113,9 +113,9 @@ fn files(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         "Open…",
         "Show rows that were saved, or written by apertura evaluate --rows",
         true,
-        Command::Rows(RowsCommand::Open),
+        Command::AskFile(Purpose::OpenRows),
     );
-    button("Save…", "Save the rows as CSV", has_rows, Command::Rows(RowsCommand::Save));
+    button("Save…", "Save the rows as CSV", has_rows, Command::AskFile(Purpose::SaveRows));
     button("Clear", "Forget every row", has_rows, Command::Rows(RowsCommand::Clear));
     if let Some(count) = input.before {
         let name = format!("Bring back {}", counted(count, "row", "rows"));

@@ -1,7 +1,7 @@
 //! The scene on screen: the row's own figures beside those of now, worse and repaired, and kept.
 
 use super::input::{Input, Live, Now, Searched};
-use crate::app::state::{Command, RowsCommand, SearchChoice};
+use crate::app::state::{Command, Purpose, RowsCommand, SearchChoice};
 use crate::app::widgets::entry::press;
 use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::number_field::NumberField;
@@ -44,7 +44,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &m
             asked.push(RowsCommand::KeepScene(std::mem::take(&mut memory.note)).into());
         }
         if input.own.is_none() && ui.button("Folder…").clicked() {
-            asked.push(RowsCommand::ChooseOwnScenes.into());
+            asked.push(Purpose::OwnScenes.into());
         }
     });
 }

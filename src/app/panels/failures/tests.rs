@@ -1,6 +1,6 @@
 use super::*;
 use crate::app::jobs::{Album, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, some_row};
-use crate::app::state::{Conditions, FailureChoice, SearchChoice};
+use crate::app::state::{Conditions, FailureChoice, Purpose, SearchChoice};
 use crate::app::widgets::method_menu::Offered;
 use crate::app::widgets::seen;
 use crate::evaluate::rows::{Column, Row};
@@ -82,7 +82,7 @@ fn every_button_is_one_command() {
         Command::Rows(RowsCommand::Try(choice)),
         Command::Rows(RowsCommand::Search(search)),
         Command::Rows(RowsCommand::KeepScene(String::new())),
-        Command::Rows(RowsCommand::Open),
+        Command::AskFile(Purpose::OpenRows),
     ];
     assert_eq!(panel.state().asked, asked);
 }

@@ -1,7 +1,7 @@
 //! The list of lessons, with how far each was taken.
 
 use super::memory::LessonMemory;
-use crate::app::state::{Command, LessonCommand};
+use crate::app::state::{Command, LessonCommand, Purpose};
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Lesson, Progress};
 use crate::radar::counted;
@@ -45,7 +45,7 @@ pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: 
     ui.add_space(6.0);
     if ui.button("Open a lesson file…").on_hover_text("A TOML file; docs/lessons.md says how to write one").clicked()
     {
-        asked.push(LessonCommand::Open.into());
+        asked.push(Purpose::OpenLesson.into());
     }
 }
 

@@ -1,7 +1,7 @@
 //! Lessons as they are shown: what is asked with, and what stands there after an answer.
 
 use super::*;
-use crate::app::state::{Before, MapViews, SceneView, Settings, Setup, Task};
+use crate::app::state::{Before, MapViews, SceneView, Setup, Task, View};
 use crate::app::widgets::theme;
 use crate::lesson::{Guess, Stage};
 use crate::radar::Radar;
@@ -12,8 +12,7 @@ use std::sync::Arc;
 
 fn run(lesson: &str, step: usize) -> LessonRun {
     let shipped = crate::lesson::shipped::ALL.iter().find(|s| s.id == lesson).unwrap();
-    let setup =
-        Setup { settings: Settings::default(), radar: Radar::default(), scene: Arc::new(Scene::default()), depth: 0 };
+    let setup = Setup { view: View::default(), radar: Radar::default(), scene: Arc::new(Scene::default()), depth: 0 };
     let before = Before { setup, scene_view: SceneView::default(), map_views: MapViews::default(), task: Task::Teach };
     let mut run = LessonRun::new(lesson.to_owned(), Arc::new(shipped.load().unwrap()), before);
     run.go_to(step);

@@ -20,14 +20,10 @@ pub enum Way {
 pub enum DocumentCommand {
     /// Start with an empty scene.
     New,
-    /// Ask for a scene file and open it.
-    Open,
     /// Open this scene file.
     OpenPath(PathBuf),
     /// Save the scene where it came from, or ask where.
     Save,
-    /// Ask where to save the scene.
-    SaveAs,
     /// Save the scene in this file.
     SaveTo(PathBuf),
     /// Whether the scene is saved in a file that can't hold all of it, or that another program has written to.

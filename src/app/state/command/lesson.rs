@@ -9,8 +9,6 @@ use std::sync::Arc;
 pub enum LessonCommand {
     /// Begin a lesson that comes with the program.
     Begin(usize),
-    /// Ask for a lesson file and begin it.
-    Open,
     /// Begin the lesson in this file.
     OpenFile(PathBuf),
     /// Begin a lesson that was read from a file and tried out.

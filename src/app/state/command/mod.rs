@@ -4,6 +4,7 @@
 mod document;
 mod edit;
 mod export;
+mod file;
 mod lesson;
 mod radar;
 mod rows;
@@ -14,6 +15,7 @@ mod work;
 pub use document::{DocumentCommand, Way};
 pub use edit::EditCommand;
 pub use export::ExportCommand;
+pub use file::Purpose;
 pub use lesson::LessonCommand;
 pub use radar::RadarCommand;
 pub use rows::RowsCommand;
@@ -22,6 +24,7 @@ pub use window::WindowCommand;
 pub use work::WorkCommand;
 
 use crate::scene::generate::Kind;
+use std::path::PathBuf;
 
 /// A kind of object to add.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,19 +56,6 @@ impl NewObject {
         NewObject::Post,
         NewObject::Polygon,
     ];
-}
-
-/// Which methods are to be evaluated, and on what.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct EvaluationChoice {
-    /// Names of methods.
-    pub methods: Vec<&'static str>,
-    /// Test sets, 1 to 3.
-    pub sets: Vec<usize>,
-    /// Scenes of each set.
-    pub count: u32,
-    /// Seed of the scenes.
-    pub seed: u64,
 }
 
 /// The rate of false alarms that a threshold is to keep, and the scenes to try the method on.
@@ -100,6 +90,8 @@ pub enum Command {
     Export(ExportCommand),
     /// Arrange the window.
     Window(WindowCommand),
+    /// Ask for a file, and do with it what it is asked for.
+    AskFile(Purpose),
     /// Do these for the guide: undo takes back the settings they change, too.
     Guided(Vec<Command>),
 }
@@ -124,5 +116,26 @@ groups!(
     Lesson(LessonCommand),
     Work(WorkCommand),
     Export(ExportCommand),
-    Window(WindowCommand)
+    Window(WindowCommand),
+    AskFile(Purpose)
 );
+
+impl Purpose {
+    /// What is done with the file that was asked for.
+    pub fn command(self, path: PathBuf) -> Command {
+        match self {
+            Purpose::Open => DocumentCommand::OpenPath(path).into(),
+            Purpose::OpenLog => WorkCommand::WatchLog(path).into(),
+            Purpose::OpenLesson => LessonCommand::OpenFile(path).into(),
+            Purpose::SaveScene => DocumentCommand::SaveTo(path).into(),
+            Purpose::ExportPicture => ExportCommand::PictureTo(path).into(),
+            Purpose::ExportMaps => ExportCommand::MapsTo(path).into(),
+            Purpose::RecordDrag => ExportCommand::RecordDragTo(path).into(),
+            Purpose::DrawLesson => ExportCommand::DrawLessonTo(path).into(),
+            Purpose::ExportMetrics => ExportCommand::MetricsTo(path).into(),
+            Purpose::OpenRows => RowsCommand::OpenFile(path).into(),
+            Purpose::SaveRows => RowsCommand::SaveTo(path).into(),
+            Purpose::OwnScenes => RowsCommand::SetOwnScenes(path).into(),
+        }
+    }
+}

@@ -10,15 +10,11 @@ pub enum RowsCommand {
     Try(FailureChoice),
     /// Stop trying; the rows stay.
     CancelTrying,
-    /// Ask for a table of rows and show it.
-    Open,
     /// Show the rows of this file.
     OpenFile(PathBuf),
     /// Show what this CSV file holds: rows, or the log of a training.
     OpenTable(PathBuf),
-    /// Ask where to save the rows as CSV.
-    Save,
-    /// Save the rows in this file.
+    /// Save the rows as CSV in this file.
     SaveTo(PathBuf),
     /// Forget every row.
     Clear,
@@ -36,8 +32,6 @@ pub enum RowsCommand {
     ForgetSearch,
     /// Keep the scene on screen among one's own, with this note.
     KeepScene(String),
-    /// Ask for the folder of one's own scenes.
-    ChooseOwnScenes,
     /// The folder of one's own scenes is the one that this file lies in.
     SetOwnScenes(PathBuf),
 }

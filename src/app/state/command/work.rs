@@ -1,6 +1,6 @@
 //! Commands that start long work, or stop it.
 
-use super::{EvaluationChoice, ThresholdChoice};
+use super::ThresholdChoice;
 use std::path::PathBuf;
 
 /// Commands that start long work, or stop it.
@@ -14,10 +14,6 @@ pub enum WorkCommand {
     CancelMethod,
     /// Stop the second method's reconstruction.
     CancelSecond,
-    /// Evaluate methods on test sets.
-    Evaluate(EvaluationChoice),
-    /// Stop the evaluation.
-    CancelEvaluation,
     /// Look for the threshold at which the method in use keeps a rate of false alarms, and set it.
     FindThreshold(ThresholdChoice),
     /// Stop that; the threshold stays as it is.
@@ -29,8 +25,6 @@ pub enum WorkCommand {
     },
     /// Stop measuring.
     CancelMeasurement,
-    /// Ask for the log of a training and watch it.
-    OpenLog,
     /// Watch this log of a training.
     WatchLog(PathBuf),
     /// Start a training by the recipe of this name, and watch it.

@@ -1,8 +1,6 @@
 //! Commands that add, open, save, export and edit.
 
-use super::super::command::{
-    Command, DocumentCommand, EditCommand, ExportCommand, NewObject, RowsCommand, WindowCommand, WorkCommand,
-};
+use super::super::command::{Command, DocumentCommand, EditCommand, ExportCommand, NewObject, Purpose, WindowCommand};
 use super::entry::{Entry, command, command_shift, entries, entry, key, shift};
 use crate::interact::{Alignment, Along, Coordinates};
 use eframe::egui::Key;
@@ -21,20 +19,20 @@ pub(super) const COMMANDS: &[Entry] = {
         Edit(EditCommand::Add(NewObject::Polygon, None)), "Add polygon",
             "Add an outline with an inner corner, whose corners can be dragged", None;
         Document(DocumentCommand::New), "New scene", "Start with an empty scene; undo brings this one back", command(Key::N);
-        Document(DocumentCommand::Open), "Open…", "Open a scene (.toml or .npz) or a recording (.toml)", command(Key::O);
+        AskFile(Purpose::Open), "Open…", "Open a scene (.toml or .npz) or a recording (.toml)", command(Key::O);
         Document(DocumentCommand::Save), "Save", "Save the scene as TOML", command(Key::S);
-        Document(DocumentCommand::SaveAs), "Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S);
-        Work(WorkCommand::OpenLog), "Open training log…", "Watch the loss of a training (its log.csv)", None;
-        Rows(RowsCommand::Open), "Open rows…", "Show the rows of an evaluation (.csv of evaluate --rows)", None;
-        Rows(RowsCommand::Save), "Save rows…", "Save the rows of the panel Evaluate as CSV", None;
-        Rows(RowsCommand::ChooseOwnScenes), "Folder of own scenes…", "Choose where Keep puts scenes: pick any scene of the folder", None;
-        Export(ExportCommand::Picture), "Export picture…",
+        AskFile(Purpose::SaveScene), "Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S);
+        AskFile(Purpose::OpenLog), "Open training log…", "Watch the loss of a training (its log.csv)", None;
+        AskFile(Purpose::OpenRows), "Open rows…", "Show the rows of an evaluation (.csv of evaluate --rows)", None;
+        AskFile(Purpose::SaveRows), "Save rows…", "Save the rows of the panel Evaluate as CSV", None;
+        AskFile(Purpose::OwnScenes), "Folder of own scenes…", "Choose where Keep puts scenes: pick any scene of the folder", None;
+        AskFile(Purpose::ExportPicture), "Export picture…",
             "Save the maps of this scene with scene and figures, as PNG or SVG", command(Key::E);
-        Export(ExportCommand::Maps), "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None;
-        Export(ExportCommand::RecordDrag), "Record a drag…", "Record the next drag as an animation (.gif) for slides", None;
-        Export(ExportCommand::DrawLesson), "Draw lesson…", "Draw every step of the lesson as a picture (.png) for slides", None;
+        AskFile(Purpose::ExportMaps), "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None;
+        AskFile(Purpose::RecordDrag), "Record a drag…", "Record the next drag as an animation (.gif) for slides", None;
+        AskFile(Purpose::DrawLesson), "Draw lesson…", "Draw every step of the lesson as a picture (.png) for slides", None;
         Export(ExportCommand::StopRecording), "Stop recording", "Give up what is recorded or drawn; nothing is written", None;
-        Export(ExportCommand::Metrics), "Export metrics…", "Save P_D, P_FA and SE of this scene as CSV", None;
+        AskFile(Purpose::ExportMetrics), "Export metrics…", "Save P_D, P_FA and SE of this scene as CSV", None;
         Edit(EditCommand::Undo), "Undo", "Undo the last change of the scene", command(Key::Z);
         Edit(EditCommand::Redo), "Redo", "Redo what was undone", command_shift(Key::Z);
         Edit(EditCommand::Cut), "Cut", "Move the selected objects to the clipboard, as TOML", command(Key::X);

@@ -1,7 +1,7 @@
 //! Commands that choose what is shown: maps, scales, the floor, the detector, the radar's signal, colours, lessons and the window itself.
 
-use super::super::command::{Command, LessonCommand, RadarCommand, ViewCommand, WindowCommand, WorkCommand};
-use super::super::settings::{Directions, Projection, Units};
+use super::super::command::{Command, LessonCommand, Purpose, RadarCommand, ViewCommand, WindowCommand, WorkCommand};
+use super::super::{Directions, Projection, Units};
 use super::entry::{Entry, command, entries, entry, key, shift};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Statistic;
@@ -18,7 +18,7 @@ pub(super) const COMMANDS: &[Entry] = {
         View(ViewCommand::TogglePlay), "Play or stop motion", "Let every object move by its velocity; the file keeps time 0", key(Key::Q);
         View(ViewCommand::SetTime(0.0)), "Back to time 0", "Show the scene as its file has it", None;
         View(ViewCommand::ResetMaps), "Show whole maps", "Undo zoom and pan of the maps", key(Key::Home);
-        Lesson(LessonCommand::Open), "Open lesson…", "Begin a lesson from a TOML file", None;
+        AskFile(Purpose::OpenLesson), "Open lesson…", "Begin a lesson from a TOML file", None;
         Lesson(LessonCommand::Present), "Lessons: whole screen",
             "Lesson, scene and maps on the whole screen, in large type", shift(Key::F11);
         Lesson(LessonCommand::Leave), "Exit lesson", "End the lesson; your scene and settings come back", None;

@@ -1,0 +1,23 @@
+//! Choices among a few things that have names.
+
+/// An enum with the name of each variant, `ALL` of them in this order, and `name`.
+macro_rules! named {
+    ($(#[$meta:meta])* pub enum $choice:ident { $($(#[$of_variant:meta])* $variant:ident = $name:literal,)* }) => {
+        $(#[$meta])*
+        pub enum $choice {
+            $($(#[$of_variant])* $variant,)*
+        }
+
+        impl $choice {
+            /// All of them, in the order they are offered.
+            pub const ALL: [$choice; [$($name),*].len()] = [$($choice::$variant),*];
+
+            /// Its name.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $($choice::$variant => $name,)*
+                }
+            }
+        }
+    };
+}

@@ -1,0 +1,197 @@
+//! How a scene is looked at: one value that settings keep, links and lessons change, and campaigns, pictures and undo read.
+
+use crate::evaluate::campaign::Campaign;
+use crate::maps::Normalisation;
+use crate::maps::cfar::Cfar;
+use crate::picture::ColourMap;
+#[cfg(feature = "pictures")]
+use crate::picture::Style;
+use crate::radar::{DecibelMilliwatts, Decibels, Radar};
+use crate::signal::Floor;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Coordinates of the maps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+pub enum Projection {
+    /// cos(theta) across, range up.
+    #[default]
+    RangeAngle,
+    /// x across, y up, as in the scene.
+    Cartesian,
+}
+
+impl Projection {
+    /// The other one.
+    pub fn other(self) -> Projection {
+        match self {
+            Projection::RangeAngle => Projection::Cartesian,
+            Projection::Cartesian => Projection::RangeAngle,
+        }
+    }
+}
+
+/// What the scale of a map or a cut counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Units {
+    /// Lambda, 0 to 1.
+    #[default]
+    Lambda,
+    /// Decibels below the peak.
+    Decibels,
+}
+
+impl Units {
+    /// The other one.
+    pub fn other(self) -> Units {
+        match self {
+            Units::Lambda => Units::Decibels,
+            Units::Decibels => Units::Lambda,
+        }
+    }
+}
+
+/// What the axis of directions counts, in every map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Directions {
+    /// cos θ, which the columns divide evenly.
+    #[default]
+    Cosine,
+    /// Degrees from straight ahead.
+    Degrees,
+}
+
+/// How the difference of output and target is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct DifferenceView {
+    /// Its absolute value; output minus target where not.
+    pub absolute: bool,
+    /// On a scale that reaches 1 for any difference; one that just holds it where not.
+    pub whole: bool,
+}
+
+/// What a view consists of, once: the struct, and how a change of it is taken back.
+macro_rules! view {
+    ($($(#[$meta:meta])* $field:ident: $type:ty = $default:expr,)*) => {
+        /// How a scene is looked at.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[serde(default)]
+        pub struct View {
+            $($(#[$meta])* pub $field: $type,)*
+        }
+
+        impl Default for View {
+            fn default() -> Self {
+                View { $($field: $default,)* }
+            }
+        }
+
+        impl View {
+            /// Where something was changed from `before` to `after` and not since, puts back what it was.
+            pub fn take_back(&mut self, before: &View, after: &View) {
+                $(if self.$field == after.$field {
+                    self.$field.clone_from(&before.$field);
+                })*
+            }
+        }
+    };
+}
+
+view! {
+    /// What lies beneath the reflectors.
+    floor: Floor = Floor::Thesis,
+    /// The ratio last used with [`Floor::Snr`].
+    snr: Decibels = Decibels(20.0),
+    /// The level last used with [`Floor::Level`].
+    level: DecibelMilliwatts = DecibelMilliwatts(-20.0),
+    /// How the maps are normalised.
+    normalisation: Normalisation = Normalisation::MinMax,
+    /// Colours of the maps.
+    colours: ColourMap = ColourMap::default(),
+    /// Coordinates of the maps.
+    projection: Projection = Projection::default(),
+    /// What colour bars and cuts count.
+    units: Units = Units::default(),
+    /// What the axis of directions counts.
+    directions: Directions = Directions::default(),
+    /// Whether inputs, target and output are drawn on one scale; each on its own where not.
+    one_scale: bool = false,
+    /// Whether range-Doppler maps of recordings leave out what stands still, the mean over the loops.
+    static_clutter_out: bool = false,
+    /// How the difference is drawn.
+    difference: DifferenceView = DifferenceView::default(),
+    /// eta', the threshold of the target.
+    target_eta: f32 = crate::evaluate::TARGET_ETA,
+    /// The detector in the place of the thresholds, if one is in use.
+    cfar: Option<Cfar> = None,
+    /// The detector that was used last.
+    last_cfar: Cfar = Cfar::default(),
+    /// eta for each method, where it differs from the method's own.
+    method_eta: BTreeMap<String, f32> = BTreeMap::new(),
+    /// Name of the reconstruction method.
+    method: String = String::new(),
+    /// Whether true reflectors are drawn over the maps.
+    show_reflectors: bool = false,
+    /// Whether the reflectors that the method found are drawn.
+    show_found: bool = false,
+    /// Whether the ends' fields of view are drawn in the scene.
+    show_fields_of_view: bool = false,
+    /// Whether what the formulas say of the selected reflector is drawn over the maps.
+    show_theory: bool = false,
+    /// Whether every object is marked by what became of it in the output.
+    show_kinds: bool = false,
+}
+
+impl View {
+    /// Takes a detector into use, or thresholds where there is none; the detector's cells are kept for the next time.
+    pub fn detect_by(&mut self, cfar: Option<Cfar>) {
+        self.cfar = cfar;
+        self.last_cfar = cfar.unwrap_or(self.last_cfar);
+    }
+
+    /// Puts another floor below scenes; the level of each kind is kept for the next time.
+    pub fn set_floor(&mut self, floor: Floor) {
+        self.floor = floor;
+        match floor {
+            Floor::Snr(snr) => self.snr = snr,
+            Floor::Level(level) => self.level = level,
+            Floor::Thesis | Floor::Exact | Floor::Thermal => {}
+        }
+    }
+
+    /// Judges the method of this name by a threshold of the user's, or by the method's own.
+    pub fn set_method_eta(&mut self, method: &str, eta: Option<f32>) {
+        match eta {
+            Some(eta) => _ = self.method_eta.insert(method.to_owned(), eta),
+            None => _ = self.method_eta.remove(method),
+        }
+    }
+
+    /// A campaign over this floor, with this normalisation and detector.
+    pub fn campaign(&self, radar: &Radar) -> Campaign {
+        let View { floor, normalisation, cfar, .. } = *self;
+        Campaign { radar: radar.clone(), floor, normalisation, cfar, ..Campaign::default() }
+    }
+
+    /// How pictures of a method's maps are drawn.
+    #[cfg(feature = "pictures")]
+    pub fn style(&self, method: &str) -> Style {
+        let View { floor, normalisation, colours, .. } = *self;
+        Style { floor, normalisation, colours, eta: self.method_eta.get(method).copied() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_changed_since_is_not_taken_back() {
+        let before = View::default();
+        let after = View { floor: Floor::Exact, target_eta: 0.5, show_theory: true, ..before.clone() };
+        let mut now = View { target_eta: 0.6, colours: ColourMap::Viridis, ..after.clone() };
+        now.take_back(&before, &after);
+        assert_eq!(now, View { target_eta: 0.6, colours: ColourMap::Viridis, ..before });
+    }
+}
