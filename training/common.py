@@ -87,7 +87,7 @@ def loaded(path, device, keys, what):
     """A checkpoint of ours that holds these keys; anything else ends the program with a line."""
     try:
         state = torch.load(path, weights_only=True, map_location=device)
-    except Exception as error:  # whatever is wrong with the file, the reader says it in its own way
+    except Exception as error:  # the reader's own message says what is wrong with the file
         raise SystemExit(f"{path} is no checkpoint that can be read: {' '.join(str(error).split())[:200]}") from None
     missing = [key for key in keys if not isinstance(state, dict) or key not in state]
     if missing:

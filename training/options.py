@@ -9,7 +9,7 @@ def common(parser):
     parser.add_argument("--loaders", type=int, default=0, help="processes that make scenes beside each training process")
     parser.add_argument("--validate-every", type=float, default=15, help="minutes")
     parser.add_argument("--save-every", type=float, default=2, help="minutes")
-    parser.add_argument("--steps", type=int, help="stop at this step, whatever the minutes")
+    parser.add_argument("--steps", type=int, help="stop at this step, also before the minutes are over")
     parser.add_argument("--untrained", action="store_true", help="with --export: write weights that no step was taken with, all the same")
     parser.add_argument("--export", metavar="FILE", help="write the averaged weights to this file, with their validation figures, and stop")
 

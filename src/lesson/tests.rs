@@ -31,7 +31,7 @@ fn every_lesson_file_is_listed() {
     assert_eq!(std::fs::read_dir(folder).unwrap().count(), shipped::ALL.len());
     for (id, lesson) in lessons() {
         assert!((4..=7).contains(&lesson.steps.len()), "{id} has {} steps", lesson.steps.len());
-        assert!(lesson.steps.iter().any(|s| s.challenge.is_some()), "{id} challenges nobody");
+        assert!(lesson.steps.iter().any(|s| s.challenge.is_some()), "{id} has no challenge");
         assert!(lesson.steps.iter().filter(|s| s.predict.is_some()).count() >= 3, "{id} asks too little");
     }
 }

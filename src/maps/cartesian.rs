@@ -14,7 +14,7 @@ pub struct CartesianMap {
     pub extent_metres: f64,
 }
 
-/// Where one pixel takes its value from: four cells and the weights of the upper row and the right column.
+/// Source of a pixel: four cells and the weights of the upper row and the right column.
 #[derive(Debug, Clone, Copy)]
 struct Tap {
     bin: u32,

@@ -29,14 +29,14 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use world::World;
 
-/// Which description of the scenes is followed.
+/// The description of the thesis' scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reading {
-    /// What the author's published program does; reproduces the printed tables.
+    /// The author's published program, which reproduces the printed tables.
     #[default]
     Program,
-    /// What the thesis' text says.
+    /// The thesis' text.
     Text,
 }
 
@@ -101,13 +101,12 @@ impl Generator {
     /// Seed of the noise beneath a scene, below 2^53.
     fn noise_seed(&self, kind: Kind, number: u32) -> u64 {
         let mut rng = self.rng(kind, number);
-        // Far beyond what the scene itself draws from the stream.
+        // Far beyond the scene's own draws from the stream.
         rng.set_word_pos(1 << 40);
         rng.random::<u64>() >> 11
     }
 
-    /// Scene `number` of a kind. Each scene of each purpose has its own [`Scene::noise_seed`], so that no method meets in a test the noise it
-    /// was fitted to.
+    /// Scene `number` of a kind. Each scene of each purpose has its own [`Scene::noise_seed`], so that tests have other noise than training.
     pub fn scene(&self, kind: Kind, number: u32) -> Scene {
         let rng = &mut self.rng(kind, number);
         let objects = match kind {

@@ -50,7 +50,7 @@ pub struct Scene {
     /// Whether bodies hide what stands behind them.
     #[serde(default = "yes", skip_serializing_if = "is_true")]
     pub shadows: bool,
-    /// What is not as the formulas assume.
+    /// Element errors, interference and mirrors.
     #[serde(default, skip_serializing_if = "Disturbances::is_none")]
     pub disturbances: Disturbances,
     /// The objects, in the order they were added.
@@ -79,7 +79,7 @@ fn is_zero(seed: &u64) -> bool {
     *seed == 0
 }
 
-/// Nearest a reflector may come to an element, metres. Closer than this the 1/R^2 law means nothing and its amplitude knows no bound.
+/// Smallest distance of a reflector from an element, metres. Nearer, the 1/R^2 law is unbounded.
 pub const MIN_ELEMENT_DISTANCE_METRES: f64 = 1e-6;
 
 /// Most reflectors, and most objects, that a scene may hold.
@@ -123,12 +123,12 @@ impl Scene {
         self.objects.iter().flat_map(Object::reflectors).collect()
     }
 
-    /// Whether nothing in it reflects. Its samples then hold noise alone, or nothing.
+    /// Whether nothing in it reflects, so that its samples are noise alone, or zero.
     pub fn is_silent(&self) -> bool {
         self.objects.iter().all(|object| object.reflectivity() == 0.0 || object.echo_count() == 0)
     }
 
-    /// Every reflector, and what a mirror makes of each: all that echoes, but for bodies.
+    /// Every reflector and its ghosts in a mirror, without bodies.
     pub fn echoing(&self, radar: &Radar) -> Vec<Reflector> {
         let mut all = self.reflectors();
         if let Some(mirror) = &self.disturbances.mirror {
@@ -153,7 +153,7 @@ impl Scene {
         self.objects.iter().any(|o| o.body().is_some())
     }
 
-    /// Checks that the scene holds no more than [`MAX_REFLECTORS`] reflectors and objects, before anything is made of them.
+    /// Checks that the scene has at most [`MAX_REFLECTORS`] reflectors and objects.
     /// # Errors
     /// [`SceneError::TooMany`] says how many there are.
     pub fn check_count(&self) -> Result<(), SceneError> {
@@ -172,9 +172,8 @@ impl Scene {
         within_limit(count(Object::echo_count), "echoes")
     }
 
-    /// Checks that `radar` can see this scene: the radar valid, every number finite and in range, no reflector on an element.
-    ///
-    /// Reflectors behind the array (y < 0), beyond the maximum range (they wrap) and very far away are all allowed.
+    /// Checks that the radar is valid, every number finite and in range, and no reflector on an element. Reflectors behind the array (y < 0),
+    /// beyond the maximum range (they wrap) and very far away are allowed.
     /// # Errors
     /// [`SceneError`] names the object or the radar's field, and what was expected.
     pub fn validate(&self, radar: &Radar) -> Result<(), SceneError> {

@@ -1,4 +1,4 @@
-//! Objects that move: each with a constant velocity. The scene has their places at time 0.
+//! Objects with a constant velocity. The scene has their places at time 0.
 
 use super::common::of_each;
 use super::{Object, Scene, SceneError};
@@ -22,7 +22,7 @@ impl Object {
         self.velocity_metres_per_second() != [0.0, 0.0]
     }
 
-    /// How fast its centre goes away from the array's middle, metres a second; below 0 it comes nearer.
+    /// Radial velocity of its centre, metres a second, positive away from the array's middle.
     pub fn radial_velocity_metres_per_second(&self) -> f64 {
         let ([x, y], [vx, vy]) = (self.centre_metres(), self.velocity_metres_per_second());
         let range = x.hypot(y);

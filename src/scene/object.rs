@@ -1,4 +1,4 @@
-//! The objects a person places: a point, a line of points, a Gaussian cluster of points, or a body.
+//! The objects of a scene: points, lines of points, Gaussian clusters of points, and bodies.
 
 use super::body::{Block, Body, Polygon, Post, Wall, is_zero, one};
 use super::body_check;
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// Characters of an object's name, at most.
 pub const MAX_NAME_CHARACTERS: usize = 40;
 
-/// Something that can be placed, dragged and deleted as one.
+/// An object of a scene, which is placed, dragged and deleted as a whole.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Object {
@@ -55,7 +55,7 @@ moving! {
         pub y_start_metres: f64,
         /// Distance between neighbouring reflectors, metres.
         pub spacing_metres: f64,
-        /// Where the line leads from its first reflector: 0 along +x, 90 straight ahead (+y), as where nothing is said.
+        /// Direction of the line from its first reflector: 0 along +x, 90 (the default) straight ahead (+y).
         #[serde(default = "straight_ahead", skip_serializing_if = "is_straight_ahead")]
         pub direction_degrees: f64,
         /// Number of reflectors.
@@ -179,7 +179,7 @@ impl Object {
         }
     }
 
-    /// What people call it: a file's "gaussian" is a cluster.
+    /// The noun in messages: a file's "gaussian" is a cluster.
     pub fn noun(&self) -> &'static str {
         match self {
             Object::Gaussian(_) => "cluster",
@@ -261,7 +261,7 @@ impl Object {
         }
     }
 
-    /// Its reflectors; of a body the places where the array's middle sees it echo, each with its reflectivity.
+    /// Its reflectors, or the places of a body's echoes at the array's middle, each with its reflectivity.
     pub fn marks(&self) -> Vec<Reflector> {
         let Some(body) = self.body() else { return self.reflectors() };
         let reflectivity = self.reflectivity();
@@ -327,7 +327,7 @@ impl Object {
         self.set_anchor([x + dx_metres, y + dy_metres]);
     }
 
-    /// The place a person would grab: the point, the middle of the line, the centre of the cluster or the body. (x, y) in metres.
+    /// Its handle: the point, the middle of the line, the centre of the cluster or the body. (x, y) in metres.
     pub fn centre_metres(&self) -> [f64; 2] {
         match self {
             Object::Line(l) => l.place_metres(l.count.saturating_sub(1) as f64 / 2.0),

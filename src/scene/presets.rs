@@ -1,6 +1,4 @@
-//! Scenes that come with the program: scenes of the thesis, and scenes on which a method fails. Each has a name and notes.
-//!
-//! They are the files of `assets/scenes`, embedded in the program.
+//! Scenes that come with the program, with name and notes: the files of `assets/scenes`, embedded.
 
 use super::file::{SceneFile, SceneTextError, from_toml};
 

@@ -25,7 +25,7 @@ impl Object {
         }
     }
 
-    /// How far it is turned from what it was, -180 to 180 degrees, counter-clockwise; 0 where [`Object::turn`] changes nothing.
+    /// Rotation since `before`, -180 to 180 degrees, counter-clockwise; 0 where [`Object::turn`] changes nothing.
     pub fn turned_degrees(&self, before: &Object) -> f64 {
         let turned = match (before, self) {
             (Object::Wall(a), Object::Wall(b)) => b.angle_degrees - a.angle_degrees,

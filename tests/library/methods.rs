@@ -190,7 +190,7 @@ fn a_crowded_scene_is_told_from_its_surroundings_in_time() {
 }
 
 #[test]
-fn whoever_is_asked_to_stop_stops() {
+fn a_cancelled_method_stops() {
     let ends = ends_of(&two_points(), Floor::Thesis);
     let request = Request::default();
     request.task.cancel();

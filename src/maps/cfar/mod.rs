@@ -27,7 +27,7 @@ pub const MOST_CELLS: usize = 1000;
 
 const RANK: f64 = 0.75;
 
-/// What the training cells are summed up by.
+/// The noise estimate from the training cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Statistic {
     /// Their mean.
@@ -53,7 +53,7 @@ impl Statistic {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Cfar {
-    /// What the training cells are summed up by.
+    /// The noise estimate from the training cells.
     pub statistic: Statistic,
     /// Guard cells a side, `[range bins, columns]`.
     pub guard: [usize; 2],
@@ -90,7 +90,7 @@ pub enum CfarError {
     Text(String),
 }
 
-/// What a detector makes of one cell. Powers are in the map's unit.
+/// Noise estimate and threshold of one cell, in the map's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
     /// Number of training cells.
@@ -191,7 +191,7 @@ impl Cfar {
         self.detect(relative_power(map, scale).view())
     }
 
-    /// What it makes of the cell `[bin, column]` alone.
+    /// The verdict on the cell `[bin, column]` alone.
     /// # Errors
     /// [`Cfar::check_map`].
     /// # Panics

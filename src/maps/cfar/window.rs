@@ -1,7 +1,7 @@
 //! The window around a cell, and its training cells summed or counted for every cell of a map.
 //!
-//! Sums are made of positive numbers alone. The difference of two corners of a summed-area table would lose the noise: a map may span 30
-//! decades of power, more than the 16 digits of a double.
+//! Only positive numbers are summed: differences in a summed-area table would lose the noise, since a map may span 30 decades of power, more
+//! than the 16 digits of a double.
 
 use ndarray::{Array2, ArrayView2, Axis, Zip};
 use std::ops::Range;

@@ -30,7 +30,7 @@ use std::sync::Arc;
 /// Rows that are gathered from the blocks at a time: neighbours share cache lines and pages.
 const ROWS: usize = 8;
 
-/// By how much the logarithms of equal cells differ at most, decades.
+/// Largest difference between the logarithms of equal cells, decades.
 const ROUNDING_DECADES: f32 = 1e-5;
 
 /// `log10(|Y| + guard)`, `[range bins, columns]`, with its extremes.
@@ -75,7 +75,7 @@ pub struct MapNoise<'a, T, const W: usize> {
     pub deviation: &'a [Lanes<T, W>],
 }
 
-/// What maps are made of: the sum of several profiles and a floor.
+/// The input of maps: the sum of several profiles and a floor.
 #[derive(Debug, Clone, Copy)]
 pub struct MapSources<'a, T, const W: usize> {
     /// Profiles to be added up.

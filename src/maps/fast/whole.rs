@@ -1,4 +1,4 @@
-//! The whole array's map of range profiles that no engine keeps: decades in f32, in one pass over the rows.
+//! The whole array's map from range profiles without an engine: decades in f32, in one pass over the rows.
 
 use super::ROWS;
 use super::log::{Extremes, LogScale, log_rolled};
@@ -16,7 +16,7 @@ pub fn whole_map(radar: &Radar, profiles: &RangeProfiles) -> Array2<f32> {
     let scale = (columns as f64).sqrt().recip();
     let window: Vec<f64> = radar.window.weights(columns).into_iter().map(|w| w * scale).collect();
     let loudest = profiles.profiles.iter().map(Complex64::norm_sqr).fold(0.0, f64::max).sqrt();
-    // A cell is largest where every profile of its row is as loud as the loudest, and all are in phase.
+    // Upper bound of a cell: all profiles as strong as the strongest, and in phase.
     let log = LogScale::new(loudest * window.iter().sum::<f64>());
     let mut map = Array2::zeros((radar.samples, columns));
     map.axis_chunks_iter_mut(Axis(0), ROWS).into_par_iter().enumerate().for_each_init(

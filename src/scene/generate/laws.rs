@@ -1,4 +1,4 @@
-//! Laws of strengths and steps, and ways through the field, as the world's scenes draw them.
+//! Distributions of strengths and steps, and curves through the field, for the world's scenes.
 
 use crate::scene::shape::direction;
 use rand::RngExt;
@@ -6,12 +6,12 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp1, StandardNormal};
 use std::ops::Range;
 
-/// How far below the strongest point of a scene the weakest lies at most.
+/// Largest dynamic range of a scene's points.
 pub(super) const MAX_DYNAMIC_DECIBELS: f64 = 60.0;
 
 pub(super) type GroundPlace = [f64; 2];
 
-/// How strong the points of a group are beside each other.
+/// Distribution of the relative strengths in a group of points.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Strengths {
     Equal,
@@ -85,7 +85,7 @@ impl Steps {
     }
 }
 
-/// A way through the field: straight, an arc, or with a bend.
+/// A curve through the field: straight, an arc, or with a bend.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Track {
     start: GroundPlace,
@@ -97,7 +97,7 @@ pub(super) struct Track {
 
 impl Track {
     pub(super) fn random(start: GroundPlace, length_metres: f64, rng: &mut ChaCha8Rng) -> Self {
-        // Much along a road leads straight ahead, or nearly so.
+        // Most structures along a road lead nearly straight ahead.
         let heading_degrees = match rng.random_range(0..10) {
             0..=2 => 90.0,
             3..=5 => 90.0 + rng.random_range(-20.0..20.0),
@@ -112,7 +112,7 @@ impl Track {
         Track { start, heading_degrees, degrees_per_metre, bend }
     }
 
-    /// Points after these steps, `side_metres` to the left of the way.
+    /// Points after these steps, `side_metres` to the left of the curve.
     pub(super) fn points(&self, steps_metres: impl IntoIterator<Item = f64>, side_metres: f64) -> Vec<GroundPlace> {
         let ([mut x, mut y], mut gone) = (self.start, 0.0);
         let step = |length: f64| {

@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use std::fmt;
 use std::str::FromStr;
 
-/// Kinds of scenes, and how often each is drawn.
+/// Kinds of scenes with their probabilities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mixture {
     shares: Vec<(Kind, f64)>,
@@ -37,7 +37,7 @@ impl Mixture {
     pub fn kind(&self, seed: u64, index: u32) -> Kind {
         let mut key = [0u8; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
-        // No purpose of generated scenes has this number: the draw of a kind says nothing of its scenes.
+        // No purpose has this number, so the draw of a kind is independent of its scenes.
         key[8] = 4;
         let mut rng = ChaCha8Rng::from_seed(key);
         rng.set_stream(index.into());

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 const CAR_METRES: [f64; 2] = [4.5, 1.8];
 const NEAREST_METRES: f64 = 5.0;
 const MAX_RANGE_PART: f64 = 0.85;
-/// How far bodies keep from each other and from the array's axis, metres.
+/// Smallest distance between bodies, and from the array's axis, metres.
 const APART_METRES: f64 = 0.5;
 const TRIES: usize = 100;
 
@@ -80,7 +80,7 @@ struct Things {
     objects: Vec<Object>,
 }
 
-/// Places of an outline that stand for all of it: its corners, and those between them half a metre apart.
+/// Corners of an outline, and places between them half a metre apart.
 fn samples(shape: &Shape) -> Vec<[f64; 2]> {
     if let Shape::Circle { centre_metres: [x, y], radius_metres: r } = *shape {
         return vec![[x - r, y], [x + r, y], [x, y - r], [x, y + r]];

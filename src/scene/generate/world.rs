@@ -1,6 +1,5 @@
 //! Scenes for training and validation: points along random curves, in clouds and scattered, and bodies, of every count, step and strength.
-//!
-//! It covers what the named kinds hold and much between them, and draws none of them: they stay tests.
+//! They cover the range of the named kinds, which stay tests, without drawing any of them.
 
 use super::laws::{GroundPlace, MAX_DYNAMIC_DECIBELS, Steps, Strengths, Track, log_uniform};
 use super::things::{self, has_room};
@@ -21,7 +20,7 @@ const MAX_GROUPS: usize = 8;
 const STEP_BINS: Range<f64> = 0.2..4.0;
 const STEP_METRES: Range<f64> = 0.2..1.0;
 const NEAREST_METRES: f64 = 0.3;
-/// How far points keep from the array.
+/// Smallest distance of points from the array.
 const CLEAR_METRES: f64 = 0.08;
 /// Farthest place, and farthest point of a curve or a cloud, as parts of the maximum range: what lies beyond wraps around.
 const FARTHEST_PLACE: f64 = 0.95;
@@ -81,7 +80,7 @@ impl World {
         }));
     }
 
-    /// Those places that lie in the field, of the first draw that has half of them there, or of the last.
+    /// The places in the field of the first draw with half of its places there, or of the last draw.
     fn in_field(
         &self,
         rng: &mut ChaCha8Rng,
@@ -119,7 +118,7 @@ impl World {
         places
     }
 
-    /// Points around a place: a normal or an even distribution, or an outline, longer than wide and turned anyhow.
+    /// Points around a place: a normal or an even distribution, or an outline, longer than wide, in any orientation.
     fn cloud(&self, count: usize, rng: &mut ChaCha8Rng) -> Vec<GroundPlace> {
         let [x, y] = self.place(rng.random_range(0..5), rng);
         let long = log_uniform(0.05..6.0f64.min(self.max_range_metres / 4.0), rng);
