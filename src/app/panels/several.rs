@@ -3,6 +3,7 @@
 use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::Small;
 use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, Variant, ViewCommand};
+use crate::app::widgets::kind_boxes::member_box;
 use crate::app::widgets::labelled::{choice, choice_told, labelled};
 use crate::app::widgets::method_menu::{Offered, method_lines};
 use crate::app::widgets::number_field::NumberField;
@@ -122,15 +123,7 @@ fn numbers(ui: &mut Ui, several: &mut Several, unit: &str) {
 fn methods(ui: &mut Ui, several: &mut Several, methods: Offered<'_>) {
     ui.menu_button("Methods", |ui| {
         method_lines(ui, methods, |ui, method| {
-            let mut chosen = several.methods.contains(method.name());
-            let response = ui.checkbox(&mut chosen, method.name());
-            if response.changed() {
-                match chosen {
-                    true => several.methods.insert(method.name().to_owned()),
-                    false => several.methods.remove(method.name()),
-                };
-            }
-            response
+            member_box(ui, method.name(), method.name().to_owned(), &mut several.methods)
         });
     })
     .response

@@ -19,6 +19,7 @@ pub struct Chart<'a> {
     x: Axis<'a>,
     y: Axis<'a>,
     has_one_scale: bool,
+    has_grid: bool,
     is_zoomable: bool,
     items: Vec<Box<dyn PlotItem>>,
 }
@@ -36,7 +37,7 @@ pub struct Drawn {
 impl<'a> Chart<'a> {
     /// A chart with a name for screen readers, without lines.
     pub fn new(name: &'a str, x: Axis<'a>, y: Axis<'a>) -> Self {
-        Chart { name, x, y, has_one_scale: false, is_zoomable: false, items: Vec::new() }
+        Chart { name, x, y, has_one_scale: false, has_grid: true, is_zoomable: false, items: Vec::new() }
     }
 
     /// The same, with both axes to one scale: one of them shows more than was asked for.
@@ -57,7 +58,7 @@ impl<'a> Chart<'a> {
     /// A line from point to point. Points far outside are drawn just outside: a dashed line that leads away by millions of points would be
     /// made of as many dashes.
     pub fn line(&mut self, points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke, style: LineStyle) {
-        let within = |v: f64, axis: &Axis<'_>| v.clamp(2.0 * axis.low - axis.high, 2.0 * axis.high - axis.low);
+        let within = |v: f64, axis: &Axis<'_>| v.min(2.0 * axis.high - axis.low).max(2.0 * axis.low - axis.high);
         let points = points.into_iter().filter(|p| !(p[0].is_nan() || p[1].is_nan()));
         let points: PlotPoints<'static> = points.map(|[x, y]| [within(x, &self.x), within(y, &self.y)]).collect();
         self.add(Line::new("", points).stroke(stroke).style(style));
@@ -73,8 +74,9 @@ impl<'a> Chart<'a> {
         self.add(Points::new("", vec![at]).radius(radius).color(colour));
     }
 
-    /// A picture between two corners.
+    /// A picture between two corners, without a grid over it.
     pub fn image(&mut self, texture: TextureId, [left, bottom]: [f64; 2], [right, top]: [f64; 2]) {
+        self.has_grid = false;
         let middle = PlotPoint::new((left + right) / 2.0, (bottom + top) / 2.0);
         self.add(PlotImage::new("", texture, middle, [(right - left) as f32, (top - bottom) as f32]));
     }
@@ -82,7 +84,7 @@ impl<'a> Chart<'a> {
     /// Draws it into `area`.
     pub fn show(mut self, ui: &mut Ui, area: Rect, sense: Sense) -> Drawn {
         let (left, right) = self.beside(ui.painter(), area);
-        let Chart { name, x, y, has_one_scale, is_zoomable, items } = self;
+        let Chart { name, x, y, has_one_scale, has_grid, is_zoomable, items } = self;
         let painter = ui.painter().clone();
         let rect = Rect::from_min_max(area.min + vec2(TITLE[0], AROUND[0]), area.max - vec2(right, 0.0));
         let mut inside = ui.new_child(UiBuilder::new().id_salt(name).max_rect(rect));
@@ -92,6 +94,7 @@ impl<'a> Chart<'a> {
             .x_grid_spacer(move |input| marks(x, input, |axis, length| axis.across(&painter, length)))
             .y_grid_spacer(move |input| marks(y, input, |axis, length| axis.upwards(length)))
             .grid_spacing(1.0..=2.0)
+            .show_grid(has_grid)
             .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color.gamma_multiply(0.6))
             .allow_zoom(is_zoomable)
             .allow_drag(is_zoomable)

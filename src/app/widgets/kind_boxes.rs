@@ -14,19 +14,26 @@ pub fn ticking_menu(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) ->
     MenuButton::new(title).config(config).ui(ui, contents).0
 }
 
+/// A box that is ticked while `value` is in `chosen`.
+pub fn member_box<T: Ord>(ui: &mut Ui, name: impl Into<String>, value: T, chosen: &mut BTreeSet<T>) -> Response {
+    let mut ticked = chosen.contains(&value);
+    let response = ui.checkbox(&mut ticked, name.into());
+    if response.changed() {
+        match ticked {
+            true => chosen.insert(value),
+            false => chosen.remove(&value),
+        };
+    }
+    response
+}
+
 /// A box to tick for each of `kinds`, with a sentence beside it; what is ticked is in `chosen`.
 pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &mut BTreeSet<Kind>) {
     let room = SENTENCE_WIDTH.min((ui.ctx().content_rect().width() - 220.0).max(120.0));
     Grid::new("kinds").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
         for kind in kinds {
-            let mut ticked = chosen.contains(&kind);
             let name = if kind.test_set().is_some() { format!("set {kind}") } else { kind.to_string() };
-            if ui.checkbox(&mut ticked, name).changed() {
-                match ticked {
-                    true => chosen.insert(kind),
-                    false => chosen.remove(&kind),
-                };
-            }
+            member_box(ui, name, kind, chosen);
             ui.scope(|ui| {
                 ui.set_width(room);
                 ui.add(Label::new(RichText::new(kind.description()).weak().small()).wrap().selectable(false));

@@ -1,6 +1,6 @@
 //! Lists of methods by family, each with a line that says what it is and the time it takes here: one to choose, or several.
 
-use super::kind_boxes::ticking_menu;
+use super::kind_boxes::{member_box, ticking_menu};
 use super::numbers::significant;
 use crate::app::state::{Command, Times, WorkCommand};
 use crate::radar::Radar;
@@ -50,17 +50,7 @@ pub fn method_menu(ui: &mut Ui, offered: Offered<'_>, chosen: &mut BTreeSet<&'st
         _ => chosen.iter().copied().collect::<Vec<_>>().join(", "),
     };
     let menu = ticking_menu(ui, &format!("Methods: {title}"), |ui| {
-        _ = method_lines(ui, offered, |ui, method| {
-            let mut is_chosen = chosen.contains(method.name());
-            let response = ui.checkbox(&mut is_chosen, method.name());
-            if response.changed() {
-                match is_chosen {
-                    true => chosen.insert(method.name()),
-                    false => chosen.remove(method.name()),
-                };
-            }
-            response
-        });
+        _ = method_lines(ui, offered, |ui, method| member_box(ui, method.name(), method.name(), chosen));
     });
     menu.on_hover_text(tip);
 }

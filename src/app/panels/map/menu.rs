@@ -1,43 +1,31 @@
 //! What a map offers at the pointer: overlays, views, pictures.
 
-use crate::app::state::{
-    Command, DifferenceView, ExportCommand, MapKind, Panel, Projection, Units, ViewCommand, WindowCommand,
-};
+use super::{Input, Shown};
+use crate::app::state::{Command, ExportCommand, Panel, Projection, Units, ViewCommand, WindowCommand};
 use crate::app::widgets::entry::{entry, ticked};
 use eframe::egui::Ui;
 
-/// What the menu is of.
-pub struct Looked {
-    /// Which map.
-    pub kind: MapKind,
-    /// Which of [`ViewCommand::OVERLAYS`] are drawn.
-    pub overlays: [bool; 4],
-    /// Over which coordinates.
-    pub projection: Projection,
-    /// What the colour bar counts.
-    pub units: Units,
-    /// How a difference is drawn.
-    pub difference: DifferenceView,
-}
-
 /// Draws the menu; what was chosen.
-pub fn menu(ui: &mut Ui, looked: &Looked, asked: &mut Vec<Command>) {
-    let (kind, difference) = (looked.kind, looked.difference);
+pub fn menu(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+    let Input { kind, difference, shown: Shown { reflectors, found, theory, kinds }, .. } = *input;
+    let mut tick = |ui: &mut Ui, command: ViewCommand, on: bool| {
+        let command = Command::from(command);
+        let name = command.entry().map_or("", |listed| listed.name.as_ref());
+        ticked(ui, name, command.clone(), on, asked);
+    };
     ui.menu_button("Overlays", |ui| {
-        for (command, on) in ViewCommand::OVERLAYS.map(Command::from).into_iter().zip(looked.overlays) {
-            let name = command.entry().map_or("", |listed| listed.name.as_ref());
-            ticked(ui, name, command.clone(), on, asked);
+        for (command, on) in ViewCommand::OVERLAYS.into_iter().zip([reflectors, found, theory, kinds]) {
+            tick(ui, command, on);
         }
     });
     for (command, on) in [
-        (ViewCommand::ToggleProjection, Some(looked.projection == Projection::Cartesian)),
-        (ViewCommand::ToggleUnits, Some(looked.units == Units::Decibels)),
+        (ViewCommand::ToggleProjection, Some(input.projection == Projection::Cartesian)),
+        (ViewCommand::ToggleUnits, Some(input.units == Units::Decibels)),
         (ViewCommand::ToggleAbsoluteDifference, Some(difference.absolute).filter(|_| kind.is_difference())),
         (ViewCommand::ToggleWholeDifference, Some(!difference.whole).filter(|_| kind.is_difference())),
     ] {
-        if let (Some(on), command) = (on, Command::from(command)) {
-            let name = command.entry().map_or("", |listed| listed.name.as_ref());
-            ticked(ui, name, command.clone(), on, asked);
+        if let Some(on) = on {
+            tick(ui, command, on);
         }
     }
     ui.separator();

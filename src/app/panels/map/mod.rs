@@ -47,20 +47,8 @@ use eframe::egui;
 use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Sense, TextureId, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
 use legend::{Fill, Legend};
-use menu::{Looked, menu};
+use menu::menu;
 use plot::{draw_axes, is_wide, navigate, rect_of};
-
-fn looked(input: &Input<'_>) -> Looked {
-    let Shown { reflectors, found, theory, kinds, .. } = input.shown;
-    let overlays = [reflectors, found, theory, kinds];
-    Looked {
-        kind: input.kind,
-        overlays,
-        projection: input.projection,
-        units: input.units,
-        difference: input.difference,
-    }
-}
 
 /// What a map shows.
 pub struct Input<'a> {
@@ -190,7 +178,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     if let Some(over) = input.over.as_ref().filter(|_| is_bare) {
         over.handle(ui, &inner, rect, &mut asked);
     }
-    response.context_menu(|ui| menu(ui, &looked(&input), &mut asked));
+    response.context_menu(|ui| menu(ui, &input, &mut asked));
     if is_bare {
         morph::button(ui, rect, input.kind, input.projection, &mut asked);
     }
