@@ -16,6 +16,7 @@ mod failures;
 mod frame_log;
 mod kinds;
 mod lessons;
+mod listening;
 mod maps;
 mod method;
 mod method_times;
@@ -57,6 +58,7 @@ pub use frame_log::FrameLog;
 use kinds::KindsQuery;
 pub use kinds::{Fates, Verdict, fates_of};
 pub use lessons::Lessons;
+pub use listening::{Listening, is_live};
 pub use method::Refusal;
 pub use method_times::TimesPlan;
 pub use phasors::{PhasorsQuery, PhasorsResult};
@@ -72,7 +74,7 @@ pub use theory::TheoryResult;
 pub use thresholds::ThresholdPlan;
 pub use training::{Log, Training};
 
-use crate::app::state::{Command, Panel, RowsCommand, State, ViewCommand};
+use crate::app::state::{Command, DocumentCommand, Panel, RowsCommand, State, ViewCommand};
 use crate::interact::Autosave;
 use crate::platform::{self, Instant};
 use eframe::egui::{Context, DroppedFile};
@@ -111,6 +113,8 @@ pub struct Jobs {
     pub exports: Exports,
     /// Pictures for slides.
     pub recorder: Recorder,
+    /// A capture card that is listened to.
+    pub listening: Listening,
     /// Files being chosen.
     pub dialogs: Dialogs,
     /// Where an unsaved scene is kept, if anywhere.
@@ -143,6 +147,7 @@ impl Jobs {
             lessons: Lessons::start(wake)?,
             exports: Exports::new(ctx.clone()),
             recorder: Recorder::start(ctx.clone())?,
+            listening: Listening::new(ctx.clone()),
             dialogs,
             autosave: folder.map(Autosave::claim).transpose()?,
             wake: ctx.clone(),
@@ -179,6 +184,9 @@ impl Jobs {
         }
         let mut chosen = self.chosen(state);
         chosen.extend(begun);
+        let (frame, failed) = self.listening.poll();
+        failed.into_iter().for_each(|e| state.notices.error(e));
+        chosen.extend(frame.map(|frame| DocumentCommand::ShowFrame(frame).into()));
         for kept in self.thresholds.take_rows() {
             state.notices.info(kept.told);
             chosen.push(ViewCommand::SetMethodEta(kept.method, Some(kept.eta)).into());

@@ -3,6 +3,7 @@
 
 mod arrangement;
 mod bounds_settings;
+mod card;
 mod chirp_settings;
 mod command;
 mod command_table;
@@ -31,6 +32,7 @@ mod view;
 
 pub use arrangement::Arrangement;
 pub use bounds_settings::{BoundsSettings, Elements};
+pub use card::{CardPlan, LiveFrame};
 pub use chirp_settings::ChirpSettings;
 pub use command::{
     Command, DocumentCommand, EditCommand, EvaluationChoice, ExportCommand, LessonCommand, NewObject, RadarCommand,

@@ -12,7 +12,7 @@ fn needs_a_desktop(command: &Command) -> bool {
             WindowCommand::Quit
                 | WindowCommand::TogglePanel(Panel::Training)
                 | WindowCommand::Maximise(Panel::Training)
-        ) | Command::Work(WorkCommand::OpenLog)
+        ) | Command::Work(WorkCommand::OpenLog | WorkCommand::ChooseCard(_))
             | Command::Rows(RowsCommand::ChooseOwnScenes)
     )
 }

@@ -1,6 +1,8 @@
 //! Other words that may be typed in the palette, and where menus have what is found.
 
-use super::command::{Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, ViewCommand, WindowCommand};
+use super::command::{
+    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, ViewCommand, WindowCommand, WorkCommand,
+};
 use super::panel::Panel;
 use crate::scene::presets;
 
@@ -120,6 +122,7 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
             | ExportCommand::CopyShared
             | ExportCommand::CopyLink,
         ) => &["File"],
+        Command::Work(WorkCommand::ChooseCard(_)) => &["File"],
         Command::View(command) => view_menus(command),
         Command::Window(command) => window_menus(command),
         _ => &[],

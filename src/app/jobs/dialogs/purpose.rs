@@ -1,6 +1,6 @@
 //! What files are asked for: how they are called, how their names end, and what is done with them.
 
-use crate::app::state::{Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WorkCommand};
+use crate::app::state::{CardPlan, Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WorkCommand};
 use std::path::{Path, PathBuf};
 
 /// How the names of files to open may end.
@@ -11,6 +11,8 @@ const OPENED_ENDINGS: &[&str] = &["toml", "npz", "bin", "dat", "raw", "cfg", "np
 pub enum Purpose {
     /// A scene to open.
     Open,
+    /// The `.cfg` of a capture card to listen to on this UDP port.
+    Listen(u16),
     /// The log of a training to watch.
     OpenLog,
     /// A lesson to begin.
@@ -40,6 +42,7 @@ impl Purpose {
     pub fn command(self, path: PathBuf) -> Command {
         match self {
             Purpose::Open => Command::Document(DocumentCommand::OpenPath(path)),
+            Purpose::Listen(port) => Command::Work(WorkCommand::Listen(CardPlan { port, config: path, board: None })),
             Purpose::OpenLog => Command::Work(WorkCommand::WatchLog(path)),
             Purpose::OpenLesson => Command::Lesson(LessonCommand::OpenFile(path)),
             Purpose::SaveScene => Command::Document(DocumentCommand::SaveTo(path)),
@@ -56,14 +59,15 @@ impl Purpose {
 
     /// Whether the file is read, not written.
     pub fn reads(self) -> bool {
-        use Purpose::{Open, OpenLesson, OpenLog, OpenRows, OwnScenes};
-        matches!(self, Open | OpenLog | OpenLesson | OpenRows | OwnScenes)
+        use Purpose::{Listen, Open, OpenLesson, OpenLog, OpenRows, OwnScenes};
+        matches!(self, Listen(_) | Open | OpenLog | OpenLesson | OpenRows | OwnScenes)
     }
 
     /// Title of the dialog.
     pub fn title(self) -> &'static str {
         match self {
             Purpose::Open => "Open a scene or a recording",
+            Purpose::Listen(_) => "Listen with the .cfg that set the radar up",
             Purpose::OpenLog => "Open the log of a training",
             Purpose::OpenLesson => "Open a lesson",
             Purpose::SaveScene => "Save the scene",
@@ -83,6 +87,7 @@ impl Purpose {
         match self {
             Purpose::Open => ("Scenes, recordings and weights", OPENED_ENDINGS),
             Purpose::SaveScene | Purpose::OwnScenes => ("Scenes", &["toml", "npz"]),
+            Purpose::Listen(_) => ("Settings of a radar", &["cfg"]),
             Purpose::OpenLesson => ("Lessons", &["toml"]),
             Purpose::OpenLog | Purpose::ExportMetrics | Purpose::OpenRows | Purpose::SaveRows => ("Table", &["csv"]),
             Purpose::ExportPicture => ("Picture", &["png", "svg"]),
@@ -115,7 +120,12 @@ impl Purpose {
     /// Name of the file where no other is chosen.
     pub fn name(self) -> &'static str {
         match self {
-            Purpose::Open | Purpose::OpenLog | Purpose::OpenLesson | Purpose::OpenRows | Purpose::OwnScenes => "",
+            Purpose::Listen(_)
+            | Purpose::Open
+            | Purpose::OpenLog
+            | Purpose::OpenLesson
+            | Purpose::OpenRows
+            | Purpose::OwnScenes => "",
             Purpose::SaveScene => "scene.toml",
             Purpose::ExportPicture => "apertura.png",
             Purpose::ExportMaps => "maps.npz",

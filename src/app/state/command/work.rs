@@ -1,6 +1,7 @@
 //! Commands that start long work, or stop it.
 
 use super::{EvaluationChoice, ThresholdChoice};
+use crate::app::state::CardPlan;
 use std::path::PathBuf;
 
 /// Commands that start long work, or stop it.
@@ -37,4 +38,10 @@ pub enum WorkCommand {
     Train(&'static str),
     /// Stop the training that was started here.
     CancelTraining,
+    /// Ask for the `.cfg` of a capture card and listen to it on this UDP port.
+    ChooseCard(u16),
+    /// Listen to a capture card, and show its newest frame.
+    Listen(CardPlan),
+    /// Stop listening.
+    StopListening,
 }

@@ -5,6 +5,7 @@ use super::super::command::{
 };
 use super::entry::{Entry, command, command_shift, entries, entry, key, shift};
 use crate::interact::{Alignment, Along, Coordinates};
+use crate::recording::card::USUAL_PORT;
 use eframe::egui::Key;
 
 /// In the order in which the palette lists them.
@@ -24,6 +25,8 @@ pub(super) const COMMANDS: &[Entry] = {
         Document(DocumentCommand::Open), "Open…", "Open a scene (.toml or .npz) or a recording (.toml)", command(Key::O);
         Document(DocumentCommand::Save), "Save", "Save the scene as TOML", command(Key::S);
         Document(DocumentCommand::SaveAs), "Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S);
+        Work(WorkCommand::ChooseCard(USUAL_PORT)), "Listen to a capture card…",
+            "Show the frames that a capture card sends to a UDP port of this machine, by the .cfg of its radar", None;
         Work(WorkCommand::OpenLog), "Open training log…", "Watch the loss of a training (its log.csv)", None;
         Rows(RowsCommand::Open), "Open rows…", "Show the rows of an evaluation (.csv of evaluate --rows)", None;
         Rows(RowsCommand::Save), "Save rows…", "Save the rows of the panel Evaluate as CSV", None;
