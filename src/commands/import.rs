@@ -141,6 +141,7 @@ fn kind(kind: Kind) -> &'static str {
         Kind::Receivers => "receivers",
         Kind::Counts => "counts",
         Kind::Half => "half",
+        Kind::Images => "images",
         Kind::Config => "config",
         Kind::Usual => "usual",
     }

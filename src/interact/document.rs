@@ -174,6 +174,12 @@ impl Document {
         Measured::again(preset.id).map(Document::over)
     }
 
+    /// An empty scene over a frame of a capture card, whose `.cfg` is `config`.
+    pub fn of_frame(recording: Recording, config: &Path) -> Self {
+        let source = whole_path(config).to_string_lossy().as_ref().into();
+        Document::over(Measured { recording: Arc::new(recording), source })
+    }
+
     fn over(measured: Measured) -> Self {
         let Recording { name, notes, radar, .. } = &*measured.recording;
         let scene = Scene { name: name.clone(), notes: notes.clone(), ..Scene::default() };

@@ -1,6 +1,7 @@
 //! The recording that a text describes: the TOML, and what it names.
 
 use super::capture::Plan;
+use super::chain::Source;
 use super::doubts::doubts;
 use super::layout::stream::Stream;
 use super::profile::lines::text_of;
@@ -14,7 +15,7 @@ use crate::radar::Radar;
 use crate::scene::file::SceneTextError;
 use crate::signal::ChirpSamples;
 use serde::Deserialize;
-use std::io::{self, Read};
+use std::io::{self, BufReader, Read};
 use std::path::Path;
 
 /// Longest text that is read, bytes.
@@ -42,27 +43,28 @@ pub(super) fn open_file(path: &Path) -> io::Result<File> {
     }
 }
 
-pub(super) fn read_text(file: impl Read) -> Result<String, Fault> {
-    let mut text = Vec::new();
-    file.take(MAX_TEXT_BYTES + 1).read_to_end(&mut text)?;
-    if text.len() as u64 > MAX_TEXT_BYTES {
-        return Err(Fault::key(
-            "the text",
-            "is longer than 1 MiB",
-            "a description; samples stand in a file of their own",
-        ));
+/// Opens the data files in a folder by their names.
+pub(super) fn beside(folder: &Path) -> impl Fn(&str) -> io::Result<Box<dyn Source>> {
+    |name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)))
+}
+
+fn text_bytes(file: impl Read, what: &str, expected: &str) -> Result<Vec<u8>, Fault> {
+    let mut bytes = Vec::new();
+    file.take(MAX_TEXT_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_TEXT_BYTES {
+        return Err(Fault::key(what, "is longer than 1 MiB", expected));
     }
+    Ok(bytes)
+}
+
+pub(super) fn read_text(file: impl Read) -> Result<String, Fault> {
+    let text = text_bytes(file, "the text", "a description; samples stand in a file of their own")?;
     String::from_utf8(text).map_err(|_| Fault::key("the text", "is not UTF-8", "text in UTF-8"))
 }
 
 /// The text of a `.cfg`, in any encoding.
 pub(super) fn config_text(file: impl Read) -> Result<String, Fault> {
-    let mut bytes = Vec::new();
-    file.take(MAX_TEXT_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MAX_TEXT_BYTES {
-        return Err(Fault::key("the .cfg", "is longer than 1 MiB", "the commands that set a radar up"));
-    }
-    Ok(text_of(&bytes))
+    text_bytes(file, "the .cfg", "the commands that set a radar up").map(|bytes| text_of(&bytes))
 }
 
 /// Refuses a text of a later format before its unknown keys are.

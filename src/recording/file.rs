@@ -42,11 +42,9 @@
 //! loop = 0
 //! ```
 
-use super::described::{frames_of, from_parts, open_file, read_text};
+use super::described::{beside, frames_of, from_parts, open_file, read_text};
 use super::raw;
-use super::samples::Open;
 use super::{Fault, Offer, Origin, Recording, RecordingError};
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -84,9 +82,9 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
     }
     let text = read_text(open_file(path).map_err(|e| Fault::from(e).of(path))?).map_err(|e| e.of(path))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let open: Open<'_> = &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)));
-    let recording = from_parts(&text, path, open, None)?;
-    let origin = frames_of(&text, path, open)?.map(|frames| Arc::new(of_toml(text, path, frames)));
+    let open = beside(folder);
+    let recording = from_parts(&text, path, &open, None)?;
+    let origin = frames_of(&text, path, &open)?.map(|frames| Arc::new(of_toml(text, path, frames)));
     Ok(Recording { origin, ..recording })
 }
 

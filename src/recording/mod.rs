@@ -13,7 +13,7 @@
 //! | [`layout`] | how the bytes of a raw capture stand for samples, by evidence |
 //! | [`raw`] | raw captures and arrays as they are: the text that describes them is made |
 //! | `origin`, `reread` | where a recording comes from, what else its bytes could be, its frames, and reading them |
-//! | [`packets`] | packets that a capture card sends, to frames |
+//! | [`packets`], [`card`] | packets that a capture card sends, to frames; listening to them |
 //! | `axes`, `analytic` | an array of any shape, of real samples too, to `[elements, samples]` |
 //! | `calibration` | what is taken off each element |
 //! | `signs` | which way phases turn, and where on the chirp the carrier lies |
@@ -25,6 +25,7 @@ mod analytic;
 mod axes;
 mod calibration;
 mod capture;
+pub mod card;
 mod chain;
 mod described;
 mod doubts;

@@ -1,9 +1,9 @@
 //! Recordings read again: by any of the texts that describe a file, or another frame of it.
 
-use super::described::{FrameLoops, from_parts, loops_of, open_file};
+use super::described::{FrameLoops, beside, from_parts, loops_of};
 use super::samples::Open;
 use super::{Origin, Recording, RecordingError};
-use std::io::{BufReader, Cursor};
+use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -21,8 +21,7 @@ impl Origin {
     /// # Errors
     /// [`RecordingError`] names the file, the key or the array.
     pub fn recording(&self) -> Result<Recording, RecordingError> {
-        let folder = self.data.parent().unwrap_or(Path::new("")).to_owned();
-        self.read(&|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))))
+        self.read(&beside(self.folder()))
     }
 
     /// The same of a frame whose bytes are here in place of the file.
@@ -30,11 +29,11 @@ impl Origin {
     /// # Errors
     /// As [`Origin::recording`].
     pub fn recording_of(&self, bytes: &[u8]) -> Result<Recording, RecordingError> {
-        let folder = self.data.parent().unwrap_or(Path::new("")).to_owned();
+        let other = beside(self.folder());
         let own = self.data.file_name().map(|name| name.to_string_lossy().into_owned());
         self.read(&|name| match own.as_deref() == Some(name) {
             true => Ok(Box::new(Cursor::new(bytes.to_vec()))),
-            false => Ok(Box::new(BufReader::new(open_file(&folder.join(name))?))),
+            false => other(name),
         })
     }
 
@@ -43,9 +42,11 @@ impl Origin {
     /// # Errors
     /// As [`Origin::recording`], and where the file holds no loops.
     pub fn loops(&self) -> Result<FrameLoops, RecordingError> {
-        let folder = self.data.parent().unwrap_or(Path::new("")).to_owned();
-        let open: Open<'_> = &|name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)));
-        loops_of(self.toml(), &self.data.with_extension("toml"), open, Some(self.frame))
+        loops_of(self.toml(), &self.data.with_extension("toml"), &beside(self.folder()), Some(self.frame))
+    }
+
+    fn folder(&self) -> &Path {
+        self.data.parent().unwrap_or(Path::new(""))
     }
 
     fn read(&self, open: Open<'_>) -> Result<Recording, RecordingError> {

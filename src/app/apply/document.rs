@@ -1,14 +1,14 @@
 //! Commands that put another scene on screen, or this one in a file.
 
 use super::{saving, shared};
-use crate::app::jobs::Jobs;
-use crate::app::state::{DocumentCommand, MapKind, Panel, Settings, State, Way};
+use crate::app::jobs::{Jobs, is_live};
+use crate::app::state::{DocumentCommand, LiveFrame, MapKind, Panel, Settings, State, Way};
 use crate::interact::Document;
 #[cfg(feature = "live")]
 use crate::methods;
 use crate::platform::Instant;
 use crate::recording::raw::boards;
-use crate::recording::{self, raw};
+use crate::recording::{self, Recording, raw};
 use crate::scene::Scene;
 use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
@@ -32,6 +32,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) {
         DocumentCommand::Preset(index) => preset(state, index),
         DocumentCommand::Recording(index) => shipped_recording(state, index),
         DocumentCommand::ReadAnotherWay(way) => read_another_way(state, way),
+        DocumentCommand::ShowFrame(frame) => show_frame(state, jobs, frame),
         DocumentCommand::RandomScene(kind) => random_scene(state, kind),
         DocumentCommand::SetNextRandom { seed, number } => {
             (state.settings.random_seed, state.settings.random_number) = (seed, number);
@@ -165,6 +166,24 @@ fn read_another_way(state: &mut State, way: Way) {
         Err(error) => {
             state.timeline.play_frames(false);
             state.notices.error(format!("{error}\nThe recording on screen was kept."));
+        }
+    }
+}
+
+/// Shows the newest frame of a capture card; where something else was put on screen since the last, the listening ends.
+fn show_frame(state: &mut State, jobs: &mut Jobs, frame: LiveFrame) {
+    let LiveFrame { recording, config, is_first } = frame;
+    let recording = Recording::clone(&recording);
+    if is_first {
+        return show(state, "listen", Document::of_frame(recording, &config));
+    }
+    let on_screen = state.editor.document();
+    let is_followed = on_screen.recording().is_some_and(|shown| is_live(shown, &config));
+    match on_screen.read_another_way(recording).filter(|_| is_followed) {
+        Some(document) => state.editor.open_frame(document),
+        None => {
+            jobs.listening.stop();
+            state.notices.info("The capture card is not listened to any more: something else is on screen.");
         }
     }
 }

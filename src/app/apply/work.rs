@@ -29,6 +29,13 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
         WorkCommand::WatchLog(path) => watch(state, jobs, path),
         WorkCommand::Train(recipe) => train(state, jobs, recipe),
         WorkCommand::CancelTraining => jobs.training.cancel(),
+        WorkCommand::Listen(plan) => {
+            state.arrangement.set_open(Panel::Recording, true);
+            let said =
+                jobs.listening.begin(plan).map(|port| format!("Listening to a capture card on UDP port {port}."));
+            tell(state, said);
+        }
+        WorkCommand::StopListening => jobs.listening.stop(),
     }
 }
 

@@ -11,6 +11,8 @@ use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
 use crate::interact::Document;
 use crate::picture::ColourMap;
+use crate::platform;
+use crate::recording::card::USUAL_PORT;
 use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
@@ -176,6 +178,9 @@ fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             }
         });
     });
+    if !platform::IN_A_BROWSER {
+        entries(ui, [Command::AskFile(Purpose::Listen(USUAL_PORT))], asked);
+    }
     unsaved::show(ui, input.left, asked);
     ui.separator();
     entries(

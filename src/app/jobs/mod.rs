@@ -17,6 +17,7 @@ mod failures;
 mod frame_log;
 mod kinds;
 mod lessons;
+mod listening;
 mod maps;
 mod memo;
 mod method;
@@ -59,6 +60,7 @@ pub use frame_log::FrameLog;
 use kinds::KindsQuery;
 pub use kinds::{Fates, Verdict, fates_of};
 pub use lessons::Lessons;
+pub use listening::{Listening, is_live};
 pub use memo::Memo;
 pub use method::Refusal;
 pub use method_times::TimesPlan;
@@ -75,7 +77,7 @@ pub use theory::TheoryResult;
 pub use thresholds::ThresholdPlan;
 pub use training::{Log, Training};
 
-use crate::app::state::{Command, Panel, Purpose, RowsCommand, State, ViewCommand};
+use crate::app::state::{Command, DocumentCommand, Panel, Purpose, RowsCommand, State, ViewCommand};
 use crate::interact::Autosave;
 use crate::platform::{self, Instant};
 use eframe::egui::{Context, DroppedFile};
@@ -112,6 +114,8 @@ pub struct Jobs {
     pub exports: Exports,
     /// Pictures for slides.
     pub recorder: Recorder,
+    /// A capture card that is listened to.
+    pub listening: Listening,
     /// Files being chosen.
     pub dialogs: Dialogs,
     /// Where an unsaved scene is kept, if anywhere.
@@ -143,6 +147,7 @@ impl Jobs {
             lessons: Lessons::start(ctx),
             exports: Exports::new(ctx.clone()),
             recorder: Recorder::start(ctx.clone()),
+            listening: Listening::new(ctx.clone()),
             dialogs,
             autosave: folder.map(Autosave::claim).transpose()?,
             wake: ctx.clone(),
@@ -181,6 +186,9 @@ impl Jobs {
         for said in self.recorder.poll() {
             tell(state, said);
         }
+        let (frame, failed) = self.listening.poll();
+        failed.into_iter().for_each(|e| state.notices.error(e));
+        chosen.extend(frame.map(|frame| DocumentCommand::ShowFrame(frame).into()));
         for kept in self.thresholds.take_rows() {
             state.notices.info(kept.told);
             chosen.push(ViewCommand::SetMethodEta(kept.method, Some(kept.eta)).into());

@@ -1,13 +1,16 @@
 //! How the file of a recording was read: the layouts it could have as small range profiles, its frames, its antennas, and what is doubtful.
 
 use crate::app::content::{Content, Cx, Nothing};
-use crate::app::state::{Command, DocumentCommand, Way};
+use crate::app::state::{CardPlan, Command, DocumentCommand, Purpose, Way, WorkCommand};
+use crate::app::widgets::entry::button;
 use crate::app::widgets::labelled::{choice_told, labelled};
 use crate::app::widgets::padded::scrolled;
 use crate::app::widgets::theme;
+use crate::platform;
+use crate::recording::card::{CardSummary, USUAL_PORT};
 use crate::recording::raw::boards;
 use crate::recording::{Offer, Origin, Recording};
-use eframe::egui::{self, Sense, Slider, Ui, vec2};
+use eframe::egui::{self, DragValue, Sense, Slider, Ui, vec2};
 use egui_plot::{Line, Plot, PlotPoints};
 
 /// Size of a small range profile, and how far below its peak it is drawn, decibels.
@@ -18,6 +21,28 @@ const SHOWN_DB: f64 = 80.0;
 pub struct Input<'a> {
     /// The recording in place of a scene, where there is one.
     pub recording: Option<&'a Recording>,
+    /// The capture card, where there may be one.
+    pub card: Option<CardInput<'a>>,
+}
+
+/// What is drawn of a capture card.
+#[derive(Clone, Copy)]
+pub struct CardInput<'a> {
+    /// With what it is listened to, if it is.
+    pub plan: Option<&'a CardPlan>,
+    /// What came since it is.
+    pub summary: CardSummary,
+}
+
+/// The port that is asked for.
+pub struct CardMemory {
+    port: u16,
+}
+
+impl Default for CardMemory {
+    fn default() -> Self {
+        CardMemory { port: USUAL_PORT }
+    }
 }
 
 /// Draws [`Panel::Recording`](crate::app::state::Panel::Recording).
@@ -25,17 +50,23 @@ pub struct RecordingPanel;
 
 impl Content for RecordingPanel {
     type Asks = Nothing;
-    type Remembers = ();
+    type Remembers = CardMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let recording = cx.state.editor.document().recording().cloned();
-        show(ui, Input { recording: recording.as_deref() })
+        let card = (!platform::IN_A_BROWSER)
+            .then(|| CardInput { plan: cx.jobs.listening.plan(), summary: cx.jobs.listening.summary() });
+        show(ui, Input { recording: recording.as_deref(), card }, cx.memory)
     }
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CardMemory) -> Vec<Command> {
     scrolled(ui, |ui, asked| {
+        if let Some(of_card) = input.card {
+            card(ui, of_card, input.recording, memory, asked);
+            ui.separator();
+        }
         let Some(recording) = input.recording else {
             ui.weak("No recording is on screen. Drop a capture, an array or the TOML of a recording on the window.");
             return;
@@ -62,6 +93,47 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         }
         asked.extend(ways.into_iter().map(|way| Command::from(DocumentCommand::ReadAnotherWay(way))));
     })
+}
+
+/// What comes from a capture card, or with what to listen to one.
+fn card(
+    ui: &mut Ui,
+    input: CardInput<'_>,
+    recording: Option<&Recording>,
+    memory: &mut CardMemory,
+    asked: &mut Vec<Command>,
+) {
+    let origin = recording.and_then(|recording| recording.origin.as_deref());
+    ui.horizontal_wrapped(|ui| match input.plan {
+        Some(plan) => {
+            ui.label(format!("Listening on UDP port {}", plan.port)).on_hover_text(plan.config.display().to_string());
+            button(ui, "Stop listening", WorkCommand::StopListening, true, asked);
+            ui.weak(told(input.summary)).on_hover_text(input.summary.sentence());
+        }
+        None => {
+            let port = DragValue::new(&mut memory.port).range(1..=u16::MAX);
+            labelled(ui, "Capture card on UDP port", "The port of this machine that it sends to", port);
+            if let Some(config) = origin.and_then(|origin| origin.config.clone()) {
+                let plan = CardPlan { port: memory.port, config, board: origin.and_then(|origin| origin.board) };
+                button(ui, "Listen", WorkCommand::Listen(plan), true, asked);
+            }
+            button(ui, "Listen with a .cfg…", Purpose::Listen(memory.port), true, asked);
+        }
+    });
+}
+
+/// Frames that came, and those that were dropped or lack bytes.
+fn told(summary: CardSummary) -> String {
+    let CardSummary { frames, dropped, packets } = summary;
+    if packets.packets == 0 {
+        return "no packet came yet".to_owned();
+    }
+    let mut told = format!("{frames} frames came, {dropped} were dropped");
+    let lost = packets.lost_bytes;
+    if lost + packets.lost_frames > 0 {
+        told += &format!(", {lost} bytes and {} whole frames lost", packets.lost_frames);
+    }
+    told
 }
 
 /// The layouts to choose from, the most likely first.
@@ -117,7 +189,8 @@ fn frames(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
 }
 
 fn board(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
-    if origin.config.is_none() {
+    let is_file = origin.offers.iter().any(|offer| !offer.power.is_empty());
+    if origin.config.is_none() || !is_file {
         return;
     }
     ui.horizontal_wrapped(|ui| {
@@ -137,6 +210,7 @@ mod tests {
     use super::*;
     use crate::app::widgets::seen;
     use crate::radar::Radar;
+    use crate::recording::packets::PacketCounts;
     use crate::signal::BeatSignal;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -167,8 +241,17 @@ mod tests {
     }
 
     fn panel(recording: Option<Recording>) -> Harness<'static, Vec<Command>> {
+        listening(recording, None)
+    }
+
+    /// The panel while a card is listened to with this plan.
+    fn listening(recording: Option<Recording>, plan: Option<CardPlan>) -> Harness<'static, Vec<Command>> {
+        let packets = PacketCounts { packets: 90, lost_bytes: 1456, ..PacketCounts::default() };
+        let summary = CardSummary { frames: 7, dropped: 2, packets };
+        let mut memory = CardMemory::default();
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            asked.extend(show(ui, Input { recording: recording.as_ref() }));
+            let card = Some(CardInput { plan: plan.as_ref(), summary });
+            asked.extend(show(ui, Input { recording: recording.as_ref(), card }, &mut memory));
         };
         Harness::builder().with_size([520.0, 420.0]).build_ui_state(draw, Vec::new())
     }
@@ -187,6 +270,21 @@ mod tests {
         panel.get_by_label("Q I in pairs").click();
         panel.run();
         assert_eq!(panel.state(), &[Command::Document(DocumentCommand::ReadAnotherWay(Way::Layout(1)))]);
+    }
+
+    #[test]
+    fn a_card_is_listened_to_with_what_is_on_screen() {
+        let mut panel = panel(Some(recording()));
+        panel.get_by_label("Listen").click();
+        panel.run();
+        let plan = CardPlan { port: USUAL_PORT, config: "a.cfg".into(), board: Some("xWR1642") };
+        assert_eq!(panel.state(), &[Command::Work(WorkCommand::Listen(plan.clone()))]);
+        let mut panel = listening(Some(recording()), Some(plan));
+        let said = "7 frames came, 2 were dropped, 1456 bytes and 0 whole frames lost";
+        assert!(seen::texts(panel.output()).iter().any(|t| t.text == said), "{:?}", seen::texts(panel.output()));
+        panel.get_by_label("Stop listening").click();
+        panel.run();
+        assert_eq!(panel.state(), &[Command::Work(WorkCommand::StopListening)]);
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod named;
 
 mod arrangement;
 mod bounds_settings;
+mod card;
 mod chirp_settings;
 mod command;
 mod command_table;
@@ -35,6 +36,7 @@ mod view;
 pub use crate::view::{DifferenceView, Directions, Projection, Units, View};
 pub use arrangement::Arrangement;
 pub use bounds_settings::{BoundsSettings, Elements};
+pub use card::{CardPlan, LiveFrame};
 pub use chirp_settings::ChirpSettings;
 pub use command::{
     Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, Purpose, RadarCommand, RowsCommand,

@@ -12,7 +12,7 @@ fn needs_a_desktop(command: &Command) -> bool {
             WindowCommand::Quit
                 | WindowCommand::TogglePanel(Panel::Training)
                 | WindowCommand::Maximise(Panel::Training)
-        ) | Command::AskFile(Purpose::OpenLog | Purpose::OwnScenes)
+        ) | Command::AskFile(Purpose::OpenLog | Purpose::OwnScenes | Purpose::Listen(_))
     )
 }
 

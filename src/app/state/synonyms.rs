@@ -124,6 +124,7 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
         Command::Export(ExportCommand::StopRecording | ExportCommand::CopyShared | ExportCommand::CopyLink)
         | Command::AskFile(
             Purpose::Open
+            | Purpose::Listen(_)
             | Purpose::SaveScene
             | Purpose::ExportPicture
             | Purpose::ExportMaps

@@ -39,6 +39,10 @@ const STRIDES: [usize; 4] = [1, 3, 4, 16];
 const LONGEST_PERIOD: usize = 64;
 /// Longest row that is tried, in samples of all interleaved receivers together.
 const LONGEST_ROW: usize = 16384;
+/// A spectrum of an order of parts that lies no more than this above the lowest, nepers in all of [`LEVEL_LENGTHS`], leaves it likely.
+const PLAUSIBLE: f64 = 0.5;
+/// Log-odds below the best length from which another is none to look at.
+const LIKELY_LENGTH: f64 = 30.0;
 /// Log-odds of a length of which the file holds no whole number, and of a usual one.
 const UNFILLED: f64 = -3.0;
 const USUAL_LENGTH: f64 = 2.0;
@@ -48,12 +52,28 @@ const LEAST_ALIKE: f64 = 0.3;
 /// Most loops that are taken for a frame where nothing says how many there are.
 const MOST_LOOPS: usize = 64;
 
-/// Counts that were found.
-pub(super) struct Searched {
-    pub counts: Option<Counts>,
+/// What is told where no text says counts.
+pub(super) const NOTE: &str = "No .cfg says samples and receivers: they are those that make the sharpest spectrum and repeat. Carrier, slope \
+    and rate are not known: a bin of range is shown as one metre, and directions are those of elements half a wavelength apart.";
+
+/// What is told beside it where the search is not to be trusted.
+pub(super) const CLIPPED_NOTE: &str = "Many samples stand at the ends of their type, so echoes have harmonics that look like receivers and rows: \
+    samples and receivers may be others.";
+
+/// Counts that are likely.
+pub(super) struct LikelyCounts {
+    /// The order of parts that they are counts of; `None` where any may be.
+    pub parts: Option<Parts>,
+    pub counts: Counts,
     /// Those of the same rows where receivers don't stand sample by sample after all.
     pub unmixed: Option<Counts>,
-    pub note: Option<String>,
+}
+
+impl LikelyCounts {
+    /// Counts that are known.
+    pub fn of(counts: Counts) -> LikelyCounts {
+        LikelyCounts { parts: None, counts, unmixed: None }
+    }
 }
 
 /// One way to cut the numbers into rows.
@@ -65,9 +85,12 @@ struct Cut {
     mixed: usize,
 }
 
-/// Searches the lengths of rows: the order of parts that makes the sharpest spectra, and then the length at whose multiples samples don't
-/// follow from those before, and which fills the file.
-pub(super) fn search<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>) -> io::Result<Searched> {
+/// Searches the lengths of rows: of the orders of parts that make the sharpest spectra, the lengths at whose multiples samples don't follow
+/// from those before, and which fill the file. Also whether the samples are clipped.
+pub(super) fn search<R: Read + Seek>(
+    stream: &mut Stream<R>,
+    marks: Option<Marks>,
+) -> io::Result<(Vec<LikelyCounts>, bool)> {
     let bytes = samples_of(stream, marks, 4 * JUDGED_NUMBERS)?;
     let marked = marks.filter(|m| m.apart > 0).map(|m| m.apart - HEADER_BYTES);
     let words = likely_words(&bytes);
@@ -80,26 +103,22 @@ pub(super) fn search<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks
             all.push((level, layout, numbers));
         }
     }
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((_, layout, numbers)) = all.first() else {
-        return Ok(Searched { counts: None, unmixed: None, note: None });
-    };
-    let cut = cut(*layout, numbers, stream.bytes(), marked);
-    let counts = counted(&cut, numbers, stream.bytes(), marks, marked);
-    let unmixed = (cut.mixed > 1).then(|| {
-        let length = cut.samples * cut.mixed;
-        counted(&Cut { samples: length, mixed: 1, ..cut }, numbers, stream.bytes(), marks, marked)
-    });
-    let note = Some(
-        "No .cfg says samples and receivers: they are those that make the sharpest spectrum and repeat. Carrier, slope and rate are not \
-         known: a bin of range is shown as one metre, and directions are those of elements half a wavelength apart."
-            .to_owned(),
-    );
-    Ok(Searched { counts: Some(counts), unmixed, note })
+    let sharpest = all.iter().map(|(level, ..)| *level).fold(f64::INFINITY, f64::min);
+    let (mut ways, mut is_clipped) = (Vec::new(), false);
+    for (_, layout, numbers) in all.into_iter().filter(|(level, ..)| *level < sharpest + PLAUSIBLE) {
+        for cut in cuts(layout, &numbers, stream.bytes(), marked) {
+            let counted = |cut: &Cut| counted(cut, &numbers, stream.bytes(), marks, marked);
+            let unmixed = Cut { samples: cut.samples * cut.mixed, mixed: 1, ..cut };
+            let unmixed = (cut.mixed > 1).then(|| counted(&unmixed));
+            is_clipped |= clipped(&numbers);
+            ways.push(LikelyCounts { parts: Some(layout.parts), counts: counted(&cut), unmixed });
+        }
+    }
+    Ok((ways, is_clipped))
 }
 
-/// The likeliest way to cut numbers into rows.
-fn cut(layout: Layout, numbers: &[Complex64], bytes: u64, marked: Option<usize>) -> Cut {
+/// The likely ways to cut numbers into rows.
+fn cuts(layout: Layout, numbers: &[Complex64], bytes: u64, marked: Option<usize>) -> Vec<Cut> {
     let fits = |length: &usize| marked.is_none_or(|held| held.is_multiple_of(length * layout.parts.bytes()));
     let lengths: Vec<usize> = (SAMPLES[0]..=LONGEST_ROW).filter(fits).collect();
     let likeliest = |stride: usize| {
@@ -108,13 +127,20 @@ fn cut(layout: Layout, numbers: &[Complex64], bytes: u64, marked: Option<usize>)
         let best = lengths.iter().map(score).max_by(|a, b| a.0.total_cmp(&b.0));
         best.map(|(score, length)| (score, breaks, length))
     };
-    let best = STRIDES.into_iter().filter_map(likeliest).max_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((_, breaks, longest)) = best else { return Cut { layout, samples: SAMPLES[0], mixed: 1 } };
-    let whole = breaks.whole(longest, &lengths);
-    let mixed = interleaved(numbers, whole);
-    let lengths: Vec<usize> = lengths.into_iter().filter(|length| length.is_multiple_of(mixed)).collect();
-    let length = if clipped(numbers) { whole } else { breaks.divided(whole, &lengths) };
-    Cut { layout, samples: length / mixed, mixed }
+    let all: Vec<(f64, Breaks, usize)> = STRIDES.into_iter().filter_map(likeliest).collect();
+    let best = all.iter().map(|(score, ..)| *score).fold(f64::NEG_INFINITY, f64::max);
+    let mut cuts: Vec<Cut> = Vec::new();
+    for (_, breaks, longest) in all.iter().filter(|(score, ..)| *score > best - LIKELY_LENGTH) {
+        let whole = breaks.whole(*longest, &lengths);
+        let mixed = interleaved(numbers, whole);
+        let lengths: Vec<usize> = lengths.iter().copied().filter(|length| length.is_multiple_of(mixed)).collect();
+        let length = if clipped(numbers) { whole } else { breaks.divided(whole, &lengths) };
+        let cut = Cut { layout, samples: length / mixed, mixed };
+        if !cuts.iter().any(|c| (c.samples, c.mixed) == (cut.samples, cut.mixed)) {
+            cuts.push(cut);
+        }
+    }
+    cuts
 }
 
 /// Log-odds of a length before its numbers are looked at: rows fill the file, which the odd part of a length does by chance but once in
@@ -251,6 +277,10 @@ fn counted(cut: &Cut, numbers: &[Complex64], bytes: u64, marks: Option<Marks>, m
         (None, 1) => period,
         (None, mixed) => mixed,
     };
+    // Lanes carry whole groups of parts.
+    let group = cut.layout.parts.group();
+    let fits = |more: &usize| (cut.samples * receivers * more).is_multiple_of(group);
+    let receivers = receivers * [1, 2, 4].into_iter().find(fits).unwrap_or(1);
     let chirps = (period / receivers).max(1);
     let header = if marks.is_some() { HEADER_BYTES as u64 } else { 0 };
     let loop_bytes = chirps as u64 * ((receivers * row_bytes) as u64 + header);

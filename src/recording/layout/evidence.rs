@@ -18,6 +18,8 @@ pub enum Kind {
     Counts,
     /// One half of the range axis is empty: I before Q, or Q before I.
     Half,
+    /// Echoes have images, as of real samples.
+    Images,
     /// What the `.cfg` says of the data.
     Config,
     /// How usual a layout is.
@@ -39,9 +41,13 @@ pub struct Evidence {
 pub(super) const OF_LEVEL: f64 = 300.0;
 /// Log-odds of receivers whose profiles are alike.
 const OF_ALIKE: f64 = 10.0;
-/// Log-odds of an empty half for each echo that stands out, and most echoes that count.
-const OF_HALF: f64 = 2.0;
-const MOST_ECHOES: usize = 6;
+/// Log-odds of each echo that stands in the near half, the power in both halves as much as one of them; and most of it all: echoes of a far
+/// scene stand in the far half together.
+const OF_HALF: f64 = 0.7;
+const MOST_OF_HALF: f64 = 8.0;
+/// Log-odds against complex samples of an echo that has an image, and most such echoes that count.
+const OF_IMAGE: f64 = 15.0;
+const MOST_IMAGES: usize = 6;
 /// Log-odds of what the `.cfg` says: of I and Q, of the receivers' order, and of real samples.
 const OF_ORDER: f64 = 5.0;
 const OF_RECEIVERS: f64 = 2.0;
@@ -62,6 +68,7 @@ pub(super) fn evidence(layout: &Layout, counts: Counts, spectrum: &Spectrum, kno
     all.push(filling(layout, counts, known));
     if layout.parts != Parts::Real {
         all.push(half(spectrum, known));
+        all.extend((spectrum.images > 0).then(|| images(spectrum)));
     }
     all.extend(known.profile.map(|profile| config(layout, profile)));
     all.push(Evidence { kind: Kind::Usual, log_odds: usual(layout), sentence: String::new() });
@@ -69,12 +76,15 @@ pub(super) fn evidence(layout: &Layout, counts: Counts, spectrum: &Spectrum, kno
 }
 
 fn sharp(spectrum: &Spectrum) -> Evidence {
+    let echoes: usize = spectrum.echoes.iter().sum();
     let sentence = format!(
         "{} out, and between echoes the spectrum lies {:.1} dB below a flat one",
-        if spectrum.echoes == 1 { "one echo stands".to_owned() } else { format!("{} echoes stand", spectrum.echoes) },
+        if echoes == 1 { "one echo stands".to_owned() } else { format!("{echoes} echoes stand") },
         spectrum.flatness_db()
     );
-    Evidence { kind: Kind::Sharp, log_odds: -OF_LEVEL * spectrum.level, sentence }
+    // Longer rows have more bins to fit a spectrum by, and fewer powers in each (Schwarz, 1978).
+    let rows = spectrum.rows.max(2) as f64;
+    Evidence { kind: Kind::Sharp, log_odds: -OF_LEVEL * (spectrum.level + rows.ln() / (2.0 * rows)), sentence }
 }
 
 fn receivers(spectrum: &Spectrum) -> Evidence {
@@ -110,13 +120,25 @@ fn filling(layout: &Layout, counts: Counts, known: Known<'_>) -> Evidence {
 
 /// Echoes stand at positive frequencies where the chirp rises.
 fn half(spectrum: &Spectrum, known: Known<'_>) -> Evidence {
-    let rises = known.profile.is_none_or(RadarProfile::rises);
-    let near = if rises { spectrum.near } else { -spectrum.near };
+    let sign = if known.profile.is_none_or(RadarProfile::rises) { 1.0 } else { -1.0 };
+    let near = sign * spectrum.near;
     let part = 100.0 * (1.0 + near.abs()) / 2.0;
     let which = if near >= 0.0 { "near" } else { "far" };
     let sentence = format!("{part:.0} % of the power stands in the {which} half of the range axis");
-    let echoes = spectrum.echoes.clamp(1, MOST_ECHOES) as f64;
-    Evidence { kind: Kind::Half, log_odds: OF_HALF * echoes * near, sentence }
+    let [in_near, in_far] = spectrum.echoes.map(|echoes| echoes as f64);
+    let odds = near + sign * (in_near - in_far);
+    Evidence { kind: Kind::Half, log_odds: OF_HALF * odds.clamp(-MOST_OF_HALF, MOST_OF_HALF), sentence }
+}
+
+/// Complex samples have echoes in one half alone.
+fn images(spectrum: &Spectrum) -> Evidence {
+    let images = spectrum.images;
+    let log_odds = -OF_IMAGE * images.min(MOST_IMAGES) as f64;
+    Evidence {
+        kind: Kind::Images,
+        log_odds,
+        sentence: format!("{images} of the echoes have an image, as of real samples"),
+    }
 }
 
 fn config(layout: &Layout, profile: &RadarProfile) -> Evidence {

@@ -1,6 +1,6 @@
 //! The candidates, and the best of them.
 
-use super::counts::{self, Searched};
+use super::counts::{self, LikelyCounts};
 use super::evidence::{Evidence, Kind, Known, evidence};
 use super::marks::{HEADER_BYTES, Marks, marks};
 use super::spectrum::Spectrum;
@@ -54,6 +54,8 @@ pub struct Found {
     pub candidates: Vec<Candidate>,
     /// Sentences on headers, packets and counts.
     pub notes: Vec<String>,
+    /// Whether samples and receivers were searched where much of the file is saturated.
+    pub hides_counts: bool,
 }
 
 /// Why a file has no layout.
@@ -93,28 +95,35 @@ pub enum LayoutError {
 pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfile>) -> Result<Found, LayoutError> {
     let marks = marks(stream)?;
     let mut notes = Vec::new();
-    let (counts, unmixed) = match profile {
+    let (ways, hides_counts) = match profile {
         Some(p) => {
             let RadarProfile { samples, receivers, loops, .. } = *p;
-            (Some(Counts { samples, receivers, chirps: p.chirp_transmitters.len(), loops }), None)
+            (vec![LikelyCounts::of(Counts { samples, receivers, chirps: p.chirp_transmitters.len(), loops })], false)
         }
         None => {
-            let Searched { counts, unmixed, note } = counts::search(stream, marks)?;
-            notes.extend(note);
-            (counts, unmixed)
+            notes.push(counts::NOTE.to_owned());
+            counts::search(stream, marks)?
         }
     };
-    let header_bytes = headers(marks, counts, profile, &mut notes);
+    notes.extend(hides_counts.then(|| counts::CLIPPED_NOTE.to_owned()));
+    let header_bytes = headers(marks, ways.first().map(|way| way.counts), profile, &mut notes);
     let packets = stream.has_packets();
     let mut candidates = Vec::new();
-    for counts in counts.into_iter().chain(unmixed) {
-        let job = Job { counts, header_bytes, packets, known: Known { profile, bytes: stream.bytes() } };
-        candidates = job.candidates(stream)?;
-        candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
-        if candidates.first().is_some_and(|best| best.layout.receivers == ReceiverOrder::Interleaved) {
-            break;
+    let mut none = None;
+    for way in &ways {
+        let known = Known { profile, bytes: stream.bytes() };
+        match of_way(stream, way, &Job { counts: way.counts, only: way.parts, header_bytes, packets, known }) {
+            Ok(of_way) => candidates.extend(of_way),
+            Err(LayoutError::Io(error)) => return Err(error.into()),
+            Err(error) => none = Some(error),
         }
     }
+    if candidates.is_empty()
+        && let Some(error) = none
+    {
+        return Err(error);
+    }
+    candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
     let Some(best) = candidates.first() else {
         return Err(LayoutError::Short { bytes: stream.bytes(), expected: 1024, whose: "" });
     };
@@ -132,7 +141,21 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
         };
         notes.push(format!("The file holds network packets with headers of 10 bytes: {lost}."));
     }
-    Ok(Found { candidates, notes })
+    Ok(Found { candidates, notes, hides_counts })
+}
+
+/// The layouts of one way: those of its unmixed counts where receivers don't stand sample by sample.
+fn of_way<R: Read + Seek>(
+    stream: &mut Stream<R>,
+    way: &LikelyCounts,
+    job: &Job<'_>,
+) -> Result<Vec<Candidate>, LayoutError> {
+    let mixed = job.candidates(stream);
+    let is_mixed = mixed.as_ref().is_ok_and(|all| all[0].layout.receivers == ReceiverOrder::Interleaved);
+    match way.unmixed.filter(|_| !is_mixed) {
+        Some(counts) => Job { counts, ..*job }.candidates(stream),
+        None => mixed,
+    }
 }
 
 /// Bytes of the headers before chirps.
@@ -162,16 +185,19 @@ fn headers(
 /// One set of counts to judge every layout by.
 struct Job<'a> {
     counts: Counts,
+    /// The order of parts that alone is judged, where one is.
+    only: Option<Parts>,
     header_bytes: usize,
     packets: bool,
     known: Known<'a>,
 }
 
 impl Job<'_> {
+    /// The layouts of these counts, the likeliest first; there is one at least.
     fn candidates<R: Read + Seek>(&self, stream: &mut Stream<R>) -> Result<Vec<Candidate>, LayoutError> {
         let Counts { samples, receivers, .. } = self.counts;
         let mut all = Vec::new();
-        for parts in Parts::ALL {
+        for parts in Parts::ALL.into_iter().filter(|parts| self.only.is_none_or(|only| only == *parts)) {
             let numbers = samples.saturating_mul(receivers);
             if numbers == 0 || !numbers.is_multiple_of(parts.group()) {
                 continue;
@@ -195,6 +221,7 @@ impl Job<'_> {
             let whose = if self.known.profile.is_some() { " as the .cfg says" } else { "" };
             return Err(LayoutError::Short { bytes: self.known.bytes, expected, whose });
         }
+        all.sort_by(|a: &Candidate, b| b.log_odds().total_cmp(&a.log_odds()));
         Ok(all)
     }
 

@@ -8,9 +8,15 @@ use num_complex::Complex64;
 /// Power that rounding to whole numbers leaves in a bin: a twelfth for each part.
 pub(super) const ROUNDING: f64 = 1.0 / 6.0;
 
-/// An echo stands so far above the middle of all bins, decibels, and no farther below the strongest.
-const ABOVE_MEDIAN_DB: f64 = 15.0;
+/// An echo has so many times the power of the middle of all bins (15 dB), and stands no farther below the strongest, decibels.
+const ABOVE_MEDIAN: f64 = 31.6;
 const BELOW_PEAK_DB: f64 = 40.0;
+
+/// An image stands at most so far from its echo, decibels, and an echo that may have one so far below the strongest: those of unequal
+/// converters stand farther below.
+const IMAGE_DB: f64 = 20.0;
+/// Bins beside the constant part that hold no echo.
+const NEAR_CONSTANT: usize = 4;
 
 /// Mean powers of range profiles, and figures on them.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,8 +29,12 @@ pub(in crate::recording) struct Spectrum {
     pub alike: f64,
     /// Power of the near half of the bins less that of the far half, over both: -1 to 1.
     pub near: f64,
-    /// How many echoes stand out.
-    pub echoes: usize,
+    /// How many echoes stand out in the near half of the bins, and in the far half.
+    pub echoes: [usize; 2],
+    /// How many echoes of the near half have an image as far into the far half: those of real samples do.
+    pub images: usize,
+    /// How many profiles it is the mean of.
+    pub rows: usize,
 }
 
 impl Spectrum {
@@ -51,25 +61,26 @@ impl Spectrum {
         let spectrum = Spectrum::of_power(power, alike(of_receivers.view()));
         // The logarithm of a mean of few powers lies below that of the mean of many: ln n less the digamma function of n.
         let few = 1.0 / count.max(1) as f64;
-        Spectrum { level: spectrum.level + few / 2.0 + few * few / 12.0, ..spectrum }
+        Spectrum { level: spectrum.level + few / 2.0 + few * few / 12.0, rows: count, ..spectrum }
     }
 
     fn of_power(power: Vec<f64>, alike: f64) -> Spectrum {
         let bins = power.len().max(1);
         let level = power.iter().map(|p| p.ln()).sum::<f64>() / bins as f64;
-        let echoes = echoes(&power);
+        let (echoes, images) = (echoes(&power), images(&power));
         let half = |range: std::ops::Range<usize>| power.get(range).map_or(0.0, |part| part.iter().sum::<f64>());
         // A constant stands in bin 0 and, by the window, beside it.
         let (near, far) = (half(2..bins / 2), half(bins / 2 + 1..bins.saturating_sub(1)));
         let near = if near + far > 0.0 { (near - far) / (near + far) } else { 0.0 };
-        Spectrum { power, level, alike, near, echoes }
+        Spectrum { power, level, alike, near, echoes, images, rows: 1 }
     }
 
     /// The spectrum of the conjugate samples: I and Q in the other order.
     pub fn mirrored(&self) -> Spectrum {
         let bins = self.power.len();
         let power = (0..bins).map(|bin| self.power[(bins - bin) % bins]).collect();
-        Spectrum { power, near: -self.near, ..self.clone() }
+        let [near, far] = self.echoes;
+        Spectrum { power, near: -self.near, echoes: [far, near], ..self.clone() }
     }
 
     /// Of real samples: the half of it that tells, at twice the power, as complex samples of the same words would have it.
@@ -77,7 +88,7 @@ impl Spectrum {
         let bins = self.power.len();
         let power: Vec<f64> = self.power[..bins.div_ceil(2)].iter().map(|p| 2.0 * p).collect();
         let level = self.level + std::f64::consts::LN_2;
-        Spectrum { near: 0.0, level, ..Spectrum::of_power(power, self.alike) }
+        Spectrum { near: 0.0, level, rows: self.rows, ..Spectrum::of_power(power, self.alike) }
     }
 
     /// How far the mean level lies below that of a flat spectrum of the same power, decibels.
@@ -87,18 +98,38 @@ impl Spectrum {
     }
 }
 
-/// Peaks that stand out of the spectrum.
-fn echoes(power: &[f64]) -> usize {
-    let mut sorted = power.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let (Some(peak), Some(median)) = (sorted.last(), sorted.get(sorted.len() / 2)) else { return 0 };
-    let least = (median * 10f64.powf(ABOVE_MEDIAN_DB / 10.0)).max(peak * 10f64.powf(-BELOW_PEAK_DB / 10.0));
+/// Peaks that stand out of the spectrum, in its near half and in its far half.
+fn echoes(power: &[f64]) -> [usize; 2] {
+    let Some((peak, median)) = peak_and_median(power) else { return [0; 2] };
+    let least = (median * ABOVE_MEDIAN).max(peak * 10f64.powf(-BELOW_PEAK_DB / 10.0));
     let bins = power.len();
     let is_peak = |n: &usize| {
         let at = power[*n];
         at >= least && at >= power[(n + 1) % bins] && at > power[(n + bins - 1) % bins]
     };
-    (0..bins).filter(is_peak).count()
+    [0..bins / 2, bins / 2..bins].map(|mut half| half.by_ref().filter(is_peak).count())
+}
+
+/// Echoes of the near half, away from a constant part, that stand as far into the far half, but not to the last digit: those are real samples
+/// that are stored as complex ones.
+fn images(power: &[f64]) -> usize {
+    let bins = power.len();
+    let Some((peak, median)) = peak_and_median(power) else { return 0 };
+    let range = 10f64.powf(IMAGE_DB / 10.0);
+    let is_image = |n: &usize| {
+        let [at, other] = [power[*n], power[bins - n]];
+        let (louder, fainter) = (at.max(other), at.min(other));
+        let stands_out = louder * range >= peak && fainter * range >= louder && fainter >= median * ABOVE_MEDIAN;
+        let is_peak = at > power[n - 1] && at >= power[n + 1];
+        is_peak && stands_out && louder - fainter > 1e-9 * louder
+    };
+    (NEAR_CONSTANT..(bins / 2).saturating_sub(1)).filter(is_image).count()
+}
+
+fn peak_and_median(power: &[f64]) -> Option<(f64, f64)> {
+    let mut sorted = power.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    Some((*sorted.last()?, *sorted.get(sorted.len() / 2)?))
 }
 
 /// Mean correlation of logarithmic rows with the mean of the others.

@@ -93,13 +93,14 @@ fn the_evidence_says_what_decided() {
     let plain = found(written(&right, &chirps()), Some(&profile("")));
     assert_eq!(plain.decided_by(), Kind::Half, "I and Q alone are near: {:#?}", plain.sentences());
     assert!(plain.sentences().iter().any(|s| s.starts_with("Every receiver sees the same echoes")));
-    // One echo may stand in the far half; several weigh more than what the .cfg says.
+    // Echoes may stand in the far half: two of them weigh less than what the .cfg says.
     let swapped = profile("adcbufCfg -1 0 1 1 1\n");
     let one = found(written(&right, &seen(0.0)), Some(&swapped));
     assert!(one.best().layout.q_first && one.best().of_kind(Kind::Half) < 0.0, "{:#?}", one.sentences());
     assert_eq!(one.decided_by(), Kind::Config);
     let several = found(written(&right, &chirps()), Some(&swapped));
-    assert_eq!((several.best().layout, several.decided_by()), (right, Kind::Half), "{:#?}", several.sentences());
+    assert!(several.best().layout.q_first, "{:#?}", several.sentences());
+    assert_ne!(several.certainty(), Certainty::Open, "{:#?}", several.sentences());
 }
 
 #[test]

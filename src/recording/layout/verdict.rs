@@ -40,16 +40,19 @@ impl Found {
         Some(self.best().log_odds() - self.candidates.get(1)?.log_odds())
     }
 
-    /// How sure the choice is.
+    /// How sure the choice is: never sure where the samples hide their counts.
     pub fn certainty(&self) -> Certainty {
-        Certainty::of(self.margin())
+        match Certainty::of(self.margin()) {
+            Certainty::Sure if self.hides_counts => Certainty::Likely,
+            certainty => certainty,
+        }
     }
 
     /// The kind of evidence that parts the best from the next.
     pub fn decided_by(&self) -> Kind {
         let (best, next) = (self.best(), self.candidates.get(1));
         let more = |kind: Kind| best.of_kind(kind) - next.map_or(0.0, |next| next.of_kind(kind));
-        let kinds = best.evidence.iter().map(|e| e.kind);
+        let kinds = best.evidence.iter().chain(next.map_or(&[][..], |next| &next.evidence)).map(|e| e.kind);
         kinds.max_by(|a, b| more(*a).total_cmp(&more(*b))).unwrap_or(Kind::Usual)
     }
 
@@ -76,6 +79,7 @@ impl Found {
             Kind::Receivers => "the receivers, which see the same echoes".to_owned(),
             Kind::Counts => "the count of frames that fill the file".to_owned(),
             Kind::Half => "the empty half of the range axis".to_owned(),
+            Kind::Images => "the images of its echoes".to_owned(),
             Kind::Config => "the .cfg".to_owned(),
             Kind::Usual => "no more than what is usual".to_owned(),
         };

@@ -15,7 +15,7 @@ pub struct Imported {
 impl Imported {
     /// How sure the choice is.
     pub fn certainty(&self) -> Certainty {
-        Certainty::of(self.margin())
+        self.found.as_ref().map_or_else(|| Certainty::of(self.margin()), Found::certainty)
     }
 
     /// By how much the best has more log-odds than the next; none where there is no other.

@@ -8,6 +8,9 @@ use crate::recording::profile::RadarProfile;
 /// Carrier where nothing says one, hertz.
 pub(super) const USUAL_CARRIER_HZ: f64 = 77e9;
 
+/// Receivers of a chip.
+const CHIP_RECEIVERS: usize = 4;
+
 /// A line of elements.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Line {
@@ -142,12 +145,24 @@ fn of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f
     let [across, up] = &profile.element_places;
     let receivers = profile.receivers;
     let bits: Vec<usize> = profile.chirp_transmitters.iter().map(|mask| mask.trailing_zeros() as usize).collect();
-    let at = |chirp: usize, r: usize| bits[chirp] * 4 + profile.receiver_numbers.get(r).copied().unwrap_or(r);
-    let is_known =
-        bits.iter().enumerate().all(|(chirp, _)| (0..receivers).all(|r| at(chirp, r) < across.len().min(up.len())));
-    if bits.is_empty() || !is_known {
+    // The lines name every receiver of the chip, or those alone that are on.
+    let last = bits.iter().max()?;
+    let of_chip = |r: usize| profile.receiver_numbers.get(r).copied().unwrap_or(r);
+    let names_chip =
+        receivers <= CHIP_RECEIVERS && last * CHIP_RECEIVERS + (0..receivers).map(of_chip).max()? < across.len();
+    if !names_chip && across.len() != bits.len() * receivers {
         return None;
     }
+    // One line alone says that all stand at one height.
+    let level = vec![0.0; across.len()];
+    let up = if up.is_empty() { &level } else { up };
+    if up.len() < across.len() {
+        return None;
+    }
+    let at = |chirp: usize, r: usize| match names_chip {
+        true => bits[chirp] * CHIP_RECEIVERS + of_chip(r),
+        false => chirp * receivers + r,
+    };
     let mut best: Option<(Vec<Sender>, Vec<usize>, Vec<f64>)> = None;
     for first in 0..bits.len() {
         for height in (0..receivers).map(|r| up[at(first, r)]) {

@@ -82,9 +82,14 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
 /// [`RecordingError`] names the `.cfg` or what is wrong with the bytes.
 pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) -> Result<Imported, RecordingError> {
     let profile = read_config(config)?;
-    let data = config.with_file_name("frame.bin");
+    let data = frame_path(config);
     let stream = Stream::plain(Cursor::new(bytes)).map_err(|e| Fault::from(e).of(&data))?;
     described(stream, data, Vec::new(), Some(config.to_owned()), Some(&profile), board)
+}
+
+/// Where the data of such a frame would stand; there is no such file.
+pub fn frame_path(config: &Path) -> PathBuf {
+    config.with_file_name("frame.bin")
 }
 
 /// Bytes of a frame as the `.cfg` at `path` says them.

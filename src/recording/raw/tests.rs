@@ -98,6 +98,15 @@ fn the_longest_row_of_a_planar_board_is_the_line() {
 }
 
 #[test]
+fn places_across_alone_stand_at_one_height() {
+    let two = CFG.replace(" 0 0 0 0 4\n", " 0 0 0 0 2\n");
+    let folder = folder(&[("a.bin", &frame()), ("a.cfg", format!("{two}antGeometry0 0 1 2 3 4 5 6 7\n").as_bytes())]);
+    let recording = open(&folder.path().join("a.bin"), None).unwrap();
+    assert_eq!(recording.radar.elements, 8);
+    assert!(recording.doubts.iter().any(|d| d.contains("antGeometry")), "{:?}", recording.doubts);
+}
+
+#[test]
 fn what_is_no_capture_is_told() {
     let folder = folder(&[
         ("a.cfg", CFG.as_bytes()),

@@ -22,8 +22,7 @@ pub(super) struct About<'a> {
 
 /// The text that describes the capture by the candidate's layout.
 pub(super) fn text(best: &Candidate, about: &About<'_>) -> String {
-    let name = about.data.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let mut out = format!("format = 3\nname = {}\nnotes = {}\n", quoted(&name), quoted(&about.sentences.join("\n")));
+    let mut out = heading(about);
     let halves = if best.layout.parts == Parts::Real { 2 } else { 1 };
     radar(&mut out, None, best.counts.samples.div_ceil(halves), about);
     out.push_str("\n[recording]\n");
@@ -31,6 +30,11 @@ pub(super) fn text(best: &Candidate, about: &About<'_>) -> String {
     signs(&mut out, about.profile, about.profile.is_none());
     capture(&mut out, best, about);
     out
+}
+
+fn heading(about: &About<'_>) -> String {
+    let name = about.data.file_stem().unwrap_or_default().to_string_lossy();
+    format!("format = 3\nname = {}\nnotes = {}\n", quoted(&name), quoted(&about.sentences.join("\n")))
 }
 
 /// An array whose axes were named.
@@ -46,8 +50,7 @@ pub(super) struct Array<'a> {
 /// The text that describes an array.
 pub(super) fn of_array(array: &Array<'_>, about: &About<'_>) -> String {
     let Array { reading, shape, key, in_turn } = *array;
-    let name = about.data.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let mut out = format!("format = 3\nname = {}\nnotes = {}\n", quoted(&name), quoted(&about.sentences.join("\n")));
+    let mut out = heading(about);
     let samples = reading.len(AxisKind::Sample, shape);
     let said = about.profile.map(|p| {
         let bandwidth = p.slope_hz_per_second.abs() * samples as f64 / p.samples_per_second;

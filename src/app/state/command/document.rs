@@ -1,6 +1,6 @@
 //! Commands that put another scene on screen, or this one in a file.
 
-use crate::app::state::SaveAnswer;
+use crate::app::state::{LiveFrame, SaveAnswer};
 use crate::scene::generate::Kind;
 use std::path::PathBuf;
 
@@ -38,6 +38,8 @@ pub enum DocumentCommand {
     Recording(usize),
     /// Read the file of the recording another way.
     ReadAnotherWay(Way),
+    /// Show the newest frame of the capture card that is listened to.
+    ShowFrame(LiveFrame),
     /// Make a random test scene.
     RandomScene(Kind),
     /// Which random scene is next.

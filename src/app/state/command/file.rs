@@ -13,17 +13,17 @@ struct PurposeFacts {
 /// The list of purposes. A line has a purpose's name, the dialog's title, what the files are, how their names may end, and the usual name where
 /// the file is written.
 macro_rules! purposes {
-    ($($(#[$meta:meta])* $purpose:ident: $title:literal, $kind:literal $endings:expr, $name:literal;)*) => {
+    ($($(#[$meta:meta])* $purpose:ident $(($payload:ty))?: $title:literal, $kind:literal $endings:expr, $name:literal;)*) => {
         /// What a file is asked for.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Purpose {
-            $($(#[$meta])* $purpose,)*
+            $($(#[$meta])* $purpose $(($payload))?,)*
         }
 
         impl Purpose {
             fn facts(self) -> PurposeFacts {
                 match self {
-                    $(Purpose::$purpose => PurposeFacts {
+                    $(Purpose::$purpose { .. } => PurposeFacts {
                         title: $title,
                         kind: $kind,
                         endings: &$endings,
@@ -39,6 +39,8 @@ purposes! {
     /// A scene to open.
     Open: "Open a scene or a recording", "Scenes, recordings and weights"
         ["toml", "npz", "bin", "dat", "raw", "cfg", "npy", "mat", "safetensors"], "";
+    /// The `.cfg` of a capture card to listen to on this UDP port.
+    Listen(u16): "Listen with the .cfg that set the radar up", "Settings of a radar" ["cfg"], "";
     /// The log of a training to watch.
     OpenLog: "Open the log of a training", "Table" ["csv"], "";
     /// A lesson to begin.

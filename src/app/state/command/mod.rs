@@ -23,6 +23,7 @@ pub use view::ViewCommand;
 pub use window::WindowCommand;
 pub use work::WorkCommand;
 
+use super::CardPlan;
 use crate::scene::generate::Kind;
 use std::path::PathBuf;
 
@@ -125,6 +126,7 @@ impl Purpose {
     pub fn command(self, path: PathBuf) -> Command {
         match self {
             Purpose::Open => DocumentCommand::OpenPath(path).into(),
+            Purpose::Listen(port) => WorkCommand::Listen(CardPlan { port, config: path, board: None }).into(),
             Purpose::OpenLog => WorkCommand::WatchLog(path).into(),
             Purpose::OpenLesson => LessonCommand::OpenFile(path).into(),
             Purpose::SaveScene => DocumentCommand::SaveTo(path).into(),

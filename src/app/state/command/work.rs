@@ -1,6 +1,7 @@
 //! Commands that start long work, or stop it.
 
 use super::ThresholdChoice;
+use crate::app::state::CardPlan;
 use std::path::PathBuf;
 
 /// Commands that start long work, or stop it.
@@ -31,4 +32,8 @@ pub enum WorkCommand {
     Train(&'static str),
     /// Stop the training that was started here.
     CancelTraining,
+    /// Listen to a capture card, and show its newest frame.
+    Listen(CardPlan),
+    /// Stop listening.
+    StopListening,
 }

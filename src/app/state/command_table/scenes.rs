@@ -3,6 +3,7 @@
 use super::super::command::{Command, DocumentCommand, EditCommand, ExportCommand, NewObject, Purpose, WindowCommand};
 use super::entry::{Entry, command, command_shift, entries, entry, key, shift};
 use crate::interact::{Alignment, Along, Coordinates};
+use crate::recording::card::USUAL_PORT;
 use eframe::egui::Key;
 
 /// In the order in which the palette lists them.
@@ -22,6 +23,8 @@ pub(super) const COMMANDS: &[Entry] = {
         AskFile(Purpose::Open), "Open…", "Open a scene (.toml or .npz) or a recording (.toml)", command(Key::O);
         Document(DocumentCommand::Save), "Save", "Save the scene as TOML", command(Key::S);
         AskFile(Purpose::SaveScene), "Save as…", "Save the scene under another name (.toml or .npz)", command_shift(Key::S);
+        AskFile(Purpose::Listen(USUAL_PORT)), "Listen to a capture card…",
+            "Show the frames that a capture card sends to a UDP port of this machine, by the .cfg of its radar", None;
         AskFile(Purpose::OpenLog), "Open training log…", "Watch the loss of a training (its log.csv)", None;
         AskFile(Purpose::OpenRows), "Open rows…", "Show the rows of an evaluation (.csv of evaluate --rows)", None;
         AskFile(Purpose::SaveRows), "Save rows…", "Save the rows of the panel Evaluate as CSV", None;

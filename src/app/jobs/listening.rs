@@ -1,0 +1,299 @@
+//! A capture card that is listened to: its newest frame as a recording, and what had to be dropped.
+//!
+//! One thread takes packets, another reads frames as recordings. Between them one frame has room, and between the second and the window one
+//! recording: a newer frame takes the place of one that nothing looked at yet.
+
+use crate::app::state::{CardPlan, LiveFrame};
+use crate::platform::{self, lock};
+use crate::recording::card::{Card, CardSummary, Handed};
+use crate::recording::packets::CardFrame;
+use crate::recording::raw::{self, boards};
+use crate::recording::{Origin, Recording, RecordingError};
+use eframe::egui::Context;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::Duration;
+
+/// After so long a port that was listened to is free again.
+const RELEASE: Duration = Duration::from_millis(150);
+
+/// Listens where it is asked to.
+pub struct Listening {
+    wake: Context,
+    running: Option<Running>,
+    is_first: bool,
+    summary: CardSummary,
+}
+
+struct Running {
+    plan: CardPlan,
+    shared: Arc<Between>,
+    recordings: Receiver<Result<Recording, String>>,
+}
+
+/// What the threads share.
+#[derive(Default)]
+struct Between {
+    held: Mutex<Waiting>,
+    /// Told where a frame comes or the end.
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct Waiting {
+    newest: Option<CardFrame>,
+    summary: CardSummary,
+    is_over: bool,
+    failed: Option<String>,
+}
+
+impl Listening {
+    /// Listens to nothing yet; `wake` draws another frame of the window when one came.
+    pub fn new(wake: Context) -> Self {
+        Listening { wake, running: None, is_first: true, summary: CardSummary::default() }
+    }
+
+    /// Begins to listen, in place of what was listened to before. The port.
+    ///
+    /// # Errors
+    /// A sentence: what is wrong with the `.cfg`, or who has the port.
+    pub fn begin(&mut self, plan: CardPlan) -> Result<u16, String> {
+        if self.running.is_some() {
+            self.stop();
+            std::thread::sleep(RELEASE);
+        }
+        let frame_bytes = raw::frame_bytes(&plan.config).map_err(|e| e.to_string())?;
+        let failed = |e: std::io::Error| format!("UDP port {} can't be listened to: {e}", plan.port);
+        let card = Card::listen(plan.port, frame_bytes).map_err(failed)?;
+        let port = card.port().map_err(failed)?;
+        let shared = Arc::new(Between::default());
+        let (sender, recordings) = sync_channel(1);
+        let (of_card, wake) = (shared.clone(), platform::waker(&self.wake));
+        platform::spawn("card", move || receive(card, &of_card, wake)).map_err(failed)?;
+        let (of_frames, wake, read) = (shared.clone(), platform::waker(&self.wake), plan.clone());
+        platform::spawn("card's frames", move || read_frames(&of_frames, &read, &sender, wake)).map_err(failed)?;
+        (self.is_first, self.summary) = (true, CardSummary::default());
+        self.running = Some(Running { plan: CardPlan { port, ..plan }, shared, recordings });
+        Ok(port)
+    }
+
+    /// Ends it, where it is running.
+    pub fn stop(&mut self) {
+        if let Some(running) = self.running.take() {
+            running.shared.end(None);
+        }
+    }
+
+    /// What is listened to, if anything.
+    pub fn plan(&self) -> Option<&CardPlan> {
+        self.running.as_ref().map(|running| &running.plan)
+    }
+
+    /// What came since it began.
+    pub fn summary(&self) -> CardSummary {
+        self.summary
+    }
+
+    /// The newest frame since the last call, if one came; and why the listening ended, if it did.
+    pub fn poll(&mut self) -> (Option<LiveFrame>, Option<String>) {
+        let Some(running) = &self.running else { return (None, None) };
+        let failed = match running.shared.held.try_lock() {
+            Ok(mut held) => {
+                self.summary = held.summary;
+                held.failed.take()
+            }
+            Err(_) => None,
+        };
+        let mut frame = None;
+        let mut failed = failed.map(|e| format!("UDP port {} is not listened to any more: {e}", running.plan.port));
+        for read in running.recordings.try_iter() {
+            match read {
+                Ok(recording) => {
+                    let config = running.plan.config.clone();
+                    let recording = Arc::new(recording).into();
+                    frame = Some(LiveFrame { recording, config, is_first: std::mem::take(&mut self.is_first) });
+                }
+                Err(error) => failed = Some(format!("A frame of the capture card can't be read: {error}")),
+            }
+        }
+        if failed.is_some() {
+            self.stop();
+        }
+        (frame, failed)
+    }
+}
+
+impl Drop for Listening {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+impl Between {
+    /// Ends both threads.
+    fn end(&self, failed: Option<String>) {
+        let mut held = lock(&self.held);
+        held.is_over = true;
+        held.failed = held.failed.take().or(failed);
+        self.changed.notify_all();
+    }
+
+    /// The newest frame, once there is one; `None` at the end.
+    fn next(&self) -> Option<CardFrame> {
+        let held = lock(&self.held);
+        let waits = |held: &mut Waiting| held.newest.is_none() && !held.is_over;
+        let mut held = self.changed.wait_while(held, waits).unwrap_or_else(PoisonError::into_inner);
+        if held.is_over { None } else { held.newest.take() }
+    }
+}
+
+/// Takes packets until the end; the newest frame waits, and one that it takes the place of is dropped.
+fn receive(card: Card, shared: &Between, wake: impl Fn()) {
+    let hand = |frame: CardFrame| {
+        let before = lock(&shared.held).newest.replace(frame);
+        shared.changed.notify_all();
+        wake();
+        if before.is_some() { Handed::Dropped } else { Handed::Taken }
+    };
+    let goes_on = |summary: &CardSummary| {
+        let mut held = lock(&shared.held);
+        held.summary = *summary;
+        !held.is_over
+    };
+    if let Err(error) = card.run(hand, goes_on) {
+        shared.end(Some(error.to_string()));
+        wake();
+    }
+}
+
+/// Reads frames as recordings until the end; waits while the window has not taken the last.
+fn read_frames(shared: &Between, plan: &CardPlan, sender: &SyncSender<Result<Recording, String>>, wake: impl Fn()) {
+    let mut origin = None;
+    while let Some(frame) = shared.next() {
+        let recording = read(&mut origin, frame, plan).map_err(|e| e.to_string());
+        let is_wrong = recording.is_err();
+        if sender.send(recording).is_err() || is_wrong {
+            break;
+        }
+        wake();
+    }
+    wake();
+}
+
+/// A frame as a recording, in the layout of the first.
+fn read(origin: &mut Option<Origin>, frame: CardFrame, plan: &CardPlan) -> Result<Recording, RecordingError> {
+    let of_first = match origin {
+        Some(of_first) => of_first,
+        None => {
+            let board = plan.board.and_then(boards::by_name);
+            origin.insert(raw::of_frame(frame.bytes.clone(), &plan.config, board)?.origin)
+        }
+    };
+    let mut recording = of_first.recording_of(&frame.bytes)?;
+    recording.name = format!("frame {}", frame.number);
+    if frame.lost_bytes > 0 {
+        recording.doubts.push(format!("{} bytes of frame {} were lost and are zeros.", frame.lost_bytes, frame.number));
+    }
+    // There is no file to read another way.
+    let mut shown = of_first.clone();
+    shown.offers.truncate(1);
+    shown.offers.iter_mut().for_each(|offer| offer.power.clear());
+    recording.origin = Some(Arc::new(shown));
+    Ok(recording)
+}
+
+/// Whether a recording is a frame that was listened to with this `.cfg`.
+pub fn is_live(recording: &Recording, config: &Path) -> bool {
+    recording.origin.as_ref().is_some_and(|origin| origin.data == raw::frame_path(config))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::Instant;
+    use crate::recording::card::tests::{replay, sent};
+
+    /// 64 samples, four receivers, one transmitter, eight loops: 8 KiB a frame.
+    const CFG: &str = "channelCfg 15 1 0\nadcCfg 2 1\nprofileCfg 0 77 10 6 60 0 0 50 1 64 4000 0 0 30\nchirpCfg 0 0 0 0 0 0 0 1\n\
+                       frameCfg 0 0 8 0 100 1 0\n";
+    const FRAME_BYTES: usize = 64 * 4 * 8 * 4;
+
+    /// Frames of one echo, whose bin is ten more than the frame's number.
+    fn frames(count: usize) -> Vec<u8> {
+        let sample = |n: usize| {
+            let (frame, place) = (n / (FRAME_BYTES / 4), n % 64);
+            let turns = (10 + frame) as f64 * place as f64 / 64.0;
+            let (im, re) = (std::f64::consts::TAU * turns).sin_cos();
+            [(2000.0 * re) as i16, (2000.0 * im) as i16]
+        };
+        (0..count * FRAME_BYTES / 4).flat_map(sample).flat_map(i16::to_le_bytes).collect()
+    }
+
+    fn plan(folder: &Path, port: u16) -> CardPlan {
+        let config = folder.join("a.cfg");
+        std::fs::write(&config, CFG).unwrap();
+        CardPlan { port, config, board: None }
+    }
+
+    /// Polls until `is_done` or for five seconds; the frames that came.
+    fn polled(listening: &mut Listening, is_done: impl Fn(&Listening, &[LiveFrame]) -> bool) -> Vec<LiveFrame> {
+        let (began, mut frames) = (Instant::now(), Vec::new());
+        while !is_done(listening, &frames) && began.elapsed() < Duration::from_secs(5) {
+            let (frame, failed) = listening.poll();
+            assert_eq!(failed, None);
+            frames.extend(frame);
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        frames
+    }
+
+    #[test]
+    fn frames_of_a_replay_are_shown_as_they_come() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut listening = Listening::new(Context::default());
+        let port = listening.begin(plan(folder.path(), 0)).unwrap();
+        let mut packets = sent(&frames(4));
+        packets.swap(1, 2);
+        // The 13th packet is lost: it lies within the third frame.
+        packets.remove(12);
+        let replay = replay(packets, port, Duration::from_millis(5), usize::MAX);
+        let shown = polled(&mut listening, |l, _| l.summary().frames >= 3 && l.summary().packets.packets >= 22);
+        replay.join().unwrap();
+        let first = shown.first().unwrap();
+        assert!(first.is_first && is_live(&first.recording, &first.config));
+        assert_eq!((first.recording.name.as_str(), first.recording.radar.samples), ("frame 0", 64));
+        assert!(shown[1..].iter().all(|frame| !frame.is_first));
+        let doubted = shown.iter().any(|f| f.recording.doubts.iter().any(|d| d.contains("1456 bytes of frame 2")));
+        assert!(doubted || listening.summary().dropped > 0, "{:?}", listening.summary());
+        assert_eq!(listening.summary().packets.lost_bytes, 1456);
+        listening.stop();
+        assert!(listening.plan().is_none() && listening.poll() == (None, None));
+    }
+
+    #[test]
+    fn a_window_that_is_busy_drops_frames_and_counts_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut listening = Listening::new(Context::default());
+        let port = listening.begin(plan(folder.path(), 0)).unwrap();
+        replay(sent(&frames(20)), port, Duration::from_micros(300), usize::MAX).join().unwrap();
+        // The window looked at nothing meanwhile: one recording waits for it, one for room there, one to be read.
+        std::thread::sleep(Duration::from_millis(300));
+        let shown = polled(&mut listening, |_, shown| shown.last().is_some_and(|f| f.recording.name != "frame 0"));
+        let summary = listening.summary();
+        assert!(shown.len() <= 3 && summary.frames >= 19, "{summary:?}");
+        assert!((summary.frames - 4..=summary.frames - 1).contains(&summary.dropped), "{summary:?}");
+    }
+
+    #[test]
+    fn a_port_that_another_has_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let other = std::net::UdpSocket::bind((std::net::Ipv4Addr::UNSPECIFIED, 0)).unwrap();
+        let port = other.local_addr().unwrap().port();
+        let mut listening = Listening::new(Context::default());
+        let refused = listening.begin(plan(folder.path(), port)).unwrap_err();
+        assert!(refused.starts_with(&format!("UDP port {port} can't be listened to: ")), "{refused}");
+        let missing = CardPlan { port: 0, config: folder.path().join("none.cfg"), board: None };
+        assert!(listening.begin(missing).unwrap_err().contains("none.cfg"));
+    }
+}

@@ -1,0 +1,189 @@
+//! A capture card on the network: its packets to a port of this machine, handed on as frames. Not in a browser, which has no ports.
+
+use super::packets::{CardFrame, PacketCounts, Packets};
+use crate::platform::Instant;
+use std::fs::File;
+use std::io::{self, Seek, SeekFrom, Write};
+use std::net::{Ipv4Addr, UdpSocket};
+use std::time::Duration;
+
+/// The port that most capture cards send to.
+pub const USUAL_PORT: u16 = 4098;
+
+/// Longest packet, bytes.
+const PACKET_BYTES: usize = 1 << 16;
+/// How often the end of a silence is looked for.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// What became of a frame that was handed on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Handed {
+    /// It is looked at.
+    Taken,
+    /// It, or one before it, is never looked at: the one before was still at work.
+    Dropped,
+    /// No more are wanted.
+    Ended,
+}
+
+/// What came so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CardSummary {
+    /// Frames that were handed on, dropped ones counted.
+    pub frames: u64,
+    /// Frames that were dropped.
+    pub dropped: u64,
+    /// What became of the packets.
+    pub packets: PacketCounts,
+}
+
+impl CardSummary {
+    /// All of it in a sentence.
+    pub fn sentence(&self) -> String {
+        let PacketCounts { packets, strange, late, lost_bytes, lost_frames, restarts } = self.packets;
+        format!(
+            "{} frames of {packets} packets; dropped, since the one before was still looked at: {}; bytes lost: {lost_bytes}; frames lost: \
+             {lost_frames}; packets late or twice: {late}; no packets of a card: {strange}; times the card began anew: {restarts}",
+            self.frames, self.dropped
+        )
+    }
+}
+
+/// Takes packets off the network.
+#[derive(Debug)]
+pub struct Card {
+    socket: UdpSocket,
+    /// Bytes of a frame.
+    pub frame_bytes: usize,
+    /// Where frames are written as they come; what is lost stays zeros.
+    pub log: Option<File>,
+    /// Frames after which it ends.
+    pub most_frames: Option<u64>,
+    /// It ends after so long without a packet.
+    pub silence: Option<Duration>,
+}
+
+impl Card {
+    /// Listens on `port` of every address of this machine, or on a free one for 0.
+    ///
+    /// # Errors
+    /// What the system says: another program may have the port.
+    pub fn listen(port: u16, frame_bytes: usize) -> io::Result<Card> {
+        let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, port))?;
+        socket.set_read_timeout(Some(PATIENCE))?;
+        Ok(Card { socket, frame_bytes, log: None, most_frames: None, silence: None })
+    }
+
+    /// The port that it listens on.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn port(&self) -> io::Result<u16> {
+        self.socket.local_addr().map(|address| address.port())
+    }
+
+    /// Receives until it is to end: hands whole frames to `frames`, and asks `goes_on` with what came, ten times a second or more.
+    ///
+    /// # Errors
+    /// What the system says of the port or the log.
+    pub fn run(
+        mut self,
+        mut frames: impl FnMut(CardFrame) -> Handed,
+        mut goes_on: impl FnMut(&CardSummary) -> bool,
+    ) -> io::Result<CardSummary> {
+        let mut packets = Packets::new(self.frame_bytes);
+        let mut summary = CardSummary::default();
+        let mut buffer = vec![0; PACKET_BYTES];
+        let mut heard = Instant::now();
+        loop {
+            let done = match self.socket.recv(&mut buffer) {
+                Ok(length) => {
+                    heard = Instant::now();
+                    packets.take(&buffer[..length])
+                }
+                Err(e) if [io::ErrorKind::WouldBlock, io::ErrorKind::TimedOut].contains(&e.kind()) => Vec::new(),
+                Err(e) => return Err(e),
+            };
+            let is_silent = self.silence.is_some_and(|silence| heard.elapsed() > silence);
+            let rest = if is_silent { packets.finish() } else { Vec::new() };
+            for frame in done.into_iter().chain(rest) {
+                self.write(&frame)?;
+                summary.frames += 1;
+                match frames(frame) {
+                    Handed::Taken => {}
+                    Handed::Dropped => summary.dropped += 1,
+                    Handed::Ended => return Ok(summary),
+                }
+            }
+            summary.packets = packets.counts();
+            let is_enough = self.most_frames.is_some_and(|most| summary.frames >= most);
+            if is_silent || is_enough || !goes_on(&summary) {
+                return Ok(summary);
+            }
+        }
+    }
+
+    /// Writes a frame at its place in the log.
+    fn write(&mut self, frame: &CardFrame) -> io::Result<()> {
+        let Some(log) = &mut self.log else { return Ok(()) };
+        log.seek(SeekFrom::Start(frame.number * self.frame_bytes as u64))?;
+        log.write_all(&frame.bytes)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    const FRAME: usize = 40_000;
+    const DATA: usize = 1456;
+
+    /// The packets that a card sends of these bytes.
+    pub fn sent(bytes: &[u8]) -> Vec<Vec<u8>> {
+        let packet = |(n, data): (usize, &[u8])| {
+            [&(n as u32 + 1).to_le_bytes(), &((n * DATA) as u64).to_le_bytes()[..6], data].concat()
+        };
+        bytes.chunks(DATA).enumerate().map(packet).collect()
+    }
+
+    /// Sends packets to a port of this machine, so long apart, with a pause before one of them.
+    pub fn replay(packets: Vec<Vec<u8>>, port: u16, apart: Duration, pause_at: usize) -> std::thread::JoinHandle<()> {
+        std::thread::spawn(move || {
+            let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+            for (n, packet) in packets.iter().enumerate() {
+                std::thread::sleep(if n == pause_at { Duration::from_millis(400) } else { apart });
+                socket.send_to(packet, (Ipv4Addr::LOCALHOST, port)).unwrap();
+            }
+        })
+    }
+
+    #[test]
+    fn a_replay_with_losses_and_a_pause_is_logged() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.bin");
+        let bytes: Vec<u8> = (0..5 * FRAME).map(|n| (n % 250 + 1) as u8).collect();
+        let mut card = Card::listen(0, FRAME).unwrap();
+        card.log = Some(File::create(&path).unwrap());
+        card.silence = Some(Duration::from_secs(1));
+        let mut packets = sent(&bytes);
+        packets.swap(3, 7);
+        packets.swap(60, 62);
+        // The 41st packet is lost: it lies within the second frame.
+        packets.remove(40);
+        let replay = replay(packets, card.port().unwrap(), Duration::from_micros(300), 70);
+        let mut taken = Vec::new();
+        // Two frames are looked at; the others are dropped.
+        let take = |frame: CardFrame| {
+            taken.push((frame.number, frame.lost_bytes));
+            if taken.len() > 2 { Handed::Dropped } else { Handed::Taken }
+        };
+        let summary = card.run(take, |_| true).unwrap();
+        replay.join().unwrap();
+        assert_eq!((summary.frames, summary.dropped, summary.packets.lost_bytes), (5, 3, DATA as u64));
+        assert_eq!(taken[..2], [(0, 0), (1, DATA as u64)]);
+        let mut expected = bytes;
+        expected[40 * DATA..41 * DATA].fill(0);
+        assert!(std::fs::read(path).unwrap() == expected);
+        assert!(summary.sentence().starts_with("5 frames of 137 packets"), "{}", summary.sentence());
+    }
+}
