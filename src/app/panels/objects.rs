@@ -3,13 +3,13 @@
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand};
 use crate::app::widgets::axes;
-use crate::app::widgets::list_rows::focus_after_click;
-use crate::app::widgets::padded::padded;
+use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind, focus_after_click};
 use crate::interact::{Coordinates, Field, Selection, SelectionMode};
 use crate::scene::{Object, Scene};
 use eframe::egui;
-use eframe::egui::{Align, EventFilter, Key, Label, Layout, Modifiers, Response, RichText, Sense, Ui};
-use egui_extras::{Column as TableColumn, TableBuilder, TableRow};
+use eframe::egui::{
+    Align2, EventFilter, FontId, Key, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
+};
 
 /// What is listed.
 pub struct Input<'a> {
@@ -48,20 +48,26 @@ impl Content for ObjectsPanel {
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ObjectsMemory) -> Vec<Command> {
-    padded(ui, |ui, asked| {
-        if input.scene.objects.is_empty() {
-            ui.weak("The scene is empty.");
-            return;
-        }
-        let (area, id) = (ui.available_rect_before_wrap(), ui.scope_id().with("objects"));
-        let list = ui.interact(area, id, Sense::focusable_noninteractive());
+    let mut asked = Vec::new();
+    if input.scene.objects.is_empty() {
+        egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| ui.weak("The scene is empty."));
+        return asked;
+    }
+    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(6, 4)).show(ui, |ui| {
+        let list = ui.interact(
+            ui.available_rect_before_wrap(),
+            ui.scope_id().with("objects"),
+            Sense::focusable_noninteractive(),
+        );
         list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Objects"));
         focus_after_click(&list, &mut memory.was_clicked);
         if list.has_focus() {
             asked.extend(keys(ui, &list, &input));
         }
-        rows(ui, &input, memory, asked);
-    })
+        heading(ui, input.coordinates);
+        rows(ui, &input, memory, &mut asked);
+    });
+    asked
 }
 
 /// Arrow keys walk along the list, with shift they take along what lies between.
@@ -79,8 +85,13 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>) -> Option<Command> {
             }
             let to = match input.selection.latest() {
                 Some(from) => (from + down).saturating_sub(up).min(last),
-                None if down > up => 0,
-                None => last,
+                None => {
+                    if down > up {
+                        0
+                    } else {
+                        last
+                    }
+                }
             };
             asked = Some(Command::Edit(EditCommand::Select(vec![to], mode)));
         }
@@ -88,8 +99,8 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>) -> Option<Command> {
     })
 }
 
-/// Part of the width that a number has.
-const NUMBER: f32 = 0.21;
+/// Where the columns end, as parts of the width, and what is in them.
+const COLUMNS: [f32; 4] = [0.34, 0.56, 0.78, 1.0];
 
 fn place_fields(coordinates: Coordinates) -> [(Field, &'static str); 2] {
     match coordinates {
@@ -98,61 +109,82 @@ fn place_fields(coordinates: Coordinates) -> [(Field, &'static str); 2] {
     }
 }
 
-/// The cells of a row: the first from the left, numbers from the right.
-fn cells(row: &mut TableRow<'_, '_>, [name, numbers @ ..]: [RichText; 4]) {
-    row.col(|ui| _ = ui.add(Label::new(name).selectable(false)));
-    for number in numbers {
-        row.col(|ui| {
-            let layout = Layout::right_to_left(Align::Center);
-            ui.with_layout(layout, |ui| ui.add(Label::new(number).selectable(false)));
-        });
+fn heading(ui: &mut Ui, coordinates: Coordinates) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::hover());
+    let ink = ui.visuals().weak_text_color();
+    let [x, y] = place_fields(coordinates).map(|(_, name)| name);
+    cells(ui, rect, ["object", x, y, "σ"].map(str::to_owned), ink);
+    ui.painter().hline(
+        rect.x_range(),
+        rect.bottom(),
+        Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color),
+    );
+}
+
+/// The first cell from the left, numbers from the right.
+fn cells(ui: &Ui, rect: Rect, texts: [String; 4], ink: egui::Color32) {
+    for (column, text) in texts.into_iter().enumerate() {
+        let (at, align) = match column {
+            0 => (pos2(rect.left() + 6.0, rect.center().y), Align2::LEFT_CENTER),
+            _ => (pos2(rect.left() + COLUMNS[column] * rect.width() - 8.0, rect.center().y), Align2::RIGHT_CENTER),
+        };
+        ui.painter().text(at, align, text, FontId::proportional(12.5), ink);
     }
 }
 
 fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut ObjectsMemory, asked: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.y = 0.0;
     let latest = input.selection.latest();
-    let number = TableColumn::exact(NUMBER * ui.available_width()).clip(true);
-    let mut table = TableBuilder::new(ui).column(TableColumn::remainder().clip(true)).columns(number, 3);
-    table = table.sense(Sense::CLICK).auto_shrink(false).animate_scrolling(false).min_scrolled_height(0.0);
-    // What was selected elsewhere comes into sight, where it isn't.
-    if let Some(row) = latest.filter(|_| latest != memory.latest) {
-        table = table.scroll_to_row(row, None);
+    let mut area = ScrollArea::vertical().auto_shrink([false, false]);
+    if latest != memory.latest
+        && let Some(row) = latest
+    {
+        // What was selected elsewhere comes into sight, where it isn't.
+        if let Some(window) = ui.data(|d| d.get_temp::<Window>(list_window(ui))) {
+            area = bring_in_sight(area, row, ROW_HEIGHT, window);
+        }
     }
     memory.latest = latest;
-    let [x, y] = place_fields(input.coordinates).map(|(_, name)| name);
-    let table =
-        table.header(ROW_HEIGHT, |mut row| cells(&mut row, ["object", x, y, "σ"].map(|t| RichText::new(t).weak())));
-    table.body(|body| {
-        body.rows(ROW_HEIGHT, input.scene.objects.len(), |mut drawn| {
-            let index = drawn.index();
-            let Some(object) = input.scene.objects.get(index) else { return };
-            if let Some(mode) = row(&mut drawn, input, index, object) {
+    let output = area.show_rows(ui, ROW_HEIGHT, input.scene.objects.len(), |ui, range| {
+        for index in range {
+            let Some(object) = input.scene.objects.get(index) else { break };
+            if let Some(mode) = row(ui, input, index, object) {
                 memory.was_clicked = true;
                 asked.push(EditCommand::Select(vec![index], mode).into());
             }
-        });
+        }
     });
+    let shown = Window { offset: output.state.clamped_offset().y, room: output.inner_rect.height() };
+    ui.data_mut(|d| d.insert_temp(list_window(ui), shown));
+}
+
+fn list_window(ui: &Ui) -> egui::Id {
+    ui.scope_id().with("rows in sight")
 }
 
 /// Draws a row; how its object is to be selected, if it was clicked.
-fn row(drawn: &mut TableRow<'_, '_>, input: &Input<'_>, index: usize, object: &Object) -> Option<SelectionMode> {
-    let is_selected = input.selection.contains(index);
-    drawn.set_selected(is_selected);
+fn row(ui: &mut Ui, input: &Input<'_>, index: usize, object: &Object) -> Option<SelectionMode> {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::CLICK);
+    let selected = input.selection.contains(index);
     let name = object.called(index);
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::ListBoxOption, true, selected, format!("{name} in the list"))
+    });
+    let visuals = ui.visuals();
+    if let Some(colour) = colour_behind(visuals, &response, selected) {
+        ui.painter().rect_filled(rect, 2.0, colour);
+    }
     let place = |(field, _): (Field, &str)| {
         let digits = if field == Field::AngleDegrees { 0.1 } else { 0.01 };
         field.get(object).map(|v| axes::tick_text(v, digits)).unwrap_or_default()
     };
     let [x, y] = place_fields(input.coordinates).map(place);
     let many = match object.reflector_count() {
-        0 | 1 => name.clone(),
+        0 | 1 => name,
         n => format!("{name} (×{n})"),
     };
-    cells(drawn, [many, x, y, format!("{:.2}", object.reflectivity())].map(RichText::new));
-    let response = drawn.response();
-    let told = format!("{name} in the list");
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::ListBoxOption, true, is_selected, &told));
-    response.clicked().then(|| response.ctx.input(|i| mode_of(i.modifiers)))
+    cells(ui, rect, [many, x, y, format!("{:.2}", object.reflectivity())], visuals.text_color());
+    response.clicked().then(|| ui.input(|i| mode_of(i.modifiers)))
 }
 
 fn mode_of(modifiers: Modifiers) -> SelectionMode {

@@ -12,12 +12,15 @@ use crate::app::widgets::padded::padded;
 use crate::app::widgets::theme::{self, Inks};
 use crate::radar::{End, Radar};
 use crate::theory::Phasors;
-use eframe::egui::{self, Color32, Sense, Slider, Stroke, Ui, vec2};
+use eframe::egui::{self, Color32, Sense, Slider, Stroke, Ui, emath::Rot2, vec2};
 use egui_plot::LineStyle;
 use num_complex::Complex64;
 
 /// Time in which the whole array is played, seconds.
 const PLAY_SECONDS: f32 = 4.0;
+
+/// Length of the arrow's head, points.
+const HEAD: f32 = 12.0;
 
 /// What is drawn.
 pub struct Input<'a> {
@@ -261,8 +264,10 @@ fn line(ui: &Ui, chart: &mut Chart<'_>, radar: &Radar, chain: &[[f64; 2]], kind:
 /// From the origin to the end of the chain: the cell.
 fn arrow(drawn: &Drawn, end: [f64; 2]) {
     let (from, to) = (drawn.at([0.0, 0.0]), drawn.at(end));
+    let back = HEAD * (from - to).normalized();
     for (width, colour) in [(4.0, theme::MARK_EDGE), (1.8, theme::MARK)] {
-        drawn.painter().arrow(from, to - from, Stroke::new(width, colour));
+        let ends = [from, to + Rot2::from_angle(0.4) * back, to + Rot2::from_angle(-0.4) * back];
+        ends.into_iter().for_each(|end| _ = drawn.painter().line_segment([end, to], Stroke::new(width, colour)));
     }
 }
 

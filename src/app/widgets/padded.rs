@@ -5,9 +5,7 @@ use eframe::egui::{Frame, Margin, ScrollArea, Ui};
 
 /// Draws a panel's content within a margin; what it asks for.
 pub fn padded(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
-    let mut asked = Vec::new();
-    Frame::NONE.inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| content(ui, &mut asked));
-    asked
+    within(ui, Margin::symmetric(10, 6), content)
 }
 
 /// The same, scrolled upwards and downwards where there is little room.
@@ -21,5 +19,13 @@ pub fn scrolled_both(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command
 }
 
 fn scrolled_by(area: ScrollArea, ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
-    padded(ui, |ui, asked| _ = area.auto_shrink(false).show(ui, |ui| content(ui, asked)))
+    let scrolled =
+        |ui: &mut Ui, asked: &mut Vec<Command>| _ = area.auto_shrink(false).show(ui, |ui| content(ui, asked));
+    within(ui, Margin::symmetric(10, 8), scrolled)
+}
+
+fn within(ui: &mut Ui, margin: Margin, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
+    let mut asked = Vec::new();
+    Frame::NONE.inner_margin(margin).show(ui, |ui| content(ui, &mut asked));
+    asked
 }
