@@ -302,7 +302,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn whatever_is_shared_is_opened_as_it_was(
+        fn a_shared_scene_opens_as_it_was(
             places in prop::collection::vec((-30.0..30.0f64, 0.5..38.0f64, -5.0..5.0f64), 0..20),
             (seed, snr, range) in (0..1u64 << 62, -100.0..300.0f64, 1.0..400.0f64),
             (eta, target_eta) in (prop::option::of(0.0..=1.0f32), 0.0..=1.0f32),

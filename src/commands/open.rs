@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_of_somebody_else_keeps_its_name() {
+    fn a_foreign_picture_keeps_its_name() {
         let folder = tempfile::tempdir().unwrap();
         assert_eq!(free_name(folder.path()), folder.path().join("apertura.png"));
         std::fs::write(folder.path().join("apertura.png"), "my holiday").unwrap();

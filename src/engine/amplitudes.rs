@@ -39,7 +39,7 @@ mod tests {
     use crate::scene::{Block, Object, Point, Post, Scene};
 
     #[test]
-    fn whatever_came_before_the_bound_is_that_of_the_scene() {
+    fn the_bound_is_that_of_the_scene_alone() {
         let radar = Radar { elements: 64, end_elements: 4, ..Radar::default() };
         let mut scene = Scene {
             objects: vec![

@@ -295,7 +295,7 @@ fn random_scenes_are_those_of_the_tables() {
 }
 
 #[test]
-fn nobody_but_the_user_moves_a_threshold() {
+fn only_the_user_moves_a_threshold() {
     let s = Session::with_methods(vec![Arc::new(CAPON)]);
     assert_eq!(CAPON.eta(), 0.851, "more decimals than the slider shows");
     assert!(s.state().settings().method_eta.is_empty());

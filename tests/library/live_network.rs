@@ -145,7 +145,7 @@ fn callers_in_a_parallel_loop_do_not_block_each_other() {
         let made: Vec<_> = threads.install(|| {
             (0..8).into_par_iter().map(|_| live.reconstruct(&radar, &ends, &request).unwrap().lambda).collect()
         });
-        let _nobody_waits_any_more = done.send(made);
+        let _receiver_is_gone = done.send(made);
     });
     let made = finished.recv_timeout(Duration::from_secs(120)).expect("eight maps take seconds");
     assert!(made.iter().all(|map| *map == made[0]), "the same samples give the same map on every thread");

@@ -32,7 +32,7 @@ pub fn link(state: &mut State) -> Option<String> {
         if link.len() <= MOST_OF_A_LINK { Ok(link) } else { Err(too_long(link.len())) }
     }) {
         Ok(link) => {
-            state.notices.info("Copied. Whoever opens the link sees what is on screen.");
+            state.notices.info("Copied. The link opens what is on screen.");
             Some(link)
         }
         Err(error) => {

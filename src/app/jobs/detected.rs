@@ -21,10 +21,13 @@ pub struct Detected {
     pub error: Option<String>,
 }
 
+/// A map, its scale and the detector.
+type Detection = (Shared<RangeAngleMap>, LambdaScale, Cfar);
+
 /// Detects, and keeps what it found last: target, then both outputs.
 #[derive(Default)]
 pub struct Detector {
-    kept: [Memo<(Shared<RangeAngleMap>, LambdaScale, Cfar), Arc<RangeAngleMap>>; 3],
+    kept: [Memo<Detection, Arc<RangeAngleMap>>; 3],
 }
 
 impl Detector {

@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dialog_that_somebody_closed_is_no_failure() {
+    fn a_closed_dialog_is_no_failure() {
         assert_eq!(answered(Purpose::ExportMaps), (Vec::new(), None, None));
     }
 

@@ -253,12 +253,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut listening = Listening::new(Context::default());
         let port = listening.begin(plan(folder.path(), 0)).unwrap();
-        let mut packets = sent(&frames(4));
+        let mut packets = sent(&frames(20));
         packets.swap(1, 2);
         // The 13th packet is lost: it lies within the third frame.
         packets.remove(12);
         let replay = replay(packets, port, Duration::from_millis(5), usize::MAX);
-        let shown = polled(&mut listening, |l, _| l.summary().frames >= 3 && l.summary().packets.packets >= 22);
+        let shown = polled(&mut listening, |l, _| l.summary().frames >= 19 && l.summary().packets.packets >= 112);
         replay.join().unwrap();
         let first = shown.first().unwrap();
         assert!(first.is_first && is_live(&first.recording, &first.config));

@@ -126,6 +126,9 @@ impl MapsResult {
     }
 }
 
+/// What scores depend on: target and output, both thresholds, the detector.
+type Scored = (Pair, [f32; 2], Option<Cfar>);
+
 /// State that the maps worker keeps.
 #[derive(Default)]
 pub struct MapsState {
@@ -135,7 +138,7 @@ pub struct MapsState {
     one_scale: OneScale,
     detector: Detector,
     /// Of a pair, at the thresholds of target and output or by a detector.
-    scores: [Memo<(Pair, [f32; 2], Option<Cfar>), Scores>; 2],
+    scores: [Memo<Scored, Scores>; 2],
     roc: Memo<Pair, Arc<Vec<RocPoint>>>,
 }
 

@@ -4,13 +4,14 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{CardPlan, Command, DocumentCommand, Purpose, Way, WorkCommand};
 use crate::app::widgets::entry::button;
 use crate::app::widgets::labelled::{choice_told, labelled};
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::padded::scrolled;
 use crate::app::widgets::theme;
 use crate::platform;
 use crate::recording::card::{CardSummary, USUAL_PORT};
 use crate::recording::raw::boards;
 use crate::recording::{Offer, Origin, Recording};
-use eframe::egui::{self, DragValue, Sense, Slider, Ui, vec2};
+use eframe::egui::{self, Sense, Slider, Ui, vec2};
 use egui_plot::{Line, Plot, PlotPoints};
 
 /// Size of a small range profile, and how far below its peak it is drawn, decibels.
@@ -111,7 +112,7 @@ fn card(
             ui.weak(told(input.summary)).on_hover_text(input.summary.sentence());
         }
         None => {
-            let port = DragValue::new(&mut memory.port).range(1..=u16::MAX);
+            let port = NumberField::new(&mut memory.port).range(1..=u16::MAX);
             labelled(ui, "Capture card on UDP port", "The port of this machine that it sends to", port);
             if let Some(config) = origin.and_then(|origin| origin.config.clone()) {
                 let plan = CardPlan { port: memory.port, config, board: origin.and_then(|origin| origin.board) };

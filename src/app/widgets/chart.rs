@@ -8,10 +8,10 @@ use egui_plot::{AxisHints, GridInput, GridMark, Line, LineStyle, Plot, PlotImage
 use egui_plot::{PlotTransform, Points, VLine};
 
 /// Room above a chart, and at its right where no label needs more, points.
-const AROUND: [f32; 2] = [8.0, 12.0];
+const MARGINS_POINTS: [f32; 2] = [8.0, 12.0];
 
 /// Room left of the title of an axis that leads up, and what the title itself takes, points.
-const TITLE: [f32; 2] = [4.0, 20.0];
+const TITLE_ROOM_POINTS: [f32; 2] = [4.0, 20.0];
 
 /// A chart before it is drawn.
 pub struct Chart<'a> {
@@ -86,7 +86,8 @@ impl<'a> Chart<'a> {
         let (left, right) = self.beside(ui.painter(), area);
         let Chart { name, x, y, has_one_scale, has_grid, is_zoomable, items } = self;
         let painter = ui.painter().clone();
-        let rect = Rect::from_min_max(area.min + vec2(TITLE[0], AROUND[0]), area.max - vec2(right, 0.0));
+        let rect =
+            Rect::from_min_max(area.min + vec2(TITLE_ROOM_POINTS[0], MARGINS_POINTS[0]), area.max - vec2(right, 0.0));
         let mut inside = ui.new_child(UiBuilder::new().id_salt(name).max_rect(rect));
         let mut plot = Plot::new(name)
             .custom_x_axes(vec![hints(ui, AxisHints::new_x(), x).min_thickness(axes::BOTTOM)])
@@ -131,18 +132,19 @@ impl<'a> Chart<'a> {
     /// where that would run into one of the other axis.
     fn beside(&mut self, painter: &Painter, area: Rect) -> (f32, f32) {
         let Chart { x, y, .. } = self;
-        let height = (area.height() - AROUND[0] - axes::BOTTOM).max(20.0);
+        let height = (area.height() - MARGINS_POINTS[0] - axes::BOTTOM).max(20.0);
         if axes::width(painter, y.title) > height {
             y.title = "";
         }
         let y_marks = y.upwards(height);
         let labels = y_marks.iter().map(|t| axes::width(painter, &t.text)).fold(0.0, f32::max);
-        let left = labels + 8.0 + if y.title.is_empty() { 0.0 } else { TITLE[1] };
-        let width = (area.width() - TITLE[0] - left - AROUND[1]).max(20.0);
+        let left = labels + 8.0 + if y.title.is_empty() { 0.0 } else { TITLE_ROOM_POINTS[1] };
+        let width = (area.width() - TITLE_ROOM_POINTS[0] - left - MARGINS_POINTS[1]).max(20.0);
         let x_marks = x.across(painter, width);
         // What half a label reaches beyond a place, points.
         let beyond = |t: &Tick, room: f32| axes::width(painter, &t.text) / 2.0 - room;
-        let right = x_marks.last().map_or(0.0, |t| beyond(t, (1.0 - x.part(t.value)) * width) + 1.0).max(AROUND[1]);
+        let right =
+            x_marks.last().map_or(0.0, |t| beyond(t, (1.0 - x.part(t.value)) * width) + 1.0).max(MARGINS_POINTS[1]);
         let is_crowded = x_marks.first().is_some_and(|t| beyond(t, x.part(t.value) * width) > 2.0);
         if is_crowded && y_marks.first().is_some_and(|t| y.part(t.value) * height < 8.0) {
             y.low -= f64::from(8.0 / height) * (y.high - y.low);

@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_of_somebody_elses_travels_along() {
+    fn a_foreign_table_travels_along() {
         let beside = toml::Table::from_iter([("here".to_owned(), 3.into())]);
         for file in [scene(), SceneFile::default()] {
             let text = to_toml_beside(&file, "other", &beside).unwrap();

@@ -58,7 +58,7 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
 }
 
 /// What a floor of a level of its own is.
-const LEVEL: &str = "Thermal noise of this level in every sample, whatever the scene: an empty scene is noise alone. A reflector of σ 1 at \
+const LEVEL: &str = "Thermal noise of this level in every sample, for any scene: an empty scene is noise alone. A reflector of σ 1 at \
     20 m has +18 dBm; with a link budget, what the radar equation says";
 
 /// What the receivers' own noise is.

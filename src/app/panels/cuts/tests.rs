@@ -79,7 +79,7 @@ fn maps_of_another_radar_are_left_out() {
 }
 
 #[test]
-fn the_target_is_read_where_nobody_chose() {
+fn the_target_is_read_without_a_choice() {
     let cuts = panel([640.0, 300.0]);
     assert!(cuts.state().asked.is_empty());
     assert_eq!(cuts.state().memory.read.map(|line| line.kind), Some(MapKind::Target));

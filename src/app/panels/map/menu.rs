@@ -1,6 +1,6 @@
 //! What a map offers at the pointer: overlays, views, pictures.
 
-use super::{Input, Shown};
+use super::input::{Input, Shown};
 use crate::app::state::{Command, ExportCommand, Panel, Projection, Units, ViewCommand, WindowCommand};
 use crate::app::widgets::entry::{entry, ticked};
 use eframe::egui::Ui;

@@ -45,11 +45,17 @@ impl<'a> Input<'a> {
     }
 }
 
+use super::frame::Marks;
 use super::*;
+use crate::app::state::{Cursor, DifferenceView, Directions, Projection, Units};
 use crate::app::widgets::seen;
+use crate::interact::Selection;
 use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::picture::ColourMap;
 use crate::radar::Carrier;
+use crate::scene::Scene;
 use eframe::egui::Shape;
+use eframe::egui::TextureId;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use ndarray::Array2;
@@ -106,7 +112,7 @@ fn a_refusal_offers_another_method() {
 }
 
 #[test]
-fn every_label_of_a_map_is_inside_its_panel_whatever_is_counted() {
+fn every_label_of_a_map_is_inside_its_panel() {
     let lambda = RangeAngleMap { lambda: Array2::zeros((2, 2)) };
     for size in [[270.0, 130.0], [450.0, 270.0], [1400.0, 800.0]] {
         for (kind, units) in [
@@ -140,7 +146,7 @@ fn every_label_of_a_map_is_inside_its_panel_whatever_is_counted() {
 }
 
 #[test]
-fn every_map_has_the_same_margins_whatever_stands_beside_it() {
+fn every_map_has_the_same_margins() {
     for (size, projection) in [([330.0, 170.0], Projection::RangeAngle), ([700.0, 400.0], Projection::Cartesian)] {
         let rect = |kind: MapKind, units| {
             let radar = Radar::default();

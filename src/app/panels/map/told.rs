@@ -313,7 +313,7 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>
     }
     if is_recorded && (matches!(kind, MapKind::Target | MapKind::TargetAbove) || kind.is_difference()) {
         // Where there is a target, there is a picture, and this is not read.
-        let reason = "The recording has the samples of the two ends alone: nobody knows what all elements would see.";
+        let reason = "The recording has the samples of the two ends alone: what all elements would hear is unknown.";
         return Some(Problem { reason, instead: None });
     }
     if kind.is_above()

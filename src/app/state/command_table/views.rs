@@ -54,7 +54,7 @@ pub(super) const COMMANDS: &[Entry] = {
         View(ViewCommand::SetFloor(Floor::Exact)), "Floor: exact", "No noise at all", None;
         View(ViewCommand::SetFloor(Floor::Snr(Decibels(20.0)))), "Floor: thermal noise", "White noise at a signal-to-noise ratio", None;
         View(ViewCommand::SetFloor(Floor::Level(DecibelMilliwatts(-20.0)))), "Floor: thermal noise of a level",
-            "White noise of -20 dBm in every sample, whatever the scene: an empty scene is noise alone", None;
+            "White noise of -20 dBm in every sample, for any scene: an empty scene is noise alone", None;
         View(ViewCommand::SetFloor(Floor::Thermal)), "Floor: noise of the receivers", "kTBF, by the radar's link budget", None;
         View(ViewCommand::Detect(None)), "Detect: global threshold", "Cells whose Λ exceeds η or η' count as detections", None;
         View(ViewCommand::Detect(Some(Statistic::CellAveraging))), "Detect: cell averaging (CFAR)",
