@@ -80,12 +80,15 @@ class Pool:
         return self
 
     def __next__(self):
-        while self.arrived < self.batch or self.used + self.batch > self.uses * self.arrived or not self.made.empty():
+        # Beside a GPU the processors have nothing else to do; on processors the threads wait, or they take the time of the training.
+        takes_all = self.on_gpu and not self.made.empty()
+        while takes_all or self.arrived < self.batch or self.used + self.batch > self.uses * self.arrived:
             start, scenes = self.made.get()
             if start is None:
                 raise scenes
             self._keep(scenes)
             self.made_until = max(self.made_until, start + CHUNK)
+            takes_all = self.on_gpu and not self.made.empty()
         self.used += self.batch
         places = torch.tensor(self.random.sample(range(min(self.arrived, self.size)), self.batch))
         if self.on_gpu:
