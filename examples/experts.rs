@@ -81,7 +81,7 @@ fn main() -> Outcome {
             if arguments.confidence {
                 arguments.print_confidence(&name, kind, &answers);
             } else {
-                print_row(&name, &answers);
+                print_row(&name, &answers, arguments.largest(kind, &answers));
             }
         }
     }
@@ -121,6 +121,15 @@ impl Arguments {
         println!("{name:24}{}", cells.concat());
     }
 
+    /// The largest reflectivity that nomp lists, over the largest true one of its scene.
+    fn largest(&self, kind: Kind, answers: &[Vec<TimedAnswer>]) -> f64 {
+        let most = |reflectors: &[Reflector]| reflectors.iter().map(|r| r.reflectivity.abs()).fold(0.0, f64::max);
+        let of_scene = |(number, answer): (u32, &Vec<TimedAnswer>)| {
+            most(&answer[1].found.reflectors) / most(&self.scene(kind, number).reflectors())
+        };
+        (self.first..).zip(answers).map(of_scene).fold(0.0, f64::max)
+    }
+
     fn scene(&self, kind: Kind, number: u32) -> Scene {
         let purpose = if self.test { Purpose::Test } else { Purpose::Validation };
         Generator::new(&Radar::default(), Reading::Program, purpose, self.seed).scene(kind, number)
@@ -148,8 +157,8 @@ fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
     values.clone().sum::<f64>() / values.count().max(1) as f64
 }
 
-/// Means of all scenes; the ratio is that of hybrid to the better of both experts, with the standard error of their paired difference.
-fn print_row(name: &str, answers: &[Vec<TimedAnswer>]) {
+/// Means of all scenes, and the largest reflector; the ratio is that of hybrid to the better of both experts, with the standard error of their paired difference.
+fn print_row(name: &str, answers: &[Vec<TimedAnswer>], largest: f64) {
     let error = |method: usize| answers.iter().map(move |a| a[method].metrics.squared_error);
     let [live, nomp, hybrid] = [0, 1, 2].map(|method| mean(error(method)));
     let better = usize::from(nomp < live);
@@ -163,7 +172,6 @@ fn print_row(name: &str, answers: &[Vec<TimedAnswer>]) {
         let alarms = mean(answers.iter().map(|a| a[method].metrics.false_alarm));
         format!("{:>9.2} /{:>5.2}", 100.0 * detected, 100.0 * alarms)
     };
-    let largest = answers.iter().flat_map(|a| &a[1].found.reflectors).map(|r| r.reflectivity.abs()).fold(0.0, f64::max);
     let best = live.min(nomp);
     println!(
         "{name:24}{live:>8.0}{nomp:>8.0}{hybrid:>8.0}{:>7.2}{:>7.2}{}{}{largest:>9.2}",
