@@ -6,7 +6,8 @@
 The term is linear in the means of the head's hidden layer. Its weights minimise a sum: the pinball loss of all cells, the squared distance of each kind's
 coverage from 90 %, and the squares of the weights. Nothing else in FILE changes. The scenes are those of every kind over the thesis'
 floor, of every kind over thermal noise of 10 to 60 dB, and of two sets heard by elements that are off; training and test never see them.
-Weights for radars within limits see four kinds before each of the radars of `train_live.py` that they are for, over the same floors.
+Weights for radars within limits see four kinds before each of the radars of `train_live.py` that they are for, over the same floors. Weights for one other radar
+see every kind that has room before it.
 
 Needs what train_live.py needs. 32 scenes a kind take 10 minutes on two cores.
 """
@@ -20,9 +21,9 @@ from safetensors import safe_open
 from safetensors.torch import load_file, save_file
 
 import apertura as ap
-from apertura.live import CELL_DECADES, COLS, DOUBT, FINE, SCENE_DECADES, WINDOWS, Doubt, Live, normalise, parted, widened
+from apertura.live import CELL_DECADES, DOUBT, SCENE_DECADES, SIZE, WINDOWS, Doubt, Live, normalise, parted, trained_radar, widened, widened_cells
 from common import LEARNED, TARGET
-from train_live import COVERED, INPUTS, KINDS, OFF, RADARS, error_of
+from train_live import COVERED, INPUTS, KINDS, OFF, RADARS, error_of, has_room
 
 #: Cells of a scene that the fit sees, drawn at random.
 CELLS = 4096
@@ -38,31 +39,35 @@ LEAST = 1e-7
 KINDS_OF_RADARS = ("2", "3", "clusters", "walls")
 
 
-def groups(limits):
-    """Of each kind of scene, by name, the arguments of `Scenes`; `limits` are those of the weights' radars, None for table 3.1's."""
-    found = {kind: {"mixture": kind} for kind in KINDS}
+def groups(domain):
+    """Of each kind of scene, by name, the arguments of `Scenes`; `domain` is that of the weights, empty for table 3.1's radar."""
+    trained = trained_radar(domain)
+    radar = {} if trained is None else {"radar": trained}
+    off = {name: {**given, **radar} for name, given in OFF.items()}
+    found = {kind: {"mixture": kind, **radar} for kind in KINDS if trained is None or has_room(kind, trained)}
+    limits = domain.get("limits")
     if limits is not None:
         windows = limits.get("windows") or list(WINDOWS)
         radars = {name: ap.Radar(**given) for name, given in RADARS.items() if given.get("window", "hann") in windows}
         found = {f"{kind}, {name}": {"mixture": kind, "radar": radar} for name, radar in radars.items() for kind in KINDS_OF_RADARS}
     found |= {f"{name} at 10 to 60 dB": {**given, "thermal": (1.0, 10.0, 60.0)} for name, given in found.items()}
-    return found if limits is not None else found | OFF
+    return found if limits is not None else found | off
 
 
 @torch.no_grad()
-def seen(live, doubt, seed, count, limits):
+def seen(live, doubt, seed, count, domain):
     """For each kind of scene: the hidden layer's means, [count, hidden], and log10 of error over said error of some cells, [count, CELLS]."""
     draw = np.random.default_rng(seed)
     found = {}
-    for name, given in groups(limits).items():
-        data = ap.torch.Scenes(**given, seed=seed, length=count, purpose="validation", targets=[TARGET])
+    for name, given in groups(domain).items():
+        data = ap.torch.Scenes(**given, seed=seed, length=count, purpose="validation", targets=[TARGET], network="live")
         means, gaps = [], []
         for i in range(count):
             example = data[i]
             log, minimum, picture = live.with_picture(*(example[name][None] for name in INPUTS))
             of_cells, hidden = doubt.parts(picture)
             error = error_of(normalise(log, minimum), example[LEARNED][None])
-            gap = torch.log10(error + LEAST) - of_cells.clamp(*CELL_DECADES).repeat_interleave(COLS // FINE, 2)
+            gap = torch.log10(error + LEAST) - widened_cells(of_cells.clamp(*CELL_DECADES), live.columns)
             means.append(hidden[0])
             gaps.append(gap.flatten()[torch.from_numpy(draw.choice(gap.numel(), CELLS, replace=False))])
         found[name] = torch.stack(means).double(), torch.stack(gaps).double()
@@ -117,12 +122,13 @@ def main():
     network, of_doubt = parted(tensors)
     if not of_doubt:
         parser.error(f"{args.file} has no head of doubt; expected weights that train_live.py wrote")
-    limits = json.loads(meta.get("domain", "{}")).get("limits")
-    live, doubt = Live(), Doubt()
+    domain = json.loads(meta.get("domain", "{}"))
+    live = Live(**json.loads(meta.get(SIZE, "{}")))
+    doubt = Doubt(live.stem.conv.out_channels)
     live.load_state_dict(widened(network))
     doubt.load_state_dict(of_doubt, strict=False)
     if not args.judge:
-        weights, constant = fitted(seen(live, doubt, 0, args.scenes, limits))
+        weights, constant = fitted(seen(live, doubt, 0, args.scenes, domain))
         with torch.no_grad():
             doubt.scene.weight[0], doubt.scene.bias[:] = weights, constant
         changed = {f"{DOUBT}scene.{name}": t.detach() for name, t in doubt.scene.named_parameters()}
@@ -130,7 +136,7 @@ def main():
                   metadata={**meta, "doubt": f"its scene's part fitted to {args.scenes} validation scenes of each kind, seed 0"})
         os.replace(args.file + ".part", args.file)
     with torch.no_grad():
-        report(seen(live, doubt, 1, args.scenes, limits), lambda means: doubt.scene(means.float())[:, 0].double())
+        report(seen(live, doubt, 1, args.scenes, domain), lambda means: doubt.scene(means.float())[:, 0].double())
 
 
 if __name__ == "__main__":

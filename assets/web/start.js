@@ -6,8 +6,8 @@ const bar = document.getElementById("loaded");
 const PROGRAM = "apertura-page_bg.wasm";
 // A service worker that is not there after so long never is.
 const WORKER_MILLISECONDS = 3000;
-// That for the radar of table 3.1, and that for others.
-const WEIGHTS = ["live.safetensors", "live-any.safetensors"];
+// Those for the radar of table 3.1, for others of its shape, and for the cascade of 12 x 16 pairs.
+const WEIGHTS = ["live.safetensors", "live-any.safetensors", "live-cascade.safetensors"];
 
 let loaded = 0;
 

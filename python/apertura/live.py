@@ -337,6 +337,18 @@ SIZE, DOMAIN = "size", "domain"
 _SILENT = {"transmit_power_watts": None, "chirp_seconds": None, "chirps": None, "chirp_interval_seconds": None}
 
 
+def trained_radar(domain):
+    """The radar of a weight file's domain; None where the weights are for several, or say nothing."""
+    from ._apertura import Radar
+
+    given = domain.get("radar")
+    if given is None:
+        return None
+    # Antennas say how many elements there are, and where.
+    of_pairs = ("elements", "element_spacing_metres") if "transmitter_x_metres" in given else ()
+    return Radar(**{name: value for name, value in given.items() if name not in of_pairs})
+
+
 class Estimator:
     """A method of the weights of a file: a function as `apertura.evaluate` takes it.
 
@@ -351,8 +363,6 @@ class Estimator:
     def __init__(self, path):
         from safetensors import SafetensorError, safe_open
         from safetensors.torch import load_file
-
-        from ._apertura import Radar
 
         path = Path(path)
         path.open("rb").close()
@@ -371,7 +381,7 @@ class Estimator:
             raise ValueError(f"{path}: {error}") from None
         domain = json.loads(record.get(DOMAIN, "{}"))
         #: The radar that the weights are for; None where they are for several, or say nothing.
-        self.radar = Radar(**domain["radar"]) if "radar" in domain else None
+        self.radar = trained_radar(domain)
         self.eta = float(record.get("eta", 0.8))
         stem = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in path.stem)
         self.__name__ = (stem if stem.startswith("live") else f"live-{stem}")[:40]

@@ -1,21 +1,23 @@
-//! `--radar RADAR.toml`: the radar of samples that come without one.
+//! `--radar NAME|RADAR.toml`: the radar of samples that come without one.
 
 use super::CommandError;
 use crate::files::read_bounded;
 use crate::radar::Radar;
+use crate::radar::presets::{self, RadarPreset};
 use crate::scene::file::{MAX_FILE_BYTES, radar_of};
 use std::path::{Path, PathBuf};
 
 /// Which radar measured the samples.
 #[derive(Debug, Clone, clap::Args)]
 pub struct RadarArg {
-    /// Radar that measured the samples: any .toml with a table [radar], a scene or a recording [default: table 3.1]
-    #[arg(long, value_name = "RADAR.toml")]
+    /// Radar that measured the samples: the name of a preset, such as cascade-12x16, or any .toml with a table [radar], a scene or a
+    /// recording [default: table-3.1]
+    #[arg(long, value_name = "NAME|RADAR.toml")]
     radar: Option<PathBuf>,
 }
 
 impl RadarArg {
-    /// Whether a file was named.
+    /// Whether one was named.
     pub fn is_given(&self) -> bool {
         self.radar.is_some()
     }
@@ -27,9 +29,19 @@ impl RadarArg {
 }
 
 fn load(path: &Path) -> Result<(Radar, Option<f64>), CommandError> {
+    if let Some(preset) = path.to_str().and_then(RadarPreset::by_id) {
+        return Ok((preset.radar.clone(), None));
+    }
+    let wrong = |what: String| CommandError::Usage(format!("{}: {what}", path.display()));
+    if path.extension().is_none() && !path.exists() {
+        let names: Vec<&str> = presets::ALL.iter().map(|preset| preset.id).collect();
+        return Err(wrong(format!(
+            "there is no such file, and no preset of this name; presets are {}",
+            names.join(", ")
+        )));
+    }
     let bytes =
         read_bounded(path, MAX_FILE_BYTES).map_err(|source| CommandError::File { path: path.to_owned(), source })?;
-    let wrong = |what: String| CommandError::Usage(format!("{}: {what}", path.display()));
     let text = String::from_utf8(bytes)
         .map_err(|_| wrong("is not text; expected a TOML file with a table [radar]".to_owned()))?;
     radar_of(&text).map_err(wrong)

@@ -65,19 +65,22 @@ use std::path::Path;
 use std::sync::{Arc, LazyLock};
 use weights::{WeightFile, WeightsError};
 
-const LIVE_FILE: &str = "assets/weights/live.safetensors";
-const ANY_FILE: &str = "assets/weights/live-any.safetensors";
+/// Weight files of the live network, in the order of [`platform::live_weights`].
+const LIVE_FILES: [&str; 3] = [
+    "assets/weights/live.safetensors",
+    "assets/weights/live-any.safetensors",
+    "assets/weights/live-cascade.safetensors",
+];
 
-/// The live network whose weights are part of the program, by itself: those for the radar of table 3.1, and those for others. `None`, with a
-/// warning in the log, where the first can't be used.
+/// The live network whose weights are part of the program, by itself: those for the radar of table 3.1, those for others of its shape, and those
+/// for the cascade of 12 x 16 pairs. `None`, with a warning in the log, where the first can't be used.
 pub fn live() -> Option<LiveMethod> {
-    let [table_3_1, any] = platform::live_weights();
-    let of = |name, bytes: &[u8]| usable(WeightFile::parse(name, bytes).and_then(LiveMethod::new));
-    let live = of(LIVE_FILE, &table_3_1)?;
-    Some(match of(ANY_FILE, &any) {
-        Some(any) => live.with_other_radars(any),
-        None => live,
-    })
+    let of = |(name, bytes): (&str, std::borrow::Cow<[u8]>)| {
+        usable(WeightFile::parse(name, &bytes).and_then(LiveMethod::new))
+    };
+    let mut files = LIVE_FILES.into_iter().zip(platform::live_weights()).map(of);
+    let live = files.next()??;
+    Some(live.with_other_radars(files.flatten().collect()))
 }
 
 /// Name of the live network with the weights of the file at `path`, beside the shipped ones: "live-" and the file's name without its ending, at

@@ -13,10 +13,11 @@ pub fn page_address() -> Option<String> {
 }
 
 #[cfg(feature = "live")]
-pub(crate) fn live_weights() -> [std::borrow::Cow<'static, [u8]>; 2] {
+pub(crate) fn live_weights() -> [std::borrow::Cow<'static, [u8]>; 3] {
     let table_3_1 = include_bytes!("../../assets/weights/live.safetensors").as_slice();
     let any = include_bytes!("../../assets/weights/live-any.safetensors").as_slice();
-    [table_3_1.into(), any.into()]
+    let cascade = include_bytes!("../../assets/weights/live-cascade.safetensors").as_slice();
+    [table_3_1, any, cascade].map(Into::into)
 }
 
 /// Whether the window is a page in a browser.

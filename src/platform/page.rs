@@ -51,8 +51,8 @@ pub fn page_address() -> Option<String> {
 }
 
 #[cfg(feature = "live")]
-pub(crate) fn live_weights() -> [std::borrow::Cow<'static, [u8]>; 2] {
-    [0, 1].map(|index| fetched_weights(index).into())
+pub(crate) fn live_weights() -> [std::borrow::Cow<'static, [u8]>; 3] {
+    [0, 1, 2].map(|index| fetched_weights(index).into())
 }
 
 /// Whether the window is a page in a browser.

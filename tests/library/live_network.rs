@@ -4,8 +4,9 @@ use apertura::evaluate::campaign::Campaign;
 use apertura::evaluate::sets::SceneSet;
 use apertura::evaluate::tables::Tally;
 use apertura::methods;
+use apertura::radar::presets::RadarPreset;
 use apertura::radar::{Carrier, Convention, Decibels, Radar, WindowFunction};
-use apertura::reconstruct::Request;
+use apertura::reconstruct::{Baseline, Request};
 use apertura::scene::generate::{Kind, Purpose};
 use apertura::scene::{Reflector, Scene};
 use apertura::signal::{Floor, TwoEnds, simulate};
@@ -69,6 +70,23 @@ fn other_radars_have_weights_of_their_own() {
         let refused = live.check_array(&radar).unwrap_err().to_string();
         assert!(refused.contains(words), "{refused}");
     }
+}
+
+#[test]
+fn the_cascade_has_weights_of_its_own() {
+    let live = methods::by_name("live").unwrap();
+    let radar = RadarPreset::by_id("cascade-12x16").unwrap().radar.clone();
+    assert_ne!(live.weights(&radar), live.weights(&Radar::default()));
+    let campaign = Campaign { purpose: Purpose::Validation, seed: 77, count: 6, radar, ..Campaign::default() };
+    let sets = [SceneSet::Generated(Kind::Set2)];
+    let rows = campaign.run(&sets, &[live.as_ref(), &Baseline], &Task::default(), |_| ()).unwrap();
+    let error = |method: &str| {
+        Tally::of(&rows.iter().filter(|row| row.method == method).cloned().collect::<Vec<_>>()).squared_error().mean
+    };
+    assert!(4.0 * error("live") < error("baseline"), "{} {}", error("live"), error("baseline"));
+    // The weights are for one radar, and no other of its shape.
+    let other = Radar { bandwidth_hz: 1.1e9, ..campaign.radar };
+    assert!(live.check_array(&other).is_err());
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub const NAME: &str = "live";
 const DESCRIPTION: &str = "a small network that draws the whole array's map from matched filters of both ends";
 const TRAINED_ON: &str = "for the radar of table 3.1: scenes drawn as the generators of all kinds draw them, a third of them over thermal noise \
     at signal-to-noise ratios of 10 to 60 dB, the others over the rounding of the thesis' program; for others of 1024 elements, weights that went \
-    on from those, on one procedural world before radars drawn at random";
+    on from those, on one procedural world before radars drawn at random; for the cascade of 12 x 16 pairs, weights of the same world";
 
 /// Buffers kept for later passes; each takes some 30 MB.
 const MOST_IDLE: usize = 2;
@@ -39,8 +39,8 @@ pub struct LiveMethod {
     eta: f32,
     weights: Weights,
     trained: Domain,
-    /// The network for radars that this one wasn't trained for.
-    other_radars: Option<Box<LiveMethod>>,
+    /// Networks for radars that this one wasn't trained for; the first tells what it lacks where none is for a radar.
+    other_radars: Vec<LiveMethod>,
     /// Where the weights come from.
     pub provenance: Provenance,
 }
@@ -71,19 +71,23 @@ impl LiveMethod {
             eta: file.provenance.eta().unwrap_or(0.8),
             weights: file.weights(),
             trained,
-            other_radars: None,
+            other_radars: Vec::new(),
             provenance: file.provenance,
         })
     }
 
-    /// The same, with `other` in its place on radars that this one wasn't trained for.
-    pub fn with_other_radars(self, other: LiveMethod) -> Self {
-        LiveMethod { other_radars: Some(Box::new(other)), ..self }
+    /// The same, with the first of `others` that was trained for it in its place on a radar that this one wasn't trained for.
+    pub fn with_other_radars(self, others: Vec<LiveMethod>) -> Self {
+        LiveMethod { other_radars: others, ..self }
     }
 
     /// The network that answers samples of `radar`.
     fn on(&self, radar: &Radar) -> &LiveMethod {
-        self.other_radars.as_deref().filter(|_| !self.trained.holds(radar)).unwrap_or(self)
+        if self.trained.holds(radar) {
+            return self;
+        }
+        let others = &self.other_radars;
+        others.iter().find(|other| other.trained.holds(radar)).or(others.first()).unwrap_or(self)
     }
 
     /// The network without features and normalisation.
