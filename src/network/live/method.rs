@@ -95,14 +95,7 @@ impl LiveMethod {
     /// # Errors
     /// [`ReconstructError`] on a radar the network wasn't trained for and on unusable samples.
     pub fn decades(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
-        self.on(radar).decades_by(LiveEngine::forward, radar, ends).map(|(decades, _)| decades)
-    }
-
-    /// The same with nothing left out.
-    /// # Errors
-    /// As [`LiveMethod::decades`].
-    pub fn decades_whole(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
-        self.on(radar).decades_by(LiveEngine::forward_whole, radar, ends).map(|(decades, _)| decades)
+        self.on(radar).with_doubt(radar, ends).map(|(decades, _)| decades)
     }
 
     fn extractor(&self, radar: &Radar) -> Result<Arc<FeatureExtractor>, ReconstructError> {
@@ -118,18 +111,13 @@ impl LiveMethod {
     }
 
     /// The map in decades, and how far off the network expects Lambda to be.
-    fn decades_by(
-        &self,
-        forward: fn(&LiveEngine, &LiveInput, &mut LiveScratch) -> Decades,
-        radar: &Radar,
-        ends: &TwoEnds,
-    ) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
+    fn with_doubt(&self, radar: &Radar, ends: &TwoEnds) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
         let input = self.extractor(radar)?.extract(ends)?;
         // A panic elsewhere can't leave the buffers in a state that matters: every pass overwrites them.
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = idle().pop();
         let mut scratch = taken.unwrap_or_default();
-        let mut decades = forward(&self.engine, &input, &mut scratch);
+        let mut decades = self.engine.forward(&input, &mut scratch);
         let mut doubt = self.engine.doubt(&scratch);
         turn_columns(radar, &mut decades.map);
         if let Some(cells) = doubt.as_mut().and_then(|doubt| doubt.lambda.as_slice_mut()) {
@@ -206,7 +194,7 @@ impl Reconstructor for LiveMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let (Decades { mut map, minimum, .. }, doubt) = self.on(radar).decades_by(LiveEngine::forward, radar, ends)?;
+        let (Decades { mut map, minimum, .. }, doubt) = self.on(radar).with_doubt(radar, ends)?;
         let peak = map.par_iter().copied().reduce(|| f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
         let least_eta = scale.lambda(noise_level_decades(&map)) as f32;
