@@ -1,7 +1,7 @@
 //! What the planner chooses, timed with every instruction set: each in a process of its own, since a process keeps to one.
 
 use crate::benchmark::front::Front;
-use crate::commands::{CommandError, print};
+use crate::commands::{CommandError, print, print_json};
 use crate::signal::simd::{SIMD_VARIABLE, Simd};
 use std::process::Command;
 
@@ -22,7 +22,7 @@ pub fn run(reflectors: &[u32], repeats: u32, json: bool) -> Result<(), CommandEr
         fronts.push(serde_json::from_slice::<Front>(&output.stdout).map_err(CommandError::failed)?);
     }
     if json {
-        return print(&serde_json::to_string_pretty(&fronts).map_err(CommandError::failed)?);
+        return print_json(&fronts);
     }
     print(&table(&fronts))?;
     for simd in Simd::ALL.into_iter().filter(|simd| !Simd::available().contains(simd)) {

@@ -1,12 +1,10 @@
 //! `apertura bench --methods`: run time against squared error of every reconstruction method; how long crowds take those that search, and
-//! following a drag; what the live network leaves out.
+//! following a drag.
 
 use super::following::{self, Followed};
-#[cfg(feature = "network")]
-use super::left_out::{self, LeftOut};
 use crate::commands::CommandError;
 use crate::commands::figure::{DrawingResult, Plot, save, save_numbers, tick};
-use crate::commands::print;
+use crate::commands::{print, print_json};
 use crate::evaluate::Estimate;
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::sets::SceneSet;
@@ -35,8 +33,6 @@ struct Report {
     methods: Vec<MethodRow>,
     crowds: Vec<Crowd>,
     followed: Followed,
-    #[cfg(feature = "network")]
-    left_out: Vec<LeftOut>,
 }
 
 #[derive(Debug, Serialize)]
@@ -81,8 +77,6 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
         ]
         .concat(),
         followed: following::measure(crowds, || bar.inc(1))?,
-        #[cfg(feature = "network")]
-        left_out: left_out::measure(crowds)?,
     };
     bar.finish_and_clear();
     if let Some(folder) = output {
@@ -90,7 +84,7 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
         save_numbers(&report, folder, "methods")?;
     }
     if json {
-        return print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?);
+        return print_json(&report);
     }
     print(&format!(
         "{}, {}\n{:26} {:>24} {:>24}",
@@ -118,10 +112,6 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
             c.squared_error.standard_error,
             counted(c.scenes, "scene", "scenes")
         ))?;
-    }
-    #[cfg(feature = "network")]
-    for row in &report.left_out {
-        print(&row.line())?;
     }
     print(&report.followed.line())
 }
