@@ -20,6 +20,13 @@ pub fn apertura(folder: &TempDir) -> Command {
     command
 }
 
+/// The program with its arguments, where it reads and writes nothing in the folder.
+pub fn program(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
+    command.args(arguments);
+    command
+}
+
 pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
