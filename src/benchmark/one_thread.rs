@@ -21,7 +21,7 @@ const REFLECTORS: [usize; 2] = [10, 300];
 const DRAG_METRES: f64 = 0.01;
 
 /// A computation and its run time.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Timed {
     pub name: String,
     pub milliseconds: f64,

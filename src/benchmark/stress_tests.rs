@@ -77,6 +77,7 @@ struct Case<'a> {
 
 /// What an algorithm made of it.
 struct Outcome {
+    algorithm: Algorithm,
     /// Largest error of a range cell over [`Case::scale`].
     signal_error: f64,
     ulp_change: Vec<LambdaError>,
@@ -110,7 +111,7 @@ impl<'a> Case<'a> {
     fn fast(&self, name: &str, algorithm: Algorithm, precision: Precision, tolerance: f64) -> Outcome {
         let mut engine = Engine::new(self.radar.clone());
         engine.force(Forced { algorithm: Some(algorithm), precision: Some(precision), tolerance: Some(tolerance) });
-        let mut outcome = Outcome { signal_error: 0.0, ulp_change: Vec::new() };
+        let mut outcome = Outcome { algorithm, signal_error: 0.0, ulp_change: Vec::new() };
         for convention in CONVENTIONS {
             let MapConvention { floor, normalisation } = convention;
             let wanted = MapRequest { floor, normalisation, seed: SEED, ends: false, ..MapRequest::default() };
@@ -151,7 +152,7 @@ impl<'a> Case<'a> {
         let after = self.moved.iter().flat_map(|moved| of(moved).1);
         let changes = CONVENTIONS.into_iter().zip(&maps).zip(after);
         let ulp_change = changes.map(|((c, a), b)| difference(c, a.each_ref(), b.each_ref())).collect();
-        Outcome { signal_error, ulp_change }
+        Outcome { algorithm, signal_error, ulp_change }
     }
 }
 
@@ -163,7 +164,7 @@ fn every_scene_holds(radar: &Radar, coincident: usize) {
     }
     assert!(outcomes.len() > 100, "{} cases", outcomes.len());
     // A run that can't see an error proves nothing: the plain formula's rounding and f32's must show.
-    assert!(outcomes.iter().any(|o| o.signal_error > 1e-14));
+    assert!(outcomes.iter().any(|o| o.algorithm == Algorithm::Direct && o.signal_error > 1e-14));
     let changes = outcomes.iter().flat_map(|o| &o.ulp_change);
     assert!(changes.clone().any(|u| u.max > 0.0) && changes.clone().all(|u| u.max.is_finite()));
 }
@@ -215,10 +216,11 @@ fn edits_end_at_a_fresh_build(radar: &Radar, wanted: &MapRequest, edits: usize, 
             let mut fresh = Engine::new(radar.clone());
             fresh.update(&scene, wanted).unwrap();
             worst = worst.max(apart(radar, &engine, &fresh, &scene));
-            assert!(engine.cache_bytes() <= *early_bytes.get_or_insert(engine.cache_bytes()), "caches grow");
+            early_bytes.get_or_insert(engine.cache_bytes());
         }
     }
     assert!(worst > 0.0 && worst <= most, "{worst:e} of {most:e}");
+    assert!(engine.cache_bytes() <= early_bytes.unwrap(), "the caches grow");
 }
 
 /// Largest difference of range cells, relative to a cell in which all echoes of the scene agree, as tolerances are.

@@ -86,21 +86,32 @@ pub fn front(measured: &Front) -> LineChart {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::benchmark::front::MapConvention;
+    use crate::signal::Precision;
 
-    /// A row as `bench.json` has it.
-    fn row(algorithm: &str, chosen: &str, tolerance: f64, median_ms: f64) -> FrontRow {
-        serde_json::from_value(serde_json::json!({
-            "task": "scratch", "reflectors": 10, "algorithm": algorithm, "chosen": chosen, "precision": "f64", "tolerance": tolerance,
-            "floor": "thesis", "normalisation": "min-max", "median_ms": median_ms, "spread_ms": 0.0, "fastest_ms": median_ms, "repeats": 1,
-            "signal_error": 1e-13, "lambda_error": 0.0, "lambda_rms_error": 0.0, "lambda": [], "peak_bytes": null,
-        }))
-        .unwrap()
+    fn row(algorithm: &str, chosen: Algorithm, tolerance: f64, median_ms: f64) -> FrontRow {
+        FrontRow {
+            task: FrontTask::Scratch,
+            reflectors: 10,
+            algorithm: algorithm.parse().unwrap(),
+            chosen,
+            precision: Precision::F64,
+            tolerance,
+            convention: MapConvention::THESIS,
+            median_ms,
+            spread_ms: 0.0,
+            fastest_ms: median_ms,
+            repeats: 1,
+            signal_error: 1e-13,
+            lambda: Vec::new(),
+        }
     }
 
     #[test]
     fn a_ring_stands_on_the_dot_of_what_the_planner_chose() {
-        let [plan, alone] = [row("plan", "split", 1e-9, 5.0), row("plan", "direct", 1e-9, 6.0)];
-        let [other, chosen] = [row("split", "split", 1e-12, 1.0), row("split", "split", 1e-9, 2.0)];
+        let [plan, alone] = [row("plan", Algorithm::Split, 1e-9, 5.0), row("plan", Algorithm::Direct, 1e-9, 6.0)];
+        let [other, chosen] =
+            [(1e-12, 1.0), (1e-9, 2.0)].map(|(tolerance, ms)| row("split", Algorithm::Split, tolerance, ms));
         let rows = [&plan, &alone, &other, &chosen];
         assert_eq!(dot_of(&plan, &rows).median_ms, 2.0);
         assert_eq!(dot_of(&other, &rows).median_ms, 1.0);
