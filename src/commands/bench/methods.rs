@@ -1,7 +1,5 @@
-//! `apertura bench --methods`: run time against squared error of every reconstruction method; how long crowds take those that search, and
-//! following a drag.
+//! `apertura bench --methods`: run time against squared error of every reconstruction method; how long crowds take those that search.
 
-use super::following::{self, Followed};
 use crate::commands::CommandError;
 use crate::commands::figure::{DrawingResult, Plot, save, save_numbers, tick};
 use crate::commands::{print, print_json};
@@ -32,7 +30,6 @@ struct Report {
     scenes: u32,
     methods: Vec<MethodRow>,
     crowds: Vec<Crowd>,
-    followed: Followed,
 }
 
 #[derive(Debug, Serialize)]
@@ -64,7 +61,7 @@ struct Crowd {
 pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
     let all = methods::all();
     let crowds = count.max(FEWEST_CROWDS);
-    let of_crowds = 2 * u64::from(crowds) * SEARCHERS.len() as u64 + u64::from(crowds * following::MOVES);
+    let of_crowds = 2 * u64::from(crowds) * SEARCHERS.len() as u64;
     let maps = 3 * u64::from(count) * all.len() as u64 + of_crowds;
     let bar = indicatif::ProgressBar::new(maps);
     let report = Report {
@@ -76,7 +73,6 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
             crowds_of(crowds, Kind::Mixed(4), 300, "four lines of 75", || bar.inc(1))?,
         ]
         .concat(),
-        followed: following::measure(crowds, || bar.inc(1))?,
     };
     bar.finish_and_clear();
     if let Some(folder) = output {
@@ -113,7 +109,7 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
             counted(c.scenes, "scene", "scenes")
         ))?;
     }
-    print(&report.followed.line())
+    Ok(())
 }
 
 fn method_rows(count: u32, methods: &[&dyn Reconstructor], on_map: impl Fn()) -> Result<Vec<MethodRow>, CommandError> {
