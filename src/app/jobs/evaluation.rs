@@ -1,6 +1,6 @@
 //! Tables 4.1 to 4.3 of the rows there are: every method on every test set.
 
-use crate::evaluate::rows::{Row, Text};
+use crate::evaluate::rows::{Column, Row, Text};
 use crate::evaluate::tables::{Estimate, Tally};
 use crate::scene::generate::Kind;
 use std::collections::BTreeMap;

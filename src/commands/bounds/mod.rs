@@ -5,7 +5,7 @@ mod report;
 
 use super::arguments::whole;
 use super::figure::{save, save_bitmap, save_numbers};
-use super::{CommandError, print, print_json};
+use super::{CommandError, print_json};
 use crate::bounds::{Ambiguity, Gains, PositionBound, ambiguity, cramer_rao_of, cut, lobes, noise_variance};
 use crate::evaluate::{Placement, placement};
 use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};

@@ -2,7 +2,7 @@
 
 use super::constants::turn_columns;
 use super::engine::{Decades, LiveEngine, LiveScratch};
-use super::features::{FeatureExtractor, LiveInput};
+use super::features::FeatureExtractor;
 use super::size::LiveSize;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::domain::{Domain, is_alike};
