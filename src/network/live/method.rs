@@ -6,7 +6,7 @@ use super::features::FeatureExtractor;
 use super::size::LiveSize;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::domain::{Domain, is_alike};
-use crate::network::weights::{Provenance, WeightFile, WeightsError};
+use crate::network::weights::{WeightFile, WeightsError};
 use crate::radar::{Decibels, Radar};
 use crate::reconstruct::{About, Family, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use crate::reconstruct::{TrainedNoise, level_above_mean_decades, own_threshold};
@@ -41,8 +41,6 @@ pub struct LiveMethod {
     trained: Domain,
     /// The network for radars that this one wasn't trained for.
     other_radars: Option<Box<LiveMethod>>,
-    /// Where the weights come from.
-    pub provenance: Provenance,
 }
 
 impl LiveMethod {
@@ -72,7 +70,6 @@ impl LiveMethod {
             weights: file.weights(),
             trained,
             other_radars: None,
-            provenance: file.provenance,
         })
     }
 
