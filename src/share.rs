@@ -107,21 +107,16 @@ pub struct LessonPlace {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ShareError {
-    /// It doesn't begin as such a text does.
     #[error("the text begins with \"{0}\"; expected \"{PREFIX}{VERSION}:\"")]
     Prefix(String),
-    /// It was written by another version.
     #[error(
         "the text is of version \"{0}\"; this program reads version {VERSION}: open it with the program that wrote it"
     )]
     Version(String),
-    /// There is too much of it.
     #[error("the text holds more than {} MiB; save the scene as a file instead", MOST_BYTES >> 20)]
     Large,
-    /// Letters are missing or wrong.
     #[error("the text is damaged ({0}): copy all of it again, from \"{PREFIX}\" to the last letter")]
     Damaged(String),
-    /// What it holds is no scene.
     #[error("the text holds no scene: {0}")]
     Scene(#[from] SceneTextError),
     /// The scene can't be simulated.
@@ -130,7 +125,6 @@ pub enum ShareError {
     /// Something it says of the view can't be.
     #[error("the text's {field} {problem}")]
     View { field: &'static str, problem: String },
-    /// A number of the scene can't be written.
     #[error("the scene can't be written as text: {0}")]
     Unwritable(String),
 }

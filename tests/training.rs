@@ -49,7 +49,6 @@ fn a_run_in_two_parts_ends_where_a_whole_one_does() {
         network: Network::Thesis(config),
         optimizer: Optimizer::Sgd { learning_rate: 0.1, momentum: 0.9 },
         decay: Some(Decay { epochs: 1, factor: 0.5 }),
-        thermal: None,
         scenes: vec![KindShare { kind: Kind::Points(2), count: 6 }],
     };
     let (whole, parts) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());

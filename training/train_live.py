@@ -1,5 +1,4 @@
-"""Trains the live network on scenes simulated as it goes: the PyTorch twin of `apertura train live`, which trains several times as fast
-on a CPU. The shipped weights come from here.
+"""Trains the live network on scenes simulated as it goes: the shipped weights come from here.
 
     python3 train_live.py --out DIR --minutes 80                     # start, or go on from DIR/checkpoint.pt
     torchrun --nproc-per-node 2 --max-restarts 3 \\

@@ -1,4 +1,4 @@
-"""The live network in PyTorch: the twin of `src/network/live/module.rs`, with the same layer names and shapes. Needs `torch` and `safetensors`.
+"""The live network in PyTorch: the twin of `src/network/live/engine.rs`, under the tensors' names of its weight files. Needs `torch` and `safetensors`.
 
 `Estimator` makes a method of any weights that `training/train_live.py` wrote, those for radars of other shapes included. The program's own engine answers
 the same, and faster (`apertura.method("live", weights=FILE)`). `python -m apertura.live FILE` serves this one to the program:

@@ -1,6 +1,7 @@
 //! Run times of what the window computes most, on one thread: the native program and the page run the same, and `scripts/measure-page`
 //! compares them.
 
+use super::times::quantile;
 use crate::engine::{Engine, MapRequest};
 use crate::methods;
 use crate::platform::Instant;
@@ -20,7 +21,7 @@ const REFLECTORS: [usize; 2] = [10, 300];
 const DRAG_METRES: f64 = 0.01;
 
 /// A computation and its run time.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Timed {
     pub name: String,
     pub milliseconds: f64,
@@ -42,9 +43,7 @@ fn median(mut work: impl FnMut(usize) -> Result<(), String>) -> Result<f64, Stri
         work(run)?;
         times.push(1e3 * began.elapsed().as_secs_f64());
     }
-    let mut counted = times.split_off(WARM_UP);
-    counted.sort_by(f64::total_cmp);
-    Ok(counted[REPEATS / 2])
+    Ok(quantile(&mut times[WARM_UP..], 0.5))
 }
 
 /// Three maps of 10 and of 300 reflectors, from scratch and while one is dragged, and the live network, on the threads that rayon has here.
@@ -84,18 +83,6 @@ pub fn measure() -> Result<Vec<Timed>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_median_leaves_out_the_first_runs() {
-        let mut runs = 0;
-        let wait = |run: usize| {
-            runs += 1;
-            std::thread::sleep(std::time::Duration::from_millis(if run < WARM_UP { 60 } else { 1 }));
-            Ok(())
-        };
-        assert!(median(wait).unwrap() < 50.0);
-        assert_eq!(runs, WARM_UP + REPEATS);
-    }
 
     #[test]
     fn spread_reflectors_lie_in_range() {

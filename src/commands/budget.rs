@@ -1,6 +1,6 @@
 //! `apertura budget`: SNR by the radar equation.
 
-use super::{CommandError, print};
+use super::{CommandError, print, print_json};
 use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
 use crate::radar::{Decibels, LinkBudget, LinkFigures, Radar};
 use crate::scene::Object;
@@ -126,7 +126,7 @@ impl Args {
             objects: file.scene.objects.iter().enumerate().filter_map(|o| Row::of(radar, o)).collect(),
         };
         match self.json {
-            true => print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?),
+            true => print_json(&report),
             false => print(&report.text(radar.budget.is_some())),
         }
     }

@@ -1,7 +1,6 @@
 //! Charts as files: every figure is drawn once as SVG and once as PNG.
 
-use super::CommandError;
-use crate::files::write_bytes;
+use super::{CommandError, write_file};
 use crate::picture::{self, encode_png};
 use image::RgbImage;
 use plotters::coord::Shift;
@@ -62,8 +61,7 @@ fn ready(folder: &Path) -> Result<(), CommandError> {
 }
 
 fn write(folder: &Path, stem: &str, extension: &str, bytes: &[u8]) -> Result<(), CommandError> {
-    let path = folder.join(format!("{stem}.{extension}"));
-    write_bytes(&path, bytes).map_err(|source| CommandError::File { path, source })
+    write_file(&folder.join(format!("{stem}.{extension}")), bytes)
 }
 
 fn undrawn(stem: &str, error: &dyn std::fmt::Display) -> CommandError {

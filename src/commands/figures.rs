@@ -1,13 +1,12 @@
 //! `apertura figures`: every figure of the thesis from this program.
 
 use super::arguments::whole;
-use super::{CommandError, print};
+use super::{CommandError, print, write_file};
 use crate::figures::{ALL, Figure, SceneSource, by_number, draw, pages};
-use crate::files::write_bytes;
 use crate::methods;
 use crate::reconstruct::Reconstructor;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Draw the thesis' figures and tables from this program's own data
@@ -38,12 +37,13 @@ impl Args {
         for figure in &chosen {
             let failed = |e: &dyn std::fmt::Display| CommandError::Usage(format!("figure {}: {e}", figure.number));
             let sheet = (figure.sheet)(&source).map_err(|e| failed(&e))?;
-            write(&folder, &format!("{}.png", figure.number), &draw::png(&sheet).map_err(|e| failed(&e))?)?;
-            write(&folder, &format!("{}.svg", figure.number), draw::svg(&sheet).map_err(|e| failed(&e))?.as_bytes())?;
+            let path = |ending: &str| folder.join(format!("{}.{ending}", figure.number));
+            write_file(&path("png"), &draw::png(&sheet).map_err(|e| failed(&e))?)?;
+            write_file(&path("svg"), draw::svg(&sheet).map_err(|e| failed(&e))?.as_bytes())?;
             print(&format!("figure {}", figure.number))?;
         }
         if self.only.is_empty() {
-            write(&self.output, "figures.md", self.page()?.as_bytes())?;
+            write_file(&self.output.join("figures.md"), self.page()?.as_bytes())?;
         }
         print(&format!("wrote {} figures into {}", chosen.len(), folder.display()))
     }
@@ -74,9 +74,4 @@ impl Args {
         page.push_str("<!-- /table -->\n");
         Ok(page)
     }
-}
-
-fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), CommandError> {
-    let path = folder.join(name);
-    write_bytes(&path, bytes).map_err(|source| CommandError::File { path, source })
 }

@@ -2,7 +2,7 @@
 
 use super::arguments::whole;
 use super::figure::{DrawingResult, Plot, save};
-use super::{CommandError, print};
+use super::{CommandError, print, print_json};
 use crate::bounds::{Lobes, cut, lobes};
 use crate::evaluate::{Estimate, Roc, squared_error};
 use crate::maps::LogMaps;
@@ -103,7 +103,7 @@ impl Args {
             save(&CutFigure { radar: &radar, rows: &rows }, folder, "layouts")?;
         }
         if self.json {
-            return print(&serde_json::to_string_pretty(&rows).map_err(CommandError::failed)?);
+            return print_json(&rows);
         }
         print_table(&radar, self.count, &rows)
     }

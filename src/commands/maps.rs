@@ -4,9 +4,8 @@ use super::arguments::{self, FloorArgs};
 use super::frames::Frames;
 use super::input::{ConfigArg, InputArgs};
 use super::own_method::OwnMethodArgs;
-use super::{CommandError, print};
+use super::{CommandError, print, write_file};
 use crate::files::npz::NpzError;
-use crate::files::write_bytes;
 use crate::maps::archive::{write_frames, write_maps, write_recorded_maps};
 use crate::maps::{LogMap, Normalisation, RangeAngleMap};
 use crate::methods;
@@ -128,7 +127,7 @@ impl Args {
                 let style = Style { floor: self.floor.floor, ..self.style() };
                 let bytes =
                     compose(&radar, &scene, &signal, method.as_ref(), &style, format).map_err(CommandError::failed)?;
-                self.write(&bytes)
+                write_file(&self.output, &bytes)
             }
             Output::Animation => Ok(()),
         }
@@ -194,7 +193,7 @@ impl Args {
                 let method = self.method(|| methods::preferred_for(&recording.radar))?;
                 let bytes = compose_recording(&recording, method.as_ref(), &self.style(), format)
                     .map_err(CommandError::on(&self.input))?;
-                self.write(&bytes)
+                write_file(&self.output, &bytes)
             }
             Output::Animation => Ok(()),
         }
@@ -218,10 +217,6 @@ impl Args {
 
     fn style(&self) -> Style {
         Style { floor: Floor::default(), normalisation: self.normalisation, colours: self.colours, eta: None }
-    }
-
-    fn write(&self, bytes: &[u8]) -> Result<(), CommandError> {
-        write_bytes(&self.output, bytes).map_err(|source| CommandError::File { path: self.output.clone(), source })
     }
 }
 

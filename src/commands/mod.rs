@@ -20,6 +20,7 @@ mod input;
 mod layouts;
 #[cfg(feature = "app")]
 mod lesson;
+mod line_chart;
 mod listen;
 mod maps;
 mod methods;
@@ -32,14 +33,13 @@ mod range_doppler;
 mod reconstruct;
 mod robustness;
 mod scenes;
-mod stress;
 mod threshold;
 #[cfg(feature = "network")]
 mod train;
 mod worsen;
 
 pub use error::CommandError;
-pub use output::print;
+pub use output::{print, print_json, write_file};
 
 use crate::platform::console;
 use crate::signal::simd::Simd;
@@ -88,7 +88,6 @@ enum Command {
     Reconstruct(reconstruct::Args),
     Robustness(robustness::Args),
     Scenes(scenes::Args),
-    Stress(stress::Args),
     Threshold(threshold::Args),
     #[cfg(feature = "network")]
     Train(train::Args),
@@ -117,7 +116,6 @@ impl Command {
             Command::Reconstruct(args) => args.run(),
             Command::Robustness(args) => args.run(),
             Command::Scenes(args) => args.run(),
-            Command::Stress(args) => args.run(),
             Command::Threshold(args) => args.run(),
             #[cfg(feature = "network")]
             Command::Train(args) => args.run(),

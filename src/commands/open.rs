@@ -2,8 +2,7 @@
 
 use super::input::InputArgs;
 use super::own_method::OwnMethodArgs;
-use super::{CommandError, print};
-use crate::files::write_bytes;
+use super::{CommandError, print, write_file};
 use crate::methods;
 use crate::picture::{PictureFormat, Style, compose, compose_recording, is_our_png};
 use crate::platform::console;
@@ -135,7 +134,7 @@ fn draw_instead(input: &InputArgs, method: Option<Arc<dyn Reconstructor>>) -> Re
     }
     .map_err(CommandError::failed)?;
     let path = free_name(Path::new("."));
-    write_bytes(&path, &bytes).map_err(|source| CommandError::File { path: path.clone(), source })?;
+    write_file(&path, &bytes)?;
     print(&format!("wrote {}", path.display()))
 }
 

@@ -2,8 +2,7 @@
 
 use super::arguments::{self, FloorArgs, real, whole};
 use super::input::{ConfigArg, InputArgs, load_recording};
-use super::{CommandError, print};
-use crate::files::write_bytes;
+use super::{CommandError, print, write_file};
 use crate::maps::Normalisation;
 use crate::maps::doppler::{RangeDopplerMap, range_doppler, write_range_doppler};
 use crate::picture::{ColourMap, PictureFormat, compose_range_doppler};
@@ -154,8 +153,7 @@ impl Args {
             Some(format) => {
                 let bytes = compose_range_doppler(radar, map, self.normalisation, self.colours, format);
                 let bytes = bytes.map_err(CommandError::failed)?;
-                let failed = |source| CommandError::File { path: self.output.clone(), source };
-                write_bytes(&self.output, &bytes).map_err(failed)?;
+                write_file(&self.output, &bytes)?;
             }
         }
         print(&format!("wrote {}", self.output.display()))

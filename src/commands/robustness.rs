@@ -1,18 +1,17 @@
 //! `apertura robustness`: each method's error over the size of the elements' errors.
 
 use super::arguments::{FloorArgs, real, seed, whole};
-use super::figure::{DrawingResult, Plot, save, save_numbers, tick};
+use super::figure::{save, save_numbers};
+use super::line_chart::{ChartAxis, ChartLine, LineChart, span, widened};
 use super::own_method::OwnMethodArgs;
-use super::{CommandError, print};
+use super::{CommandError, print, print_json, write_file};
 use crate::evaluate::{Estimate, Robustness, RobustnessRow};
-use crate::files::write_bytes;
 use crate::methods;
 use crate::radar::{Decibels, Radar, Tolerances, counted};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::Kind;
 use crate::task::Task;
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use plotters::prelude::{Color, Palette, Palette99, SeriesLabelPosition};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -119,13 +118,12 @@ impl Args {
             rows: &rows,
         };
         if let Some(folder) = &self.output {
-            save(&RobustnessFigure { scenes: self.count, rows: &rows, methods: &methods }, folder, "robustness")?;
+            save(&chart(self.count, &rows, &methods), folder, "robustness")?;
             save_numbers(&report, folder, "robustness")?;
-            let path = folder.join("robustness.csv");
-            write_bytes(&path, csv.as_bytes()).map_err(|source| CommandError::File { path, source })?;
+            write_file(&folder.join("robustness.csv"), csv.as_bytes())?;
         }
         if self.json {
-            return print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?);
+            return print_json(&report);
         }
         print(csv.trim_end())
     }
@@ -175,82 +173,53 @@ fn bar_of(row: &RobustnessRow) -> [f64; 3] {
     [mean - standard_error, mean, mean + standard_error].map(|v| v.max(MIN_DRAWN_ERROR))
 }
 
+/// The errors at scale 1; "" where no scale is above 0.
+fn unit(rows: &[RobustnessRow]) -> String {
+    rows.iter().find(|r| r.scale > 0.0).map_or_else(String::new, |r| {
+        let [gain, phase, position] =
+            [r.gain_decibels, r.phase_degrees, r.position_millimetres].map(|error| error / r.scale);
+        format!("{gain:.2} dB, {phase:.1} degrees, {position:.2} mm")
+    })
+}
+
 /// Squared error over the scale of the elements' errors, a line a method.
-struct RobustnessFigure<'a> {
-    scenes: u32,
-    rows: &'a [RobustnessRow],
-    methods: &'a [Arc<dyn Reconstructor>],
-}
-
-impl RobustnessFigure<'_> {
-    /// The errors at scale 1; "" where no scale is above 0.
-    fn unit(&self) -> String {
-        let one = self.rows.iter().find(|r| r.scale > 0.0);
-        one.map_or_else(String::new, |r| {
-            format!(
-                "{:.2} dB, {:.1} degrees, {:.2} mm",
-                r.gain_decibels / r.scale,
-                r.phase_degrees / r.scale,
-                r.position_millimetres / r.scale
-            )
-        })
-    }
-}
-
-impl Plot for RobustnessFigure<'_> {
-    fn size(&self) -> (u32, u32) {
-        (900, 540)
-    }
-
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
-        let ends = self.rows.iter().flat_map(|r| {
-            let [low, mean, high] = bar_of(r);
-            // A bar of one that is not sure at all would make the axis as long as it.
-            [low.max(mean / 3.0), high]
-        });
-        let (low, high) = ends.fold((f64::INFINITY, MIN_DRAWN_ERROR), |(a, b), v| (a.min(v), b.max(v)));
-        let bottom = low / 1.3;
-        let furthest = self.rows.iter().map(|r| r.scale).fold(0.0, f64::max).max(1e-3);
-        let mut chart = ChartBuilder::on(area)
-            .caption("What elements that are off cost each method", ("sans-serif", 22))
-            .margin(14)
-            .x_label_area_size(46)
-            .y_label_area_size(80)
-            .build_cartesian_2d(-0.02 * furthest..furthest * 1.03, (bottom..high * 1.3).log_scale())?;
-        chart
-            .configure_mesh()
-            .x_desc(format!("errors of the elements, times {} (standard deviations)", self.unit()))
-            .y_desc(format!(
-                "squared error of the map, mean ± standard error over {}",
-                counted(self.scenes, "scene", "scenes")
-            ))
-            .x_label_formatter(&tick)
-            .y_label_formatter(&tick)
-            .draw()?;
-        // Bars of several methods at one scale stand side by side.
-        let step = furthest / 150.0;
-        for (i, method) in self.methods.iter().enumerate() {
-            let colour = Palette99::pick(i).to_rgba();
-            let aside = step * (i as f64 - (self.methods.len() - 1) as f64 / 2.0);
-            let bars = || {
-                let own = self.rows.iter().filter(|r| r.method == method.name());
-                own.map(|r| (r.scale + aside, bar_of(r).map(|v| v.max(bottom))))
-            };
-            let lines = bars().flat_map(|(x, [low, _, high])| {
-                let cap = move |y| vec![(x - step, y), (x + step, y)];
-                [vec![(x, low), (x, high)], cap(low), cap(high)]
-            });
-            chart.draw_series(lines.map(|line| PathElement::new(line, colour.stroke_width(2))))?;
-            chart
-                .draw_series(LineSeries::new(bars().map(|(x, bar)| (x, bar[1])), colour.stroke_width(2)).point_size(4))?
-                .label(method.name())
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+fn chart(scenes: u32, rows: &[RobustnessRow], methods: &[Arc<dyn Reconstructor>]) -> LineChart {
+    let ends = rows.iter().flat_map(|r| {
+        let [low, mean, high] = bar_of(r);
+        // A bar of one that is not sure at all would make the axis as long as it.
+        [low.max(mean / 3.0), high]
+    });
+    let error = widened(span(ends), 1.3);
+    let furthest = rows.iter().map(|r| r.scale).fold(0.0, f64::max).max(1e-3);
+    // Bars of several methods at one scale stand side by side.
+    let step = furthest / 150.0;
+    let mut lines = Vec::new();
+    for (i, method) in methods.iter().enumerate() {
+        let colour = Palette99::pick(i).to_rgba();
+        let aside = step * (i as f64 - (methods.len() - 1) as f64 / 2.0);
+        let own = rows.iter().filter(|r| r.method == method.name());
+        let bars: Vec<(f64, [f64; 3])> =
+            own.map(|r| (r.scale + aside, bar_of(r).map(|v| v.max(error.start)))).collect();
+        for &(x, [low, _, high]) in &bars {
+            let cap = |y| [(x - step, y), (x + step, y)];
+            lines.extend([[(x, low), (x, high)], cap(low), cap(high)].map(|l| ChartLine::new(colour, l.into_iter())));
         }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::LowerRight)
-            .background_style(WHITE.mix(0.85))
-            .border_style(BLACK.mix(0.3))
-            .draw()
+        let means = ChartLine::new(colour, bars.into_iter().map(|(x, [_, mean, _])| (x, mean)));
+        lines.push(ChartLine { dot: 4, ..means.named(method.name()) });
+    }
+    LineChart {
+        caption: "What elements that are off cost each method".to_owned(),
+        size: (900, 540),
+        x: ChartAxis::new(
+            format!("errors of the elements, times {} (standard deviations)", unit(rows)),
+            -0.02 * furthest..furthest * 1.03,
+        ),
+        is_x_log: false,
+        y: ChartAxis::new(
+            format!("squared error of the map, mean ± standard error over {}", counted(scenes, "scene", "scenes")),
+            error,
+        ),
+        legend: SeriesLabelPosition::LowerRight,
+        lines,
     }
 }

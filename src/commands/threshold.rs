@@ -2,7 +2,7 @@
 
 use super::arguments::{FloorArgs, real, seed, whole};
 use super::own_method::OwnMethodArgs;
-use super::{CommandError, print};
+use super::{CommandError, print, print_json};
 use crate::evaluate::threshold::{KeptThreshold, ThresholdMeans, ThresholdSearch};
 use crate::methods;
 use crate::radar::counted;
@@ -126,7 +126,7 @@ impl Args {
             check: check.map(Rates::from),
         };
         match self.json {
-            true => print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?),
+            true => print_json(&report),
             false => print(&report.text()),
         }
     }

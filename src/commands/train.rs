@@ -5,7 +5,6 @@ use super::{CommandError, print};
 use crate::files::sha256;
 use crate::network::backend::Backend;
 use crate::network::checkpoint;
-use crate::network::live::LiveNetwork;
 use crate::network::recipe::{Network, Recipe, SHIPPED};
 use crate::network::run::{Origin, RunProgress, TrainingRun};
 use crate::network::students::Student;
@@ -84,7 +83,6 @@ impl Args {
         match &recipe.network {
             Network::Thesis(config) => go::<Thesis>(&recipe, config, &run, resume),
             Network::Unet(config) => go::<Unet>(&recipe, config, &run, resume),
-            Network::Live(config) => go::<LiveNetwork>(&recipe, config, &run, resume),
         }
     }
 

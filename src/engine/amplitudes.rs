@@ -10,7 +10,7 @@ pub(super) struct Amplitudes {
 }
 
 impl Amplitudes {
-    /// Sum of the largest amplitudes of all echoes of these objects, as [`plan::amplitude_bound_of`] has it, and remembers them.
+    /// Sum of the largest amplitudes of all echoes of these objects, as [`plan::amplitude_bounds`] has them, and remembers them.
     pub fn bound(&mut self, radar: &Radar, seen: &[SeenObject]) -> f64 {
         let is_known = |at: usize, one: &SeenObject| self.known.get(at).is_some_and(|(known, _)| known == one);
         let missing: Vec<usize> =
@@ -52,7 +52,7 @@ mod tests {
         let mut known = Amplitudes::default();
         let mut check = |scene: &Scene| {
             let seen = SeenObject::all(&radar, scene);
-            assert_eq!(known.bound(&radar, &seen), plan::amplitude_bound_of(&radar, &seen));
+            assert_eq!(known.bound(&radar, &seen), plan::amplitude_bounds(&radar, seen.iter()).iter().sum::<f64>());
             plan::amplitude_bounds(&radar, seen.iter())
         };
         let behind_the_box = check(&scene)[1];

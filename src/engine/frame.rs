@@ -54,16 +54,6 @@ pub struct ReadyMap {
     pub scale: LambdaScale,
 }
 
-impl ReadyMap {
-    /// Decades of amplitude of a cell; cells below the floor of the scale read as the floor.
-    ///
-    /// `None` outside the map.
-    pub fn decades(&self, bin: usize, column: usize) -> Option<f64> {
-        let lambda = f64::from(*self.lambda.lambda.get((bin, column))?);
-        Some(self.scale.floor + lambda * (self.scale.peak - self.scale.floor))
-    }
-}
-
 /// Everything that was wanted of one scene.
 #[derive(Debug, Clone)]
 pub struct EngineFrame {

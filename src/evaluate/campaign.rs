@@ -101,24 +101,11 @@ impl Campaign {
         task: &Task,
         mut on_row: impl FnMut(&Row),
     ) -> Result<Vec<Row>, CampaignError> {
-        self.run_watched(sets, methods, task, |row, _, _| on_row(row))
-    }
-
-    /// [`Campaign::run`], with what each row was made of.
-    /// # Errors
-    /// As [`Campaign::run`].
-    pub fn run_watched(
-        &self,
-        sets: &[SceneSet],
-        methods: &[&dyn Reconstructor],
-        task: &Task,
-        on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
-    ) -> Result<Vec<Row>, CampaignError> {
         let empty = self.empty_rows(sets, methods)?;
-        self.run_rest(sets, methods, &empty, &|_, _, _| false, task, on_row)
+        self.run_rest(sets, methods, &empty, &|_, _, _| false, task, |row, _, _| on_row(row))
     }
 
-    /// [`Campaign::run_watched`] that goes on without a method where it fails on a scene; the rows that there are, and what failed.
+    /// [`Campaign::run`] that goes on without a method where it fails on a scene; the rows that there are, and what failed.
     /// # Errors
     /// As [`Campaign::run`], but for methods that fail.
     pub fn run_fit(
@@ -190,7 +177,7 @@ impl Campaign {
         sets.iter().map(of_set).collect()
     }
 
-    /// [`Campaign::run_watched`] without the rows that are there already: `is_done` says of a set, a scene and a method whether one is.
+    /// [`Campaign::run`] without the rows that are there already: `is_done` says of a set, a scene and a method whether one is.
     /// `empty` are [`Campaign::empty_rows`].
     /// # Errors
     /// As [`Campaign::run`].

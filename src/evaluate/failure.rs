@@ -108,11 +108,6 @@ impl Failures {
         let shown = self.objects.len() - self.count(|fate| fate == Fate::Hidden);
         format!("{} of {shown} found, {} false", self.count(|fate| fate == Fate::Found), self.ghosts.len())
     }
-
-    /// Whether every object is found and nothing else is.
-    pub fn is_right(&self) -> bool {
-        self.ghosts.is_empty() && self.objects.iter().all(|f| f.is_right())
-    }
 }
 
 /// Where each object of a scene shows in its target.
@@ -310,7 +305,7 @@ mod tests {
         let (target, footprints) = scene(&TWO);
         assert!(footprints.cells().iter().all(|c| c.len() > 20));
         let found = footprints.judge(&target, &target, TARGET_ETA);
-        assert!(found.is_right() && found.objects == [Fate::Found; 2], "{:?}", found.objects);
+        assert!(found.ghosts.is_empty() && found.objects == [Fate::Found; 2], "{:?}", found.objects);
     }
 
     #[test]

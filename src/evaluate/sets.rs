@@ -70,7 +70,6 @@ pub enum FolderError {
     /// What the system says.
     #[error("{}: {source}", path.display())]
     Io { path: PathBuf, source: io::Error },
-    /// There is none.
     #[error("{}: there is no scene in this folder; expected files ending in .toml or .npz", path.display())]
     Empty { path: PathBuf },
 }

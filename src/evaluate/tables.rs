@@ -73,7 +73,8 @@ impl Tally {
         Tally { rows: rows.into_iter().cloned().collect() }
     }
 
-    fn estimate(&self, column: Column) -> Estimate {
+    /// Mean of a column over the rows that have a number there; NaN where none has.
+    pub fn estimate(&self, column: Column) -> Estimate {
         estimate(&self.rows, column)
     }
 
@@ -119,36 +120,6 @@ impl Tally {
     /// P_FA at the method's threshold.
     pub fn false_alarm(&self) -> Estimate {
         self.estimate(Column::FalseAlarm)
-    }
-
-    /// P_D where a threshold for each scene holds its P_FA to the printed one.
-    pub fn detection_at_printed(&self) -> Estimate {
-        self.estimate(Column::DetectionAtPrinted)
-    }
-
-    /// P_D by the detector of constant false-alarm rate that was tried beside the threshold; NaN where none was.
-    pub fn cfar_detection(&self) -> Estimate {
-        self.estimate(Column::CfarDetection)
-    }
-
-    /// P_FA by that detector.
-    pub fn cfar_false_alarm(&self) -> Estimate {
-        self.estimate(Column::CfarFalseAlarm)
-    }
-
-    /// Part of the cells that are off by at most their doubt; NaN where the rows say none.
-    pub fn within_doubt(&self) -> Estimate {
-        self.estimate(Column::WithinDoubt)
-    }
-
-    /// Objects missed, a scene.
-    pub fn missed(&self) -> Estimate {
-        self.estimate(Column::Missed)
-    }
-
-    /// Ghosts, a scene.
-    pub fn ghosts(&self) -> Estimate {
-        self.estimate(Column::Ghosts)
     }
 
     /// Echoes of all scenes with bodies, and those that the method shows; `None` where no row has counted them.

@@ -67,19 +67,14 @@ pub struct ThresholdMeans {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ThresholdError {
-    /// The rate is no rate.
     #[error("a rate of {0} % of false alarms can't be kept; expected more than 0 and less than 100")]
     Rate(f64),
-    /// Scenes of a kind have no echoes.
     #[error("scenes of the kind \"{0}\" have no echoes, and so no P_D to set against P_FA")]
     NoEchoes(Kind),
-    /// Scenes of a kind would count twice, and would not be exchangeable with further ones.
     #[error("the kind \"{0}\" is given twice; expected each kind once")]
     GivenTwice(Kind),
-    /// So few scenes keep no such rate.
     #[error("{} can't keep a rate of {percent} %; take {fewest} scenes or more", counted(*scenes, "scene", "scenes"))]
     TooFew { scenes: usize, percent: f64, fewest: f64 },
-    /// No threshold of Lambda keeps the rate.
     #[error("no threshold keeps {0} % on these scenes")]
     Unreached(f64),
     /// The objects of a kind of scenes find no room before the radar.
@@ -88,7 +83,6 @@ pub enum ThresholdError {
     /// A scene can't be simulated.
     #[error("scene {index} of {kind}: {source}")]
     Scene { kind: Kind, index: u32, source: SceneError },
-    /// The method failed.
     #[error("{method} on scene {index} of {kind}: {source}")]
     Method { method: &'static str, kind: Kind, index: u32, source: ReconstructError },
 }

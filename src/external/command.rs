@@ -15,10 +15,8 @@ pub struct CommandLine {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum CommandLineError {
-    /// There is no word in it.
     #[error("the command is empty; expected a program with its arguments, such as \"python my_network.py\"")]
     Empty,
-    /// A quotation mark has no partner.
     #[error("the command {text} has a {quote} without a second one")]
     Quote { text: String, quote: char },
 }

@@ -24,7 +24,6 @@ const POLL_INTERVAL: Duration = Duration::from_millis(5);
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum StartError {
-    /// The system can't start it.
     #[error("{command}: it can't be started: {source}")]
     System { command: String, source: io::Error },
     /// It is no method: it hangs, it ended, it answers something else.

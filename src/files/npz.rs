@@ -27,25 +27,18 @@ pub enum NpzError {
     /// The system could not read or write.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// Not a zip archive, or one that was cut off.
     #[error("not a whole .npz archive ({0}); expected one written by numpy.savez")]
     Archive(String),
-    /// The archive lacks a key.
     #[error("has no array \"{key}\"; expected it beside what is there: {found}")]
     Missing { key: String, found: String },
-    /// An array has other numbers in it than expected.
     #[error("array \"{key}\" holds {found}; expected {expected}")]
     Type { key: String, found: String, expected: &'static str },
-    /// An array has another shape than expected.
     #[error("array \"{key}\" has shape {found}; expected {expected}")]
     Shape { key: String, found: String, expected: String },
-    /// A number is NaN or infinite.
     #[error("array \"{key}\" holds {value} at index {index:?}; expected finite numbers only")]
     NotFinite { key: String, index: Vec<usize>, value: String },
-    /// An array is larger than anything that is read from it.
     #[error("array \"{key}\" is too large; at most {most} bytes are read")]
     TooLarge { key: String, most: u64 },
-    /// An array is damaged.
     #[error("array \"{key}\" can't be read: {reason}")]
     Damaged { key: String, reason: String },
 }

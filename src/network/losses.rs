@@ -1,10 +1,9 @@
-//! Losses: those of the thesis, and the live network's own.
+//! Losses: those that the thesis names.
 //!
 //! `output` and `target` are Lambda of a batch, `[batch, range bins, columns]`. Every loss is one number, smaller is better.
 
 use crate::evaluate::TARGET_ETA;
 use burn::tensor::Tensor;
-use burn::tensor::activation::sigmoid;
 use serde::{Deserialize, Serialize};
 
 /// A training loss.
@@ -25,8 +24,6 @@ pub enum TrainingLoss {
     Focal,
     /// Earth mover's distance along the angles of every range row, both rows scaled to one.
     EarthMover,
-    /// Squares weighted up to sevenfold where the target is within about 0.15 of its peak (the live network).
-    Edge,
 }
 
 /// Keeps logarithms and quotients finite.
@@ -60,10 +57,6 @@ impl TrainingLoss {
                     x.clone() / x.sum_dim(2)
                 };
                 (scaled(output) - scaled(target)).cumsum(2).abs().mean()
-            }
-            TrainingLoss::Edge => {
-                let weight = sigmoid((target.clone() - 0.85) / 0.03) * 6.0 + 1.0;
-                (weight * square(output, target)).mean() * 225.0
             }
         }
     }
@@ -105,16 +98,12 @@ mod tests {
         close(TrainingLoss::Focal, focal / 4.0);
         // Rows: (1, 0) against (1, 0); (0.8, 0.2) against (2/3, 1/3).
         close(TrainingLoss::EarthMover, (0.8 - 2.0 / 3.0) / 4.0);
-        let weight = |t: f64| 1.0 + 6.0 / (1.0 + (-(t - 0.85) / 0.03).exp());
-        close(TrainingLoss::Edge, 225.0 * 0.25 * (weight(1.0) + weight(0.5)) / 4.0);
     }
 
     #[test]
     fn a_perfect_output_is_best() {
         let target = [[[1.0, 0.0], [0.5, 0.25]]];
-        for loss in
-            [TrainingLoss::MeanSquare, TrainingLoss::NormalisedSquare, TrainingLoss::EarthMover, TrainingLoss::Edge]
-        {
+        for loss in [TrainingLoss::MeanSquare, TrainingLoss::NormalisedSquare, TrainingLoss::EarthMover] {
             assert!(value(loss, target, target).abs() < 1e-5, "{loss:?}");
         }
         let worse = [[[0.7, 0.3], [0.1, 0.9]]];

@@ -1,8 +1,8 @@
-//! Neural networks on burn: the thesis' own encoder-decoder, its failing U-Net, and the live network.
+//! Neural networks: the thesis' own encoder-decoder and its failing U-Net on burn, and the live network.
 //!
 //! | file | what |
 //! |---|---|
-//! | [`live`] | the live network: features, examples to train on, burn module, an engine without a framework |
+//! | [`live`] | the live network: features, examples to train on, an engine without a framework |
 //! | [`kernels`] | convolutions that both engines without a framework are made of |
 //! | [`floors`] | floors of training scenes |
 //! | [`domain`] | the radars that a network was trained for |

@@ -1,25 +1,20 @@
 //! Training recipes: everything that decides what a training run does, as TOML.
 
-use super::floors::Floors;
-use super::live::LiveConfig;
 use super::losses::TrainingLoss;
 use super::thesis::ThesisConfig;
 use super::unet::UnetConfig;
-use crate::radar::Decibels;
 use crate::scene::generate::Kind;
-use crate::signal::Floor;
 use burn::optim::momentum::MomentumConfig;
 use burn::optim::{AdamWConfig, ModuleOptimizer, SgdConfig};
 use serde::{Deserialize, Serialize};
 
 /// The recipes that come with the program, by name.
-pub const SHIPPED: [(&str, &str); 6] = [
+pub const SHIPPED: [(&str, &str); 5] = [
     ("experiment-1", include_str!("../../assets/recipes/experiment-1.toml")),
     ("experiment-1-small", include_str!("../../assets/recipes/experiment-1-small.toml")),
     ("experiment-2", include_str!("../../assets/recipes/experiment-2.toml")),
     ("experiment-2-small", include_str!("../../assets/recipes/experiment-2-small.toml")),
     ("unet", include_str!("../../assets/recipes/unet.toml")),
-    ("live", include_str!("../../assets/recipes/live.toml")),
 ];
 
 /// Which network, and how large.
@@ -30,8 +25,6 @@ pub enum Network {
     Thesis(ThesisConfig),
     /// The thesis' failing U-Net.
     Unet(UnetConfig),
-    /// The live network.
-    Live(LiveConfig),
 }
 
 /// How weights follow the gradient.
@@ -103,18 +96,6 @@ const MAX_BATCH: usize = 1024;
 const MAX_SCENES: u64 = 10_000_000;
 const MAX_VALIDATION_SCENES: u32 = 10_000;
 
-/// A part of the training scenes that lies over thermal noise instead of the thesis' rounding floor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Thermal {
-    /// The part, 0 to 1.
-    pub share: f64,
-    /// Lowest ratio of signal to noise.
-    pub from_decibels: f64,
-    /// Highest ratio; scenes are uniform in between.
-    pub to_decibels: f64,
-}
-
 /// A training run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -139,9 +120,6 @@ pub struct Recipe {
     pub optimizer: Optimizer,
     /// Learning-rate decay.
     pub decay: Option<Decay>,
-    /// Scenes over thermal noise; none where nothing is said.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub thermal: Option<Thermal>,
     /// The training scenes. They, the validation and the test scenes come from disjoint random streams.
     pub scenes: Vec<KindShare>,
 }
@@ -153,7 +131,6 @@ pub enum RecipeError {
     /// It is not TOML, or misses or misspells something.
     #[error("recipe {name}: {reason}")]
     Syntax { name: String, reason: String },
-    /// A value makes no sense.
     #[error("recipe {name}: {field} is {value}; expected {expected}")]
     Value { name: String, field: &'static str, value: String, expected: &'static str },
 }
@@ -201,14 +178,6 @@ impl Recipe {
                 return fail("decay.factor", &decay.factor, "above 0 and at most 1");
             }
         }
-        if let Some(Thermal { share, from_decibels, to_decibels }) = self.thermal {
-            if !(0.0..=1.0).contains(&share) {
-                return fail("thermal.share", &share, "0 to 1");
-            }
-            if !(from_decibels.is_finite() && to_decibels.is_finite() && from_decibels < to_decibels) {
-                return fail("thermal.to_decibels", &to_decibels, "a number above from_decibels");
-            }
-        }
         let total: u64 = self.scenes.iter().map(|s| u64::from(s.count)).sum();
         if total < self.batch as u64 {
             return fail("scenes", &total, "at least one batch in all");
@@ -241,12 +210,6 @@ impl Recipe {
                 fail("network.rows", &c.rows, "a multiple of two to the levels")
             }
             Network::Unet(c) if c.rows > 1 << 12 => fail("network.rows", &c.rows, "at most 4096"),
-            Network::Live(c) if c.channels.iter().chain([&c.fine]).any(|n| !(1..=512).contains(n)) => {
-                fail("network.channels", &format_args!("{:?} and {}", c.channels, c.fine), "1 to 512 each")
-            }
-            Network::Live(c) if c.blocks.iter().any(|n| *n > 64) => {
-                fail("network.blocks", &format_args!("{:?}", c.blocks), "at most 64 each")
-            }
             _ => Ok(()),
         }
     }
@@ -255,16 +218,6 @@ impl Recipe {
     pub fn learning_rate(&self, epoch: u32) -> f64 {
         let decays = self.decay.as_ref().map_or(1.0, |d| d.factor.powi((epoch / d.epochs) as i32));
         self.optimizer.learning_rate() * decays
-    }
-
-    /// The floor of the training scene whose noise has this seed.
-    pub fn floor(&self, noise_seed: u64) -> Floor {
-        let floors = self.thermal.as_ref().map_or(Floors::Fixed(Floor::Thesis), |thermal| Floors::Thermal {
-            share: thermal.share,
-            from: Decibels(thermal.from_decibels),
-            to: Decibels(thermal.to_decibels),
-        });
-        floors.of(noise_seed)
     }
 
     /// Every training scene, as (kind, number).
@@ -292,16 +245,6 @@ mod tests {
     }
 
     #[test]
-    fn a_third_of_the_live_networks_scenes_lie_over_thermal_noise() {
-        let live = Recipe::shipped("live").unwrap().unwrap();
-        let noisy = (0..3000).filter(|seed| matches!(live.floor(*seed), Floor::Snr(Decibels(10.0..60.0)))).count();
-        assert!((900..1100).contains(&noisy), "{noisy}");
-        assert_eq!(live.floor(7), live.floor(7));
-        let two = Recipe::shipped("experiment-2").unwrap().unwrap();
-        assert!((0..100).all(|seed| two.floor(seed) == Floor::Thesis));
-    }
-
-    #[test]
     fn bad_recipes_are_named() {
         let good = SHIPPED[0].1;
         for (from, to, expected) in [
@@ -312,11 +255,6 @@ mod tests {
             ("momentum = 0.9", "momentum = 1.5", "optimizer.momentum is 1.5"),
             ("learning_rate = 0.1", "learning_rate = nan", "optimizer.learning_rate is NaN"),
             ("factor = 0.8", "factor = 0.0", "decay.factor is 0"),
-            (
-                "batch = 8",
-                "batch = 8\nthermal = { share = 2.0, from_decibels = 1.0, to_decibels = 2.0 }",
-                "thermal.share is 2",
-            ),
             ("levels = 5", "levels = 50", "network.levels is 50"),
             ("loss = \"mean-square\"", "loss = \"mean-cube\"", "mean-cube"),
         ] {

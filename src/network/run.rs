@@ -106,7 +106,6 @@ impl RunProgress {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum TrainError {
-    /// The loss is NaN or infinite.
     #[error("the loss is {loss} at step {step}; the last good checkpoint is kept in {}", folder.display())]
     NotFinite { step: u64, loss: f32, folder: PathBuf },
     /// A file could not be read or written.
@@ -115,12 +114,10 @@ pub enum TrainError {
     /// A checkpoint can't be used.
     #[error("checkpoint {}: {reason}", path.display())]
     Checkpoint { path: PathBuf, reason: String },
-    /// No step was taken.
     #[error(
         "no step was taken, so the weights would be random; give the run steps and minutes, or write them all the same with --untrained"
     )]
     Untrained,
-    /// The folder already holds another run.
     #[error("{} already holds a run; go on with it with --resume, or choose another folder", folder.display())]
     Occupied { folder: PathBuf },
     /// The recipe is unsound.

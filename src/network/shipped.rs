@@ -1,7 +1,7 @@
 //! The networks that come with the program, and those of files.
 
 use super::backend::Backend;
-use super::live::{LiveMethod, LiveNetwork};
+use super::live::{self, LiveMethod};
 use super::pytorch::read_weights;
 use super::students::Student;
 use super::thesis::Thesis;
@@ -52,11 +52,11 @@ fn method_of(file: WeightFile, backend: Backend) -> Result<Arc<dyn Reconstructor
     // PyTorch's own files name no network; their tensors do.
     let network = match file.network() {
         "" if Thesis::config_of(&file).is_ok() => Thesis::NAME,
-        "" if LiveNetwork::is_in(&file) => LiveNetwork::NAME,
+        "" if file.shape("row_kernel").is_some() => live::method::NAME,
         named => named,
     };
     Ok(match network {
-        LiveNetwork::NAME => Arc::new(LiveMethod::new(file)?),
+        live::method::NAME => Arc::new(LiveMethod::new(file)?),
         Unet::NAME => Arc::new(UnetMethod::new(file, backend)?),
         Thesis::NAME => {
             let (name, description) = match file.provenance.get("recipe") {

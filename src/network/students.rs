@@ -1,9 +1,5 @@
 //! Each network's input, target and estimated map for a scene.
 
-use super::live::constants::turn_columns;
-use super::live::features::{FeatureExtractor, LiveInput};
-use super::live::grid::{COLUMNS, ROWS};
-use super::live::{LiveBatch, LiveConfig, LiveNetwork};
 use super::thesis::{Thesis, ThesisConfig};
 use super::unet::{Unet, UnetConfig};
 use crate::evaluate::TARGET_ETA;
@@ -164,40 +160,5 @@ impl Student for Unet {
         let rows = inputs.first().map_or(0, |i| (i.len() / 4).isqrt());
         let x = stack(inputs, [inputs.len(), 2, rows, 2 * rows], device);
         self.forward(x).reshape([inputs.len(), rows, 2 * rows])
-    }
-}
-
-impl Student for LiveNetwork {
-    type Config = LiveConfig;
-    type Input = LiveInput;
-    type Tables = FeatureExtractor;
-    const NAME: &'static str = "live";
-
-    fn fresh(config: &LiveConfig, device: &Device) -> Self {
-        LiveNetwork::new(config, device)
-    }
-
-    fn tables(_: &LiveConfig, radar: &Radar) -> Result<FeatureExtractor, ReconstructError> {
-        FeatureExtractor::new(radar)
-    }
-
-    fn input(tables: &FeatureExtractor, ends: &TwoEnds) -> Result<LiveInput, ReconstructError> {
-        tables.extract(ends)
-    }
-
-    fn target(_: &LiveConfig, radar: &Radar, signal: &BeatSignal) -> RangeAngleMap {
-        let mut map = LogMaps::of_signal(radar, signal).full.normalise(Normalisation::MinMax);
-        if let Some(cells) = map.lambda.as_slice_mut() {
-            turn_columns(radar, cells);
-        }
-        map
-    }
-
-    fn estimate(&self, inputs: &[LiveInput], device: &Device) -> Tensor<3> {
-        let out = self.forward(LiveBatch::new(inputs, device));
-        let n = inputs.len();
-        let minimum = out.minimum.reshape([n, 1, 1]);
-        let peak = out.decades.clone().reshape([n, ROWS * COLUMNS]).max_dim(1).reshape([n, 1, 1]);
-        (out.decades - minimum.clone()) / (peak - minimum)
     }
 }

@@ -6,7 +6,7 @@ use super::students::{Student, ThesisInput, UnetTables};
 use super::thesis::{Thesis, ThesisConfig};
 use super::thesis_engine::{Buffers, ThesisEngine};
 use super::unet::{Unet, UnetConfig};
-use super::weights::{Provenance, WeightFile, WeightsError};
+use super::weights::{WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
 use crate::maps::cartesian::to_polar;
 use crate::radar::Radar;
@@ -34,8 +34,6 @@ pub struct ThesisMethod {
     description: &'static str,
     weights: Weights,
     trained: Domain,
-    /// Where the weights come from.
-    pub provenance: Provenance,
 }
 
 #[derive(Debug)]
@@ -96,7 +94,6 @@ impl ThesisMethod {
             description,
             weights: file.weights(),
             trained: file.provenance.domain(file.name())?,
-            provenance: file.provenance,
         })
     }
 
@@ -169,8 +166,6 @@ pub struct UnetMethod {
     device: Device,
     weights: Weights,
     trained: Domain,
-    /// Where the weights come from.
-    pub provenance: Provenance,
 }
 
 impl UnetMethod {
@@ -183,7 +178,7 @@ impl UnetMethod {
         let mut network = Unet::new(&config, &device);
         file.load_into(&mut network, |_| false)?;
         let trained = file.provenance.domain(file.name())?;
-        Ok(UnetMethod { network, config, device, weights: file.weights(), trained, provenance: file.provenance })
+        Ok(UnetMethod { network, config, device, weights: file.weights(), trained })
     }
 }
 

@@ -58,7 +58,7 @@ pub fn train<S: Student>(
             }
             let lessons = scenes
                 .par_iter()
-                .map(|scene| lesson::<S>(&tables, config, run, &generator, *scene, |seed| recipe.floor(seed)))
+                .map(|scene| lesson::<S>(&tables, config, run, &generator, *scene))
                 .collect::<Result<Vec<_>, _>>()?;
             let (moved, loss) = step(network, &mut optimizer, recipe, rate, lessons, &device);
             if !loss.is_finite() {
@@ -195,7 +195,6 @@ mod tests {
             network: Network::Thesis(config),
             optimizer: Optimizer::Sgd { learning_rate: 0.1, momentum: 0.9 },
             decay: Some(Decay { epochs: 1, factor: 0.5 }),
-            thermal: None,
             scenes: vec![KindShare { kind: Kind::Points(2), count: 6 }],
         };
         (recipe, config)

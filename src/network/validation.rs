@@ -9,7 +9,6 @@ use crate::evaluate::tables::PRINTED_EXPERIMENT_2;
 use crate::evaluate::{Roc, squared_error};
 use crate::radar::counted;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
-use crate::signal::Floor;
 use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, SafetensorsStore};
 use ndarray::Array2;
 
@@ -47,7 +46,7 @@ pub fn validate<S: Student>(
     for (kind, printed) in Kind::TEST_SETS.into_iter().zip(PRINTED_EXPERIMENT_2) {
         let (mut roc, mut error) = (Roc::default(), 0.0);
         for number in 0..recipe.validation_scenes {
-            let (input, target) = lesson::<S>(&tables, config, run, &generator, (kind, number), |_| Floor::Thesis)?;
+            let (input, target) = lesson::<S>(&tables, config, run, &generator, (kind, number))?;
             let estimate = network.estimate(&[input], &run.device);
             let values = estimate.into_data().try_into_vec::<f32>().unwrap_or_default();
             let answer = Array2::from_shape_vec(target.lambda.dim(), values)

@@ -76,19 +76,14 @@ pub enum WeightsError {
     /// The file could not be read.
     #[error("{file}: {reason}")]
     File { file: String, reason: String },
-    /// The file is not safetensors at all.
     #[error("{file} is not a safetensors file: {reason}")]
     NotSafetensors { file: String, reason: String },
-    /// The file looks like a PyTorch checkpoint and can't be read as one.
     #[error("{file} is not a PyTorch checkpoint that can be read: {reason}")]
     NotPytorch { file: String, reason: String },
-    /// The file ends early or goes on too long.
     #[error("{file} holds {found} bytes; its header promises {expected}; it was truncated or damaged")]
     Length { file: String, found: usize, expected: usize },
-    /// The file is for another network.
     #[error("{file} holds weights of \"{found}\"; expected \"{expected}\"")]
     Foreign { file: String, found: String, expected: String },
-    /// The file names no network, and its tensors are those of none of ours.
     #[error(
         "{file} names no network, and none of ours has its tensors ({count} in all): {names}; expected weights of {expected}"
     )]
@@ -272,18 +267,17 @@ fn write<T: Serialize>(
 }
 
 #[cfg(test)]
-#[cfg(feature = "network")]
 mod tests {
     use super::*;
-    use crate::network::live::{LiveConfig, LiveNetwork};
-    use burn::tensor::Device;
+    use crate::network::live::LiveConfig;
+    use crate::network::live::engine::LiveEngine;
 
     const WEIGHTS: &[u8] = include_bytes!("../../tests/data/live_reference_weights.safetensors");
 
     fn load(bytes: &[u8], channels: [usize; 4]) -> Result<(), WeightsError> {
         let config = LiveConfig { channels, blocks: [1, 1, 1, 1], fine: 4 };
         let file = WeightFile::parse("test.safetensors", bytes)?;
-        file.load_into(&mut LiveNetwork::new(&config, &Device::flex()), |_| false)
+        LiveEngine::new(&file, &config.into()).map(drop)
     }
 
     #[test]

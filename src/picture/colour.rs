@@ -50,62 +50,25 @@ impl ColourMap {
         self.table()[(value * 255.0 + 0.5) as u8 as usize]
     }
 
-    /// Equally spaced colours that the table runs through.
-    fn anchors(self) -> &'static [Rgb] {
+    /// Equally spaced colours that the table runs through, 0xRRGGBB.
+    fn anchors(self) -> &'static [u32] {
         match self {
-            ColourMap::Grey => &[[0, 0, 0], [255, 255, 255]],
+            ColourMap::Grey => &[0x000000, 0xffffff],
             ColourMap::Viridis => &[
-                [68, 1, 84],
-                [72, 24, 106],
-                [71, 45, 123],
-                [66, 64, 134],
-                [59, 82, 139],
-                [51, 99, 141],
-                [44, 114, 142],
-                [38, 130, 142],
-                [33, 145, 140],
-                [31, 159, 136],
-                [39, 173, 129],
-                [61, 188, 116],
-                [92, 200, 99],
-                [129, 211, 77],
-                [170, 220, 50],
-                [213, 226, 26],
-                [253, 231, 37],
+                0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d, 0x2c728e, 0x26828e, 0x21918c, 0x1f9f88,
+                0x27ad81, 0x3dbc74, 0x5cc863, 0x81d34d, 0xaadc32, 0xd5e21a, 0xfde725,
             ],
             ColourMap::Inferno => &[
-                [0, 0, 4],
-                [11, 7, 36],
-                [33, 12, 74],
-                [61, 9, 101],
-                [87, 16, 110],
-                [113, 25, 110],
-                [138, 34, 106],
-                [163, 44, 97],
-                [188, 55, 84],
-                [208, 69, 69],
-                [227, 89, 51],
-                [241, 113, 31],
-                [249, 140, 10],
-                [252, 170, 15],
-                [249, 201, 50],
-                [242, 232, 101],
-                [252, 255, 164],
+                0x000004, 0x0b0724, 0x210c4a, 0x3d0965, 0x57106e, 0x71196e, 0x8a226a, 0xa32c61, 0xbc3754, 0xd04545,
+                0xe35933, 0xf1711f, 0xf98c0a, 0xfcaa0f, 0xf9c932, 0xf2e865, 0xfcffa4,
             ],
-            ColourMap::Diverging => &[
-                [16, 52, 110],
-                [58, 122, 189],
-                [154, 196, 226],
-                [244, 243, 240],
-                [240, 178, 140],
-                [206, 88, 66],
-                [118, 16, 36],
-            ],
+            ColourMap::Diverging => &[0x10346e, 0x3a7abd, 0x9ac4e2, 0xf4f3f0, 0xf0b28c, 0xce5842, 0x761024],
         }
     }
 }
 
-fn interpolate(anchors: &[Rgb]) -> [Rgb; 256] {
+fn interpolate(anchors: &[u32]) -> [Rgb; 256] {
+    let anchors: Vec<[u8; 4]> = anchors.iter().map(|colour| (colour << 8).to_be_bytes()).collect();
     let last = anchors.len() - 1;
     std::array::from_fn(|i| {
         let at = i as f32 / 255.0 * last as f32;

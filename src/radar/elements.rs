@@ -263,11 +263,6 @@ impl BuiltArray {
         BuiltArray { elements }
     }
 
-    /// True x of element `n` of `radar`, metres.
-    pub fn element_x_metres(&self, radar: &Radar, n: usize) -> f64 {
-        radar.element_x_metres(n) + self.element(n).position_millimetres * 1e-3
-    }
-
     /// Checks that the list fits `radar` and holds usable numbers.
     /// # Errors
     /// [`BuiltArrayError`] names the element and the quantity.
@@ -348,14 +343,10 @@ mod tests {
 
     #[test]
     fn responses_follow_the_errors() {
-        let radar = Radar::default();
-        let off =
-            ElementError { gain: Decibels(20.0), phase_degrees: 90.0, position_millimetres: 3.0, ..Default::default() };
+        let off = ElementError { gain: Decibels(20.0), phase_degrees: 90.0, ..Default::default() };
         assert!((off.response() - Complex64::new(0.0, 10.0)).norm() < 1e-12);
         assert_eq!(ElementError { dead: true, ..off }.response(), Complex64::default());
         assert_eq!(BuiltArray::default().element(5).response(), Complex64::from(1.0));
-        let array = BuiltArray { elements: vec![off; 1024] };
-        assert!((array.element_x_metres(&radar, 4) - radar.element_x_metres(4) - 3e-3).abs() < 1e-15);
     }
 
     #[test]

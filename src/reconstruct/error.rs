@@ -6,13 +6,10 @@ use crate::task::Cancelled;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ReconstructError {
-    /// It was cancelled.
     #[error("cancelled")]
     Cancelled,
-    /// The samples have another shape than the radar's ends.
     #[error("{what} has shape {found:?}; expected {expected:?}")]
     Shape { what: &'static str, found: Vec<usize>, expected: Vec<usize> },
-    /// A sample is NaN or infinite.
     #[error("sample {sample} of element {element} of the {end} end is not finite")]
     NotFinite { end: &'static str, element: usize, sample: usize },
     /// The method can't work on this radar or on these samples.

@@ -2,7 +2,7 @@
 //! while the foot of the perpendicular lies on the face; [`transition`] keeps the sum of glint and edges continuous.
 
 use super::geometry::{V, hypotenuse, root};
-use super::transition::{slope, transition};
+use super::transition::transition;
 use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
 
@@ -69,7 +69,6 @@ impl Face {
             PathEcho {
                 range_metres: edge.range_metres,
                 amplitude: edge.value * (sign * scale),
-                tilt: edge.tilt * (sign * scale),
                 cos_incidence: edge.cos_incidence,
                 ..silent(u, EchoKind::Edge)
             }
@@ -102,7 +101,6 @@ struct Foot {
 struct Edge {
     range_metres: f64,
     value: Complex64,
-    tilt: Complex64,
     cos_incidence: f64,
 }
 
@@ -143,13 +141,7 @@ impl Heights {
         let kappa = wave.radians_per_metre;
         // w^2 = kappa (range - foot_range), without its cancellation.
         let w = s.abs() * root(kappa * rt * rr / both);
-        let value = transition(w);
         let strength = c * root(2.0 / (rt * rr * both));
-        Edge {
-            range_metres,
-            value: value * strength,
-            tilt: slope(w, value) * (strength * w / (2.0 * kappa)),
-            cos_incidence: c,
-        }
+        Edge { range_metres, value: transition(w) * strength, cos_incidence: c }
     }
 }

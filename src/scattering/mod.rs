@@ -8,7 +8,6 @@
 //! | [`corner`] | an inner corner: the double reflection |
 //! | [`roughness`] | loss of coherent echoes at a rough surface, and diffuse scattering |
 //! | [`shadow`] | diffraction past an obstacle between antenna and scatterer |
-//! | [`reference`] | references for tests: quadrature, and the exact series of a cylinder |
 //! | `sight` | bodies that may affect an object |
 //! | `strips` | fast search of bodies near the ways to an object |
 //! | [`transition`] | Fresnel's transition from light to shadow, for the two above |
@@ -30,7 +29,6 @@ mod geometry;
 pub mod parts;
 pub mod polygon;
 pub mod post;
-pub mod reference;
 pub mod roughness;
 mod scatterer;
 pub mod shadow;
@@ -135,8 +133,6 @@ pub struct PathEcho {
     pub range_metres: f64,
     /// Its amplitude in the middle of the chirp; 0 where there is no such echo.
     pub amplitude: Complex64,
-    /// Change of the amplitude for each radian per metre by which the wave differs from that of the middle of the chirp.
-    pub tilt: Complex64,
     /// Where it comes from, (x, y) in metres.
     pub place_metres: [f64; 2],
     /// Cosine of the angle of incidence there.
@@ -152,7 +148,6 @@ impl PathEcho {
         PathEcho {
             range_metres: 0.0,
             amplitude: Complex64::default(),
-            tilt: Complex64::default(),
             place_metres,
             cos_incidence: 1.0,
             kind,
@@ -166,7 +161,7 @@ impl PathEcho {
     }
 
     pub(crate) fn times(self, factor: Complex64) -> Self {
-        PathEcho { amplitude: self.amplitude * factor, tilt: self.tilt * factor, ..self }
+        PathEcho { amplitude: self.amplitude * factor, ..self }
     }
 }
 

@@ -52,12 +52,11 @@ impl Outline {
             for (corner, edge) in [(i, a), ((i + 1) % count, b)] {
                 let rim = &mut out[begin + count + corner];
                 let amplitude = rim.amplitude + edge.amplitude;
-                let tilt = rim.tilt + edge.tilt;
                 if edge.is_heard() {
                     // The coherent part of a rough corner is that of the face that is met more squarely.
                     let cos_incidence =
                         if rim.is_heard() { rim.cos_incidence.max(edge.cos_incidence) } else { edge.cos_incidence };
-                    *rim = PathEcho { amplitude, tilt, cos_incidence, ..edge };
+                    *rim = PathEcho { amplitude, cos_incidence, ..edge };
                 } else if !rim.is_heard() {
                     rim.place_metres = edge.place_metres;
                 }
@@ -66,7 +65,6 @@ impl Outline {
         for (corner, _) in self.is_inner.iter().enumerate().filter(|(_, inner)| **inner) {
             // The images of a right inner corner are all of it: its apex has no echo of its own.
             out[begin + count + corner].amplitude = Complex64::default();
-            out[begin + count + corner].tilt = Complex64::default();
         }
         for corner in &self.inner {
             let (first, second) = (&self.faces[(corner + count - 1) % count], &self.faces[*corner]);
@@ -75,7 +73,7 @@ impl Outline {
         if !self.inner.is_empty() {
             for echo in out[begin..].iter_mut().filter(|e| e.is_heard()) {
                 if self.hides(echo.place_metres.into(), antennas) {
-                    (echo.amplitude, echo.tilt) = (Complex64::default(), Complex64::default());
+                    echo.amplitude = Complex64::default();
                 }
             }
         }

@@ -100,7 +100,7 @@ impl Scatterer {
         }
         if self.wave.is_conjugate {
             for echo in &mut out[begin..] {
-                (echo.amplitude, echo.tilt) = (echo.amplitude.conj(), echo.tilt.conj());
+                echo.amplitude = echo.amplitude.conj();
             }
         }
     }
@@ -174,7 +174,7 @@ impl Scatterer {
         for echo in &mut out[begin..begin + 2 * count] {
             let [x, y] = echo.place_metres;
             if !mirror.is_before(x, y) {
-                (echo.amplitude, echo.tilt) = (Complex64::default(), Complex64::default());
+                echo.amplitude = Complex64::default();
             }
         }
     }

@@ -75,11 +75,6 @@ pub fn transition(w: f64) -> Complex64 {
     Complex64::new(re, im) * EIGHTH_TURN.conj() * (0.5 / (PI.sqrt() * w))
 }
 
-/// `dT/dw`.
-pub fn slope(w: f64, t: Complex64) -> Complex64 {
-    EIGHTH_TURN * (EIGHTH_TURN * t * (2.0 * w) - PI.sqrt().recip())
-}
-
 /// Field that passes the edge of a half plane, relative to the free field: `w > 0` lies in the shadow.
 pub fn passing(w: f64) -> Complex64 {
     let t = transition(w.abs()) * Complex64::cis(-w * w);
@@ -124,14 +119,5 @@ mod tests {
         assert!((transition(1e3) / far - 1.0).norm() < 1e-6);
         assert!((passing(0.0) - 0.5).norm() < 1e-10);
         assert!((passing(-30.0) - 1.0).norm() < 0.011 && passing(30.0).norm() < 0.011);
-    }
-
-    #[test]
-    fn the_slope_is_that_of_the_transition() {
-        for w in [0.1, 1.0, 5.5, 7.0] {
-            let h = 1e-4;
-            let expected = (transition(w + h) - transition(w - h)) / (2.0 * h);
-            assert!((slope(w, transition(w)) - expected).norm() < 1e-5 * expected.norm(), "{w}");
-        }
     }
 }

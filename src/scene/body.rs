@@ -241,16 +241,6 @@ pub enum Body<'a> {
 }
 
 impl Body<'_> {
-    /// The word used for this kind in files and messages.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Body::Wall(_) => "wall",
-            Body::Box(_) => "box",
-            Body::Post(_) => "post",
-            Body::Polygon(_) => "polygon",
-        }
-    }
-
     /// What it is made of.
     pub fn surface(&self) -> Surface {
         let (reflectivity, roughness_millimetres, seed) = match self {

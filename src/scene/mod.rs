@@ -2,7 +2,6 @@
 //! [`body`] are computed in [`crate::scattering`].
 
 pub mod body;
-mod body_check;
 mod common;
 mod disturbances;
 pub mod file;
@@ -10,6 +9,7 @@ pub mod generate;
 mod motion;
 pub mod npz;
 mod object;
+mod object_check;
 pub mod presets;
 pub mod shape;
 mod turn;
@@ -184,7 +184,7 @@ impl Scene {
             within_limit(self.reflector_count().saturating_mul(4), "reflectors and ghosts")?;
         }
         for (index, object) in self.objects.iter().enumerate() {
-            object.validate(index)?;
+            object_check::validate(object, index)?;
             if let Some(element) = object.body().and_then(|body| body.covered_element(radar)) {
                 return Err(SceneError::Covers { object: index, kind: object.kind(), element });
             }

@@ -1,10 +1,8 @@
 //! The objects of a scene: points, lines of points, Gaussian clusters of points, and bodies.
 
+use super::Reflector;
 use super::body::{Block, Body, Polygon, Post, Wall, is_zero, one};
-use super::body_check;
 use super::common::{moving, of_each};
-use super::shape::out_of_reach;
-use super::{Reflector, SceneError};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -333,52 +331,6 @@ impl Object {
             Object::Line(l) => l.place_metres(l.count.saturating_sub(1) as f64 / 2.0),
             other => other.anchor_metres(),
         }
-    }
-
-    pub(super) fn validate(&self, index: usize) -> Result<(), SceneError> {
-        const FINITE: &str = "a finite number";
-        self.check_velocity(index)?;
-        if let Some(body) = self.body() {
-            return body_check::validate(&body, index);
-        }
-        let fields: Vec<(&'static str, f64)> = match self {
-            Object::Point(p) => {
-                vec![("x_metres", p.x_metres), ("y_metres", p.y_metres), ("reflectivity", p.reflectivity)]
-            }
-            Object::Line(l) => vec![
-                ("x_metres", l.x_metres),
-                ("y_start_metres", l.y_start_metres),
-                ("spacing_metres", l.spacing_metres),
-                ("direction_degrees", l.direction_degrees),
-                ("reflectivity", l.reflectivity),
-            ],
-            Object::Gaussian(g) => vec![
-                ("x_metres", g.x_metres),
-                ("y_metres", g.y_metres),
-                ("x_std_metres", g.x_std_metres),
-                ("y_std_metres", g.y_std_metres),
-                ("reflectivity", g.reflectivity),
-            ],
-            Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => Vec::new(),
-        };
-        let error =
-            |field, value, expected| SceneError::Value { object: index, kind: self.kind(), field, value, expected };
-        for (field, value) in fields {
-            if !value.is_finite() {
-                return Err(error(field, value, FINITE));
-            }
-            let distance = matches!(field, "x_metres" | "y_metres" | "y_start_metres" | "spacing_metres");
-            if distance && out_of_reach(value) {
-                return Err(error(field, value, "a distance of at most 1e12 m"));
-            }
-            if field.ends_with("std_metres") && !(0.0..=1e12).contains(&value) {
-                return Err(error(field, value, "0 to 1e12 m"));
-            }
-            if field == "reflectivity" && value.abs() > 1e100 {
-                return Err(error(field, value, "a magnitude of at most 1e100"));
-            }
-        }
-        Ok(())
     }
 }
 

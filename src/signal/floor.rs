@@ -45,11 +45,6 @@ pub const SNR_DECIBELS: std::ops::RangeInclusive<f64> = -100.0..=300.0;
 pub const LEVEL_DECIBEL_MILLIWATTS: std::ops::RangeInclusive<f64> = -300.0..=200.0;
 
 impl Floor {
-    /// Whether it is white noise whose level does not depend on a link budget.
-    pub fn is_thermal(self) -> bool {
-        matches!(self, Floor::Snr(_) | Floor::Level(_) | Floor::Thermal)
-    }
-
     /// Variance of its noise where that has a level independent of the scene.
     pub fn level_variance(self, radar: &Radar) -> Option<f64> {
         match self {

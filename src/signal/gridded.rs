@@ -122,11 +122,6 @@ impl<T: Real> Gridding<T> {
             (0..samples).map(|n| T::of(of_offset.get(n.abs_diff(half)).map_or(0.0, |v| v.recip()))).collect();
         Gridding { samples, grid, width: kernel.width, pieces, correction, fft: LaneFft::new(grid) }
     }
-
-    /// Cells that each reflector is spread over.
-    pub fn width(&self) -> usize {
-        self.width
-    }
 }
 
 /// Reflectors that are added up at a time in f64: sums of sums lose fewer digits than one long sum.

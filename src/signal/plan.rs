@@ -125,11 +125,6 @@ pub fn amplitude_bound<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> f6
     of_points + largest.iter().sum::<f64>()
 }
 
-/// [`amplitude_bound`] of these objects together.
-pub fn amplitude_bound_of(radar: &Radar, seen: &[SeenObject]) -> f64 {
-    amplitude_bounds(radar, seen.iter()).iter().sum()
-}
-
 /// [`amplitude_bound`] of each of these objects.
 pub fn amplitude_bounds<'a>(radar: &Radar, seen: impl Iterator<Item = &'a SeenObject>) -> Vec<f64> {
     let seen: Vec<&SeenObject> = seen.collect();

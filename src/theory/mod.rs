@@ -57,6 +57,7 @@ pub struct MapPlace {
     pub column: f64,
 }
 
+#[cfg(test)]
 impl MapPlace {
     /// Bins and columns from here to `other`, the short way around the map.
     pub fn offset_to(&self, other: &MapPlace, radar: &Radar) -> (f64, f64) {

@@ -1,15 +1,9 @@
 //! `apertura bounds`, `apertura layouts` and `apertura robustness` from outside.
 
-use assert_cmd::Command;
+use super::cli::program as apertura;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use serde_json::Value;
-
-fn apertura(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
-    command.args(arguments);
-    command
-}
 
 fn json(arguments: &[&str]) -> Value {
     let output = apertura(arguments).output().unwrap();
@@ -128,11 +122,6 @@ fn robustness_prints_a_line_for_each_case() {
     apertura(&["robustness", "--phase-degrees", "200"]).assert().failure().stderr(contains("number from 0 to 180"));
 }
 
-/// The text of an SVG's elements.
-fn texts(svg: &str) -> Vec<&str> {
-    svg.split("</text>").filter_map(|part| Some(part.rsplit_once('>')?.1.trim())).collect()
-}
-
 #[test]
 fn robustness_prints_one_object_on_request() {
     let folder = tempfile::tempdir().unwrap();
@@ -151,21 +140,4 @@ fn robustness_prints_one_object_on_request() {
     let written: Value =
         serde_json::from_slice(&std::fs::read(folder.path().join("robustness.json")).unwrap()).unwrap();
     assert_eq!(written, report);
-}
-
-#[test]
-fn numbers_beside_the_axes_of_the_charts_are_short() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().to_str().unwrap();
-    apertura(&["robustness", "--method", "baseline", "--count", "2", "--scale", "0,0.3", "-o", path])
-        .assert()
-        .success();
-    apertura(&["bounds", "--layout", "two-ends", "--snr", "0,40", "--monte-carlo", "1", "-o", path]).assert().success();
-    for name in ["robustness.svg", "bounds.svg", "monte-carlo.svg"] {
-        let svg = std::fs::read_to_string(folder.path().join(name)).unwrap();
-        let numbers: Vec<&str> = texts(&svg).into_iter().filter(|t| t.parse::<f64>().is_ok()).collect();
-        assert!(numbers.len() > 5 && numbers.iter().all(|n| n.len() <= 7), "{name}: {numbers:?}");
-    }
-    let svg = std::fs::read_to_string(folder.path().join("robustness.svg")).unwrap();
-    assert!(texts(&svg).iter().any(|t| t.contains("standard error over 2 scenes")), "{svg}");
 }

@@ -20,6 +20,13 @@ pub fn apertura(folder: &TempDir) -> Command {
     command
 }
 
+/// The program with its arguments, where it reads and writes nothing in the folder.
+pub fn program(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
+    command.args(arguments);
+    command
+}
+
 pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
@@ -305,18 +312,6 @@ fn bad_scenes_are_named(folder: &tempfile::TempDir) {
             .stdout("")
             .stderr(contains("error: ").and(contains(parts[0])).and(contains(parts[1])));
     }
-}
-
-/// In a process of its own: the memory it holds is looked at too.
-#[test]
-fn a_quick_stress_holds() {
-    let folder = folder();
-    let output = apertura(&folder).args(["stress", "--quick", "--edits", "1500", "--json"]).assert().success();
-    let report: serde_json::Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
-    let edits = &report["edits"];
-    assert_eq!(edits["edits"], 1500);
-    assert!(edits["worst_difference"].as_f64().unwrap() > 0.0, "an error that is never seen can't be believed");
-    assert!(!cfg!(target_os = "linux") || edits["resident_bytes"].as_u64().unwrap() > 0);
 }
 
 #[test]

@@ -7,17 +7,6 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 #[test]
-fn what_is_given_twice_does_not_count_twice() {
-    let folder = folder();
-    for (arguments, part) in [
-        ("evaluate --method baseline,baseline --set 1 --count 3", "method \"baseline\" is given twice"),
-        ("evaluate --method baseline --set 1,2,1 --count 3", "set \"1\" is given twice"),
-    ] {
-        apertura(&folder, arguments).assert().failure().stdout("").stderr(contains(part));
-    }
-}
-
-#[test]
 fn unlike_rows_are_not_merged() {
     let folder = folder();
     let evaluate = |more: &str| format!("evaluate --method baseline --set 1 --count 2 {more}");

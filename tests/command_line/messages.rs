@@ -24,7 +24,7 @@ fn numbers_out_of_range_say_what_is_allowed() {
         ("bench --reflectors 10,20000", "expected a whole number from 1 to 10000"),
         ("bench --repeats -1", "expected a whole number from 1 to 1000"),
         ("bench --methods --count 2000", "expected a whole number from 1 to 1000"),
-        ("stress --edits 0", "expected a whole number from 1 to 1000000"),
+        ("threshold --method baseline --false-alarm 0", "expected a number from 0.01 to 50"),
         ("worsen s.toml --method baseline --within -2 -o x.toml", "expected a number from 0.000001 to 1000"),
         ("worsen s.toml --method baseline --tries 0 -o x.toml", "expected a whole number from 1 to 4294967295"),
         ("worsen s.toml --method baseline --minutes -2 -o x.toml", "expected a number from 0.001 to 525600"),

@@ -1,16 +1,12 @@
 //! `apertura reconstruct` and `apertura train` as a user runs them.
 
-use assert_cmd::Command;
+use super::cli::program;
 use ndarray::{Array1, Array2, Array3, Ix0};
 use ndarray_npy::{NpzReader, NpzWriter};
 use num_complex::Complex64;
 use predicates::str::contains;
 use std::fs::File;
 use std::path::Path;
-
-fn apertura() -> Command {
-    Command::cargo_bin("apertura").expect("the program is built with its tests")
-}
 
 /// Samples of one far reflector at broadside, as NumPy would store them.
 fn write_samples(path: &Path, gain: f64) {
@@ -26,7 +22,7 @@ fn live_writes_what_it_promises() {
     let folder = tempfile::tempdir().unwrap();
     let (input, output) = (folder.path().join("in.npz"), folder.path().join("out.npz"));
     write_samples(&input, 3.0);
-    apertura().arg("reconstruct").arg(&input).arg("-o").arg(&output).assert().success().stdout(contains("live"));
+    program(&[]).arg("reconstruct").arg(&input).arg("-o").arg(&output).assert().success().stdout(contains("live"));
     let mut npz = NpzReader::new(File::open(&output).unwrap()).unwrap();
     let map: Array2<f32> = npz.by_name("net_output").unwrap();
     assert_eq!(map.dim(), (512, 1024));
@@ -42,7 +38,7 @@ fn an_archive_of_version_0_1_is_read_with_its_radar() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("out.npz");
     let archive = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/program-0.1.0/maps.npz");
-    apertura().args(["reconstruct", archive, "--method", "iaa", "-o"]).arg(&output).assert().success();
+    program(&[]).args(["reconstruct", archive, "--method", "iaa", "-o"]).arg(&output).assert().success();
     let mut written = NpzReader::new(File::open(archive).unwrap()).unwrap();
     let mut found = NpzReader::new(File::open(&output).unwrap()).unwrap();
     let cosines: [Array1<f64>; 2] = [written.by_name("cos_theta").unwrap(), found.by_name("cos_theta").unwrap()];
@@ -58,7 +54,7 @@ fn unsuitable_input_is_told() {
     let (input, output) = (folder.path().join("in.npz"), folder.path().join("out.npz"));
     write_samples(&input, f64::NAN);
     let run = |method: &str| {
-        let mut command = apertura();
+        let mut command = program(&[]);
         command.arg("reconstruct").arg(&input).arg("-o").arg(&output).args(["--method", method]);
         command.assert().failure()
     };
@@ -80,7 +76,7 @@ fn weights_from_a_file_are_used_or_refused() {
     npz.add_array("polar_partial_mag_phase", &ramp).unwrap();
     npz.finish().unwrap();
     let run = |method: &str, weights: &Path| {
-        let mut command = apertura();
+        let mut command = program(&[]);
         command.arg("reconstruct").arg(&input).arg("-o").arg(&output).args(["--method", method]);
         command.arg("--weights").arg(weights).assert()
     };
@@ -102,6 +98,6 @@ fn weights_from_a_file_are_used_or_refused() {
 
 #[test]
 fn unknown_recipes_are_refused() {
-    apertura().args(["train", "--list"]).assert().success().stdout(contains("experiment-2-small"));
-    apertura().args(["train", "no-such"]).assert().failure().stderr(contains("neither a file nor a shipped recipe"));
+    program(&[]).args(["train", "--list"]).assert().success().stdout(contains("experiment-2-small"));
+    program(&[]).args(["train", "no-such"]).assert().failure().stderr(contains("neither a file nor a shipped recipe"));
 }

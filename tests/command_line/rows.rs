@@ -1,5 +1,7 @@
 //! `apertura evaluate --rows` and `--scenes`: what rows say, what is printed of them, and a row's scene by hand.
 
+use super::cli;
+pub use super::cli::folder;
 use apertura::evaluate::rows::{Column, Row, read_rows};
 use apertura::evaluate::{Estimate, squared_error};
 use apertura::files::npz::Npz;
@@ -16,13 +18,9 @@ use tempfile::TempDir;
 const METHOD: &str = if cfg!(feature = "network") { "live" } else { "matched-filter-incoherent" };
 
 pub fn apertura(folder: &TempDir, arguments: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
-    command.current_dir(folder).args(arguments.split_whitespace());
+    let mut command = cli::apertura(folder);
+    command.args(arguments.split_whitespace());
     command
-}
-
-pub fn folder() -> TempDir {
-    tempfile::tempdir().expect("a temporary folder")
 }
 
 pub fn rows(folder: &TempDir, name: &str) -> Vec<Row> {

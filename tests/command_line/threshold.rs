@@ -1,13 +1,6 @@
 //! `apertura threshold` from outside.
 
-use assert_cmd::Command;
-use predicates::str::contains;
-
-fn apertura(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
-    command.args(arguments);
-    command
-}
+use super::cli::program as apertura;
 
 #[test]
 fn a_threshold_keeps_the_rate_on_the_scenes_that_chose_it() {
@@ -24,17 +17,4 @@ fn a_threshold_keeps_the_rate_on_the_scenes_that_chose_it() {
     assert_eq!(report["scenes_within_a_tenth"], 15);
     assert_eq!(report["check"]["scenes"], 2);
     assert_ne!(report["check"]["false_alarm"], report["false_alarm"], "other scenes");
-}
-
-#[test]
-fn a_threshold_that_cannot_be_found_is_explained() {
-    let says = |arguments: &[&str], expected: &str| {
-        apertura(&[&["threshold", "--method", "baseline"], arguments].concat())
-            .assert()
-            .failure()
-            .stderr(contains(expected));
-    };
-    says(&["--set", "1", "--count", "50"], "50 scenes can't keep a rate of 1 %; take 99 scenes or more");
-    says(&["--set", "noise"], "have no echoes");
-    says(&["--false-alarm", "0"], "expected a number from 0.01 to 50");
 }

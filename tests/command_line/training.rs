@@ -45,21 +45,6 @@ fn a_run_goes_on_by_its_own_recipe() {
     run("train").failure().stderr(contains("<RECIPE"));
 }
 
-#[test]
-fn random_weights_are_written_on_request_alone() {
-    let folder = folder();
-    std::fs::write(folder.path().join("tiny.toml"), RECIPE).unwrap();
-    let run = |arguments: &str| apertura(&folder).args(arguments.split(' ')).assert();
-    run("train tiny.toml --output r --steps 0")
-        .failure()
-        .stderr(contains("the weights would be random").and(contains("--untrained")));
-    assert!(!folder.path().join("r").exists());
-    run("train tiny.toml --output r --steps 0 --untrained").success();
-    assert!(folder.path().join("r/weights.safetensors").exists());
-    run("train tiny.toml --output r2 --minutes -1").failure().stderr(contains("expected a number from 0 to 525600"));
-    run("train tiny.toml --output r2 --steps x").failure().stderr(contains("expected a whole number from 0"));
-}
-
 /// What a training program says; `None` where there is no Python.
 fn python(program: &str, arguments: &[&str]) -> Option<Output> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("training").join(program);

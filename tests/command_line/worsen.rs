@@ -2,7 +2,6 @@
 
 use super::rows::{apertura, error_by_hand, folder};
 use apertura::scene::file;
-use predicates::str::contains;
 
 #[test]
 fn worsen_writes_a_scene_as_bad_as_it_says() {
@@ -23,10 +22,6 @@ fn worsen_writes_a_scene_as_bad_as_it_says() {
     apertura(&folder, "reconstruct maps.npz --method baseline -o out.npz").assert().success();
     let after = text.lines().find(|l| l.starts_with("after")).unwrap();
     assert!(after.contains(&format!("SE {:.1},", error_by_hand(folder.path()))), "{text}");
-    apertura(&folder, "worsen s.toml --method baseline --tries 8 --within 0 -o x.toml")
-        .assert()
-        .failure()
-        .stderr(contains("expected a number from 0.000001 to 1000"));
 }
 
 /// Within 2 m and a minute, five times the squared error for four of five starts of set 1.

@@ -1,21 +1,14 @@
 //! The numbers that the lesson on pairs of antennas teaches, computed again: each must stand in its text as it comes out here.
 
+use crate::taught::{lesson, taught};
+use apertura::lesson::Step;
 use apertura::lesson::question::Answer;
-use apertura::lesson::{Lesson, Step, shipped};
 use apertura::maps::{LogMap, LogMaps};
 use apertura::radar::Radar;
 use apertura::signal::{Floor, simulate};
 use ndarray::Array1;
 
-fn lesson() -> (&'static str, Lesson) {
-    let toml = shipped::ALL.iter().find(|s| s.id == "pairs-of-antennas").unwrap().toml;
-    (toml, Lesson::from_toml(toml).unwrap())
-}
-
-/// Holds the lesson to a number as its text has it.
-fn taught(number: &str) {
-    assert!(lesson().0.contains(number), "the lesson does not say \"{number}\"");
-}
+const PAIRS: &str = "pairs-of-antennas";
 
 fn target(radar: &Radar, step: &Step) -> LogMap {
     LogMaps::of_signal(radar, &simulate(radar, &step.scene(), Floor::Exact, 0).unwrap()).full
@@ -42,39 +35,45 @@ fn right_option(step: &Step) -> &str {
 
 #[test]
 fn the_antennas_are_as_many_as_the_lesson_says() {
-    let (_, lesson) = lesson();
+    let lesson = lesson(PAIRS);
     let radar = lesson.steps[0].radar.clone();
     let antennas = radar.antennas.as_ref().unwrap();
     let extent_centimetres = |x: &[f64]| 100.0 * (x[x.len() - 1] - x[0]);
-    taught(&format!(
-        "{} transmitters on {:.0} cm",
-        antennas.transmitter_x_metres().len(),
-        extent_centimetres(antennas.transmitter_x_metres())
-    ));
-    taught(&format!(
-        "{} receivers on {:.0} cm",
-        antennas.receiver_x_metres().len(),
-        extent_centimetres(antennas.receiver_x_metres())
-    ));
-    taught(&format!("fill a line of {:.0} cm", 100.0 * radar.aperture_metres()));
+    taught(
+        PAIRS,
+        &format!(
+            "{} transmitters on {:.0} cm",
+            antennas.transmitter_x_metres().len(),
+            extent_centimetres(antennas.transmitter_x_metres())
+        ),
+    );
+    taught(
+        PAIRS,
+        &format!(
+            "{} receivers on {:.0} cm",
+            antennas.receiver_x_metres().len(),
+            extent_centimetres(antennas.receiver_x_metres())
+        ),
+    );
+    taught(PAIRS, &format!("fill a line of {:.0} cm", 100.0 * radar.aperture_metres()));
     assert_eq!(right_option(&lesson.steps[0]), radar.elements.to_string());
 }
 
 #[test]
 fn the_blob_of_a_near_point_is_as_wide_as_the_lesson_says() {
-    let (_, lesson) = lesson();
+    let lesson = lesson(PAIRS);
     let step = &lesson.steps[1];
     let pairs = step.radar.clone();
     let alone = Radar { antennas: None, ..pairs.clone() };
-    taught(&format!("blob is {} columns wide at -10 dB", width_columns(&target(&alone, step))));
+    taught(PAIRS, &format!("blob is {} columns wide at -10 dB", width_columns(&target(&alone, step))));
     assert_eq!(right_option(step), format!("{} columns", width_columns(&target(&pairs, step))));
 }
 
 #[test]
 fn the_far_field_of_the_pairs_begins_where_the_lesson_says() {
-    let (_, lesson) = lesson();
+    let lesson = lesson(PAIRS);
     let step = &lesson.steps[2];
     let alone = Radar { antennas: None, ..step.radar.clone() };
-    taught(&format!("4 D² / λ = {:.0} m", alone.far_field_metres()));
+    taught(PAIRS, &format!("4 D² / λ = {:.0} m", alone.far_field_metres()));
     assert_eq!(right_option(step), format!("{:.0} m", step.radar.far_field_metres()));
 }

@@ -7,9 +7,9 @@ use apertura::methods;
 use apertura::radar::presets::RadarPreset;
 use apertura::radar::{Carrier, Convention, Decibels, Radar, WindowFunction};
 use apertura::reconstruct::{Baseline, Request};
+use apertura::scene::Scene;
 use apertura::scene::generate::{Kind, Purpose};
-use apertura::scene::{Reflector, Scene};
-use apertura::signal::{Floor, TwoEnds, simulate};
+use apertura::signal::{Floor, simulate};
 use apertura::task::Task;
 use rayon::prelude::*;
 use std::time::Duration;
@@ -98,41 +98,6 @@ fn its_threshold_follows_the_floor() {
 }
 
 #[test]
-#[ignore = "half a minute; prints the figures"]
-fn figures_on_validation_scenes() {
-    for kind in Kind::TEST_SETS {
-        let t = tally(kind, 30);
-        println!(
-            "{kind:?}: SE {:.0} +- {:.0}, P_D {:.4}, P_FA {:.4}, {:.1} ms",
-            t.squared_error().mean,
-            t.squared_error().standard_error,
-            t.detection().mean,
-            t.false_alarm().mean,
-            t.median_milliseconds()
-        );
-    }
-}
-
-fn ends_of(reflectors: &[Reflector]) -> TwoEnds {
-    let radar = Radar::default();
-    apertura::signal::direct::beat_signal(&radar, reflectors).two_ends(&radar)
-}
-
-#[test]
-fn loudness_does_not_matter() {
-    let radar = Radar::default();
-    let live = methods::by_name("live").unwrap();
-    let quiet = ends_of(&[Reflector { x_metres: 4.0, y_metres: 15.0, reflectivity: 1.0 }]);
-    // A power of two, so that the rounding noise beneath is the same.
-    let gain = 2f64.powi(40);
-    let loud = TwoEnds { first: quiet.first.mapv(|v| v * gain), last: quiet.last.mapv(|v| v * gain) };
-    let run = |ends| live.reconstruct(&radar, ends, &Request::default()).unwrap().lambda;
-    let (a, b) = (run(&quiet), run(&loud));
-    let worst = a.lambda.iter().zip(&b.lambda).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    assert!(worst < 1e-4, "{worst}");
-}
-
-#[test]
 fn a_radar_they_were_not_trained_for_is_an_error() {
     let smaller = Radar { elements: 512, ..Radar::default() };
     let two_way = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
@@ -157,7 +122,8 @@ fn callers_in_a_parallel_loop_do_not_block_each_other() {
     std::thread::spawn(move || {
         let radar = Radar::default();
         let live = methods::by_name("live").unwrap();
-        let ends = ends_of(&[Reflector { x_metres: 4.0, y_metres: 15.0, reflectivity: 1.0 }]);
+        let signal = simulate(&radar, &Scene::of_points([(4.0, 15.0)]), Floor::Exact, 0);
+        let ends = signal.unwrap().two_ends(&radar);
         let threads = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
         let request = Request::default();
         let made: Vec<_> = threads.install(|| {

@@ -28,7 +28,6 @@ mod radars;
 mod readme;
 mod snapshot;
 mod street;
-mod stress;
 #[cfg(all(unix, feature = "live"))]
 mod tables;
 mod taught;

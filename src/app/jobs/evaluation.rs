@@ -1,6 +1,6 @@
 //! Tables 4.1 to 4.3 of the rows there are: every method on every test set.
 
-use crate::evaluate::rows::{Row, Text};
+use crate::evaluate::rows::{Column, Row, Text};
 use crate::evaluate::tables::{Estimate, Tally};
 use crate::scene::generate::Kind;
 use std::collections::BTreeMap;
@@ -59,8 +59,8 @@ fn evaluated_on(set: usize, method: &Text, rows: Vec<&Row>) -> EvaluationRow {
         squared_error: tally.squared_error(),
         detection: tally.detection(),
         false_alarm: tally.false_alarm(),
-        detection_at_printed: Some(tally.detection_at_printed()).filter(|d| d.mean.is_finite()),
-        cfar: has_cfar.then(|| [tally.cfar_detection(), tally.cfar_false_alarm()]),
+        detection_at_printed: Some(tally.estimate(Column::DetectionAtPrinted)).filter(|d| d.mean.is_finite()),
+        cfar: has_cfar.then(|| [tally.estimate(Column::CfarDetection), tally.estimate(Column::CfarFalseAlarm)]),
         median_milliseconds: tally.median_milliseconds(),
     }
 }

@@ -16,7 +16,7 @@ pub use measurement::{measure, scattered};
 use crate::maps::Normalisation;
 use crate::signal::simd::Simd;
 use crate::signal::{Algorithm, Floor, Precision};
-use serde::{Deserialize, Serialize};
+use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
@@ -58,8 +58,8 @@ impl FrontRequest {
 }
 
 /// Who is measured: the planner, or an algorithm forced upon it. Written and read as "plan" or the algorithm's name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(into = "String", try_from = "String")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(into = "String")]
 pub enum Entrant {
     Planned,
     Forced(Algorithm),
@@ -95,16 +95,8 @@ impl From<Entrant> for String {
     }
 }
 
-impl TryFrom<String> for Entrant {
-    type Error = crate::signal::UnknownAlgorithm;
-
-    fn try_from(name: String) -> Result<Self, Self::Error> {
-        name.parse()
-    }
-}
-
 /// What is timed, until three Lambda maps are ready.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrontTask {
     /// Nothing of the scene is known before.
@@ -122,11 +114,11 @@ impl FrontTask {
 }
 
 /// What lies beneath the reflectors, and how decades become Lambda: no error of Lambda means anything without both.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MapConvention {
-    #[serde(with = "as_text")]
+    #[serde(serialize_with = "as_text")]
     pub floor: Floor,
-    #[serde(with = "as_text")]
+    #[serde(serialize_with = "as_text")]
     pub normalisation: Normalisation,
 }
 
@@ -154,23 +146,13 @@ impl fmt::Display for MapConvention {
     }
 }
 
-/// Floors and normalisations as the command line writes them.
-mod as_text {
-    use serde::{Deserialize, Deserializer, Serializer, de::Error};
-    use std::fmt::Display;
-    use std::str::FromStr;
-
-    pub fn serialize<S: Serializer>(value: &impl Display, to: S) -> Result<S::Ok, S::Error> {
-        to.collect_str(value)
-    }
-
-    pub fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
-        String::deserialize(from)?.parse().map_err(D::Error::custom)
-    }
+/// A floor or a normalisation as the command line writes it.
+fn as_text<S: Serializer>(value: &impl fmt::Display, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_str(value)
 }
 
 /// How far three maps are from the exact path's, over one floor and normalisation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LambdaError {
     #[serde(flatten)]
     pub convention: MapConvention,
@@ -179,7 +161,7 @@ pub struct LambdaError {
 }
 
 /// One measurement: a point of the front.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FrontRow {
     pub task: FrontTask,
     pub reflectors: usize,
@@ -200,18 +182,12 @@ pub struct FrontRow {
     pub repeats: usize,
     /// Largest error of a range cell against the judge (every range bin of a few elements), relative to the largest.
     pub signal_error: f64,
-    /// Largest error of Lambda, three maps, in the convention they were timed in.
-    pub lambda_error: f64,
-    /// Root of the mean squared error, likewise.
-    pub lambda_rms_error: f64,
     /// Errors of Lambda in every convention of [`MapConvention::BOTH`].
     pub lambda: Vec<LambdaError>,
-    /// Largest resident size of the process while it ran, where the system tells.
-    pub peak_bytes: Option<u64>,
 }
 
 /// A measured front, as it stands in `bench.json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Front {
     /// Median time of a bare 512 x 1024 single-precision transform on one thread, in the same run.
     pub bare_fft_ms: f64,

@@ -1,6 +1,6 @@
 //! `apertura bench --live`: the live network's forward pass, with and without what it leaves out, beside the features before it.
 
-use crate::commands::{CommandError, print};
+use crate::commands::{CommandError, print, print_json};
 use crate::network;
 use crate::network::live::engine::LiveScratch;
 use crate::network::live::features::FeatureExtractor;
@@ -26,7 +26,7 @@ struct Pass {
 pub fn run(json: bool) -> Result<(), CommandError> {
     let pass = measure(SCENES)?;
     if json {
-        return print(&serde_json::to_string_pretty(&pass).map_err(CommandError::failed)?);
+        return print_json(&pass);
     }
     let Pass { threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds } = pass;
     print(&format!(

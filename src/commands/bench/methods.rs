@@ -1,12 +1,8 @@
-//! `apertura bench --methods`: run time against squared error of every reconstruction method; how long crowds take those that search, and
-//! following a drag; what the live network leaves out.
+//! `apertura bench --methods`: run time against squared error of every reconstruction method; how long crowds take those that search.
 
-use super::following::{self, Followed};
-#[cfg(feature = "network")]
-use super::left_out::{self, LeftOut};
 use crate::commands::CommandError;
 use crate::commands::figure::{DrawingResult, Plot, save, save_numbers, tick};
-use crate::commands::print;
+use crate::commands::{print, print_json};
 use crate::evaluate::Estimate;
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::sets::SceneSet;
@@ -34,9 +30,6 @@ struct Report {
     scenes: u32,
     methods: Vec<MethodRow>,
     crowds: Vec<Crowd>,
-    followed: Followed,
-    #[cfg(feature = "network")]
-    left_out: Vec<LeftOut>,
 }
 
 #[derive(Debug, Serialize)]
@@ -68,7 +61,7 @@ struct Crowd {
 pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
     let all = methods::all();
     let crowds = count.max(FEWEST_CROWDS);
-    let of_crowds = 2 * u64::from(crowds) * SEARCHERS.len() as u64 + u64::from(crowds * following::MOVES);
+    let of_crowds = 2 * u64::from(crowds) * SEARCHERS.len() as u64;
     let maps = 3 * u64::from(count) * all.len() as u64 + of_crowds;
     let bar = indicatif::ProgressBar::new(maps);
     let report = Report {
@@ -80,9 +73,6 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
             crowds_of(crowds, Kind::Mixed(4), 300, "four lines of 75", || bar.inc(1))?,
         ]
         .concat(),
-        followed: following::measure(crowds, || bar.inc(1))?,
-        #[cfg(feature = "network")]
-        left_out: left_out::measure(crowds)?,
     };
     bar.finish_and_clear();
     if let Some(folder) = output {
@@ -90,7 +80,7 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
         save_numbers(&report, folder, "methods")?;
     }
     if json {
-        return print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?);
+        return print_json(&report);
     }
     print(&format!(
         "{}, {}\n{:26} {:>24} {:>24}",
@@ -119,11 +109,7 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
             counted(c.scenes, "scene", "scenes")
         ))?;
     }
-    #[cfg(feature = "network")]
-    for row in &report.left_out {
-        print(&row.line())?;
-    }
-    print(&report.followed.line())
+    Ok(())
 }
 
 fn method_rows(count: u32, methods: &[&dyn Reconstructor], on_map: impl Fn()) -> Result<Vec<MethodRow>, CommandError> {

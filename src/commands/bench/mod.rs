@@ -1,28 +1,19 @@
 //! `apertura bench`: run time against error, for every algorithm, precision and tolerance.
 
 mod bodies;
-mod captures;
 mod chart;
-mod doppler;
-mod following;
-mod instructions;
-#[cfg(feature = "network")]
-mod left_out;
 #[cfg(feature = "network")]
 mod live;
-mod measured;
 mod methods;
-mod mouse;
 mod others;
 
 use super::arguments::whole;
 use super::own_method::OwnMethodArgs;
-use super::{CommandError, print};
-use crate::benchmark::front::{Entrant, Front, FrontRequest, FrontRow};
+use super::{CommandError, print, print_json};
+use crate::benchmark::front::{self, Entrant, Front, FrontRequest, FrontRow};
 use crate::benchmark::one_thread::measure;
-use crate::files::write_bytes;
-use crate::radar::counted;
-use measured::measured;
+use crate::commands::figure::{save, save_numbers};
+use crate::radar::{Radar, counted};
 use others::Equal;
 use std::path::PathBuf;
 
@@ -31,10 +22,8 @@ use std::path::PathBuf;
 /// Times end when three Lambda maps are ready. All threads are used. The bare two-dimensional transform that they are compared with runs on one.
 ///
 /// methods.json, and --methods --json, are one object: threads, scenes (of each set), methods, each with method (its name), squared_error
-/// (mean and standard_error) and median_milliseconds, both by set; crowds, each with method, reflectors, what, scenes, median_milliseconds,
-/// worst_milliseconds, squared_error; followed (method, points, scenes, moves, median_milliseconds, most_milliseconds: the 90th percentile,
-/// worst_milliseconds); and left_out, what the live network leaves out, by kind of scene: scenes, computed (fraction of the side lobes
-/// in range), largest_error (of Lambda), median_milliseconds, whole_median_milliseconds (with nothing left out).
+/// (mean and standard_error) and median_milliseconds, both by set; and crowds, each with method, reflectors, what, scenes, median_milliseconds,
+/// worst_milliseconds, squared_error.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Print one JSON object instead of a table
@@ -63,13 +52,9 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     others: Option<PathBuf>,
 
-    /// Measure what the planner chooses with every instruction set that this processor has, instead
-    #[arg(long, conflicts_with_all = ["algorithms", "others", "methods"])]
-    every_simd: bool,
-
     /// Measure scenes of walls, boxes, posts and polygons instead: a street, and crowds of up to 1000, from scratch and while one is dragged;
-    /// and run time against error of a face; draws bodies.svg, faces.svg and both as PNG
-    #[arg(long, conflicts_with_all = ["reflectors", "algorithms", "others", "methods", "every_simd"])]
+    /// draws bodies.svg and bodies.png
+    #[arg(long, conflicts_with_all = ["reflectors", "algorithms", "others", "methods"])]
     bodies: bool,
 
     /// Measure every reconstruction method instead, run time against squared error, and hybrid, iaa and sbl on 10 and on 300 reflectors;
@@ -79,13 +64,8 @@ pub struct Args {
 
     /// Measure what the window computes most instead: three maps, and the live network; with RAYON_NUM_THREADS=1 on one thread, as a page
     /// does by ?measure. With --json a list of name and milliseconds (median)
-    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "bodies", "every_simd", "output"])]
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "bodies", "output"])]
     one_thread: bool,
-
-    /// Measure how long the layouts of a raw capture take to find instead: of 1 MiB with a .cfg and of 4 MiB without. With --json a list of
-    /// name, bytes, layouts and median_ms
-    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "bodies", "every_simd", "output"])]
-    captures: bool,
 
     #[command(flatten)]
     own: OwnMethodArgs,
@@ -93,7 +73,7 @@ pub struct Args {
     /// Measure the live network instead: its features, its forward pass as it ships, and the same with nothing left out. With --json one
     /// object: threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds (medians)
     #[cfg(feature = "network")]
-    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "bodies", "every_simd", "output"])]
+    #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others", "algorithms", "methods", "bodies", "output"])]
     live: bool,
 
     /// Test scenes of each set, with --methods
@@ -105,8 +85,6 @@ pub struct Args {
 struct Report<'a> {
     #[serde(flatten)]
     front: &'a Front,
-    mouse: Vec<mouse::MouseRow>,
-    doppler: Vec<doppler::DopplerRow>,
     others: Option<Equal>,
 }
 
@@ -124,12 +102,6 @@ impl Args {
         if self.one_thread {
             return one_thread(self.json);
         }
-        if self.captures {
-            return captures::run(self.json);
-        }
-        if self.every_simd {
-            return instructions::run(&self.reflectors, self.repeats, self.json);
-        }
         if self.bodies {
             return bodies::run(repeats, self.json, self.output.as_deref());
         }
@@ -139,19 +111,12 @@ impl Args {
         }
         let front = measured(&request)?;
         let others = self.others.as_ref().map(|script| others::measure(script, &request.reflectors, repeats));
-        let report = Report {
-            front: &front,
-            mouse: mouse::measure()?,
-            doppler: doppler::measure()?,
-            others: others.transpose()?,
-        };
-        let json = serde_json::to_string_pretty(&report).map_err(CommandError::failed)?;
+        let report = Report { front: &front, others: others.transpose()? };
         if let Some(folder) = &self.output {
-            chart::draw(folder, &front)?;
-            let file = folder.join("bench.json");
-            write_bytes(&file, json.as_bytes()).map_err(|source| CommandError::File { path: file, source })?;
+            save(&chart::front(&front), folder, "bench")?;
+            save_numbers(&report, folder, "bench")?;
         }
-        if self.json { print(&json) } else { self.print_table(&report) }
+        if self.json { print_json(&report) } else { self.print_table(&report) }
     }
 
     fn print_table(&self, report: &Report<'_>) -> Result<(), CommandError> {
@@ -159,20 +124,22 @@ impl Args {
         for r in &report.front.rows {
             print(&line(r, report.front.bare_fft_ms))?;
         }
-        for row in &report.mouse {
-            print(&row.line(report.front.bare_fft_ms))?;
-        }
-        for row in &report.doppler {
-            print(&row.line())?;
-        }
         report.others.as_ref().map_or(Ok(()), Equal::print)
     }
+}
+
+fn measured(request: &FrontRequest) -> Result<Front, CommandError> {
+    let bar = indicatif::ProgressBar::new(1000);
+    let on_row = |part: f32, _: &FrontRow| bar.set_position((1e3 * part) as u64);
+    let front = front::measure(&Radar::default(), request, on_row, || false).map_err(CommandError::failed)?;
+    bar.finish_and_clear();
+    Ok(front)
 }
 
 fn one_thread(json: bool) -> Result<(), CommandError> {
     let timed = measure().map_err(CommandError::failed)?;
     if json {
-        return print(&serde_json::to_string_pretty(&timed).map_err(CommandError::failed)?);
+        return print_json(&timed);
     }
     timed.iter().try_for_each(|t| print(&format!("{:40} {:>9.3} ms", t.name, t.milliseconds)))
 }

@@ -2,13 +2,12 @@
 
 use super::report::{Bound, BoundRow, BoundsReport, columns_to_cos};
 use crate::bounds::Ambiguity;
-use crate::commands::figure::{DrawingResult, Plot, tick};
+use crate::commands::figure::{DrawingResult, Plot};
+use crate::commands::line_chart::{ChartAxis, ChartLine, LineChart, span, widened};
 use crate::evaluate::Placement;
 use crate::picture::ColourMap;
 use crate::radar::{Polar, Radar, counted};
 use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
-use plotters::drawing::DrawingAreaErrorKind;
 use plotters::prelude::*;
 use std::ops::Range;
 
@@ -22,117 +21,56 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 150, 160),
 ];
 
-/// Position error over signal-to-noise ratio.
-type ErrorChart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, LogCoord<f64>>>;
-
-struct ErrorAxes {
-    caption: &'static str,
-    snr_db: Range<f64>,
-    millimetres: Range<f64>,
-    vertical: &'static str,
-}
-
-impl ErrorAxes {
-    fn draw<'a, B: DrawingBackend>(
-        self,
-        area: &'a DrawingArea<B, Shift>,
-    ) -> Result<ErrorChart<'a, B>, DrawingAreaErrorKind<B::ErrorType>> {
-        let millimetres = self.millimetres.start / 1.5..self.millimetres.end * 1.5;
-        let mut chart = ChartBuilder::on(area)
-            .caption(self.caption, ("sans-serif", 22))
-            .margin(14)
-            .x_label_area_size(46)
-            .y_label_area_size(80)
-            .build_cartesian_2d(self.snr_db, millimetres.log_scale())?;
-        chart
-            .configure_mesh()
-            .x_desc("signal-to-noise ratio of a sample, dB")
-            .y_desc(self.vertical)
-            .x_label_formatter(&tick)
-            .y_label_formatter(&tick)
-            .draw()?;
-        Ok(chart)
+fn over_snr(caption: &str, snr_db: Range<f64>, millimetres: Range<f64>, y: &str, lines: Vec<ChartLine>) -> LineChart {
+    LineChart {
+        caption: caption.to_owned(),
+        size: (1000, 600),
+        x: ChartAxis::new("signal-to-noise ratio of a sample, dB", snr_db),
+        is_x_log: false,
+        y: ChartAxis::new(y, widened(millimetres, 1.5)),
+        legend: SeriesLabelPosition::UpperRight,
+        lines,
     }
-}
-
-fn legend<'a, B: DrawingBackend + 'a>(chart: &mut ErrorChart<'a, B>) -> DrawingResult<B> {
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(BLACK.mix(0.3))
-        .draw()
 }
 
 /// Bound over signal-to-noise ratio, a line a layout.
-pub struct BoundsFigure<'a>(pub &'a BoundsReport);
-
-impl Plot for BoundsFigure<'_> {
-    fn size(&self) -> (u32, u32) {
-        (1000, 600)
-    }
-
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
-        let report = self.0;
-        let rows = || report.layouts.iter().flat_map(|l| &l.bounds);
-        let values = rows().flat_map(|b| [b.alone, b.beside_another]).flatten().map(|b| b.position_millimetres);
-        let (low, high) = span(values);
-        let (from, to) = span_of_snr(rows().map(|b| b.snr_db));
-        let axes = ErrorAxes {
-            caption: "No unbiased estimate places a reflector better than this",
-            snr_db: from..to,
-            millimetres: low..high,
-            vertical: "position error, mm (pale: with a neighbour)",
+pub fn of_bounds(report: &BoundsReport) -> LineChart {
+    let rows = || report.layouts.iter().flat_map(|l| &l.bounds);
+    let values = rows().flat_map(|b| [b.alone, b.beside_another]).flatten().map(|b| b.position_millimetres);
+    let lines = report.layouts.iter().zip(COLOURS.iter().cycle()).flat_map(|(layout, colour)| {
+        let line = |bound: fn(&BoundRow) -> Option<Bound>| {
+            layout.bounds.iter().filter_map(move |b| Some((b.snr_db, bound(b)?.position_millimetres)))
         };
-        let mut chart = axes.draw(area)?;
-        for (layout, colour) in report.layouts.iter().zip(COLOURS.iter().cycle()) {
-            let line = |bound: fn(&BoundRow) -> Option<Bound>| {
-                layout.bounds.iter().filter_map(move |b| Some((b.snr_db, bound(b)?.position_millimetres)))
-            };
-            let beside = line(|b| b.beside_another);
-            chart.draw_series(LineSeries::new(beside, colour.mix(0.35).stroke_width(2)))?;
-            let colour = *colour;
-            chart
-                .draw_series(LineSeries::new(line(|b| b.alone), colour.stroke_width(2)))?
-                .label(format!("{} ({})", layout.layout, counted(layout.elements, "element", "elements")))
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
-        }
-        legend(&mut chart)
-    }
+        let name = format!("{} ({})", layout.layout, counted(layout.elements, "element", "elements"));
+        let beside = ChartLine::new(colour.mix(0.35), line(|b| b.beside_another));
+        [beside, ChartLine::new(*colour, line(|b| b.alone)).named(name)]
+    });
+    over_snr(
+        "No unbiased estimate places a reflector better than this",
+        span_of_snr(rows().map(|b| b.snr_db)),
+        span(values),
+        "position error, mm (pale: with a neighbour)",
+        lines.collect(),
+    )
 }
 
 /// Error of the Newton search over signal-to-noise ratio, beside the bound.
-pub struct PlacementFigure<'a>(pub &'a [Placement]);
-
-impl Plot for PlacementFigure<'_> {
-    fn size(&self) -> (u32, u32) {
-        (1000, 600)
-    }
-
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
-        let errors = self.0.iter().map(|p| 1e3 * p.error_metres).filter(|e| e.is_finite());
-        let (low, high) = span(errors.chain(self.0.iter().map(|p| 1e3 * p.bound_metres)));
-        let (from, to) = span_of_snr(self.0.iter().map(|p| p.snr_db));
-        let trials = self.0.first().map_or(0, |p| p.trials);
-        let axes = ErrorAxes {
-            caption: "One reflector from the two ends: the Newton search against the bound",
-            snr_db: from..to,
-            millimetres: low..high,
-            vertical: "position error, mm (root mean square)",
-        };
-        let mut chart = axes.draw(area)?;
-        let (ink, hot) = (COLOURS[4], COLOURS[0]);
-        chart
-            .draw_series(LineSeries::new(self.0.iter().map(|p| (p.snr_db, 1e3 * p.bound_metres)), ink.stroke_width(2)))?
-            .label("Cramér-Rao bound")
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], ink.stroke_width(2)));
-        let found = self.0.iter().filter(|p| p.error_metres.is_finite());
-        chart
-            .draw_series(found.map(|p| Circle::new((p.snr_db, 1e3 * p.error_metres), 5, hot.filled())))?
-            .label(format!("Newton search, {} each", counted(trials, "draw of noise", "draws of noise")))
-            .legend(move |(x, y)| Circle::new((x + 9, y), 5, hot.filled()));
-        legend(&mut chart)
-    }
+pub fn of_placement(placements: &[Placement]) -> LineChart {
+    let bound = placements.iter().map(|p| (p.snr_db, 1e3 * p.bound_metres));
+    let found = placements.iter().map(|p| (p.snr_db, 1e3 * p.error_metres)).filter(|(_, e)| e.is_finite());
+    let trials = placements.first().map_or(0, |p| p.trials);
+    let name = format!("Newton search, {} each", counted(trials, "draw of noise", "draws of noise"));
+    let dots = ChartLine::new(COLOURS[0], found.clone()).named(name);
+    over_snr(
+        "One reflector from the two ends: the Newton search against the bound",
+        span_of_snr(placements.iter().map(|p| p.snr_db)),
+        span(bound.clone().chain(found).map(|(_, error)| error)),
+        "position error, mm (root mean square)",
+        vec![
+            ChartLine::new(COLOURS[4], bound).named("Cramér-Rao bound"),
+            ChartLine { is_joined: false, dot: 5, ..dots },
+        ],
+    )
 }
 
 /// Ambiguity functions over range and cos(theta), a panel a layout.
@@ -188,12 +126,7 @@ impl Plot for AmbiguityFigure<'_> {
     }
 }
 
-fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
-    if low <= high && low > 0.0 { (low, high) } else { (1.0, 10.0) }
-}
-
-fn span_of_snr(values: impl Iterator<Item = f64>) -> (f64, f64) {
+fn span_of_snr(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-    (low - 1.0, high + 1.0)
+    low - 1.0..high + 1.0
 }

@@ -5,13 +5,13 @@ mod report;
 
 use super::arguments::whole;
 use super::figure::{save, save_bitmap, save_numbers};
-use super::{CommandError, print};
+use super::{CommandError, print_json};
 use crate::bounds::{Ambiguity, Gains, PositionBound, ambiguity, cramer_rao_of, cut, lobes, noise_variance};
 use crate::evaluate::{Placement, placement};
 use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};
 use crate::scene::Reflector;
 use crate::task::Task;
-use chart::{AmbiguityFigure, BoundsFigure, PlacementFigure};
+use chart::{AmbiguityFigure, of_bounds, of_placement};
 use report::{Bound, BoundRow, BoundsReport, LayoutReport, columns_to_cos};
 use std::path::PathBuf;
 
@@ -121,17 +121,17 @@ impl Args {
             monte_carlo: self.monte_carlo(&radar, reflector)?,
         };
         if let Some(folder) = &self.output {
-            save(&BoundsFigure(&report), folder, "bounds")?;
+            save(&of_bounds(&report), folder, "bounds")?;
             save_numbers(&report, folder, "bounds")?;
             let patches: Vec<(String, Ambiguity)> =
                 layouts.iter().map(|(kind, layout)| (kind.to_string(), patch(&radar, layout, centre))).collect();
             save_bitmap(&AmbiguityFigure { radar: &radar, centre, patches: &patches }, folder, "ambiguity")?;
             if !report.monte_carlo.is_empty() {
-                save(&PlacementFigure(&report.monte_carlo), folder, "monte-carlo")?;
+                save(&of_placement(&report.monte_carlo), folder, "monte-carlo")?;
             }
         }
         if self.json {
-            return print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?);
+            return print_json(&report);
         }
         report.print()
     }

@@ -10,7 +10,7 @@ mod report;
 use super::arguments::{self, FloorArgs, real, seed, whole};
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
-use super::{CommandError, print};
+use super::{CommandError, print, print_json};
 use crate::evaluate::campaign::{Campaign, Shard};
 use crate::evaluate::rows::{
     KeptError, Key, Lack, Row, RowFile, RunRows, WHY_NO_OTHER_FORMAT, key, lacks, merge, read_table, write_merged,
@@ -146,11 +146,7 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let (rows, missing) = if self.merge.is_empty() { (self.measure()?, Vec::new()) } else { self.merged()? };
         let report = EvaluationReport::of(&rows, missing, self.failures_from);
-        if self.json {
-            print(&serde_json::to_string_pretty(&report).map_err(CommandError::failed)?)
-        } else {
-            print(&report.to_text())
-        }
+        if self.json { print_json(&report) } else { print(&report.to_text()) }
     }
 
     fn sets(&self) -> Result<Vec<SceneSet>, CommandError> {

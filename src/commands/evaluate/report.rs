@@ -89,8 +89,8 @@ impl CfarReport {
         let row = rows.iter().find(|row| !row.cfar.is_empty())?;
         Some(CfarReport {
             detector: row.cfar.to_string(),
-            detection: tally.cfar_detection(),
-            false_alarm: tally.cfar_false_alarm(),
+            detection: tally.estimate(Column::CfarDetection),
+            false_alarm: tally.estimate(Column::CfarFalseAlarm),
         })
     }
 }
@@ -283,7 +283,7 @@ impl PrintedColumns {
 impl MethodReport {
     fn of(name: &str, rows: &[&Row], false_alarm: f64, limit: Option<f64>) -> Self {
         let tally = Tally::of(rows.iter().copied().filter(|row| row.method == name));
-        let at = tally.detection_at_printed();
+        let at = tally.estimate(Column::DetectionAtPrinted);
         MethodReport {
             name: name.to_owned(),
             weights: tally.weights().map(str::to_owned),
@@ -301,12 +301,12 @@ impl MethodReport {
                 standard_error: at.standard_error,
                 median: at.median,
             },
-            missed: tally.missed(),
-            ghosts: tally.ghosts(),
+            missed: tally.estimate(Column::Missed),
+            ghosts: tally.estimate(Column::Ghosts),
             cfar: CfarReport::of(rows, &tally),
             echoes: tally.echoes().as_ref().map(EchoReport::of),
             doubt: DoubtReport::of(name, rows, limit),
-            within_doubt: Some(tally.within_doubt()).filter(|part| !part.mean.is_nan()),
+            within_doubt: Some(tally.estimate(Column::WithinDoubt)).filter(|part| !part.mean.is_nan()),
             median_milliseconds: tally.median_milliseconds(),
             near_best: part_near_best(rows, name),
         }

@@ -16,6 +16,14 @@ fn lambda(f: &EngineFrame) -> Arc<RangeAngleMap> {
     f.full.as_ref().expect("the whole array's map was wanted").lambda.clone()
 }
 
+/// What a stage computed, or why it computed nothing.
+fn said(frame: &EngineFrame, stage: EngineStage) -> String {
+    match &frame.report.stages.iter().find(|s| s.stage == stage).unwrap().outcome {
+        StageOutcome::Computed(what) => what.clone(),
+        StageOutcome::Skipped(why) => (*why).to_owned(),
+    }
+}
+
 #[test]
 fn unchanged_results_are_the_same_arc() {
     let mut engine = Engine::new(small());
@@ -228,8 +236,7 @@ fn dragging_evaluates_the_dragged_object_alone() {
     for step in 0..3 {
         scene.objects[7].translate(0.01, 0.0);
         let frame = engine.update(&scene, &wanted).unwrap();
-        let signal = frame.report.stages.iter().find(|s| s.stage == EngineStage::Signal).unwrap();
-        let StageOutcome::Computed(what) = &signal.outcome else { panic!("the signal was not computed") };
+        let what = said(&frame, EngineStage::Signal);
         let expected = if step == 0 { "2 of 30" } else { "1 of 30" };
         assert!(what.starts_with(expected), "step {step}: {what}");
     }
@@ -246,8 +253,7 @@ fn dragging_one_of_three_leaves_two_as_they_were() {
     for step in 0..4 {
         scene.objects[0].translate(0.01, 0.0);
         let frame = engine.update(&scene, &wanted).unwrap();
-        let signal = frame.report.stages.iter().find(|s| s.stage == EngineStage::Signal).unwrap();
-        let StageOutcome::Computed(what) = &signal.outcome else { panic!("the signal was not computed") };
+        let what = said(&frame, EngineStage::Signal);
         assert!(what.contains(" of 3 reflectors"), "step {step}: {what}");
     }
 }
@@ -287,14 +293,6 @@ fn what_is_cancelled_leaves_nothing_half_made() {
     assert!(is_cancelled(Engine::new(small()).update_for(&cancelled, &built, &MapRequest::default())));
 }
 
-fn full_map_rows(frame: &EngineFrame) -> String {
-    let stage = frame.report.stages.iter().find(|s| s.stage == EngineStage::FullMap).unwrap();
-    match &stage.outcome {
-        StageOutcome::Computed(what) => what.clone(),
-        StageOutcome::Skipped(why) => (*why).to_owned(),
-    }
-}
-
 /// Over no floor, a drag recomputes those rows alone in which the dragged reflector is heard, and the maps are those of a fresh build.
 #[test]
 fn only_rows_that_changed_are_recomputed() {
@@ -320,7 +318,7 @@ fn only_rows_that_changed_are_recomputed() {
             }
             _ => engine.update(&scene, &wanted).unwrap(),
         };
-        let rows = full_map_rows(&frame);
+        let rows = said(&frame, EngineStage::FullMap);
         match step {
             // What was dragged over the noise touched every row, and leaves them.
             4 | 5 => assert_eq!(rows, "512 rows"),
@@ -331,7 +329,8 @@ fn only_rows_that_changed_are_recomputed() {
         assert!(worst < 0.01, "step {step}: {worst}");
     }
     let frame = engine.update(&scene, &MapRequest { floor: Floor::Thesis, ..wanted }).unwrap();
-    assert!(full_map_rows(&frame).contains("floor"), "{}", full_map_rows(&frame));
+    let rows = said(&frame, EngineStage::FullMap);
+    assert!(rows.contains("floor"), "{rows}");
 }
 
 /// f32 with min-max and no floor would draw f32's rounding: it is refused, even where it is forced.
@@ -341,10 +340,7 @@ fn single_precision_is_refused_below_its_rounding() {
     let forced = Forced { precision: Some(Precision::F32), tolerance: Some(1e-6), ..Forced::default() };
     let signal = |engine: &mut Engine, scene: &Scene, floor, normalisation| {
         let frame = engine.update(scene, &MapRequest { floor, normalisation, ..MapRequest::default() }).unwrap();
-        match &frame.report.stages.iter().find(|s| s.stage == EngineStage::Signal).unwrap().outcome {
-            StageOutcome::Computed(what) => what.clone(),
-            StageOutcome::Skipped(why) => (*why).to_owned(),
-        }
+        said(&frame, EngineStage::Signal)
     };
     let fixed = Normalisation::DynamicRange(Decibels(60.0));
     let mut engine = Engine::new(small());

@@ -30,10 +30,8 @@ pub enum CampaignError {
     /// A set or a method would count twice.
     #[error(transparent)]
     GivenTwice(#[from] GivenTwice),
-    /// The detector can't work on a scene's maps.
     #[error("the detector on scene {index} of {set}: {source}")]
     Detector { set: String, index: u32, source: CfarError },
-    /// A method failed.
     #[error("{method} on scene {index} of {set}: {source}")]
     Method { method: &'static str, set: String, index: u32, source: ReconstructError },
 }

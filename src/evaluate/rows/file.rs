@@ -38,19 +38,15 @@ pub enum RowError {
     /// It can't be read.
     #[error("{0}")]
     Io(io::Error),
-    /// Names are missing in its first line.
     #[error("line 1: there is no column \"{missing}\"; expected {}", header().trim_end())]
     Header { missing: &'static str },
-    /// A cell holds something else than it should.
     #[error("line {line}, column {column}: \"{found}\"; expected {expected}")]
     Cell { line: u64, column: &'static str, found: String, expected: String },
-    /// Rows are of a later format.
     #[error("line {line}: the row is of format {found}; this program reads up to format {FORMAT}")]
     Later { line: u64, found: u32 },
     /// A line is no row.
     #[error("line {line}: {message}")]
     Line { line: u64, message: String },
-    /// There are too many.
     #[error("there are more than {MAX_ROWS} rows; split the file")]
     TooMany,
 }

@@ -19,7 +19,6 @@ pub enum KeptError {
     /// It holds what would be lost. The caller says how to write over it.
     #[error("{}: {why}", path.display())]
     Other { path: PathBuf, why: String },
-    /// Another process writes it.
     #[error("{}: another run writes it; wait for that run, or name another file", _0.display())]
     Busy(PathBuf),
     /// Its rows don't fit together.

@@ -71,11 +71,6 @@ impl Paired {
         })
     }
 
-    /// Whether the interval leaves out zero: the methods' errors differ.
-    pub fn differs(&self) -> bool {
-        self.interval[0] > 0.0 || self.interval[1] < 0.0
-    }
-
     /// In words, with the methods' names.
     pub fn told(&self, first: &str, second: &str) -> String {
         let Paired { scenes, difference, interval: [low, high], first_alone, second_alone, p_value } = self;

@@ -137,10 +137,8 @@ pub enum WorsenError {
     /// The method failed.
     #[error("{method}: {source}")]
     Method { method: &'static str, source: ReconstructError },
-    /// Nothing to move.
     #[error("the scene is empty; expected an object to move")]
     Empty,
-    /// The reach makes no sense.
     #[error("a reach of {0} m; expected more than 0 and at most 1000 m")]
     Reach(f64),
 }

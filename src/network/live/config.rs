@@ -1,4 +1,4 @@
-//! The size of the live network: what its weight file, its burn module and its engine agree on.
+//! The size of the live network: what its weight file and its engine agree on.
 
 use super::grid::{COARSE, COARSE_CHANNELS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
 

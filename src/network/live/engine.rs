@@ -296,7 +296,7 @@ fn fine_in(fine: &[f32], row: usize) -> [[f32; FINE]; FINE_CHANNELS] {
     })
 }
 
-/// A line of the first convolution's input; channels in the order of [`super::module::LiveNetwork::forward`].
+/// A line of the first convolution's input; channels in the order of `Live.forward` in `python/apertura/live.py`.
 fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mut [f32]) {
     const COARSE_AT: usize = FINE_CHANNELS * FOLD;
     const ROWS_AT: usize = COARSE_AT + COARSE_CHANNELS;

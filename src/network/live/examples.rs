@@ -125,8 +125,8 @@ impl Example {
 
 /// Why there are no examples.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum ExamplesError {
-    /// Test scenes of a kind that makes none.
     #[error("{0} makes no scenes for tests; expected a purpose of training or validation")]
     ForTests(Kind),
     /// A kind whose objects find no room before a radar.
@@ -150,7 +150,6 @@ pub enum ExampleError {
     /// The network can't use its samples.
     #[error("example {index}: {source}")]
     Input { index: u32, source: ReconstructError },
-    /// Nothing is heard.
     #[error("example {index}: the samples are silent; put a reflector into the scene")]
     Silent { index: u32 },
 }

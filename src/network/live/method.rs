@@ -2,11 +2,11 @@
 
 use super::constants::turn_columns;
 use super::engine::{Decades, LiveEngine, LiveScratch};
-use super::features::{FeatureExtractor, LiveInput};
+use super::features::FeatureExtractor;
 use super::size::LiveSize;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::domain::{Domain, is_alike};
-use crate::network::weights::{Provenance, WeightFile, WeightsError};
+use crate::network::weights::{WeightFile, WeightsError};
 use crate::radar::{Decibels, Radar};
 use crate::reconstruct::{About, Family, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use crate::reconstruct::{TrainedNoise, level_above_mean_decades, own_threshold};
@@ -41,8 +41,6 @@ pub struct LiveMethod {
     trained: Domain,
     /// Networks for radars that this one wasn't trained for; the first tells what it lacks where none is for a radar.
     other_radars: Vec<LiveMethod>,
-    /// Where the weights come from.
-    pub provenance: Provenance,
 }
 
 impl LiveMethod {
@@ -72,7 +70,6 @@ impl LiveMethod {
             weights: file.weights(),
             trained,
             other_radars: Vec::new(),
-            provenance: file.provenance,
         })
     }
 
@@ -99,14 +96,7 @@ impl LiveMethod {
     /// # Errors
     /// [`ReconstructError`] on a radar the network wasn't trained for and on unusable samples.
     pub fn decades(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
-        self.on(radar).decades_by(LiveEngine::forward, radar, ends).map(|(decades, _)| decades)
-    }
-
-    /// The same with nothing left out.
-    /// # Errors
-    /// As [`LiveMethod::decades`].
-    pub fn decades_whole(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
-        self.on(radar).decades_by(LiveEngine::forward_whole, radar, ends).map(|(decades, _)| decades)
+        self.on(radar).with_doubt(radar, ends).map(|(decades, _)| decades)
     }
 
     fn extractor(&self, radar: &Radar) -> Result<Arc<FeatureExtractor>, ReconstructError> {
@@ -122,18 +112,13 @@ impl LiveMethod {
     }
 
     /// The map in decades, and how far off the network expects Lambda to be.
-    fn decades_by(
-        &self,
-        forward: fn(&LiveEngine, &LiveInput, &mut LiveScratch) -> Decades,
-        radar: &Radar,
-        ends: &TwoEnds,
-    ) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
+    fn with_doubt(&self, radar: &Radar, ends: &TwoEnds) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
         let input = self.extractor(radar)?.extract(ends)?;
         // A panic elsewhere can't leave the buffers in a state that matters: every pass overwrites them.
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = idle().pop();
         let mut scratch = taken.unwrap_or_default();
-        let mut decades = forward(&self.engine, &input, &mut scratch);
+        let mut decades = self.engine.forward(&input, &mut scratch);
         let mut doubt = self.engine.doubt(&scratch);
         turn_columns(radar, &mut decades.map);
         if let Some(cells) = doubt.as_mut().and_then(|doubt| doubt.lambda.as_slice_mut()) {
@@ -151,7 +136,7 @@ impl LiveMethod {
     }
 }
 
-/// Signal-to-noise ratios of the third of its training scenes that lay over thermal noise, as the recipe `live` says.
+/// Signal-to-noise ratios of the third of its training scenes that lay over thermal noise (`--snr` of `training/train_live.py`).
 const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 
 /// One cell in so many is looked at for the median.
@@ -210,7 +195,7 @@ impl Reconstructor for LiveMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let (Decades { mut map, minimum, .. }, doubt) = self.on(radar).decades_by(LiveEngine::forward, radar, ends)?;
+        let (Decades { mut map, minimum, .. }, doubt) = self.on(radar).with_doubt(radar, ends)?;
         let peak = map.par_iter().copied().reduce(|| f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
         let least_eta = scale.lambda(noise_level_decades(&map)) as f32;
@@ -227,18 +212,5 @@ impl Reconstructor for LiveMethod {
             doubt,
             ..Reconstruction::silence(radar)
         })
-    }
-}
-
-#[cfg(test)]
-#[cfg(feature = "network")]
-mod tests {
-    use super::*;
-    use crate::network::recipe::Recipe;
-
-    #[test]
-    fn the_range_of_ratios_is_the_recipes() {
-        let thermal = Recipe::shipped(NAME).unwrap().unwrap().thermal.unwrap();
-        assert_eq!([thermal.from_decibels, thermal.to_decibels].map(Decibels), TRAINED_DECIBELS);
     }
 }

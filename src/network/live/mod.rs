@@ -8,7 +8,7 @@
 //!
 //! Angles wrap around (column 0 follows column 1023), ranges do not. Row and column means mix at the two coarsest levels.
 //!
-//! `python/apertura/live.py` is this module in PyTorch, with the same names and shapes.
+//! `python/apertura/live.py` is the network in PyTorch, with the same names and shapes: what trains.
 //!
 //! | file | what |
 //! |---|---|
@@ -16,8 +16,7 @@
 //! | [`examples`], [`arrays`], [`radars`] | inputs and targets of random scenes |
 //! | [`dataset`] | the same as files |
 //! | `config`, [`size`], `columns` | how large the network is; a radar of another shape has its samples as rows, and its map is resampled to its elements |
-//! | `module`, `layers` | the network as a burn module: what trains (feature `network`) |
-//! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `lobes`, `range_lobes` | the same without a framework, over [`kernels`](super::kernels): what runs during a drag |
+//! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `lobes`, `range_lobes` | the network over [`kernels`](super::kernels): what runs during a drag |
 //! | [`doubt`] | how far off the network expects to be |
 //! | [`method`] | the network as a reconstruction method |
 
@@ -35,21 +34,17 @@ pub mod features;
 mod filter;
 mod floors;
 pub mod grid;
-#[cfg(feature = "network")]
-mod layers;
 mod lobes;
 pub mod method;
-#[cfg(feature = "network")]
-pub mod module;
 mod planes;
 pub mod radars;
 mod range_lobes;
 mod reading;
 mod registration;
 pub mod size;
+#[cfg(test)]
+mod twin_tests;
 mod winograd;
 
 pub use config::LiveConfig;
 pub use method::LiveMethod;
-#[cfg(feature = "network")]
-pub use module::{LiveBatch, LiveNetwork};

@@ -94,9 +94,9 @@ fn a_face_that_is_cut_in_two_gives_the_same_samples() {
                     let ends = [from, to].map(|x| [x, 8.0 + slant * x]);
                     Face::new(ends, true, 1.0).echoes(&wave, &antennas)
                 };
-                let whole = samples(&radar, &of(-2.0, 2.0), true);
+                let whole = samples(&radar, &of(-2.0, 2.0));
                 let both = [of(-2.0, cut), of(cut, 2.0)].concat();
-                let off = worst(&samples(&radar, &both, true), &whole);
+                let off = worst(&samples(&radar, &both), &whole);
                 assert!(off < bound, "slant {slant}, cut at {cut}: {off:e}");
             }
         }

@@ -2,6 +2,7 @@
 
 mod hiding;
 mod laws;
+mod reference;
 mod references;
 
 use super::*;
@@ -10,14 +11,10 @@ use crate::scene::{Object, Scene};
 
 const SAMPLES: [usize; 5] = [0, 100, 255, 400, 511];
 
-/// Samples of echoes, with or without their tilt.
-fn samples(radar: &Radar, echoes: &[PathEcho], with_tilt: bool) -> Vec<Complex64> {
-    let middle = Wave::of(radar).radians_per_metre;
+fn samples(radar: &Radar, echoes: &[PathEcho]) -> Vec<Complex64> {
     let sample = |n: &usize| {
         let kappa = reference::radians_per_metre(radar, *n as f64);
-        let more = if with_tilt { kappa.abs() - middle } else { 0.0 };
-        let add = |e: &PathEcho| (e.amplitude + e.tilt * more) * Complex64::cis(-kappa * e.range_metres);
-        echoes.iter().map(add).sum()
+        echoes.iter().map(|e| e.amplitude * Complex64::cis(-kappa * e.range_metres)).sum()
     };
     SAMPLES.iter().map(sample).collect()
 }

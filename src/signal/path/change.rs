@@ -7,10 +7,6 @@ use std::f64::consts::TAU;
 /// The coordinate of a point by which a derivative is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
-    /// The point's x, in metres.
-    X,
-    /// The point's y, in metres.
-    Y,
     /// The point's range from the array's centre, in metres, in the same direction.
     Range,
     /// cos(theta) of the point as the array's centre sees it, at the same range.
@@ -34,8 +30,6 @@ impl PathChange {
             let leg = (x_metres - antenna).hypot(y_metres - ahead);
             // Half the square of the leg is (range^2 - 2 range (cos(theta) antenna + sin(theta) ahead) + antenna^2 + ahead^2) / 2.
             let half_square = match by {
-                By::X => x_metres - antenna,
-                By::Y => y_metres - ahead,
                 By::Range if range_metres == 0.0 => 0.0,
                 By::Range if ahead == 0.0 => range_metres - antenna * (x_metres / range_metres),
                 By::Range => range_metres - (antenna * x_metres + ahead * y_metres) / range_metres,
@@ -55,8 +49,6 @@ impl PathChange {
         // The logarithm of how far the point is ahead of each antenna, and of each leg: the cosine off broadside is their quotient.
         let of_log_y = |antenna_y: f64| {
             let of_y = match by {
-                By::X => 0.0,
-                By::Y => 1.0,
                 By::Range => y_metres / square.sqrt(),
                 By::CosTheta => -x_metres * square.sqrt() / y_metres,
             };

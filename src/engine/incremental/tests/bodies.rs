@@ -105,11 +105,11 @@ fn what_a_loud_body_drowned_is_there_when_it_is_gone() {
         engine.update(&scene, &wanted).unwrap();
         scene.objects[6].translate(-0.1, 0.0);
     }
-    let beside = full_map_rows(&engine.update(&scene, &wanted).unwrap());
+    let beside = said(&engine.update(&scene, &wanted).unwrap(), EngineStage::FullMap);
     scene.objects.pop();
     engine.update(&scene, &wanted).unwrap();
     let mut fresh = Engine::new(radar);
-    let alone = full_map_rows(&fresh.update(&scene, &wanted).unwrap());
+    let alone = said(&fresh.update(&scene, &wanted).unwrap(), EngineStage::FullMap);
     assert!(beside != alone, "{beside}");
     let off = engine.profile_difference(&fresh).unwrap();
     assert!(off < 1e-6, "{off:e}");

@@ -184,7 +184,6 @@ pub enum DatasetError {
     /// There are no examples of this kind or radar.
     #[error(transparent)]
     Examples(#[from] ExamplesError),
-    /// Cancelled.
     #[error("cancelled")]
     Cancelled(#[from] Cancelled),
 }

@@ -1,7 +1,7 @@
 //! What the echoes are held against: quadrature of physical optics over a face, and the exact series of a cylinder.
 
-use super::transition::EIGHTH_TURN;
-use super::{AntennaPlaces, REFERENCE_LENGTH_METRES};
+use super::super::transition::EIGHTH_TURN;
+use super::super::{AntennaPlaces, REFERENCE_LENGTH_METRES};
 use crate::radar::Radar;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};

@@ -1,10 +1,8 @@
-//! Checks the numbers of bodies.
+//! Checks the numbers of objects.
 
-use super::SceneError;
-use super::body::{
-    Body, MAX_CORNERS, MAX_ROUGHNESS_MILLIMETRES, MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES, Surface,
-};
+use super::body::{MAX_CORNERS, MAX_ROUGHNESS_MILLIMETRES, MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES};
 use super::shape::{doubled_area, extent, out_of_reach, touch};
+use super::{Object, SceneError};
 
 struct Check {
     object: usize,
@@ -17,9 +15,20 @@ impl Check {
         if usable { Ok(()) } else { Err(SceneError::Value { object, kind, field, value, expected }) }
     }
 
-    fn place(&self, field: &'static str, value: f64) -> Result<(), SceneError> {
-        self.value(field, value, value.is_finite(), "a finite number")?;
-        self.value(field, value, !out_of_reach(value), "a distance of at most 1e12 m")
+    fn finite(&self, field: &'static str, value: f64) -> Result<(), SceneError> {
+        self.value(field, value, value.is_finite(), "a finite number")
+    }
+
+    fn place<const N: usize>(&self, fields: [(&'static str, f64); N]) -> Result<(), SceneError> {
+        fields.into_iter().try_for_each(|(field, value)| {
+            self.finite(field, value)?;
+            self.value(field, value, !out_of_reach(value), "a distance of at most 1e12 m")
+        })
+    }
+
+    fn spread(&self, field: &'static str, value: f64) -> Result<(), SceneError> {
+        self.finite(field, value)?;
+        self.value(field, value, (0.0..=1e12).contains(&value), "0 to 1e12 m")
     }
 
     fn size(&self, field: &'static str, value: f64) -> Result<(), SceneError> {
@@ -27,12 +36,9 @@ impl Check {
         self.value(field, value, usable, "0.001 to 10000 m")
     }
 
-    fn surface(&self, s: &Surface) -> Result<(), SceneError> {
-        self.value("reflectivity", s.reflectivity, s.reflectivity.is_finite(), "a finite number")?;
-        let usable = s.reflectivity.abs() <= 1e100;
-        self.value("reflectivity", s.reflectivity, usable, "a magnitude of at most 1e100")?;
-        let rough = s.roughness_millimetres;
-        self.value("roughness_millimetres", rough, (0.0..=MAX_ROUGHNESS_MILLIMETRES).contains(&rough), "0 to 100 mm")
+    fn reflectivity(&self, value: f64) -> Result<(), SceneError> {
+        self.finite("reflectivity", value)?;
+        self.value("reflectivity", value, value.abs() <= 1e100, "a magnitude of at most 1e100")
     }
 
     fn outline(&self, corners: &[[f64; 2]]) -> Result<(), SceneError> {
@@ -72,33 +78,43 @@ impl Check {
     }
 }
 
-pub(super) fn validate(body: &Body<'_>, object: usize) -> Result<(), SceneError> {
-    let check = Check { object, kind: body.kind() };
-    let angle = |value: f64| check.value("angle_degrees", value, value.is_finite(), "a finite number");
-    match body {
-        Body::Wall(w) => {
-            check.place("x_metres", w.x_metres)?;
-            check.place("y_metres", w.y_metres)?;
-            check.size("length_metres", w.length_metres)?;
-            angle(w.angle_degrees)?;
+pub(super) fn validate(of: &Object, object: usize) -> Result<(), SceneError> {
+    of.check_velocity(object)?;
+    let check = Check { object, kind: of.kind() };
+    match of {
+        Object::Point(p) => check.place([("x_metres", p.x_metres), ("y_metres", p.y_metres)])?,
+        Object::Line(l) => {
+            let spacing = ("spacing_metres", l.spacing_metres);
+            check.place([("x_metres", l.x_metres), ("y_start_metres", l.y_start_metres), spacing])?;
+            check.finite("direction_degrees", l.direction_degrees)?;
         }
-        Body::Box(b) => {
-            check.place("x_metres", b.x_metres)?;
-            check.place("y_metres", b.y_metres)?;
+        Object::Gaussian(g) => {
+            check.place([("x_metres", g.x_metres), ("y_metres", g.y_metres)])?;
+            check.spread("x_std_metres", g.x_std_metres)?;
+            check.spread("y_std_metres", g.y_std_metres)?;
+        }
+        Object::Wall(w) => {
+            check.place([("x_metres", w.x_metres), ("y_metres", w.y_metres)])?;
+            check.size("length_metres", w.length_metres)?;
+            check.finite("angle_degrees", w.angle_degrees)?;
+        }
+        Object::Box(b) => {
+            check.place([("x_metres", b.x_metres), ("y_metres", b.y_metres)])?;
             check.size("length_metres", b.length_metres)?;
             check.size("width_metres", b.width_metres)?;
-            angle(b.angle_degrees)?;
+            check.finite("angle_degrees", b.angle_degrees)?;
         }
-        Body::Post(p) => {
-            check.place("x_metres", p.x_metres)?;
-            check.place("y_metres", p.y_metres)?;
+        Object::Post(p) => {
+            check.place([("x_metres", p.x_metres), ("y_metres", p.y_metres)])?;
             let radius = p.radius_metres;
             let usable = (MIN_RADIUS_METRES..=MAX_SIZE_METRES).contains(&radius);
             check.value("radius_metres", radius, usable, "0.01 to 10000 m; a thinner post is a point")?;
         }
-        Body::Polygon(p) => check.outline(&p.corners_metres)?,
+        Object::Polygon(p) => check.outline(&p.corners_metres)?,
     }
-    check.surface(&body.surface())
+    check.reflectivity(of.reflectivity())?;
+    let rough = of.body().map_or(0.0, |body| body.surface().roughness_millimetres);
+    check.value("roughness_millimetres", rough, (0.0..=MAX_ROUGHNESS_MILLIMETRES).contains(&rough), "0 to 100 mm")
 }
 
 #[cfg(test)]

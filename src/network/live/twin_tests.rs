@@ -1,0 +1,115 @@
+//! The engine and its features against the network's twin in PyTorch.
+
+use super::LiveConfig;
+use super::engine::{LiveEngine, LiveScratch};
+use super::features::{FeatureExtractor, LiveInput};
+use super::grid::{COARSE, COLUMNS, CONSTANTS, FINE, ROWS};
+use crate::network::weights::WeightFile;
+use crate::radar::Radar;
+use crate::scene::Reflector;
+use crate::signal::exact;
+
+/// Written by `training/reference.py`: a tiny network, three reflectors, and what PyTorch makes of them.
+const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
+const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
+
+fn tiny() -> LiveConfig {
+    LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 }
+}
+
+fn input(reference: &WeightFile, loudness: f64) -> LiveInput {
+    let radar = Radar::default();
+    let points = reference.tensor("points", &[3, 2]).unwrap();
+    let reflectors: Vec<Reflector> = points
+        .chunks(2)
+        .map(|p| Reflector { x_metres: p[0].into(), y_metres: p[1].into(), reflectivity: loudness })
+        .collect();
+    let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
+    FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap()
+}
+
+/// Mean and largest distance of every `row`-th row and `column`-th column of `found` planes from a reference.
+fn distance(found: &[f32], reference: &[f32], rows: usize, columns: usize, row: usize, column: usize) -> (f32, f32) {
+    let picked: Vec<f32> = found
+        .chunks(rows * columns)
+        .flat_map(|plane| plane.chunks(columns).step_by(row).flat_map(move |line| line.iter().step_by(column).copied()))
+        .collect();
+    assert_eq!(picked.len(), reference.len());
+    let gaps: Vec<f32> = picked.iter().zip(reference).map(|(a, b)| (a - b).abs()).collect();
+    (gaps.iter().sum::<f32>() / gaps.len() as f32, gaps.into_iter().fold(0.0, f32::max))
+}
+
+#[test]
+fn features_agree_with_the_twin() {
+    let reference = WeightFile::parse("reference", REFERENCE).unwrap();
+    let found = input(&reference, 1.0);
+    let check = |name: &str, values: &[f32], shape: &[usize], rows, columns, row, column| {
+        let expected = reference.tensor(name, shape).unwrap();
+        let (mean, largest) = distance(values, &expected, rows, columns, row, column);
+        assert!(mean < 1e-4 && largest < 5e-2, "{name}: mean {mean}, largest {largest}");
+    };
+    check("fine", &found.fine, &[4, 16, 32], ROWS, FINE, 32, 8);
+    check("coarse", &found.coarse, &[10, 16, 16], ROWS, COARSE, 32, 4);
+    check("rows", &found.rows, &[6, 64], 1, ROWS, 1, 8);
+    check("scalars", &found.scalars, &[2], 1, 2, 1, 1);
+    assert_eq!(found.constants, [0.0; CONSTANTS]);
+    check("gain", &[found.gain as f32], &[1], 1, 1, 1, 1);
+}
+
+/// Weights of version 0.1.0 have no constants of the radar: for the radar that they were trained for, they answer as they did.
+#[test]
+fn weights_of_version_0_1_answer_as_they_did() {
+    let weights = include_bytes!("../../../tests/data/program-0.1.0/live_reference_weights.safetensors");
+    let reference = include_bytes!("../../../tests/data/program-0.1.0/live_reference.safetensors");
+    let reference = WeightFile::parse("reference", reference).unwrap();
+    let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &tiny().into()).unwrap();
+    let found = engine.forward(&input(&reference, 1.0), &mut LiveScratch::default());
+    let (mean, largest) = distance(&found.map, &reference.tensor("log", &[16, 64]).unwrap(), ROWS, COLUMNS, 32, 16);
+    assert!(mean < 1e-4 && largest < 1e-2, "mean {mean}, largest {largest}");
+}
+
+#[test]
+fn the_engine_agrees_with_the_twin() {
+    let reference = WeightFile::parse("reference", REFERENCE).unwrap();
+    let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
+    let input = input(&reference, 1.0);
+    let engine = LiveEngine::new(&weights, &tiny().into()).unwrap();
+    let fast = engine.forward(&input, &mut LiveScratch::default());
+    let expected = reference.tensor("log", &[16, 64]).unwrap();
+    let (mean, largest) = distance(&fast.map, &expected, ROWS, COLUMNS, 32, 16);
+    assert!(mean < 1e-4 && largest < 1e-2, "mean {mean}, largest {largest}");
+    let minimum = reference.tensor("minimum", &[1]).unwrap()[0];
+    assert!((fast.minimum - minimum).abs() < 1e-3, "{} for {minimum}", fast.minimum);
+
+    // The same scene as another radar's, with another window.
+    let constants = reference.tensor("constants", &[CONSTANTS]).unwrap().try_into().unwrap();
+    let other = LiveInput { constants, ..input };
+    let fast_other = engine.forward(&other, &mut LiveScratch::default());
+    let expected = reference.tensor("other_log", &[16, 64]).unwrap();
+    let (mean, largest) = distance(&fast_other.map, &expected, ROWS, COLUMNS, 32, 16);
+    assert!(mean < 1e-4 && largest < 1e-2, "mean {mean}, largest {largest}");
+    assert!(distance(&fast_other.map, &fast.map, ROWS, COLUMNS, 1, 1).0 > 0.05, "the constants say nothing");
+}
+
+#[test]
+fn a_louder_receiver_changes_nothing_but_the_gain() {
+    let reference = WeightFile::parse("reference", REFERENCE).unwrap();
+    let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
+    let engine = LiveEngine::new(&weights, &tiny().into()).unwrap();
+    let (soft, loud) = (input(&reference, 1.0), input(&reference, 1e6));
+    assert!((loud.gain - soft.gain - 6.0).abs() < 1e-9);
+    let mut scratch = LiveScratch::default();
+    let (a, b) = (engine.forward(&soft, &mut scratch), engine.forward(&loud, &mut scratch));
+    let (_, largest) = distance(&a.map, &b.map, ROWS, COLUMNS, 1, 1);
+    assert!(largest < 1e-2, "{largest}");
+}
+
+#[test]
+fn a_second_pass_over_used_buffers_gives_the_same_bits() {
+    let reference = WeightFile::parse("reference", REFERENCE).unwrap();
+    let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
+    let engine = LiveEngine::new(&weights, &tiny().into()).unwrap();
+    let input = input(&reference, 1.0);
+    let mut scratch = LiveScratch::default();
+    assert_eq!(engine.forward(&input, &mut scratch), engine.forward(&input, &mut scratch));
+}
