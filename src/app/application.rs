@@ -274,9 +274,6 @@ fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
         state.notices.error(format!("An unsaved scene of the last session can't be read: {problem}"));
     }
     let asked = asked.and_then(|path| apply::read(state, &path));
-    if asked.as_ref().is_some_and(|document| document.recording().is_some()) {
-        apply::show_recording_panels(state);
-    }
     match (&restored.on_screen, &asked) {
         (Some(_), None) => {
             state.notices.info("The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it.");
@@ -291,6 +288,7 @@ fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
     }
     let otherwise = state.editor.document().clone();
     state.editor = Editor::start(restored, asked, otherwise);
+    apply::opened(state);
     state.scene_view.fit = true;
 }
 

@@ -23,9 +23,9 @@ pub enum Subject {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Grouping {
     /// Nothing: all rows have one.
-    #[default]
     None,
     /// Its method.
+    #[default]
     Method,
     /// Its set.
     Set,
