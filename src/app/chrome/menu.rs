@@ -41,8 +41,6 @@ pub struct Input<'a> {
     pub finds_reflectors: bool,
     /// Whether a recording stands in the place of the scene.
     pub has_recording: bool,
-    /// Whether something is recorded that can be stopped.
-    pub is_recording: bool,
     /// Unsaved scenes that another took the place of, the latest last.
     pub left: &'a [Document],
     /// What the panels are arranged for.
@@ -203,8 +201,6 @@ fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         ],
         asked,
     );
-    entries(ui, [Command::AskFile(Purpose::RecordDrag), Command::AskFile(Purpose::DrawLesson)], asked);
-    entry(ui, ExportCommand::StopRecording, input.is_recording, asked);
     ui.separator();
     entry(ui, WindowCommand::Quit, true, asked);
 }

@@ -5,7 +5,6 @@ mod age;
 mod background;
 mod bounds;
 mod calibration;
-mod camera;
 mod chirp;
 mod derived;
 mod detected;
@@ -27,7 +26,6 @@ mod painter;
 mod phasors;
 mod pipeline;
 mod recorded;
-mod recording;
 mod rest;
 mod rows;
 mod run_time;
@@ -66,8 +64,6 @@ pub use method::Refusal;
 pub use method_times::TimesPlan;
 pub use phasors::{PhasorsQuery, PhasorsResult};
 pub use pipeline::{Pipeline, Wants};
-pub use recording::Recorder;
-use recording::Window;
 use rows::RowJob;
 pub use run_time::RunTimePlan;
 pub use scene_maps::Scores;
@@ -79,7 +75,7 @@ pub use training::{Log, Training};
 
 use crate::app::state::{Command, DocumentCommand, Panel, Purpose, RowsCommand, State, ViewCommand};
 use crate::interact::Autosave;
-use crate::platform::{self, Instant};
+use crate::platform;
 use eframe::egui::{Context, DroppedFile};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -112,8 +108,6 @@ pub struct Jobs {
     pub lessons: Lessons,
     /// Files being written.
     pub exports: Exports,
-    /// Pictures for slides.
-    pub recorder: Recorder,
     /// A capture card that is listened to.
     pub listening: Listening,
     /// Files being chosen.
@@ -123,8 +117,6 @@ pub struct Jobs {
     wake: Context,
     /// Where the app keeps its files, if anywhere.
     folder: Option<PathBuf>,
-    /// Whether everything that is drawn was there at the end of the frame before.
-    was_done: bool,
 }
 
 impl Jobs {
@@ -146,13 +138,11 @@ impl Jobs {
             theory: Derived::start(wake),
             lessons: Lessons::start(ctx),
             exports: Exports::new(ctx.clone()),
-            recorder: Recorder::start(ctx.clone()),
             listening: Listening::new(ctx.clone()),
             dialogs,
             autosave: folder.map(Autosave::claim).transpose()?,
             wake: ctx.clone(),
             folder: folder.map(Path::to_path_buf),
-            was_done: false,
         })
     }
 
@@ -182,9 +172,6 @@ impl Jobs {
         errors.into_iter().for_each(|e| state.notices.error(e));
         for export in self.exports.finished() {
             tell(state, export.message());
-        }
-        for said in self.recorder.poll() {
-            tell(state, said);
         }
         let (frame, failed) = self.listening.poll();
         failed.into_iter().for_each(|e| state.notices.error(e));
@@ -233,33 +220,6 @@ impl Jobs {
             self.wake.request_repaint_after(BAR);
         }
         self.keep_unsaved(state);
-    }
-
-    /// Takes the pictures of the window that are due; `draws_more` is whether something of a panel is still computed.
-    pub fn take_pictures(&mut self, state: &State, draws_more: bool) {
-        let is_outdated = state.pictured().into_iter().any(|kind| self.pipeline.is_outdated(kind));
-        // Maps are computed once more when the scene comes to rest.
-        let is_done = !draws_more && !self.draws_more() && self.pipeline.maps.rests_in().is_none() && !is_outdated;
-        // What came after this frame was drawn is drawn in the next.
-        let is_whole = std::mem::replace(&mut self.was_done, is_done) && is_done;
-        let is_dimmed = state.pictured().into_iter().any(|kind| self.pipeline.is_stale(kind));
-        self.recorder
-            .look(Window { is_dragged: state.editor.dragged().is_some(), is_dimmed, is_whole }, Instant::now());
-    }
-
-    /// Whether a picture of the window is taken: no message may stand in it.
-    pub fn hides_messages(&self) -> bool {
-        let now = Instant::now();
-        self.recorder.hides_messages(now)
-    }
-
-    /// Whether something that panels draw is still being computed.
-    fn draws_more(&self) -> bool {
-        self.pipeline.is_busy()
-            || self.kinds.is_busy()
-            || self.theory.is_busy()
-            || self.several.is_busy()
-            || self.lessons.is_reading()
     }
 
     /// Keeps copies of what is unsaved, but not while something is dragged.
@@ -314,7 +274,13 @@ impl Jobs {
 
     /// Whether maps, output or bounds are being computed.
     pub fn is_busy(&self) -> bool {
-        self.draws_more() || self.failures.is_busy() || self.autosave.as_ref().is_some_and(|a| a.is_busy())
+        self.pipeline.is_busy()
+            || self.kinds.is_busy()
+            || self.theory.is_busy()
+            || self.several.is_busy()
+            || self.lessons.is_reading()
+            || self.failures.is_busy()
+            || self.autosave.as_ref().is_some_and(|a| a.is_busy())
     }
 }
 

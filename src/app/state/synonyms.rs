@@ -49,7 +49,6 @@ fn file_words(purpose: Purpose) -> &'static str {
         Purpose::ExportPicture => "screenshot png svg image save print",
         Purpose::ExportMaps => "numpy npz data arrays save",
         Purpose::ExportMetrics => "csv numbers figures save",
-        Purpose::RecordDrag => "gif animation video movie",
         _ => "",
     }
 }
@@ -121,16 +120,14 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
             _ => &[],
         },
         Command::Edit(command) => edit_menus(command),
-        Command::Export(ExportCommand::StopRecording | ExportCommand::CopyShared | ExportCommand::CopyLink)
+        Command::Export(ExportCommand::CopyShared | ExportCommand::CopyLink)
         | Command::AskFile(
             Purpose::Open
             | Purpose::Listen(_)
             | Purpose::SaveScene
             | Purpose::ExportPicture
             | Purpose::ExportMaps
-            | Purpose::ExportMetrics
-            | Purpose::RecordDrag
-            | Purpose::DrawLesson,
+            | Purpose::ExportMetrics,
         ) => &["File"],
         Command::View(command) => view_menus(command),
         Command::Window(command) => window_menus(command),
