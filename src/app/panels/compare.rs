@@ -203,8 +203,8 @@ mod tests {
     use crate::radar::Radar;
     use crate::reconstruct::{Baseline, CAPON, Reconstructor};
     use crate::scene::Scene;
-    use eframe::egui::accesskit::Role;
     use eframe::egui::TextureId;
+    use eframe::egui::accesskit::Role;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;

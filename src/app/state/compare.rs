@@ -32,12 +32,7 @@ pub struct Compare {
 
 impl Default for Compare {
     fn default() -> Self {
-        Compare {
-            second: String::new(),
-            layout: Layout::default(),
-            maps: [MapKind::Output, MapKind::Second],
-            front: 0,
-        }
+        Compare { second: String::new(), layout: Layout::default(), maps: [MapKind::Output, MapKind::Second], front: 0 }
     }
 }
 
