@@ -6,7 +6,7 @@ use crate::app::state::{
     Command, DocumentCommand, EditCommand, ExportCommand, HelpPage, MapKind, NewObject, Panel, Projection, Purpose,
     Task, ViewCommand, WindowCommand,
 };
-use crate::app::widgets::entry::{arrange, button, entry, entry_called, ticked, tooltip};
+use crate::app::widgets::entry::{button, entry, entry_called, ticked, tooltip};
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
 use crate::interact::Document;
@@ -223,8 +223,6 @@ fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ] {
         entry(ui, command, enabled, asked);
     }
-    ui.separator();
-    ui.add_enabled_ui(input.selected, |ui| ui.menu_button("Arrange", |ui| arrange(ui, asked)));
 }
 
 fn scene(ui: &mut Ui, random: (u64, u32), memory: &MenuMemory, asked: &mut Vec<Command>) {

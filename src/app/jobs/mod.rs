@@ -265,13 +265,6 @@ impl Jobs {
         state.settings.own_scenes.clone().or_else(usual)
     }
 
-    /// A folder of its own for a training by the recipe called `name`; `None` where the app keeps no files.
-    #[cfg(feature = "network")]
-    pub fn new_run(&self, name: &str) -> Option<PathBuf> {
-        let runs = self.folder.as_ref()?.join("runs");
-        (1u32..).map(|n| runs.join(format!("{name}-{n}"))).find(|run| !run.exists())
-    }
-
     /// Whether maps, output or bounds are being computed.
     pub fn is_busy(&self) -> bool {
         self.pipeline.is_busy()

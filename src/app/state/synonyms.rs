@@ -23,7 +23,6 @@ pub fn synonyms(command: &Command) -> &'static str {
             EditCommand::Add(..) => "new insert object reflector wall car target",
             EditCommand::Delete => "remove erase clear",
             EditCommand::Duplicate => "clone copy",
-            EditCommand::Align(_) | EditCommand::Distribute(_) => "arrange order space evenly",
             EditCommand::SetCoordinates(_) => "coordinates polar cartesian units",
             _ => "",
         },
@@ -186,7 +185,6 @@ fn edit_menus(command: &EditCommand) -> &'static [&'static str] {
         | EditCommand::SelectAll
         | EditCommand::SelectNext
         | EditCommand::SelectPrevious => &["Edit"],
-        EditCommand::Align(_) | EditCommand::Distribute(_) => &["Edit", "Arrange"],
         EditCommand::Add(..) => &["Scene"],
         _ => &[],
     }

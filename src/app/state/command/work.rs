@@ -28,10 +28,6 @@ pub enum WorkCommand {
     CancelMeasurement,
     /// Watch this log of a training.
     WatchLog(PathBuf),
-    /// Start a training by the recipe of this name, and watch it.
-    Train(&'static str),
-    /// Stop the training that was started here.
-    CancelTraining,
     /// Listen to a capture card, and show its newest frame.
     Listen(CardPlan),
     /// Stop listening.
