@@ -261,11 +261,6 @@ impl Pipeline {
         self.method(MethodSlot::First).outdated().is_some()
     }
 
-    /// Whether a map belongs to an earlier scene.
-    pub fn is_outdated(&self, kind: MapKind) -> bool {
-        self.maps.waiting().is_some() || kind.slot().is_some_and(|slot| self.method(slot).outdated().is_some())
-    }
-
     /// Whether a map has belonged to an earlier scene for so long that it must be told.
     pub fn is_stale(&self, kind: MapKind) -> bool {
         let old = |since: Option<Instant>| since.is_some_and(|t| t.elapsed() > STALE);

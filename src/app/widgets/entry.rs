@@ -1,6 +1,6 @@
 //! Menu entries and buttons of commands: name, tooltip and key come from the one list.
 
-use crate::app::state::{Command, EditCommand, Entry};
+use crate::app::state::{Command, Entry};
 use eframe::egui::{Atom, Button, IdSalt, Response, Role, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 
 /// A menu entry; a click asks for the command and closes the menu.
