@@ -1,21 +1,12 @@
 //! Commands that start long work, or stop it.
 
-use crate::app::jobs::{Jobs, RunTimePlan, ThresholdPlan, TimesPlan, tell};
+use crate::app::jobs::{Jobs, RunTimePlan, ThresholdPlan, tell};
 use crate::app::state::{MethodSlot, Panel, State, WorkCommand};
 use std::path::PathBuf;
 
 /// Does such a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
     match command {
-        WorkCommand::MeasureMethodTimes => {
-            let said = TimesPlan::of(state, jobs.pipeline.basis()).map(|plan| {
-                let said = format!("Timing {} methods on the scene on screen.", plan.count());
-                jobs.method_times.begin(plan);
-                said
-            });
-            tell(state, said);
-        }
-        WorkCommand::CancelMethodTimes => jobs.method_times.cancel(),
         WorkCommand::CancelMethod => jobs.pipeline.method_mut(MethodSlot::First).cancel(),
         WorkCommand::CancelSecond => jobs.pipeline.method_mut(MethodSlot::Second).cancel(),
         WorkCommand::FindThreshold(choice) => {

@@ -20,7 +20,6 @@ mod listening;
 mod maps;
 mod memo;
 mod method;
-mod method_times;
 mod one_scale;
 mod painter;
 mod phasors;
@@ -61,7 +60,6 @@ pub use lessons::Lessons;
 pub use listening::{Listening, is_live};
 pub use memo::Memo;
 pub use method::Refusal;
-pub use method_times::TimesPlan;
 pub use phasors::{PhasorsQuery, PhasorsResult};
 pub use pipeline::{Pipeline, Wants};
 use rows::RowJob;
@@ -94,8 +92,6 @@ pub struct Jobs {
     pub failures: Failures,
     /// Run time against error.
     pub run_time: RowJob<RunTimePlan>,
-    /// How long every method takes.
-    pub method_times: RowJob<TimesPlan>,
     /// A training that is watched.
     pub training: Training,
     /// One map for several values.
@@ -131,7 +127,6 @@ impl Jobs {
             thresholds: RowJob::start(wake.clone()),
             failures: Failures::start(folder, ctx),
             run_time: RowJob::start(wake.clone()),
-            method_times: RowJob::start(wake.clone()),
             training: Training::start(wake.clone()),
             several: SeveralMaps::start(wake.clone()),
             kinds: Derived::start(wake.clone()),
@@ -157,8 +152,7 @@ impl Jobs {
         errors.extend(failed);
         errors.extend(self.thresholds.poll());
         errors.extend(self.run_time.poll());
-        errors.extend(self.method_times.poll());
-        self.record_times(state);
+        self.pipeline.record_times(&mut state.method_times);
         errors.extend(self.training.poll());
         errors.extend(self.several.poll());
         errors.extend(self.lessons.poll(state));
@@ -185,15 +179,6 @@ impl Jobs {
             chosen.push(RowsCommand::TakeFinding.into());
         }
         chosen
-    }
-
-    /// Keeps how long methods took, on screen and where they were timed.
-    fn record_times(&mut self, state: &mut State) {
-        self.pipeline.record_times(&mut state.method_times);
-        let timed = self.method_times.take_rows();
-        if let Some(plan) = self.method_times.plan() {
-            timed.into_iter().for_each(|(method, took)| state.method_times.record(plan.radar(), method, took));
-        }
     }
 
     /// Asks for what the panels of this frame need, if that changed; `wants` is what they read of maps and methods.

@@ -67,11 +67,6 @@ impl Pipeline {
         }
     }
 
-    /// What a method gets of the scene on screen, where an output is wanted.
-    pub fn basis(&self) -> Option<Basis> {
-        Basis::of(self.maps.result()?)
-    }
-
     /// Asks the workers for what the panels of this frame need, if that changed.
     pub fn ask(&mut self, state: &State, wants: Wants) {
         let pictures = state.pictured();

@@ -60,7 +60,7 @@ impl Content for ComparePanel {
         let second = jobs.pipeline.method(MethodSlot::Second);
         let input = Input {
             compare: &state.settings.compare,
-            methods: offered(state, jobs),
+            methods: offered(state),
             chosen: MethodSlot::BOTH.map(|slot| state.method_in(slot).map_or("", |m| m.name())),
             maps: kinds.iter().zip(textures).map(map).collect(),
             progress: second.progress(),

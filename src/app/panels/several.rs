@@ -48,7 +48,7 @@ impl Content for SeveralPanel {
         let input = Input {
             several: &state.settings.several,
             radar: state.radar(),
-            methods: offered(state, cx.jobs),
+            methods: offered(state),
             maps: cx.jobs.several.shown(),
             veiled: state.is_predicting(),
         };
