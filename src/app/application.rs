@@ -214,7 +214,7 @@ impl App {
         let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
         let is_open = |panel| state.arrangement.has_tile(panel);
         let is_on = |command: &Command| state.is_on(command);
-        let input = contents::menu_input(state, jobs, &is_open, &is_on);
+        let input = contents::menu_input(state, &is_open, &is_on);
         let mut commands = menu::show(ui, input, &mut memory.menu);
         status_bar::show(ui, contents::status_input(state, jobs));
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
@@ -274,9 +274,6 @@ fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
         state.notices.error(format!("An unsaved scene of the last session can't be read: {problem}"));
     }
     let asked = asked.and_then(|path| apply::read(state, &path));
-    if asked.as_ref().is_some_and(|document| document.recording().is_some()) {
-        apply::show_recording_panels(state);
-    }
     match (&restored.on_screen, &asked) {
         (Some(_), None) => {
             state.notices.info("The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it.");
@@ -290,7 +287,11 @@ fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
         state.notices.info("Unsaved scenes of earlier sessions are in File > Unsaved scenes.");
     }
     let otherwise = state.editor.document().clone();
+    let is_asked = asked.is_some();
     state.editor = Editor::start(restored, asked, otherwise);
+    if is_asked {
+        apply::opened(state);
+    }
     state.scene_view.fit = true;
 }
 
@@ -331,12 +332,9 @@ impl eframe::App for App {
         let wants = self.panels.wants(&self.state);
         self.jobs.ask(&mut self.state, wants);
         self.panels.ask(&self.state, &self.jobs);
-        self.jobs.take_pictures(&self.state, self.panels.is_busy());
         self.update_title(&ctx);
         self.zoom.follow(&ctx, &self.state);
-        if !self.jobs.hides_messages() {
-            messages::show(&ctx, &mut self.state.notices);
-        }
+        messages::show(&ctx, &mut self.state.notices);
         focus_ring::draw(&ctx);
         self.in_a_field = ctx.text_edit_focused();
         self.write_frame_log(frame.info().cpu_usage);

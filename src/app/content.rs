@@ -163,9 +163,9 @@ impl<C: Content> AnyPanel for Held<C> {
 }
 
 /// The methods to choose from, with the times that are known of them.
-pub fn offered<'a>(state: &'a State, jobs: &Jobs) -> Offered<'a> {
+pub fn offered(state: &State) -> Offered<'_> {
     let times = state.method_times.on(state.radar());
-    Offered { all: &state.methods.all, radar: Some(state.radar()), times, timing: jobs.method_times.progress() }
+    Offered { all: &state.methods.all, radar: Some(state.radar()), times }
 }
 
 #[cfg(test)]

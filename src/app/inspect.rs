@@ -225,7 +225,6 @@ impl App {
             || jobs.failures.progress().is_some()
             || jobs.failures.search.progress().is_some()
             || jobs.run_time.progress().is_some()
-            || jobs.training.is_running()
     }
 
     /// What the evaluation has found, as CSV.

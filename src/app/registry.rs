@@ -42,7 +42,7 @@ macro_rules! every_panel {
             RangeDoppler doppler::DopplerPanel, view of Chirp, Y, "Range-Doppler",
                 "Range against radial velocity of several chirps, and a timeline that plays the scene";
             Compare compare::ComparePanel, tool, J, "Compare",
-                "Two methods on this scene: side by side, flipped in place, or parted by an edge";
+                "Two methods on this scene: side by side, or flipped in place";
             Several several::SeveralPanel, view of Compare, S, "Compare settings",
                 "One map for several windows, bandwidths, elements, spacings, floors, noise levels, radars or methods";
             Timing timing::TimingPanel, developer, F7, "Timing",

@@ -9,10 +9,11 @@ use crate::signal::Floor;
 use crate::signal::floor::noise_variance;
 
 /// The median distance, in metres, of points that are found to the nearest of the `found` reflectors; `None` where no point is found, or
-/// the method names no reflectors.
+/// the method names no reflectors. A point behind the array is looked for in front of it, where the maps show it.
 pub fn median_offset_metres(scene: &Scene, failures: &Failures, found: &[Reflector]) -> Option<f64> {
     let nearest = |point: &Point| {
-        let distances = found.iter().map(|r| (r.x_metres - point.x_metres).hypot(r.y_metres - point.y_metres));
+        let distances =
+            found.iter().map(|r| (r.x_metres - point.x_metres).hypot(r.y_metres.abs() - point.y_metres.abs()));
         distances.min_by(f64::total_cmp)
     };
     median(found_points(scene, failures).filter_map(nearest))

@@ -9,7 +9,6 @@
 //!  key, menu ──────────────► Editor::{add, delete_selected, nudge, paste, ..}            (one step each)
 //! ```
 
-mod arrange;
 pub mod autosave;
 pub mod blob;
 mod body_grip;
@@ -24,7 +23,6 @@ pub mod hit;
 mod selection;
 mod snap;
 
-pub use arrange::{Alignment, Along};
 pub use autosave::Autosave;
 pub use document::{Document, Restored};
 pub use editor::{Editor, Saved};

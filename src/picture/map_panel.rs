@@ -29,6 +29,9 @@ const HIT: Rgb = [245, 245, 240];
 const TITLE_HEIGHT: i32 = 40;
 const BAR_SPACE: i32 = 62;
 
+/// Right of the legend, pixels.
+const LEGEND_MARGIN: i32 = 8;
+
 pub(super) struct MapAxes {
     /// To the right, rising.
     pub x: [f64; 2],
@@ -153,8 +156,9 @@ fn colour_bar<B: DrawingBackend>(
 }
 
 fn legend<B: DrawingBackend>(area: &PanelArea<B>) -> Result<(), PictureError> {
+    // Over the room that a colour bar takes in other panels: the title stands left of it.
     let (width, _) = area.dim_in_pixel();
-    let mut x = width as i32 - BAR_SPACE;
+    let mut x = width as i32 - LEGEND_MARGIN;
     for detection in CellVerdict::SEEN.into_iter().rev() {
         let name = detection.name();
         let style = text::style(15, Weight::Normal, &FAINT_INK);

@@ -1,4 +1,4 @@
-//! Two methods on one scene: flipped, swiped, read off cell by cell, and what became of every object.
+//! Two methods on one scene: flipped, read off cell by cell, and what became of every object.
 
 use crate::session::{Session, step_until};
 use apertura::app::{Compare, DocumentCommand, Layout, MapKind, Panel, ViewCommand, WindowCommand};
@@ -8,7 +8,6 @@ use apertura::radar::Radar;
 use apertura::reconstruct::{About, Baseline, CAPON, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
 use apertura::signal::{Floor, TwoEnds, simulate};
-use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -140,26 +139,6 @@ fn one_key_flips_two_maps_in_place() {
     assert_eq!(s.state().pictures(), [MapKind::Input1, MapKind::Target], "any two, and no others");
     s.press(Modifiers::NONE, Key::X);
     assert!(place(&s, "Input 1 map").is_some());
-}
-
-#[test]
-fn the_edge_between_two_maps_can_be_moved() {
-    let mut s = with_capon();
-    s.ask(ViewCommand::SetCompare(Box::new(Compare { layout: Layout::Swipe, ..Compare::default() })));
-    s.ask(WindowCommand::Maximise(Panel::Compare));
-    let edge = |s: &Session| s.app.get_by_role_and_label(Role::Slider, "Edge between two maps").rect().center();
-    let map = s.app.get_by_label("Output map").rect();
-    let (scene, from) = (s.state().editor().scene().clone(), edge(&s) + vec2(0.0, 70.0));
-    s.drag(from, vec2(map.width() / 4.0, 0.0), 6);
-    assert!((s.state().settings().compare.edge - 0.75).abs() < 0.02, "{}", s.state().settings().compare.edge);
-    assert!((edge(&s).x - from.x - map.width() / 4.0).abs() < 8.0);
-    assert!(Arc::ptr_eq(&scene, s.state().editor().scene()), "nothing of the scene was dragged");
-    let before = s.state().settings().compare.edge;
-    s.app.get_by_role_and_label(Role::Slider, "Edge between two maps").focus();
-    s.settle();
-    s.press(Modifiers::NONE, Key::ArrowLeft);
-    s.press(Modifiers::NONE, Key::ArrowLeft);
-    assert!((s.state().settings().compare.edge - before + 0.02).abs() < 1e-5);
 }
 
 #[test]

@@ -214,11 +214,7 @@ fn a_named_scene_comes_back_under_its_name() {
     s.ask(EditCommand::Add(NewObject::Point, None));
     let copy = s.folder.path().join("data/autosave.toml");
     step_until(&mut s, "no autosave", |_| copy.exists());
-    let Session { app, folder } = s;
-    drop(app);
-    let app = harness(folder.path(), None, vec![Arc::new(Baseline)]);
-    let mut s = Session { app, folder };
-    s.settle();
+    let mut s = s.reopened(None, vec![Arc::new(Baseline)]);
     assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml •", 128));
     s.ask(DocumentCommand::Save);
     assert_eq!((title(&s).as_str(), points(&s.folder.path().join("scene.toml"))), ("scene.toml", 3));

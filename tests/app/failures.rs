@@ -1,6 +1,6 @@
 //! Rows of an evaluation in the window: tried, sorted, filtered, opened, dragged, made worse, kept, and there again after a restart.
 
-use crate::session::{Session, harness, step_until};
+use crate::session::{Session, step_until};
 use apertura::app::{
     Command, EditCommand, FailureChoice, Panel, RowsCommand, SearchChoice, ViewCommand, WindowCommand,
 };
@@ -173,11 +173,7 @@ fn rows_outlive_a_restart() {
     s.ask(RowsCommand::OpenFile(path));
     assert!(s.state().messages() > messages && s.state().rows() == rows, "it is told, and the rows stay");
     step_until(&mut s, "they are kept", |s| s.state().rows_are_kept());
-    let Session { app, folder } = s;
-    drop(app);
-    let app = harness(folder.path(), Some("scene.toml"), methods());
-    let mut s = Session { app, folder };
-    s.settle();
+    let s = s.reopened(Some("scene.toml"), methods());
     assert_eq!(s.state().rows(), rows);
 }
 

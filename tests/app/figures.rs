@@ -76,11 +76,7 @@ fn one_scene_has_one_set_of_figures() {
 
     let copy = s.folder.path().join("data/autosave.toml");
     step_until(&mut s, "no autosave", |_| copy.exists());
-    let Session { app, folder } = s;
-    drop(app);
-    let app = harness(folder.path(), None, vec![Arc::new(Baseline)]);
-    let mut s = Session { app, folder };
-    s.settle();
+    let s = s.reopened(None, vec![Arc::new(Baseline)]);
     assert_eq!(**s.state().editor().scene(), scene.scene);
     assert_eq!(on_screen(&s), expected, "after a restore");
 }

@@ -7,7 +7,7 @@ use apertura::app::{
 use apertura::lesson::question::Answer;
 use apertura::lesson::{Cell, Guess, Lesson, MapName, Question, Stage, Step, Truth, shipped};
 use apertura::radar::Radar;
-use eframe::egui::{Event, Shape, pos2};
+use eframe::egui::{Event, pos2};
 use egui_kittest::kittest::Queryable;
 
 /// Whether a text stands somewhere on screen.
@@ -120,20 +120,6 @@ fn every_step_judges_its_answers() {
     take_all(|_, _| false);
 }
 
-/// Every text that is painted, those that no screen reader is told included.
-fn painted(s: &Session) -> Vec<String> {
-    fn gather(shape: &Shape, found: &mut Vec<String>) {
-        match shape {
-            Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, found)),
-            Shape::Text(text) => found.push(text.galley.text().to_owned()),
-            _ => {}
-        }
-    }
-    let mut found = Vec::new();
-    s.app.output().shapes.iter().for_each(|clipped| gather(&clipped.shape, &mut found));
-    found
-}
-
 /// Begins the lesson called `id` at a step, counted from 1.
 fn begin(s: &mut Session, id: &str, step: usize) {
     s.ask(LessonCommand::Begin(shipped::ALL.iter().position(|file| file.id == id).unwrap()));
@@ -154,15 +140,15 @@ fn no_panel_answers_a_question_before_the_learner_does() {
     for panel in [Panel::Inspector, Panel::Radar] {
         s.ask(WindowCommand::OpenPanel(panel));
     }
-    let tells = |s: &Session, text: &str| painted(s).iter().any(|t| t.contains(text));
+    let tells = |s: &Session, text: &str| s.painted().iter().any(|t| t.contains(text));
     // The question itself says "maximum range": the Radar panel would say how much.
     for answer in ["range, m", "maximum range 5", "511.67 m", "500 m"] {
-        assert!(!tells(&s, answer), "{answer}: {:?}", painted(&s));
+        assert!(!tells(&s, answer), "{answer}: {:?}", s.painted());
     }
     assert!(tells(&s, "Hidden until you have predicted."));
     predict(&mut s, Guess::Number(512.0), "Correct: ");
     for told in ["range, m", "maximum range 5"] {
-        assert!(tells(&s, told), "{told}: {:?}", painted(&s));
+        assert!(tells(&s, told), "{told}: {:?}", s.painted());
     }
 }
 
@@ -170,7 +156,7 @@ fn no_panel_answers_a_question_before_the_learner_does() {
 fn a_question_about_a_place_leaves_the_axes() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 1);
-    assert!(painted(&s).iter().any(|t| t == "range, m"));
+    assert!(s.painted().iter().any(|t| t == "range, m"));
 }
 
 #[test]
@@ -201,7 +187,7 @@ fn going_back_keeps_the_verdict() {
 fn the_guess_stays_drawn_beside_the_truth() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 1);
-    let drawn = |s: &Session| ["your guess", "truth"].map(|text| painted(s).iter().any(|t| t == text));
+    let drawn = |s: &Session| ["your guess", "truth"].map(|text| s.painted().iter().any(|t| t == text));
     assert_eq!(drawn(&s), [false, false]);
     predict(&mut s, Guess::Place(Cell { bin: 100.0, column: 300.0 }), "Not quite: ");
     assert_eq!(drawn(&s), [true, true]);

@@ -74,36 +74,20 @@ fn captions_name_every_map_until_the_first_drag() {
     let mut s = Session::start();
     assert!(!s.state().shows_captions(), "nothing can be kept here");
     s.ask(Command::Window(WindowCommand::ToggleCaptions));
-    let texts = |s: &Session| apertura_texts(s);
     for wanted in ["Input 0: the first", "Input 1: the last", "Target: all 128", "Output: what baseline", "Output > η:"]
     {
-        assert!(texts(&s).iter().any(|t| t.starts_with(wanted)), "{wanted}: {:?}", texts(&s));
+        assert!(s.painted().iter().any(|t| t.starts_with(wanted)), "{wanted}: {:?}", s.painted());
     }
-    assert!(texts(&s).iter().any(|t| t.starts_with("Drag a reflector")), "{:?}", texts(&s));
+    assert!(s.painted().iter().any(|t| t.starts_with("Drag a reflector")), "{:?}", s.painted());
     let at = s.handle("point 1: move");
     s.drag(at, eframe::egui::vec2(30.0, 0.0), 3);
     assert!(!s.state().shows_captions());
-    assert!(!texts(&s).iter().any(|t| t.starts_with("Target: all")));
+    assert!(!s.painted().iter().any(|t| t.starts_with("Target: all")));
     s.ask(Command::Window(WindowCommand::ToggleCaptions));
     assert!(s.state().shows_captions(), "Help brings them back");
     s.ask(Command::Edit(apertura::app::EditCommand::Select(vec![0], SelectionMode::Replace)));
     s.press(Modifiers::NONE, Key::ArrowRight);
     assert!(!s.state().shows_captions(), "arrow keys move it as a drag does");
-}
-
-/// Every text of the last frame.
-fn apertura_texts(s: &Session) -> Vec<String> {
-    use eframe::egui::Shape;
-    fn gather(shape: &Shape, found: &mut Vec<String>) {
-        match shape {
-            Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, found)),
-            Shape::Text(text) => found.push(text.galley.text().to_owned()),
-            _ => {}
-        }
-    }
-    let mut found = Vec::new();
-    s.app.output().shapes.iter().for_each(|clipped| gather(&clipped.shape, &mut found));
-    found
 }
 
 #[test]
@@ -113,7 +97,7 @@ fn maps_bend_into_cartesian_ones_in_half_a_second() {
     s.app.get_by_label(name).click();
     s.app.step();
     s.app.step();
-    let axes = |s: &Session| apertura_texts(s).iter().any(|t| t == "x, m");
+    let axes = |s: &Session| s.painted().iter().any(|t| t == "x, m");
     assert!(axes(&s), "the axes appear at once");
     let repaints = |s: &Session| s.app.output().viewport_output.values().any(|v| v.repaint_delay.is_zero());
     let mut frames = 0;
@@ -171,8 +155,8 @@ fn the_first_drag_is_told_in_one_sentence() {
     s.ask(DocumentCommand::Preset(0));
     s.ask(RadarCommand::Set(Box::default()));
     s.ask(WindowCommand::ToggleCaptions);
-    let told = |s: &Session, text: &str| apertura_texts(s).iter().any(|t| t == text);
-    assert!(told(&s, "Drag the post along its ring, to the wall"), "{:?}", apertura_texts(&s));
+    let told = |s: &Session, text: &str| s.painted().iter().any(|t| t == text);
+    assert!(told(&s, "Drag the post along its ring, to the wall"), "{:?}", s.painted());
     let (from, metres_per_point) = (s.handle("post: move"), s.state().views().0.metres_per_point);
     let [x, y] = s.place(3);
     let (range, (sin, cos)) = (x.hypot(y), 27f64.to_radians().sin_cos());
@@ -180,7 +164,7 @@ fn the_first_drag_is_told_in_one_sentence() {
     s.drag(from, by, 6);
     s.settle();
     let both = "Both inputs now show post and wall as one blob; the target shows two";
-    assert!(told(&s, both), "{:?}", apertura_texts(&s));
+    assert!(told(&s, both), "{:?}", s.painted());
     s.ask(EditCommand::Undo);
     s.ask(DocumentCommand::New);
     assert!(!told(&s, both), "it belongs to that scene");

@@ -2,10 +2,9 @@
 
 use crate::session::{Session, step_until};
 use apertura::app::{ExportCommand, MapKind, Panel, WindowCommand};
-use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Shape, ViewportCommand, vec2};
+use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Shape, vec2};
 use egui_kittest::kittest::Queryable;
 use std::collections::BTreeSet;
-use std::time::Duration;
 
 #[test]
 fn one_key_toggles_a_presentation() {
@@ -60,38 +59,6 @@ fn both_presentations_enlarge_the_axes() {
         s.press(modifiers, Key::F11);
         assert_eq!(tallest(&s, "range, m"), before[0]);
     }
-}
-
-/// Whether a picture of the window was asked for in the last frame.
-fn is_photographed(s: &Session) -> bool {
-    let mut commands = s.app.output().viewport_output.values().flat_map(|viewport| &viewport.commands);
-    commands.any(|command| matches!(command, ViewportCommand::Screenshot(_)))
-}
-
-#[test]
-fn a_recorded_drag_holds_no_message() {
-    let mut s = Session::start();
-    s.app.state_mut().ask(ExportCommand::RecordDragTo(s.folder.path().join("drag.gif")));
-    let holds = |s: &Session| texts(s).iter().any(|(text, _)| text.contains("Drag something now"));
-    step_until(&mut s, "the message is seen", holds);
-    let at = s.handle("point 1: move");
-    s.app.hover_at(at);
-    s.app.step();
-    s.app.drag_at(at);
-    s.app.step();
-    let mut taken = 0;
-    for step in 1..=60 {
-        s.app.hover_at(at + vec2(step as f32, 0.0));
-        s.app.step();
-        std::thread::sleep(Duration::from_millis(10));
-        if is_photographed(&s) {
-            taken += 1;
-            assert!(!holds(&s), "frame {taken}");
-        }
-    }
-    s.app.drop_at(at + vec2(60.0, 0.0));
-    s.settle();
-    assert!(taken >= 2, "{taken} frames in more than half a second");
 }
 
 #[test]

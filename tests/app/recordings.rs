@@ -1,6 +1,6 @@
 //! Recordings in the place of a scene: opened, looked at, explained, exported, and undone.
 
-use crate::session::{Session, harness, step_until};
+use crate::session::{Session, step_until};
 use apertura::app::{
     DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, Way,
     WindowCommand,
@@ -172,11 +172,7 @@ fn an_overlay_comes_back_over_its_recording_after_a_kill() {
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
     let copy = s.folder.path().join("data/autosave.toml");
     step_until(&mut s, "no autosave", |_| copy.exists());
-    let Session { app, folder } = s;
-    drop(app);
-    let app = harness(folder.path(), None, vec![Arc::new(CAPON)]);
-    let mut s = Session { app, folder };
-    s.settle();
+    let s = s.reopened(None, vec![Arc::new(CAPON)]);
     assert_eq!(s.state().editor().scene().objects.len(), 1);
     assert_eq!(s.state().editor().document().recording().map(|r| r.radar.elements), Some(8));
 }
@@ -189,11 +185,7 @@ fn a_recording_is_opened_at_the_start() {
     std::fs::write(s.folder.path().join("broken.toml"), text.replace("cascade-86.mat", "gone.mat")).unwrap();
     s.ask(DocumentCommand::OpenPath(s.folder.path().join("broken.toml")));
     assert_eq!((s.state().messages(), s.state().radar().elements), (1, 128));
-    let Session { app, folder } = s;
-    drop(app);
-    let app = harness(folder.path(), Some("cascade-86.toml"), vec![Arc::new(CAPON)]);
-    let mut s = Session { app, folder };
-    s.settle();
+    let s = s.reopened(Some("cascade-86.toml"), vec![Arc::new(CAPON)]);
     assert_eq!(s.state().radar().elements, 86);
     let found = s.state().arrangement().is_open(Panel::Found);
     assert!(found, "what was found is in sight");

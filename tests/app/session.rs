@@ -2,10 +2,9 @@
 
 use apertura::app::{App, Command, Options};
 use apertura::reconstruct::{Baseline, Reconstructor};
-use eframe::egui::{self, Key, Modifiers, Pos2, TexturesDelta};
+use eframe::egui::{self, Key, Modifiers, Pos2, Shape};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use egui_kittest::{Harness, TestRenderer};
-use image::RgbaImage;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -49,6 +48,30 @@ impl Session {
             quiet = if self.state().is_busy() { 0 } else { quiet + 1 };
             std::thread::sleep(Duration::from_millis(1));
         }
+    }
+
+    /// The window opened anew in its folder, on a file of it or on what it was left with.
+    pub fn reopened(self, scene: Option<&str>, methods: Vec<Arc<dyn Reconstructor>>) -> Session {
+        let Session { app, folder } = self;
+        drop(app);
+        let app = harness(folder.path(), scene, methods);
+        let mut session = Session { app, folder };
+        session.settle();
+        session
+    }
+
+    /// Every text of the last frame, those that no screen reader is told included.
+    pub fn painted(&self) -> Vec<String> {
+        fn gather(shape: &Shape, found: &mut Vec<String>) {
+            match shape {
+                Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, found)),
+                Shape::Text(text) => found.push(text.galley.text().to_owned()),
+                _ => {}
+            }
+        }
+        let mut found = Vec::new();
+        self.app.output().shapes.iter().for_each(|clipped| gather(&clipped.shape, &mut found));
+        found
     }
 
     pub fn ask(&mut self, command: impl Into<Command>) {
@@ -112,21 +135,7 @@ pub fn harness_of(
     Harness::builder()
         .with_size(size)
         .with_step_dt(1.0 / 60.0)
-        .renderer(Blank)
         .build_eframe(|creation| App::new(creation, options).unwrap())
-}
-
-/// Takes empty pictures of the window: a machine that runs the tests may have no graphics.
-struct Blank;
-
-impl TestRenderer for Blank {
-    fn handle_delta(&mut self, delta: &mut TexturesDelta) {
-        delta.clear();
-    }
-
-    fn render(&mut self, _: &egui::Context, _: &egui::FullOutput) -> Result<RgbaImage, String> {
-        Ok(RgbaImage::new(32, 20))
-    }
 }
 
 /// Steps until `done`, without waiting for everything to rest.

@@ -70,17 +70,21 @@ fn open_weights(state: &mut State, path: &Path) {
     }
 }
 
-/// Puts a document on screen, and where it is a recording, what recordings are looked at with.
+/// Puts a document on screen, and what it is looked at with.
 fn show(state: &mut State, label: &str, document: Document) {
-    let recording = document.recording().cloned();
     state.set_document(label, document);
+    opened(state);
+}
+
+/// Takes what the document on screen is looked at with: a method that can, and for a recording its panels.
+pub fn opened(state: &mut State) {
     use_a_method_that_can(state);
-    if let Some(recording) = recording {
-        show_recording_panels(state);
-        // What is doubtful stands in the panel.
-        if recording.origin.is_some() || !recording.doubts.is_empty() {
-            state.arrangement.set_open(Panel::Recording, true);
-        }
+    let Some(recording) = state.editor.document().recording() else { return };
+    // What is doubtful stands in the panel.
+    let is_doubtful = recording.origin.is_some() || !recording.doubts.is_empty();
+    show_recording_panels(state);
+    if is_doubtful {
+        state.arrangement.set_open(Panel::Recording, true);
     }
 }
 
@@ -95,7 +99,7 @@ fn use_a_method_that_can(state: &mut State) {
 }
 
 /// The list of what was found in front, where the method finds anything, and what reflectors leave unexplained behind the output.
-pub fn show_recording_panels(state: &mut State) {
+fn show_recording_panels(state: &mut State) {
     let lists = state.finds_reflectors().then_some(Panel::Found);
     for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output)].into_iter().chain(lists) {
         state.arrangement.set_open(panel, true);

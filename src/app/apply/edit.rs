@@ -43,8 +43,6 @@ pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
             }
         }
         EditCommand::Name(name) => editor.name_selected(&name),
-        EditCommand::Align(alignment) => editor.align(alignment),
-        EditCommand::Distribute(along) => editor.distribute(along),
         // What is looked at at another time is not where the document has it.
         EditCommand::Grab(_) if state.timeline.moved().is_some() => state.timeline.set(editor.scene(), 0.0),
         EditCommand::Grab(blob) => editor.grab(blob),

@@ -14,12 +14,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: ExportCommand) -> Opti
         ExportCommand::CopyEvaluation => {
             return Some(Effect::Copy(evaluation_to_csv(&evaluated(jobs.failures.table().rows()))));
         }
-        ExportCommand::StopRecording => {
-            let given_up = jobs.recorder.cancel();
-            Ok(given_up.unwrap_or_else(|| "Nothing is recorded.".to_owned()))
-        }
-        ExportCommand::RecordDragTo(path) => jobs.recorder.record_drag(path),
-        ExportCommand::DrawLessonTo(path) => jobs.recorder.draw_lesson(state, path),
         ExportCommand::PictureTo(path) => jobs.exports.picture(state, path),
         ExportCommand::MapsTo(path) => jobs.exports.maps(state, path),
         ExportCommand::MetricsTo(path) => jobs.exports.metrics(state, &jobs.pipeline, path),

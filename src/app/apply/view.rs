@@ -46,7 +46,6 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::MarkKinds => settings.show_kinds = true,
         ViewCommand::ToggleKinds => settings.show_kinds ^= true,
         ViewCommand::SetCompare(compare) => settings.compare = *compare,
-        ViewCommand::Swipe(edge) => settings.compare.swipe(edge),
         ViewCommand::Method(name) => settings.method = name.to_owned(),
         ViewCommand::Flip => {
             settings.compare.flip();

@@ -1,21 +1,12 @@
 //! Commands that start long work, or stop it.
 
-use crate::app::jobs::{Jobs, RunTimePlan, ThresholdPlan, TimesPlan, tell};
+use crate::app::jobs::{Jobs, RunTimePlan, ThresholdPlan, tell};
 use crate::app::state::{MethodSlot, Panel, State, WorkCommand};
 use std::path::PathBuf;
 
 /// Does such a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
     match command {
-        WorkCommand::MeasureMethodTimes => {
-            let said = TimesPlan::of(state, jobs.pipeline.basis()).map(|plan| {
-                let said = format!("Timing {} methods on the scene on screen.", plan.count());
-                jobs.method_times.begin(plan);
-                said
-            });
-            tell(state, said);
-        }
-        WorkCommand::CancelMethodTimes => jobs.method_times.cancel(),
         WorkCommand::CancelMethod => jobs.pipeline.method_mut(MethodSlot::First).cancel(),
         WorkCommand::CancelSecond => jobs.pipeline.method_mut(MethodSlot::Second).cancel(),
         WorkCommand::FindThreshold(choice) => {
@@ -27,8 +18,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
         }
         WorkCommand::CancelMeasurement => jobs.run_time.cancel(),
         WorkCommand::WatchLog(path) => watch(state, jobs, path),
-        WorkCommand::Train(recipe) => train(state, jobs, recipe),
-        WorkCommand::CancelTraining => jobs.training.cancel(),
         WorkCommand::Listen(plan) => {
             state.arrangement.set_open(Panel::Recording, true);
             let said =
@@ -43,27 +32,4 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
 pub fn watch(state: &mut State, jobs: &mut Jobs, log: PathBuf) {
     jobs.training.follow(log);
     state.arrangement.set_open(Panel::Training, true);
-}
-
-#[cfg(feature = "network")]
-fn train(state: &mut State, jobs: &mut Jobs, name: &str) {
-    use crate::network::recipe::{Recipe, SHIPPED};
-    let shipped = SHIPPED.iter().find(|(shipped, _)| *shipped == name);
-    let Some(recipe) = shipped.and_then(|(name, text)| Recipe::parse(name, text).ok()) else { return };
-    let steps = recipe.training_scenes().len() / recipe.batch.max(1) * recipe.epochs as usize;
-    let Some(folder) = jobs.new_run(name) else {
-        return state.notices.error("There is no folder to train in; start it with apertura train instead.");
-    };
-    tell(
-        state,
-        match jobs.training.begin(name, &folder, Some(steps as u64)) {
-            Ok(()) => Ok(format!("Training {name} in {}", folder.display())),
-            Err(error) => Err(format!("{}: the training can't be started: {error}", folder.display())),
-        },
-    );
-}
-
-#[cfg(not(feature = "network"))]
-fn train(state: &mut State, _: &mut Jobs, _: &str) {
-    state.notices.error("This build can't train.");
 }

@@ -190,13 +190,13 @@ impl Browser {
             return None;
         }
         if self.purpose.reads() && !fs::exists(&path) {
-            self.problem = Some(format!("{} is not there.", path.display()));
+            (self.problem, self.was_focused) = (Some(format!("{} is not there.", path.display())), false);
             return None;
         }
         match self.purpose.destination(path) {
             Ok(path) => Some(Answer::Chosen(path)),
             Err(problem) => {
-                self.problem = Some(problem);
+                (self.problem, self.was_focused) = (Some(problem), false);
                 None
             }
         }

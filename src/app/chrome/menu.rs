@@ -6,7 +6,7 @@ use crate::app::state::{
     Command, DocumentCommand, EditCommand, ExportCommand, HelpPage, MapKind, NewObject, Panel, Projection, Purpose,
     Task, ViewCommand, WindowCommand,
 };
-use crate::app::widgets::entry::{arrange, button, entry, entry_called, ticked, tooltip};
+use crate::app::widgets::entry::{button, entry, entry_called, ticked, tooltip};
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
 use crate::interact::Document;
@@ -41,8 +41,6 @@ pub struct Input<'a> {
     pub finds_reflectors: bool,
     /// Whether a recording stands in the place of the scene.
     pub has_recording: bool,
-    /// Whether something is recorded that can be stopped.
-    pub is_recording: bool,
     /// Unsaved scenes that another took the place of, the latest last.
     pub left: &'a [Document],
     /// What the panels are arranged for.
@@ -203,8 +201,6 @@ fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         ],
         asked,
     );
-    entries(ui, [Command::AskFile(Purpose::RecordDrag), Command::AskFile(Purpose::DrawLesson)], asked);
-    entry(ui, ExportCommand::StopRecording, input.is_recording, asked);
     ui.separator();
     entry(ui, WindowCommand::Quit, true, asked);
 }
@@ -227,8 +223,6 @@ fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ] {
         entry(ui, command, enabled, asked);
     }
-    ui.separator();
-    ui.add_enabled_ui(input.selected, |ui| ui.menu_button("Arrange", |ui| arrange(ui, asked)));
 }
 
 fn scene(ui: &mut Ui, random: (u64, u32), memory: &MenuMemory, asked: &mut Vec<Command>) {

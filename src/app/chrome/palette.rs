@@ -5,6 +5,7 @@ use crate::app::state::{
 };
 use crate::lesson::shipped;
 use crate::reconstruct::Reconstructor;
+use crate::recording;
 use crate::scene::presets;
 use eframe::egui;
 use eframe::egui::{Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
@@ -118,10 +119,13 @@ fn taught() -> &'static [Taught] {
     })
 }
 
-/// What else may be typed for a command: the words of a scene's file, or of what is said of it.
+/// What else may be typed for a command: the words of the file that it opens.
 fn words(command: &Command) -> &'static str {
     match command {
         Command::Document(DocumentCommand::Preset(index)) => presets::ALL.get(*index).map_or("", |preset| preset.toml),
+        Command::Document(DocumentCommand::Recording(index)) => {
+            recording::presets::ALL.get(*index).map_or("", |preset| preset.toml)
+        }
         Command::Lesson(LessonCommand::Begin(index)) => {
             taught().iter().find(|lesson| lesson.index == *index).map_or("", |lesson| &lesson.words)
         }

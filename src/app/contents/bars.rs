@@ -9,7 +9,6 @@ use crate::scattering::{PathEcho, heard_in_the_middle};
 /// What the menu bar shows.
 pub fn menu_input<'a>(
     state: &'a State,
-    jobs: &Jobs,
     is_open: &'a dyn Fn(Panel) -> bool,
     is_on: &'a dyn Fn(&Command) -> Option<bool>,
 ) -> menu::Input<'a> {
@@ -24,7 +23,6 @@ pub fn menu_input<'a>(
         recent: &state.recent,
         finds_reflectors: state.finds_reflectors(),
         has_recording: state.editor.document().recording().is_some(),
-        is_recording: jobs.recorder.is_at_work(),
         left: state.editor.left(),
         task: state.arrangement.task(),
         is_open,

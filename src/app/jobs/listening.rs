@@ -10,13 +10,15 @@ use crate::recording::packets::CardFrame;
 use crate::recording::raw::{self, boards};
 use crate::recording::{Origin, Recording, RecordingError};
 use eframe::egui::Context;
+use std::io;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-/// After so long a port that was listened to is free again.
-const RELEASE: Duration = Duration::from_millis(150);
+/// How often a port is tried that was listened to a moment ago, and how long it waits between two tries.
+const TRIES: u32 = 20;
+const BETWEEN_TRIES: Duration = Duration::from_millis(50);
 
 /// Listens where it is asked to.
 pub struct Listening {
@@ -61,17 +63,22 @@ impl Listening {
     /// # Errors
     /// A sentence: what is wrong with the `.cfg`, or who has the port.
     pub fn begin(&mut self, plan: CardPlan) -> Result<u16, String> {
-        if self.running.is_some() {
-            self.stop();
-            std::thread::sleep(RELEASE);
-        }
+        let tries = if self.running.is_some() { TRIES } else { 0 };
+        self.stop();
         let frame_bytes = raw::frame_bytes(&plan.config).map_err(|e| e.to_string())?;
-        let failed = |e: std::io::Error| format!("UDP port {} can't be listened to: {e}", plan.port);
-        let card = Card::listen(plan.port, frame_bytes).map_err(failed)?;
-        let port = card.port().map_err(failed)?;
+        let failed = |e: io::Error| format!("UDP port {} can't be listened to: {e}", plan.port);
+        let wanted = plan.port;
+        let listen = move || Card::listen(wanted, frame_bytes);
+        // The thread that had the port lets go of it soon: the next one waits for that, not the window.
+        let card = listen().map(Some).or_else(|e| if tries > 0 { Ok(None) } else { Err(e) }).map_err(failed)?;
+        let port = card.as_ref().map_or(Ok(wanted), Card::port).map_err(failed)?;
         let shared = Arc::new(Between::default());
         let (sender, recordings) = sync_channel(1);
         let (of_card, wake) = (shared.clone(), platform::waker(&self.wake));
+        let card = move || match card {
+            Some(card) => Ok(card),
+            None => (0..tries).fold(listen(), |card, _| card.or_else(|_| listen_later(&listen))),
+        };
         platform::spawn("card", move || receive(card, &of_card, wake)).map_err(failed)?;
         let (of_frames, wake, read) = (shared.clone(), platform::waker(&self.wake), plan.clone());
         platform::spawn("card's frames", move || read_frames(&of_frames, &read, &sender, wake)).map_err(failed)?;
@@ -152,8 +159,14 @@ impl Between {
     }
 }
 
+/// Tries a port once more, after a while.
+fn listen_later(listen: &impl Fn() -> io::Result<Card>) -> io::Result<Card> {
+    std::thread::sleep(BETWEEN_TRIES);
+    listen()
+}
+
 /// Takes packets until the end; the newest frame waits, and one that it takes the place of is dropped.
-fn receive(card: Card, shared: &Between, wake: impl Fn()) {
+fn receive(card: impl FnOnce() -> io::Result<Card>, shared: &Between, wake: impl Fn()) {
     let hand = |frame: CardFrame| {
         let before = lock(&shared.held).newest.replace(frame);
         shared.changed.notify_all();
@@ -165,7 +178,7 @@ fn receive(card: Card, shared: &Between, wake: impl Fn()) {
         held.summary = *summary;
         !held.is_over
     };
-    if let Err(error) = card.run(hand, goes_on) {
+    if let Err(error) = card().and_then(|card| card.run(hand, goes_on)) {
         shared.end(Some(error.to_string()));
         wake();
     }

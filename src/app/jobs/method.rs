@@ -43,19 +43,6 @@ impl Basis {
         })
     }
 
-    /// The radar.
-    pub fn radar(&self) -> &Radar {
-        &self.radar
-    }
-
-    /// A method's answer from scratch.
-    ///
-    /// # Errors
-    /// As the method says.
-    pub fn reconstruct(&self, method: &dyn Reconstructor, task: Task) -> Result<Reconstruction, ReconstructError> {
-        method.reconstruct(&self.radar, &self.ends, &self.request(false, task))
-    }
-
     fn request(&self, may_follow: bool, task: Task) -> Request {
         Request {
             noise: self.noise,

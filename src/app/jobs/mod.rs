@@ -5,7 +5,6 @@ mod age;
 mod background;
 mod bounds;
 mod calibration;
-mod camera;
 mod chirp;
 mod derived;
 mod detected;
@@ -21,13 +20,11 @@ mod listening;
 mod maps;
 mod memo;
 mod method;
-mod method_times;
 mod one_scale;
 mod painter;
 mod phasors;
 mod pipeline;
 mod recorded;
-mod recording;
 mod rest;
 mod rows;
 mod run_time;
@@ -63,11 +60,8 @@ pub use lessons::Lessons;
 pub use listening::{Listening, is_live};
 pub use memo::Memo;
 pub use method::Refusal;
-pub use method_times::TimesPlan;
 pub use phasors::{PhasorsQuery, PhasorsResult};
 pub use pipeline::{Pipeline, Wants};
-pub use recording::Recorder;
-use recording::Window;
 use rows::RowJob;
 pub use run_time::RunTimePlan;
 pub use scene_maps::Scores;
@@ -79,7 +73,7 @@ pub use training::{Log, Training};
 
 use crate::app::state::{Command, DocumentCommand, Panel, Purpose, RowsCommand, State, ViewCommand};
 use crate::interact::Autosave;
-use crate::platform::{self, Instant};
+use crate::platform;
 use eframe::egui::{Context, DroppedFile};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -98,8 +92,6 @@ pub struct Jobs {
     pub failures: Failures,
     /// Run time against error.
     pub run_time: RowJob<RunTimePlan>,
-    /// How long every method takes.
-    pub method_times: RowJob<TimesPlan>,
     /// A training that is watched.
     pub training: Training,
     /// One map for several values.
@@ -112,8 +104,6 @@ pub struct Jobs {
     pub lessons: Lessons,
     /// Files being written.
     pub exports: Exports,
-    /// Pictures for slides.
-    pub recorder: Recorder,
     /// A capture card that is listened to.
     pub listening: Listening,
     /// Files being chosen.
@@ -123,8 +113,6 @@ pub struct Jobs {
     wake: Context,
     /// Where the app keeps its files, if anywhere.
     folder: Option<PathBuf>,
-    /// Whether everything that is drawn was there at the end of the frame before.
-    was_done: bool,
 }
 
 impl Jobs {
@@ -139,20 +127,17 @@ impl Jobs {
             thresholds: RowJob::start(wake.clone()),
             failures: Failures::start(folder, ctx),
             run_time: RowJob::start(wake.clone()),
-            method_times: RowJob::start(wake.clone()),
             training: Training::start(wake.clone()),
             several: SeveralMaps::start(wake.clone()),
             kinds: Derived::start(wake.clone()),
             theory: Derived::start(wake),
             lessons: Lessons::start(ctx),
             exports: Exports::new(ctx.clone()),
-            recorder: Recorder::start(ctx.clone()),
             listening: Listening::new(ctx.clone()),
             dialogs,
             autosave: folder.map(Autosave::claim).transpose()?,
             wake: ctx.clone(),
             folder: folder.map(Path::to_path_buf),
-            was_done: false,
         })
     }
 
@@ -167,8 +152,7 @@ impl Jobs {
         errors.extend(failed);
         errors.extend(self.thresholds.poll());
         errors.extend(self.run_time.poll());
-        errors.extend(self.method_times.poll());
-        self.record_times(state);
+        self.pipeline.record_times(&mut state.method_times);
         errors.extend(self.training.poll());
         errors.extend(self.several.poll());
         errors.extend(self.lessons.poll(state));
@@ -183,9 +167,6 @@ impl Jobs {
         for export in self.exports.finished() {
             tell(state, export.message());
         }
-        for said in self.recorder.poll() {
-            tell(state, said);
-        }
         let (frame, failed) = self.listening.poll();
         failed.into_iter().for_each(|e| state.notices.error(e));
         chosen.extend(frame.map(|frame| DocumentCommand::ShowFrame(frame).into()));
@@ -198,15 +179,6 @@ impl Jobs {
             chosen.push(RowsCommand::TakeFinding.into());
         }
         chosen
-    }
-
-    /// Keeps how long methods took, on screen and where they were timed.
-    fn record_times(&mut self, state: &mut State) {
-        self.pipeline.record_times(&mut state.method_times);
-        let timed = self.method_times.take_rows();
-        if let Some(plan) = self.method_times.plan() {
-            timed.into_iter().for_each(|(method, took)| state.method_times.record(plan.radar(), method, took));
-        }
     }
 
     /// Asks for what the panels of this frame need, if that changed; `wants` is what they read of maps and methods.
@@ -233,33 +205,6 @@ impl Jobs {
             self.wake.request_repaint_after(BAR);
         }
         self.keep_unsaved(state);
-    }
-
-    /// Takes the pictures of the window that are due; `draws_more` is whether something of a panel is still computed.
-    pub fn take_pictures(&mut self, state: &State, draws_more: bool) {
-        let is_outdated = state.pictured().into_iter().any(|kind| self.pipeline.is_outdated(kind));
-        // Maps are computed once more when the scene comes to rest.
-        let is_done = !draws_more && !self.draws_more() && self.pipeline.maps.rests_in().is_none() && !is_outdated;
-        // What came after this frame was drawn is drawn in the next.
-        let is_whole = std::mem::replace(&mut self.was_done, is_done) && is_done;
-        let is_dimmed = state.pictured().into_iter().any(|kind| self.pipeline.is_stale(kind));
-        self.recorder
-            .look(Window { is_dragged: state.editor.dragged().is_some(), is_dimmed, is_whole }, Instant::now());
-    }
-
-    /// Whether a picture of the window is taken: no message may stand in it.
-    pub fn hides_messages(&self) -> bool {
-        let now = Instant::now();
-        self.recorder.hides_messages(now)
-    }
-
-    /// Whether something that panels draw is still being computed.
-    fn draws_more(&self) -> bool {
-        self.pipeline.is_busy()
-            || self.kinds.is_busy()
-            || self.theory.is_busy()
-            || self.several.is_busy()
-            || self.lessons.is_reading()
     }
 
     /// Keeps copies of what is unsaved, but not while something is dragged.
@@ -305,16 +250,15 @@ impl Jobs {
         state.settings.own_scenes.clone().or_else(usual)
     }
 
-    /// A folder of its own for a training by the recipe called `name`; `None` where the app keeps no files.
-    #[cfg(feature = "network")]
-    pub fn new_run(&self, name: &str) -> Option<PathBuf> {
-        let runs = self.folder.as_ref()?.join("runs");
-        (1u32..).map(|n| runs.join(format!("{name}-{n}"))).find(|run| !run.exists())
-    }
-
     /// Whether maps, output or bounds are being computed.
     pub fn is_busy(&self) -> bool {
-        self.draws_more() || self.failures.is_busy() || self.autosave.as_ref().is_some_and(|a| a.is_busy())
+        self.pipeline.is_busy()
+            || self.kinds.is_busy()
+            || self.theory.is_busy()
+            || self.several.is_busy()
+            || self.lessons.is_reading()
+            || self.failures.is_busy()
+            || self.autosave.as_ref().is_some_and(|a| a.is_busy())
     }
 }
 

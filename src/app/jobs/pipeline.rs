@@ -67,11 +67,6 @@ impl Pipeline {
         }
     }
 
-    /// What a method gets of the scene on screen, where an output is wanted.
-    pub fn basis(&self) -> Option<Basis> {
-        Basis::of(self.maps.result()?)
-    }
-
     /// Asks the workers for what the panels of this frame need, if that changed.
     pub fn ask(&mut self, state: &State, wants: Wants) {
         let pictures = state.pictured();
@@ -259,11 +254,6 @@ impl Pipeline {
     /// Whether the shown output belongs to something else than the shown maps.
     pub fn output_is_outdated(&self) -> bool {
         self.method(MethodSlot::First).outdated().is_some()
-    }
-
-    /// Whether a map belongs to an earlier scene.
-    pub fn is_outdated(&self, kind: MapKind) -> bool {
-        self.maps.waiting().is_some() || kind.slot().is_some_and(|slot| self.method(slot).outdated().is_some())
     }
 
     /// Whether a map has belonged to an earlier scene for so long that it must be told.

@@ -1,12 +1,9 @@
-//! A training that is watched: the log of one that runs elsewhere, or of one started from here as a process of its own.
+//! A training that is watched: its log, which grows.
 
 use crate::files::read_bounded;
 use crate::platform::Instant;
 use crate::task::{Reply, Task, Worker};
 use std::path::{Path, PathBuf};
-use std::process::Child;
-#[cfg(feature = "network")]
-use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// Time between two looks at the log.
@@ -76,12 +73,6 @@ fn read_log(path: &Path) -> std::io::Result<String> {
     String::from_utf8(read_bounded(path, MAX_LOG_BYTES)?).map_err(std::io::Error::other)
 }
 
-/// A training started from here.
-struct Started {
-    child: Child,
-    steps: Option<u64>,
-}
-
 /// What is watched.
 pub struct Training {
     worker: Worker<PathBuf, Result<Log, String>>,
@@ -89,9 +80,6 @@ pub struct Training {
     looked: Option<Instant>,
     log: Option<Log>,
     note: Option<String>,
-    started: Option<Started>,
-    /// Whether the log is that of a training started from here, which may end before it has one.
-    own: bool,
 }
 
 impl Training {
@@ -102,7 +90,7 @@ impl Training {
             Log::parse(&text).map_err(|e| format!("{}: {e}", path.display()))
         };
         let worker = Worker::spawn("training log", || (), read, wake);
-        Training { worker, path: None, looked: None, log: None, note: None, started: None, own: false }
+        Training { worker, path: None, looked: None, log: None, note: None }
     }
 
     /// The log that is followed.
@@ -115,59 +103,14 @@ impl Training {
         self.log.as_ref()
     }
 
-    /// What is wrong with it, or how the training ended.
+    /// What is wrong with it.
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()
     }
 
     /// Follows a log.
     pub fn follow(&mut self, path: PathBuf) {
-        self.own = false;
         (self.path, self.log, self.note, self.looked) = (Some(path), None, None, None);
-    }
-
-    /// Starts `apertura train RECIPE` as a process of its own, its run in `folder`, and follows its log. `steps` is what it will take in all.
-    ///
-    /// # Errors
-    /// When the program can't be started.
-    #[cfg(feature = "network")]
-    pub fn begin(&mut self, recipe: &str, folder: &Path, steps: Option<u64>) -> std::io::Result<()> {
-        if let Some(parent) = folder.parent() {
-            std::fs::create_dir_all(parent)?;
-        }
-        let child = Command::new(std::env::current_exe()?)
-            .args(["train", recipe, "--output"])
-            .arg(folder)
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()?;
-        self.follow(folder.join("log.csv"));
-        self.own = true;
-        self.started = Some(Started { child, steps });
-        Ok(())
-    }
-
-    /// Whether a training started from here runs.
-    pub fn is_running(&self) -> bool {
-        self.started.is_some()
-    }
-
-    /// The part of a training started from here that is done.
-    pub fn progress(&self) -> Option<f32> {
-        let steps = self.started.as_ref()?.steps?;
-        let done = self.log.as_ref().map_or(0.0, |l| l.step);
-        Some((done / steps.max(1) as f64) as f32)
-    }
-
-    /// Ends a training started from here; its last checkpoint stays.
-    pub fn cancel(&mut self) {
-        if let Some(mut started) = self.started.take() {
-            // It may have ended by itself a moment ago.
-            let _ended = started.child.kill();
-            let _status = started.child.wait();
-            self.note = Some("stopped; its last checkpoint stays in the folder of the log".to_owned());
-        }
     }
 
     /// Looks at the log again once a while; called while the panel is visible. Returns when to call again.
@@ -175,10 +118,7 @@ impl Training {
         let due = self.looked.is_none_or(|t| t.elapsed() >= LOG_INTERVAL);
         if let Some(path) = self.path.clone().filter(|_| due && !self.worker.is_busy()) {
             self.looked = Some(Instant::now());
-            // A training that has just begun has no log yet, and one that was stopped at once never has.
-            if !self.own || path.exists() {
-                self.worker.request(path);
-            }
+            self.worker.request(path);
         }
         self.path.as_ref().map(|_| LOG_INTERVAL)
     }
@@ -186,18 +126,6 @@ impl Training {
     /// Takes in what was read. Returns a message for the user.
     pub fn poll(&mut self) -> Option<String> {
         let mut message = None;
-        if let Some(started) = &mut self.started
-            && let Ok(Some(status)) = started.child.try_wait()
-        {
-            self.started = None;
-            self.looked = None;
-            self.note = Some(if status.success() {
-                "finished; the weights are in the folder of the log".to_owned()
-            } else {
-                message = Some(format!("The training ended with {status}. Run it on the command line to see why."));
-                format!("ended with {status}")
-            });
-        }
         for reply in self.worker.replies() {
             match reply {
                 Reply::Done { result: Ok(log), .. } => self.log = Some(log),
@@ -206,12 +134,6 @@ impl Training {
             }
         }
         message
-    }
-}
-
-impl Drop for Training {
-    fn drop(&mut self) {
-        self.cancel();
     }
 }
 
@@ -244,18 +166,13 @@ mod tests {
     }
 
     #[test]
-    fn a_training_stopped_before_its_first_line_is_not_looked_for() {
+    fn a_log_that_is_missing_is_told() {
         let (wake, woken) = std::sync::mpsc::channel();
         let mut training = Training::start(move || wake.send(()).unwrap());
-        let missing = PathBuf::from("/there/is/no/log.csv");
-        training.follow(missing.clone());
-        training.own = true;
-        training.look();
-        assert!(!training.worker.is_busy(), "nobody asks for what was never begun");
-        training.follow(missing);
+        training.follow(PathBuf::from("/there/is/no/log.csv"));
         training.look();
         woken.recv_timeout(Duration::from_secs(20)).unwrap();
         training.poll();
-        assert!(training.note().unwrap().contains("log.csv"), "but a log that somebody chose is missed");
+        assert!(training.note().unwrap().contains("log.csv"));
     }
 }

@@ -1,7 +1,6 @@
-//! Two methods on the scene on screen: side by side, flipped in place, or parted by an edge.
+//! Two methods on the scene on screen: side by side, or flipped in place.
 
-use super::map::{self, Over};
-use super::map::{MapMemory, caption_of as caption, is_updating, map_input, marks_of, verdict};
+use super::map::{self, MapMemory, caption_of as caption, is_updating, map_input, marks_of, verdict};
 use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::{Jobs, Wants};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView, MethodSlot, State, ViewCommand, WorkCommand};
@@ -61,7 +60,7 @@ impl Content for ComparePanel {
         let second = jobs.pipeline.method(MethodSlot::Second);
         let input = Input {
             compare: &state.settings.compare,
-            methods: offered(state, jobs),
+            methods: offered(state),
             chosen: MethodSlot::BOTH.map(|slot| state.method_in(slot).map_or("", |m| m.name())),
             maps: kinds.iter().zip(textures).map(map).collect(),
             progress: second.progress(),
@@ -110,12 +109,11 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map:
         let Input { compare, maps, .. } = input;
         let places = match compare.layout {
             Layout::Beside => grid(area, maps.len()),
-            Layout::Flip | Layout::Swipe => vec![area],
+            Layout::Flip => vec![area],
         };
         let maps = match compare.layout {
             Layout::Beside => maps,
             Layout::Flip => maps.into_iter().skip(compare.front).take(1).collect(),
-            Layout::Swipe => swiped(maps, compare.edge),
         };
         for (index, (place, Titled { title, map })) in places.into_iter().zip(maps).enumerate() {
             let is_old = map.stale;
@@ -141,16 +139,6 @@ fn grid(area: Rect, count: usize) -> Vec<Rect> {
     (0..count).map(|i| Rect::from_min_size(corner(i), size).shrink(2.0)).collect()
 }
 
-/// The first map, the second over its right part.
-fn swiped(maps: Vec<Titled<'_>>, edge: f32) -> Vec<Titled<'_>> {
-    let mut maps = maps.into_iter();
-    let (Some(mut left), Some(right)) = (maps.next(), maps.next()) else { return Vec::new() };
-    let map::Input { texture, stale, error, cells, .. } = right.map;
-    left.map.over = Some(Over { texture, stale, error, cells, edge });
-    left.title = format!("{}  |  {}", left.title, right.title);
-    vec![left]
-}
-
 fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let mut compare = input.compare.clone();
     ui.horizontal_wrapped(|ui| {
@@ -165,7 +153,6 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             let tip = match layout {
                 Layout::Beside => "Both outputs above, their differences from the target below",
                 Layout::Flip => "One of two maps, in the same place as the other",
-                Layout::Swipe => "One map left of an edge, the other right of it",
             };
             if ui.selectable_label(compare.layout == layout, layout.name()).on_hover_text(tip).clicked() {
                 compare.layout = layout;
@@ -210,16 +197,14 @@ fn method(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::state::EditCommand;
     use crate::app::state::Projection;
     use crate::app::widgets::seen;
     use crate::interact::Selection;
     use crate::radar::Radar;
     use crate::reconstruct::{Baseline, CAPON, Reconstructor};
     use crate::scene::Scene;
-    use eframe::egui;
+    use eframe::egui::TextureId;
     use eframe::egui::accesskit::Role;
-    use eframe::egui::{Key, TextureId};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;
@@ -285,50 +270,6 @@ mod tests {
         assert!(panel.query_by_label("Output map").is_none());
     }
 
-    const EDGE: &str = "Edge between two maps";
-
-    /// Where the edge was asked to be.
-    fn swipes(panel: &Harness<'_, Held>) -> Vec<f32> {
-        let edge = |c: &Command| if let Command::View(ViewCommand::Swipe(edge)) = c { Some(*edge) } else { None };
-        panel.state().asked.iter().filter_map(edge).collect()
-    }
-
-    #[test]
-    fn the_edge_is_dragged() {
-        let mut panel = panel(Layout::Swipe);
-        let map = panel.get_by_label("Output map").rect();
-        let edge = panel.get_by_role_and_label(Role::Slider, EDGE).rect().center();
-        assert!((edge.x - map.center().x).abs() < 1.0);
-        let from = edge + vec2(0.0, 60.0);
-        panel.hover_at(from);
-        panel.step();
-        panel.drag_at(from);
-        panel.step();
-        panel.hover_at(from + vec2(-map.width() / 4.0, 0.0));
-        panel.step();
-        panel.drop_at(from + vec2(-map.width() / 4.0, 0.0));
-        panel.step();
-        let dragged = swipes(&panel);
-        assert!(dragged.last().is_some_and(|edge| (edge - 0.25).abs() < 0.01), "{dragged:?}");
-        assert!(
-            !panel.state().asked.iter().any(|c| matches!(c, Command::Edit(EditCommand::Grab(_)))),
-            "the map beneath stays"
-        );
-    }
-
-    #[test]
-    fn arrow_keys_move_the_edge() {
-        let mut panel = panel(Layout::Swipe);
-        panel.get_by_role_and_label(Role::Slider, EDGE).focus();
-        panel.run_steps(2);
-        panel.key_press(Key::ArrowRight);
-        panel.run_steps(2);
-        panel.key_press_modifiers(egui::Modifiers::SHIFT, Key::ArrowLeft);
-        panel.run_steps(2);
-        let [right, left] = swipes(&panel)[..] else { panic!("{:?}", panel.state().asked) };
-        assert!((right - 0.51).abs() < 1e-6 && (left - 0.4).abs() < 1e-6, "{right}, {left}");
-    }
-
     /// The comparison that was asked for last.
     fn asked_for(panel: &Harness<'_, Held>) -> Compare {
         match panel.state().asked.last() {
@@ -339,7 +280,7 @@ mod tests {
 
     #[test]
     fn the_second_method_is_chosen_from_a_list() {
-        let mut panel = panel(Layout::Swipe);
+        let mut panel = panel(Layout::Flip);
         panel.get_by_label("Second").click();
         panel.run_steps(2);
         panel.get_by_role_and_label(Role::Button, "baseline").click();
@@ -349,7 +290,7 @@ mod tests {
 
     #[test]
     fn the_second_map_is_chosen_from_a_list() {
-        let mut panel = panel(Layout::Swipe);
+        let mut panel = panel(Layout::Flip);
         panel.get_by_label("and").click();
         panel.run_steps(2);
         panel.get_by_label("Target").click();
@@ -359,7 +300,7 @@ mod tests {
 
     #[test]
     fn a_second_method_that_runs_can_be_cancelled() {
-        let mut panel = panel(Layout::Swipe);
+        let mut panel = panel(Layout::Beside);
         panel.state_mut().progress = Some(0.4);
         panel.run_steps(2);
         panel.get_by_label("Cancel").click();
@@ -368,13 +309,11 @@ mod tests {
     }
 
     #[test]
-    fn a_second_method_that_refuses_says_why_in_either_layout() {
-        for layout in [Layout::Beside, Layout::Swipe] {
-            let mut panel = panel(layout);
-            panel.state_mut().refused = true;
-            panel.run_steps(2);
-            let texts = seen::texts(panel.output());
-            assert!(texts.iter().any(|t| t.text == "needs more samples"), "{layout:?}: {texts:?}");
-        }
+    fn a_second_method_that_refuses_says_why() {
+        let mut panel = panel(Layout::Beside);
+        panel.state_mut().refused = true;
+        panel.run_steps(2);
+        let texts = seen::texts(panel.output());
+        assert!(texts.iter().any(|t| t.text == "needs more samples"), "{texts:?}");
     }
 }

@@ -100,7 +100,7 @@ impl Content for ControlsPanel {
             settings: &state.settings,
             radar: state.radar(),
             noise_seed: state.editor.scene().noise_seed,
-            methods: offered(state, jobs),
+            methods: offered(state),
             method: state.method().map(|m| m.as_ref()),
             eta: pipeline.eta(state, MethodSlot::First),
             range_db: pipeline.range_db(),

@@ -51,6 +51,7 @@ impl Content for FoundPanel {
     type Remembers = ();
     const WANTS: Wants = Wants { listed: true, ..Wants::OUTPUT };
     const MARKS_AGE: bool = true;
+    const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);
@@ -59,7 +60,7 @@ impl Content for FoundPanel {
         let input = Input {
             draws_only: state.method().map(|m| m.name()).filter(|_| !state.finds_reflectors()),
             method: output.map(|o| o.method),
-            found: output.filter(|_| !state.is_predicting()).and_then(|o| o.found.as_deref()),
+            found: output.and_then(|o| o.found.as_deref()),
             attempts: output.map_or(&[], |o| o.attempts.as_slice()),
             objects: &state.editor.scene().objects,
             refusal: pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str()),

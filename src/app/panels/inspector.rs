@@ -7,7 +7,7 @@ mod slider;
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand, NewObject};
 use crate::app::widgets::direction::angle_of_place_degrees;
-use crate::app::widgets::entry::{arrange, button, press};
+use crate::app::widgets::entry::{button, press};
 use crate::app::widgets::numbers::signed;
 use crate::app::widgets::padded::scrolled;
 use crate::interact::{Coordinates, Editor};
@@ -103,9 +103,6 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         button(ui, "Duplicate", EditCommand::Duplicate, true, asked);
         button(ui, "Delete", EditCommand::Delete, true, asked);
-        if object.is_none() {
-            ui.menu_button("Arrange", |ui| arrange(ui, asked)).response.on_hover_text("Align and distribute them");
-        }
     });
 }
 

@@ -72,7 +72,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut LessonMemory) -> Vec<Com
         pinned_question(ui, run, memory, &mut asked);
     }
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
-        let mut scroll = ScrollArea::vertical().auto_shrink([false, false]);
+        let mut scroll = ScrollArea::vertical().min_scrolled_height(0.0).auto_shrink([false, false]);
         if begins {
             scroll = scroll.vertical_scroll_offset(0.0);
         }
@@ -101,7 +101,9 @@ fn pinned_question(ui: &mut Ui, run: &LessonRun, memory: &mut LessonMemory, aske
     let most = MOST_OF_HEIGHT * ui.available_height();
     let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 6));
     egui::Panel::bottom("question").frame(frame).show(ui, |ui| {
-        ScrollArea::vertical().max_height(most).auto_shrink([false, true]).show(ui, |ui| {
+        // As high as the question: what remains is for the text above.
+        let scroll = ScrollArea::vertical().max_height(most).min_scrolled_height(most).auto_shrink([false, true]);
+        scroll.show(ui, |ui| {
             ui.label(large(ui, &question.ask).strong());
             answer(ui, question, memory, asked);
         });
@@ -156,7 +158,10 @@ fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command
         }
         let leave = if is_last { "Finish" } else { "Exit lesson" };
         press(ui, leave, "Your scene, settings, panels and zoom come back", || LessonCommand::Leave, asked);
-        whole_screen(ui, presenting, asked);
+        // The bar at the top ends a presentation.
+        if !presenting {
+            whole_screen(ui, presenting, asked);
+        }
     });
 }
 

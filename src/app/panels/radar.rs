@@ -13,7 +13,7 @@ use crate::app::widgets::padded::scrolled_both;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
 pub use budget::Selected;
-use eframe::egui::{Align, Color32, ComboBox, Grid, Label, Layout, RichText, TextStyle, Ui, vec2};
+use eframe::egui::{ComboBox, Grid, Label, RichText, Ui};
 use table::{GAP, Table, number};
 
 /// What is shown.
@@ -129,22 +129,13 @@ fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
         };
         labelled(ui, "Start from", "Radars that are built, and radars that show what a constant does", menu);
     });
-    about(ui, chosen.map_or(OF_YOUR_OWN, |preset| preset.about));
+    // One line, whichever radar it is: the table below stays where it is. The pointer shows the whole text.
+    let about = chosen.map_or(OF_YOUR_OWN, |preset| preset.about);
+    ui.add(Label::new(RichText::new(about).weak()).truncate());
 }
 
 /// What is told of a radar that is no preset.
 const OF_YOUR_OWN: &str = "Its constants are those of no radar in the list.";
-
-/// What a radar is, in as much room as the longest of these texts takes: whichever it is, the table below stays where it is.
-fn about(ui: &mut Ui, text: &str) {
-    let (font, width) = (TextStyle::Body.resolve(ui.style()), ui.available_width());
-    let height = |text: &str| ui.painter().layout(text.to_owned(), font.clone(), Color32::PLACEHOLDER, width).size().y;
-    let most = presets::ALL.iter().map(|preset| height(preset.about)).fold(0.0, f32::max);
-    ui.allocate_ui_with_layout(vec2(width, most), Layout::top_down(Align::Min), |ui| {
-        ui.set_min_height(most);
-        ui.add(Label::new(RichText::new(text).weak()).wrap());
-    });
-}
 
 const CARRIER: Quantity = Quantity::metres(
     "carrier",

@@ -44,10 +44,11 @@ impl Content for RocPanel {
     type Asks = Nothing;
     type Remembers = ();
     const WANTS: Wants = Wants { roc: true, ..Wants::OUTPUT };
+    const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);
-        let shown = pipeline.maps.result().filter(|_| !state.is_predicting());
+        let shown = pipeline.maps.result();
         let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
         let method = pipeline.output().map_or("output", |o| o.method);
         let refusal = pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str());

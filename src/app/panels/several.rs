@@ -23,8 +23,6 @@ pub struct Input<'a> {
     pub methods: Offered<'a>,
     /// The maps.
     pub maps: &'a [Small],
-    /// Whether pictures are hidden: a prediction is asked for.
-    pub veiled: bool,
 }
 
 /// Pictures on the graphics card.
@@ -42,15 +40,15 @@ pub struct SeveralPanel;
 impl Content for SeveralPanel {
     type Asks = Nothing;
     type Remembers = SeveralMemory;
+    const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let state = &*cx.state;
         let input = Input {
             several: &state.settings.several,
             radar: state.radar(),
-            methods: offered(state, cx.jobs),
+            methods: offered(state),
             maps: cx.jobs.several.shown(),
-            veiled: state.is_predicting(),
         };
         show(ui, input, cx.memory)
     }
@@ -60,10 +58,6 @@ impl Content for SeveralPanel {
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut SeveralMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         choices(ui, &input, asked);
-        if input.veiled {
-            ui.weak("Hidden until you have predicted.");
-            return;
-        }
         if input.maps.is_empty() {
             ui.weak("No radar can have these values.");
             return;
@@ -195,12 +189,11 @@ mod tests {
 
     struct Drawn {
         several: Several,
-        veiled: bool,
         memory: SeveralMemory,
         asked: Vec<Command>,
     }
 
-    fn harness(parameter: Parameter, veiled: bool) -> Harness<'static, Drawn> {
+    fn harness(parameter: Parameter) -> Harness<'static, Drawn> {
         let draw = |ui: &mut Ui, drawn: &mut Drawn| {
             let radar = Radar::default();
             let variants = drawn.several.variants(&radar, Floor::Thesis, None, &[]);
@@ -212,31 +205,25 @@ mod tests {
                     is_current: true,
                 })
                 .collect();
-            let input = Input {
-                several: &drawn.several,
-                radar: &radar,
-                methods: Offered::untimed(&[]),
-                maps: &maps,
-                veiled: drawn.veiled,
-            };
+            let input = Input { several: &drawn.several, radar: &radar, methods: Offered::untimed(&[]), maps: &maps };
             let asked = show(ui, input, &mut drawn.memory);
             drawn.asked.extend(asked);
         };
         let several = Several::default().with(parameter, &Radar::default());
-        let drawn = Drawn { several, veiled, memory: SeveralMemory::default(), asked: Vec::new() };
+        let drawn = Drawn { several, memory: SeveralMemory::default(), asked: Vec::new() };
         Harness::builder().with_size([900.0, 500.0]).build_ui_state(draw, drawn)
     }
 
     #[test]
     fn a_map_that_is_clicked_puts_its_value_before_the_scene() {
-        let mut panel = harness(Parameter::Window, false);
+        let mut panel = harness(Parameter::Window);
         panel.get_by_label("window: rectangular").click();
         panel.step();
         assert_eq!(
             panel.state().asked,
             [Command::Radar(RadarCommand::SetWindow(crate::radar::WindowFunction::Rectangular))]
         );
-        let mut panel = harness(Parameter::Bandwidth, false);
+        let mut panel = harness(Parameter::Bandwidth);
         panel.get_by_label("bandwidth: 4.00 GHz").click();
         panel.step();
         let [Command::Radar(RadarCommand::Set(radar))] = panel.state().asked.as_slice() else {
@@ -247,7 +234,7 @@ mod tests {
 
     #[test]
     fn another_parameter_comes_with_its_usual_values_and_map() {
-        let mut panel = harness(Parameter::Window, false);
+        let mut panel = harness(Parameter::Window);
         panel.get_by_label("Compare").click();
         panel.step();
         panel.step();
@@ -257,13 +244,6 @@ mod tests {
             panic!("{:?}", panel.state().asked)
         };
         assert_eq!((several.parameter, several.map, several.low), (Parameter::EndElements, MapKind::Input0, 3.0));
-    }
-
-    #[test]
-    fn a_prediction_hides_all_of_them() {
-        let panel = harness(Parameter::Window, true);
-        assert!(panel.query_by_label("window: rectangular").is_none());
-        assert!(panel.query_by_label_contains("predicted").is_some());
     }
 
     #[test]

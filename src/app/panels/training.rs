@@ -1,14 +1,13 @@
-//! A training watched: its loss, and how far it is.
+//! A training watched: its loss.
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Log;
-use crate::app::state::{Command, Purpose, WorkCommand};
+use crate::app::state::{Command, Purpose};
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::entry::button;
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::padded::padded;
-use crate::app::widgets::progress::progress;
 use crate::app::widgets::theme;
 use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
@@ -20,37 +19,8 @@ pub struct Input<'a> {
     pub path: Option<&'a Path>,
     /// What it says.
     pub log: Option<&'a Log>,
-    /// What is wrong with it, or how the training ended.
+    /// What is wrong with it.
     pub note: Option<&'a str>,
-    /// The part that is done of a training started from here.
-    pub running: Option<f32>,
-}
-
-/// A recipe that a training can be started by.
-struct Listed {
-    name: &'static str,
-    description: String,
-}
-
-/// The recipes, read once.
-pub struct TrainingMemory {
-    recipes: Vec<Listed>,
-}
-
-impl Default for TrainingMemory {
-    #[cfg(feature = "network")]
-    fn default() -> Self {
-        use crate::network::recipe::{Recipe, SHIPPED};
-        let read = |(name, text): &(&'static str, &'static str)| {
-            Recipe::parse(name, text).ok().map(|recipe| Listed { name, description: recipe.description })
-        };
-        TrainingMemory { recipes: SHIPPED.iter().filter_map(read).collect() }
-    }
-
-    #[cfg(not(feature = "network"))]
-    fn default() -> Self {
-        TrainingMemory { recipes: Vec::new() }
-    }
 }
 
 /// Draws [`Panel::Training`](crate::app::state::Panel::Training).
@@ -58,29 +28,18 @@ pub struct TrainingPanel;
 
 impl Content for TrainingPanel {
     type Asks = Nothing;
-    type Remembers = TrainingMemory;
+    type Remembers = ();
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let job = &cx.jobs.training;
-        let running = job.is_running().then(|| job.progress().unwrap_or(0.0));
-        show(ui, Input { path: job.path(), log: job.log(), note: job.note(), running }, cx.memory)
+        show(ui, Input { path: job.path(), log: job.log(), note: job.note() })
     }
 }
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut TrainingMemory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     padded(ui, |ui, asked| {
-        ui.horizontal_wrapped(|ui| {
-            button(ui, "Open training log…", Purpose::OpenLog, true, asked);
-            match input.running {
-                Some(part) => {
-                    if progress(ui, part, 140.0, "Stop the training; its last checkpoint stays") {
-                        asked.push(WorkCommand::CancelTraining.into());
-                    }
-                }
-                None => start(ui, memory, asked),
-            }
-        });
+        button(ui, "Open training log…", Purpose::OpenLog, true, asked);
         if let Some(note) = input.note {
             ui.colored_label(ui.visuals().warn_fg_color, note);
         }
@@ -94,7 +53,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut TrainingMemory) -> Vec<C
 /// What stands where there is no curve yet.
 fn waiting(input: &Input<'_>) -> String {
     match input.path {
-        // Who was told how it ended waits for nothing.
+        // A log that can't be read is not waited for.
         Some(path) if input.note.is_none() => format!("Waiting for the first line of {}…", path.display()),
         Some(path) => format!("{} has no line.", path.display()),
         None => "Open the log.csv of a training (apertura train), and watch its loss while it learns.".to_owned(),
@@ -138,47 +97,20 @@ fn short(value: f64) -> String {
     if value == value.trunc() && value.abs() < 1e9 { format!("{value}") } else { format!("{value:.4e}") }
 }
 
-/// A menu of the recipes that can be started.
-fn start(ui: &mut Ui, memory: &TrainingMemory, asked: &mut Vec<Command>) {
-    if memory.recipes.is_empty() {
-        ui.weak("This build can't train.");
-        return;
-    }
-    let menu = ui.menu_button("Train…", |ui| {
-        ui.weak("Starts a training on this machine's processor, which it will keep busy for long.");
-        for recipe in &memory.recipes {
-            if ui.button(recipe.name).on_hover_text(&recipe.description).clicked() {
-                ui.close();
-                asked.push(WorkCommand::Train(recipe.name).into());
-            }
-        }
-    });
-    menu.response.on_hover_text("Start a training by a recipe and watch it");
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    fn panel(note: Option<&'static str>, running: Option<f32>) -> Harness<'static, (TrainingMemory, Vec<Command>)> {
-        let draw = move |ui: &mut Ui, state: &mut (TrainingMemory, Vec<Command>)| {
-            let input = Input { path: Some(Path::new("log.csv")), log: None, note, running };
-            let commands = show(ui, input, &mut state.0);
-            state.1.extend(commands);
-        };
-        Harness::builder().with_size([500.0, 300.0]).build_ui_state(draw, Default::default())
+    fn panel(note: Option<&'static str>) -> Harness<'static> {
+        let draw = move |ui: &mut Ui| _ = show(ui, Input { path: Some(Path::new("log.csv")), log: None, note });
+        Harness::builder().with_size([500.0, 300.0]).build_ui(draw)
     }
 
     #[test]
-    fn a_training_that_was_stopped_waits_for_nothing() {
-        let mut waits = panel(None, Some(0.0));
-        let _waiting = waits.get_by_label_contains("Waiting for the first line");
-        waits.get_by_label("Cancel").click();
-        waits.step();
-        assert_eq!(waits.state().1, [Command::Work(WorkCommand::CancelTraining)]);
-        let stopped = panel(Some("stopped"), None);
-        assert!(stopped.query_by_label_contains("Waiting").is_none());
+    fn a_log_that_cannot_be_read_is_not_waited_for() {
+        assert!(panel(None).query_by_label_contains("Waiting for the first line").is_some());
+        assert!(panel(Some("log.csv: line 3")).query_by_label_contains("Waiting").is_none());
     }
 }

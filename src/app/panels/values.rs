@@ -43,8 +43,6 @@ pub struct Input<'a> {
     pub cursor: Cursor,
     /// The maps.
     pub rows: &'a [Row<'a>],
-    /// Whether nothing is told: a prediction is asked for.
-    pub hidden: bool,
 }
 
 /// Draws [`Panel::Values`](crate::app::state::Panel::Values).
@@ -54,11 +52,10 @@ impl Content for ValuesPanel {
     type Asks = Nothing;
     type Remembers = ();
     const WANTS: Wants = Wants { every_map: true, ..Wants::OUTPUT };
+    const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, jobs) = (&*cx.state, cx.jobs);
-        // What is to be predicted is not to be read off a table.
-        let hidden = state.is_predicting();
         let compares = state.arrangement.shown().contains(&Panel::Compare);
         let listed = |kind: &MapKind| compares || kind.slot() != Some(MethodSlot::Second);
         let row = |kind: MapKind| {
@@ -66,19 +63,14 @@ impl Content for ValuesPanel {
             let cells = cells(jobs, kind)?;
             Some(Row { kind, method, cells, updating: is_updating(jobs, kind) })
         };
-        let kinds = LISTED.into_iter().filter(listed).filter(|_| !hidden);
-        let rows: Vec<Row<'_>> = kinds.filter_map(row).collect();
-        show(ui, Input { radar: state.radar(), cursor: state.cut_cursor(), rows: &rows, hidden })
+        let rows: Vec<Row<'_>> = LISTED.into_iter().filter(listed).filter_map(row).collect();
+        show(ui, Input { radar: state.radar(), cursor: state.cut_cursor(), rows: &rows })
     }
 }
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     padded(ui, |ui, _| {
-        if input.hidden {
-            ui.weak("Hidden until you have predicted.");
-            return;
-        }
         let Some((bin, column)) = input.cursor.cell(input.radar) else {
             ui.weak("The pointer is beyond the maps.");
             return;
@@ -134,7 +126,7 @@ mod tests {
     use egui_kittest::kittest::Queryable;
     use ndarray::Array2;
 
-    fn panel(hidden: bool, bin: f64) -> Harness<'static> {
+    fn panel(bin: f64) -> Harness<'static> {
         let map = |value: f32| RangeAngleMap { lambda: Array2::from_elem((512, 1024), value) };
         let mut maps = [map(0.25), map(0.5), map(1.0)];
         maps[0].lambda[[100, 700]] = 0.75;
@@ -151,7 +143,7 @@ mod tests {
                 row(MapKind::SecondDifference, Some("capon"), cells(1, Some(2)), false),
             ];
             let cursor = Cursor::at_cell(&radar, bin, 700.0);
-            let asked = show(ui, Input { radar: &radar, cursor, rows: &rows, hidden });
+            let asked = show(ui, Input { radar: &radar, cursor, rows: &rows });
             assert!(asked.is_empty());
         };
         let mut panel = Harness::builder().with_size([360.0, 220.0]).build_ui(draw);
@@ -161,7 +153,7 @@ mod tests {
 
     #[test]
     fn every_map_tells_what_it_has_under_the_pointer() {
-        let shown = panel(false, 100.0);
+        let shown = panel(100.0);
         let texts: Vec<String> = seen::texts(shown.output()).into_iter().map(|t| t.text).collect();
         let radar = Radar::default();
         let cursor = Cursor::at_cell(&radar, 100.0, 700.0);
@@ -177,9 +169,8 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_told_before_a_prediction_or_beyond_the_maps() {
-        let _hidden = panel(true, 100.0).get_by_label("Hidden until you have predicted.");
-        let beyond = panel(false, 600.0);
+    fn nothing_is_told_beyond_the_maps() {
+        let beyond = panel(600.0);
         assert!(beyond.query_by_label("The pointer is beyond the maps.").is_some());
         assert!(beyond.query_by_label("Target").is_none());
     }

@@ -1,4 +1,4 @@
-//! Two methods on one scene: which, which maps of them, and how they are laid beside or over each other.
+//! Two methods on one scene: which, which maps of them, and how they are laid beside each other or flipped.
 
 use super::panel::MapKind;
 use serde::{Deserialize, Serialize};
@@ -11,9 +11,8 @@ named! {
         #[default]
         Beside = "Side by side",
         /// One of two maps, in the same place as the other.
+        #[serde(alias = "Swipe")]
         Flip = "Flip",
-        /// One of two maps left of an edge, the other right of it.
-        Swipe = "Swipe",
     }
 }
 
@@ -25,23 +24,15 @@ pub struct Compare {
     pub second: String,
     /// How the maps are laid out.
     pub layout: Layout,
-    /// The two maps that flip, or that an edge parts.
+    /// The two maps that flip.
     pub maps: [MapKind; 2],
     /// Which of them is on screen where they flip, 0 or 1.
     pub front: usize,
-    /// Where the edge is, as a part of the map's width.
-    pub edge: f32,
 }
 
 impl Default for Compare {
     fn default() -> Self {
-        Compare {
-            second: String::new(),
-            layout: Layout::default(),
-            maps: [MapKind::Output, MapKind::Second],
-            front: 0,
-            edge: 0.5,
-        }
+        Compare { second: String::new(), layout: Layout::default(), maps: [MapKind::Output, MapKind::Second], front: 0 }
     }
 }
 
@@ -65,7 +56,7 @@ impl Compare {
             Layout::Beside => {
                 vec![MapKind::Output, MapKind::Second, MapKind::Difference, MapKind::SecondDifference]
             }
-            Layout::Flip | Layout::Swipe => self.maps.to_vec(),
+            Layout::Flip => self.maps.to_vec(),
         }
     }
 
@@ -73,13 +64,6 @@ impl Compare {
     pub fn flip(&mut self) {
         self.front = if self.layout == Layout::Flip { (self.front + 1) % 2 } else { 0 };
         self.layout = Layout::Flip;
-    }
-
-    /// Moves the edge to a part of the map's width.
-    pub fn swipe(&mut self, edge: f32) {
-        if edge.is_finite() {
-            self.edge = edge.clamp(0.0, 1.0);
-        }
     }
 }
 
@@ -98,14 +82,5 @@ mod tests {
         compare.flip();
         assert_eq!(compare, first);
         assert_eq!(compare.maps(), [MapKind::Output, MapKind::Second], "both are made, whichever is in front");
-    }
-
-    #[test]
-    fn the_edge_stays_within_the_map() {
-        let mut compare = Compare::default();
-        for (to, edge) in [(0.25, 0.25), (1.5, 1.0), (-1.0, 0.0), (f32::NAN, 0.0)] {
-            compare.swipe(to);
-            assert_eq!(compare.edge, edge);
-        }
     }
 }

@@ -23,7 +23,6 @@ pub fn synonyms(command: &Command) -> &'static str {
             EditCommand::Add(..) => "new insert object reflector wall car target",
             EditCommand::Delete => "remove erase clear",
             EditCommand::Duplicate => "clone copy",
-            EditCommand::Align(_) | EditCommand::Distribute(_) => "arrange order space evenly",
             EditCommand::SetCoordinates(_) => "coordinates polar cartesian units",
             _ => "",
         },
@@ -49,7 +48,6 @@ fn file_words(purpose: Purpose) -> &'static str {
         Purpose::ExportPicture => "screenshot png svg image save print",
         Purpose::ExportMaps => "numpy npz data arrays save",
         Purpose::ExportMetrics => "csv numbers figures save",
-        Purpose::RecordDrag => "gif animation video movie",
         _ => "",
     }
 }
@@ -121,16 +119,14 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
             _ => &[],
         },
         Command::Edit(command) => edit_menus(command),
-        Command::Export(ExportCommand::StopRecording | ExportCommand::CopyShared | ExportCommand::CopyLink)
+        Command::Export(ExportCommand::CopyShared | ExportCommand::CopyLink)
         | Command::AskFile(
             Purpose::Open
             | Purpose::Listen(_)
             | Purpose::SaveScene
             | Purpose::ExportPicture
             | Purpose::ExportMaps
-            | Purpose::ExportMetrics
-            | Purpose::RecordDrag
-            | Purpose::DrawLesson,
+            | Purpose::ExportMetrics,
         ) => &["File"],
         Command::View(command) => view_menus(command),
         Command::Window(command) => window_menus(command),
@@ -189,7 +185,6 @@ fn edit_menus(command: &EditCommand) -> &'static [&'static str] {
         | EditCommand::SelectAll
         | EditCommand::SelectNext
         | EditCommand::SelectPrevious => &["Edit"],
-        EditCommand::Align(_) | EditCommand::Distribute(_) => &["Edit", "Arrange"],
         EditCommand::Add(..) => &["Scene"],
         _ => &[],
     }

@@ -1,7 +1,6 @@
 //! Menu entries and buttons of commands: name, tooltip and key come from the one list.
 
-use crate::app::state::{Command, EditCommand, Entry};
-use crate::interact::{Alignment, Along};
+use crate::app::state::{Command, Entry};
 use eframe::egui::{Atom, Button, IdSalt, Response, Role, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 
 /// A menu entry; a click asks for the command and closes the menu.
@@ -47,17 +46,6 @@ pub fn ticked(ui: &mut Ui, name: &str, command: impl Into<Command>, on: bool, as
     if response.on_hover_text(listed.tooltip).clicked() {
         asked.push(command);
         ui.close();
-    }
-}
-
-/// Entries that put several objects in a row.
-pub fn arrange(ui: &mut Ui, asked: &mut Vec<Command>) {
-    for command in Alignment::ALL
-        .map(|v| Command::Edit(EditCommand::Align(v)))
-        .into_iter()
-        .chain(Along::BOTH.map(|v| Command::Edit(EditCommand::Distribute(v))))
-    {
-        entry(ui, command, true, asked);
     }
 }
 

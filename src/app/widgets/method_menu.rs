@@ -2,7 +2,7 @@
 
 use super::kind_boxes::{member_box, ticking_menu};
 use super::numbers::significant;
-use crate::app::state::{Command, Times, WorkCommand};
+use crate::app::state::{Command, Times};
 use crate::radar::Radar;
 use crate::reconstruct::{Family, Reconstructor};
 use eframe::egui::{Align, Grid, Label, Layout, Response, RichText, Sense, Ui};
@@ -31,15 +31,13 @@ pub struct Offered<'a> {
     pub radar: Option<&'a Radar>,
     /// How long each takes on this machine.
     pub times: Times<'a>,
-    /// Progress of timing them, while that goes on.
-    pub timing: Option<f32>,
 }
 
 impl<'a> Offered<'a> {
     /// These methods, of whose times nothing is known.
     #[cfg(test)]
     pub fn untimed(all: &'a [Arc<dyn Reconstructor>]) -> Self {
-        Offered { all, radar: None, times: Times::default(), timing: None }
+        Offered { all, radar: None, times: Times::default() }
     }
 }
 
@@ -56,7 +54,7 @@ pub fn method_menu(ui: &mut Ui, offered: Offered<'_>, chosen: &mut BTreeSet<&'st
 }
 
 /// The contents of a popup in which one of the methods is chosen, scrolled to the one that is; what is asked for: another method by
-/// `choose`, or the times.
+/// `choose`.
 pub fn method_list(
     ui: &mut Ui,
     offered: Offered<'_>,
@@ -81,7 +79,8 @@ pub fn method_list(
     if let Some(radar) = offered.radar {
         super::networks::networks(ui, offered.all, radar, asked);
     }
-    times_footer(ui, offered, asked);
+    ui.separator();
+    ui.weak("Times are medians of the latest runs on this machine, with this radar.");
     if let Some(name) = clicked.or(described) {
         ui.close();
         if name != chosen {
@@ -97,28 +96,6 @@ fn has_opened(ui: &Ui) -> bool {
         ui.data(|d| d.get_temp::<(u64, u64)>(id)).filter(|(_, last)| last + 2 >= now).unwrap_or((now, now));
     ui.data_mut(|d| d.insert_temp(id, (first, now.max(last))));
     now <= first + 2
-}
-
-/// Where the times come from, and the button that measures all of them.
-fn times_footer(ui: &mut Ui, offered: Offered<'_>, asked: &mut Vec<Command>) {
-    ui.separator();
-    ui.horizontal_wrapped(|ui| {
-        ui.weak("Times are medians of the latest runs on this machine, with this radar.");
-        match offered.timing {
-            Some(part) => {
-                ui.weak(format!("Measuring: {:.0} %.", 100.0 * part));
-                if ui.small_button("Cancel").clicked() {
-                    asked.push(WorkCommand::CancelMethodTimes.into());
-                }
-            }
-            None => {
-                let tip = "Run every method once on the scene on screen; slow ones take seconds";
-                if ui.small_button("Measure all").on_hover_text(tip).clicked() {
-                    asked.push(WorkCommand::MeasureMethodTimes.into());
-                }
-            }
-        }
-    });
 }
 
 /// A row for each method, by family: what `name` draws of it, what it is, and its time. The method whose description was clicked.
@@ -189,7 +166,7 @@ mod tests {
         times.record(&Radar::default(), chosen, Duration::from_millis(1240));
         let all = crate::methods::all();
         let draw = move |ui: &mut Ui, popup: &mut Popup| {
-            let offered = Offered { all: &all, radar: None, times: popup.times.on(&Radar::default()), timing: None };
+            let offered = Offered { all: &all, radar: None, times: popup.times.on(&Radar::default()) };
             eframe::egui::ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
                 method_list(ui, offered, chosen, |v| ViewCommand::Method(v).into(), &mut popup.asked);
             });

@@ -14,7 +14,6 @@ fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'stat
             recent: &[],
             finds_reflectors,
             has_recording: finds_reflectors,
-            is_recording: false,
             left: &[],
             task: Task::Explore,
             is_open: &|panel| panel == Panel::Scene,

@@ -17,7 +17,16 @@ fn panel(run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Comma
 }
 
 fn panel_for(uses: Uses, run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Command>> {
-    let (settings, radar) = (Settings::default(), Radar::default());
+    panel_of([420.0, 780.0], Settings::default(), move |input| Input { run: run(), uses, ..input })
+}
+
+/// The panel of the baseline at rest, but for what `change` makes of it.
+fn panel_of(
+    size: [f32; 2],
+    settings: Settings,
+    change: impl for<'a> Fn(Input<'a>) -> Input<'a> + 'static,
+) -> Harness<'static, Vec<Command>> {
+    let radar = Radar::default();
     let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
         let input = Input {
@@ -29,12 +38,12 @@ fn panel_for(uses: Uses, run: impl Fn() -> Run<'static> + 'static) -> Harness<'s
             method: Some(&Baseline),
             eta: Baseline.eta(),
             range_db: None,
-            run: run(),
-            uses,
+            run: Run::default(),
+            uses: Uses::ALL,
         };
-        asked.extend(show(ui, input, &mut FalseAlarmsMemory::default()));
+        asked.extend(show(ui, change(input), &mut FalseAlarmsMemory::default()));
     };
-    Harness::builder().with_size([420.0, 780.0]).build_ui_state(draw, Vec::new())
+    Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
 }
 
 #[test]
@@ -70,25 +79,7 @@ fn every_method_of_the_list_says_in_a_line_what_it_is() {
 fn thresholds_are_told_in_decibels_where_these_are_chosen() {
     let settings =
         Settings { view: View { units: Units::Decibels, target_eta: 0.9, ..View::default() }, ..Settings::default() };
-    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let (radar, method, noise_seed, run) =
-            (&Radar::default(), Some(&Baseline as &dyn Reconstructor), 0, Run::default());
-        let (settings, range_db, is_recorded, eta, uses) = (&settings, Some(300.0), false, 0.8, Uses::ALL);
-        let input = Input {
-            is_recorded,
-            settings,
-            radar,
-            noise_seed,
-            methods: Offered::untimed(&[]),
-            method,
-            eta,
-            range_db,
-            run,
-            uses,
-        };
-        asked.extend(show(ui, input, &mut FalseAlarmsMemory::default()));
-    };
-    let controls = Harness::builder().with_size([420.0, 780.0]).build_ui_state(draw, Vec::new());
+    let controls = panel_of([420.0, 780.0], settings, |input| Input { eta: 0.8, range_db: Some(300.0), ..input });
     let _told = ["−60.0 dB", "−30.0 dB"].map(|text| controls.get_by_label(text));
 }
 
@@ -119,27 +110,7 @@ fn every_click_is_one_command() {
 fn the_focus_passes_through_a_threshold_without_rounding_it() {
     assert_eq!((moved(0.851, 0.851), moved(0.851, 0.85)), (None, Some(0.85)));
     let settings = Settings { view: View { target_eta: 0.851_234_5, ..View::default() }, ..Settings::default() };
-    let (radar, capon) = (Radar::default(), CAPON);
-    let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let (eta, run) = (0.763_194_2, Run::default());
-        let (method, noise_seed): (Option<&dyn Reconstructor>, u64) = (Some(&capon), 0);
-        let (is_recorded, settings, radar) = (false, &settings, &radar);
-        let (range_db, uses) = (None, Uses::ALL);
-        let input = Input {
-            is_recorded,
-            settings,
-            radar,
-            noise_seed,
-            methods: Offered::untimed(&[]),
-            method,
-            eta,
-            range_db,
-            run,
-            uses,
-        };
-        asked.extend(show(ui, input, &mut FalseAlarmsMemory::default()));
-    };
-    let mut controls = Harness::builder().with_size([420.0, 640.0]).build_ui_state(draw, Vec::new());
+    let mut controls = panel_of([420.0, 640.0], settings, |input| Input { eta: 0.763_194_2, ..input });
     for _ in 0..30 {
         controls.key_press(eframe::egui::Key::Tab);
         controls.run();
@@ -188,24 +159,7 @@ fn the_level_of_the_noise_can_be_chosen() {
 
 #[test]
 fn no_choice_leaves_a_narrow_panel() {
-    let (radar, settings) = (Radar::default(), Settings::default());
-    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let (method, run) = (&Baseline, Run::default());
-        let input = Input {
-            is_recorded: false,
-            settings: &settings,
-            radar: &radar,
-            noise_seed: 0,
-            methods: Offered::untimed(&[]),
-            method: Some(method),
-            eta: 0.5,
-            range_db: None,
-            run,
-            uses: Uses::ALL,
-        };
-        asked.extend(show(ui, input, &mut FalseAlarmsMemory::default()));
-    };
-    let mut controls = Harness::builder().with_size([260.0, 1100.0]).build_ui_state(draw, Vec::new());
+    let mut controls = panel_of([260.0, 1100.0], Settings::default(), |input| input);
     seen::assert_readable(controls.output());
     unfold(&mut controls);
     for label in ["100 dB", "SNR", "dBm", "Two-way", "rectangular", "inferno", "views", "Cells"] {
@@ -245,24 +199,11 @@ fn what_a_lesson_does_not_use_is_not_shown() {
 
 /// The panel with a detector in use.
 fn detecting(cfar: Option<Cfar>, error: Option<&'static str>) -> Harness<'static, Vec<Command>> {
-    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let settings = Settings { view: View { cfar, ..View::default() }, ..Settings::default() };
-        let radar = Radar::default();
-        let input = Input {
-            is_recorded: false,
-            settings: &settings,
-            radar: &radar,
-            noise_seed: 0,
-            methods: Offered::untimed(&[]),
-            method: Some(&Baseline),
-            eta: 0.5,
-            range_db: None,
-            run: Run { detector_error: error, ..Run::default() },
-            uses: Uses::ALL,
-        };
-        asked.extend(show(ui, input, &mut FalseAlarmsMemory::default()));
-    };
-    Harness::builder().with_size([300.0, 900.0]).build_ui_state(draw, Vec::new())
+    let settings = Settings { view: View { cfar, ..View::default() }, ..Settings::default() };
+    panel_of([300.0, 900.0], settings, move |input| Input {
+        run: Run { detector_error: error, ..Run::default() },
+        ..input
+    })
 }
 
 #[test]

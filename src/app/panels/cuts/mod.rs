@@ -80,14 +80,12 @@ impl Content for CutsPanel {
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let state = &*cx.state;
-        // What is to be predicted is not to be read off a cut.
-        let hidden = state.is_predicting();
-        let maps = if hidden { Vec::new() } else { cx.jobs.pipeline.cut_maps() };
+        let maps = cx.jobs.pipeline.cut_maps();
         let input = Input {
             radar: state.radar(),
             cursor: state.cut_cursor(),
             maps: &maps,
-            pins: if hidden { &[] } else { state.pins.all() },
+            pins: state.pins.all(),
             units: state.settings.units,
         };
         show(ui, input, cx.memory)

@@ -18,23 +18,29 @@ fn result(radar: &Radar) -> DopplerResult {
     DopplerResult { radar: radar.clone(), knows_interval: true, decades: LogMap::new(decades), image: Arc::new(image) }
 }
 
+/// What the panel shows of a scene at rest.
+fn input<'a>(radar: &'a Radar, scene: &'a Scene) -> Input<'a> {
+    Input {
+        radar,
+        scene,
+        seconds: 0.0,
+        is_playing: false,
+        marks: true,
+        colours: ColourMap::default(),
+        normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
+        is_recorded: false,
+        frames: None,
+        static_clutter_out: false,
+        result: None,
+    }
+}
+
 /// The panel of a recording of 20 frames, of which the fourth is looked at.
 fn recorded(result: Option<DopplerResult>) -> Harness<'static, Vec<Command>> {
     let (radar, scene, mut memory) = (radar(1), Scene::default(), DopplerMemory::default());
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let input = Input {
-            radar: &radar,
-            scene: &scene,
-            seconds: 0.0,
-            is_playing: false,
-            marks: true,
-            colours: ColourMap::default(),
-            normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
-            is_recorded: true,
-            frames: Some([3, 20]),
-            static_clutter_out: false,
-            result: result.as_ref().map(Ok),
-        };
+        let result = result.as_ref().map(Ok);
+        let input = Input { is_recorded: true, frames: Some([3, 20]), result, ..input(&radar, &scene) };
         asked.extend(show(ui, input, &mut memory));
     };
     Harness::builder().with_size([700.0, 420.0]).build_ui_state(draw, Vec::new())
@@ -70,19 +76,7 @@ fn panel(size: [f32; 2], chirps: usize, velocity: f64, seconds: f64) -> Harness<
     let scene = Scene { objects: vec![Object::Point(point)], ..Scene::default() };
     let (result, mut memory) = (result(&radar), DopplerMemory::default());
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let input = Input {
-            radar: &radar,
-            scene: &scene,
-            seconds,
-            is_playing: false,
-            marks: true,
-            colours: ColourMap::default(),
-            normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
-            is_recorded: false,
-            frames: None,
-            static_clutter_out: false,
-            result: Some(Ok(&result)),
-        };
+        let input = Input { seconds, result: Some(Ok(&result)), ..input(&radar, &scene) };
         asked.extend(show(ui, input, &mut memory));
     };
     Harness::builder().with_size(size).build_ui_state(draw, Vec::new())

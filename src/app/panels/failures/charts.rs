@@ -104,7 +104,7 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
     let column = |ui: &mut Ui, name: &str, column: &mut Column| {
         choice(ui, name, "", column, Column::FIGURES.iter().copied(), |column| column.name().to_owned());
     };
-    if !matches!(memory.view, View::None | View::Shared) {
+    if matches!(memory.view, View::Histogram | View::Columns) {
         choice(ui, "Colour", "", &mut memory.grouping, Grouping::ALL, |grouping| grouping.name().to_owned());
     }
     match memory.view {
@@ -129,8 +129,8 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
 }
 
 /// What the colours of groups stand for.
-fn groups(ui: &mut Ui, points: &Points, grouping: Grouping) {
-    if grouping == Grouping::None {
+fn groups(ui: &mut Ui, points: &Points) {
+    if points.groups.len() < 2 {
         return;
     }
     let entry = |(group, name): (usize, &String)| Entry {
@@ -145,7 +145,9 @@ fn groups(ui: &mut Ui, points: &Points, grouping: Grouping) {
 /// Draws the chart that was chosen.
 pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut ChartsMemory) -> Answer {
     let Some((subject, titles)) = subject(memory) else { return Answer::default() };
-    let (stamp, grouping) = (input.order.stamp(), memory.grouping);
+    // A dot of two methods has the colour of its scene's set.
+    let grouping = if memory.view == View::Methods { Grouping::Set } else { memory.grouping };
+    let stamp = input.order.stamp();
     let subject = (subject, grouping);
     if !memory.made.as_ref().is_some_and(|(made, of, _)| *made == stamp && *of == subject) {
         let points = Points::of(input.table, input.order.filtered(), &subject.0, grouping);
@@ -156,7 +158,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut 
     if let Some(told) = &points.told {
         ui.label(told);
     }
-    groups(ui, points, grouping);
+    groups(ui, points);
     let area = ui.available_rect_before_wrap();
     ui.allocate_rect(area, Sense::hover());
     if points.dots.is_empty() {

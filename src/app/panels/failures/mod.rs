@@ -59,7 +59,7 @@ impl Content for FailuresPanel {
         let (table, search) = (job.table(), &job.search);
         let opened = state.failures.opened.as_ref().filter(|opened| opened.generation == table.generation());
         let input = Input {
-            methods: offered(state, jobs),
+            methods: offered(state),
             method: state.method().map(|m| m.name()),
             table,
             album: job.album(),

@@ -22,10 +22,8 @@ pub enum Subject {
 /// What the colour of a row in a chart says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Grouping {
-    /// Nothing: all rows have one.
-    #[default]
-    None,
     /// Its method.
+    #[default]
     Method,
     /// Its set.
     Set,
@@ -33,12 +31,11 @@ pub enum Grouping {
 
 impl Grouping {
     /// All.
-    pub const ALL: [Grouping; 3] = [Grouping::None, Grouping::Method, Grouping::Set];
+    pub const ALL: [Grouping; 2] = [Grouping::Method, Grouping::Set];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
         match self {
-            Grouping::None => "one colour",
             Grouping::Method => "method",
             Grouping::Set => "set",
         }
@@ -46,7 +43,6 @@ impl Grouping {
 
     fn of(self, row: &Row) -> String {
         match self {
-            Grouping::None => String::new(),
             Grouping::Method => row.method.to_string(),
             Grouping::Set => row.set.to_string(),
         }
@@ -71,7 +67,7 @@ pub struct Points {
     pub dots: Vec<Dot>,
     /// The bars of a histogram.
     pub bars: Option<Histogram>,
-    /// Names of the groups, in order; one without a name where nothing is grouped.
+    /// Names of the groups, in order.
     pub groups: Vec<String>,
     /// Where the axes begin and end.
     pub spans: [[f64; 2]; 2],
@@ -162,7 +158,7 @@ mod tests {
         let table = table();
         let all: Vec<usize> = (0..table.rows().len()).collect();
         let subject = Subject::Methods(Column::SquaredError, "live".into(), "nomp".into());
-        let points = Points::of(&table, &all, &subject, Grouping::None);
+        let points = Points::of(&table, &all, &subject, Grouping::Method);
         assert_eq!(points.dots.len(), 5, "the first scene was tried by one only");
         assert!(points.dots.iter().all(|dot| dot.at[0] == dot.at[1] && dot.rows[1] == dot.rows[0] + 5));
         let [low, high] = points.spans[0];
@@ -183,17 +179,17 @@ mod tests {
     #[test]
     fn rows_without_a_figure_have_no_dot() {
         let table = table();
-        let points = Points::of(&table, &[0, 2, 3], &Subject::Columns(Column::Index, Column::Found), Grouping::None);
+        let points = Points::of(&table, &[0, 2, 3], &Subject::Columns(Column::Index, Column::Found), Grouping::Method);
         assert_eq!(points.dots.iter().map(|dot| dot.rows[0]).collect::<Vec<_>>(), [0, 3]);
         assert!(points.spans[1][0] < 4.0 && points.spans[1][1] > 4.0, "a span is never empty");
-        let none = Points::of(&table, &[0, 2], &Subject::Histogram(Column::Method), Grouping::None);
+        let none = Points::of(&table, &[0, 2], &Subject::Histogram(Column::Method), Grouping::Method);
         assert!(none.bars.is_none() && none.dots.is_empty());
     }
 
     #[test]
     fn the_bars_of_a_histogram_count_the_filtered_rows() {
         let table = table();
-        let points = Points::of(&table, &[0, 1, 5], &Subject::Histogram(Column::Index), Grouping::None);
+        let points = Points::of(&table, &[0, 1, 5], &Subject::Histogram(Column::Index), Grouping::Method);
         assert_eq!(points.bars.map(|b| b.counts.iter().sum::<usize>()), Some(3));
         assert_eq!(points.spans[0], [0.0, 5.0]);
     }

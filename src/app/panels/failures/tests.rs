@@ -277,6 +277,6 @@ fn doubt_is_an_axis_of_the_scatter_plot() {
     let panel = with_doubt();
     let all: Vec<usize> = (0..panel.state().table.rows().len()).collect();
     let axes = points::Subject::Columns(Column::Doubt, Column::SquaredError);
-    let dots = points::Points::of(&panel.state().table, &all, &axes, points::Grouping::None).dots;
+    let dots = points::Points::of(&panel.state().table, &all, &axes, points::Grouping::Method).dots;
     assert_eq!(dots.iter().map(|dot| dot.at[0]).collect::<Vec<_>>(), [90.0, 91.0, 92.0, 93.0, 94.0, 95.0]);
 }

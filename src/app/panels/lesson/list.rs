@@ -25,8 +25,8 @@ pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: 
     );
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Learner");
-        let field =
-            ui.add(TextEdit::singleline(&mut memory.learner).desired_width(120.0).char_limit(60).hint_text("anybody"));
+        let field = ui
+            .add(TextEdit::singleline(&mut memory.learner).desired_width(120.0).char_limit(60).hint_text("your name"));
         if field.labelled_by(name.id).lost_focus() && memory.learner.trim() != progress.learner() {
             asked.push(LessonCommand::SetLearner(memory.learner.clone()).into());
         }

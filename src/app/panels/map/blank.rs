@@ -2,7 +2,8 @@
 
 use crate::app::state::{Command, ViewCommand};
 use crate::app::widgets::theme::Inks;
-use eframe::egui::{self, Align2, Painter, Rect, Ui, vec2};
+use eframe::egui::text::LayoutJob;
+use eframe::egui::{self, Align, Painter, Rect, Ui, vec2};
 
 /// A map that is hidden until the learner has predicted what it shows.
 #[derive(Clone, Copy)]
@@ -42,8 +43,10 @@ pub fn veil(painter: &Painter, rect: Rect, is_clicked: bool, visuals: &egui::Vis
         true => ("Click where you expect it", Inks::of(visuals).selected, 16.0),
         false => ("Hidden until you have predicted.", visuals.weak_text_color(), 13.0),
     };
-    let at = rect.center_top() + vec2(0.0, 10.0);
-    painter.text(at, Align2::CENTER_TOP, text, egui::FontId::proportional(size), ink);
+    let font = egui::FontId::proportional(size);
+    let mut job = LayoutJob::simple(text.to_owned(), font, ink, (rect.width() - 8.0).max(40.0));
+    job.halign = Align::Center;
+    painter.galley(rect.center_top() + vec2(0.0, 10.0), painter.layout_job(job), ink);
     if is_clicked {
         painter.rect_stroke(rect.shrink(1.0), 0.0, egui::Stroke::new(2.0, ink), egui::StrokeKind::Inside);
     }

@@ -5,7 +5,6 @@ use super::blank::{Problem, Veil};
 use super::frame::{Cells, Marks};
 use super::hatch::ToldApart;
 use super::kinds::Kinds;
-use super::swipe::Over;
 use super::theory::Theory;
 use crate::app::state::{Cursor, DifferenceView, Directions, MapKind, MapView, Projection, Units};
 use crate::interact::Selection;
@@ -59,8 +58,6 @@ pub struct Input<'a> {
     pub told_apart: Option<ToldApart<'a>>,
     /// The detector whose window is drawn around the pointer's cell.
     pub cfar: Option<Cfar>,
-    /// Another map right of an edge.
-    pub over: Option<Over<'a>>,
     /// What the formulas say of a reflector, if that is drawn over it.
     pub theory: Option<Theory<'a>>,
     /// Where the pointer is, in whichever panel.

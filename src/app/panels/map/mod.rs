@@ -16,7 +16,6 @@ mod outline;
 mod overlay;
 mod plot;
 mod scale;
-mod swipe;
 mod theory;
 mod told;
 mod window;
@@ -29,7 +28,6 @@ pub use hand::HandMemory;
 pub use hatch::ToldApart;
 pub use input::{Input, Shown};
 pub use kinds::Kinds;
-pub use swipe::Over;
 pub use theory::Theory;
 pub use told::{MapMemory, MapPanel, caption_of, cells, is_updating, map_input, marks_of, verdict};
 
@@ -93,9 +91,6 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     if let Some(bar) = bar {
         bar.draw(ui, &painter, frame.shown());
     }
-    if let Some(over) = input.over.as_ref().filter(|_| is_bare) {
-        over.handle(ui, &inner, rect, &mut asked);
-    }
     response.context_menu(|ui| menu(ui, &input, &mut asked));
     if is_bare {
         morph::button(ui, rect, input.kind, input.projection, &mut asked);
@@ -139,11 +134,7 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
     // Beneath all that is to be read.
     if let Some(cursor) = &input.cursor {
         let told = input.veil.is_none();
-        let beneath = input.cells.as_ref();
-        let cells = match &input.over {
-            Some(over) => over.cells_at(rect, frame.cursor(cursor).x, beneath),
-            None => beneath,
-        };
+        let cells = input.cells.as_ref();
         overlay::cursor(inner, frame, cursor, cells.filter(|_| told), input.units);
         if let Some(cfar) = input.cfar.as_ref().filter(|_| told && at_rest) {
             window::draw(inner, frame, cursor, cells, cfar);
@@ -211,9 +202,6 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
             blank::veil(inner, rect, input.veil.is_some_and(|v| v.is_clicked), ui.visuals());
         }
         None => blank::empty(ui, inner, rect, input.error.as_ref(), asked),
-    }
-    if let Some(over) = input.over.as_ref().filter(|_| input.veil.is_none() && frame.morph.is_none()) {
-        over.draw(ui, inner, frame);
     }
     texture.is_some()
 }

@@ -31,7 +31,6 @@ impl<'a> Input<'a> {
             kinds: None,
             told_apart: None,
             cfar: None,
-            over: None,
             theory: None,
             cursor: None,
             note: None,

@@ -124,7 +124,6 @@ pub fn map_input<'a>(
         kinds: kinds(state, jobs, kind),
         told_apart: kind.slot().filter(|_| kind.is_above()).and_then(|slot| told_apart(state, jobs, slot)),
         cfar: settings.cfar.filter(|_| kind.is_above()),
-        over: None,
         theory: of_formulas.and_then(|r| theory(r, kind)),
         cursor: state.shown_cursor(),
         note: note(state, kind),

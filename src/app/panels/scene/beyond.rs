@@ -4,7 +4,8 @@ use super::canvas::Canvas;
 use crate::interact::Place;
 use crate::radar::Radar;
 use crate::scene::{Object, Scene, Shape as Body};
-use eframe::egui::{self, Color32, FontId, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
+use eframe::egui::{self, Color32, FontId, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2};
+use eframe::egui::{WidgetInfo, pos2, vec2};
 
 /// From the edge of the canvas to the middle of a sign there, points.
 const INSET: f32 = 13.0;
@@ -119,10 +120,10 @@ fn on_edge(inner: Rect, target: Pos2) -> Pos2 {
     if part.is_finite() { middle + to * part } else { middle }
 }
 
-/// Writes the sentence in the upper left corner, below the scale and beside the label of -60 degrees.
-pub fn write(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, said: &str) {
+/// Writes the sentence in the upper left corner, below the scale and below the hint that ends at `below`, beside the label of -60 degrees.
+pub fn write(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, below: f32, said: &str) {
     let ink = ui.visuals().warn_fg_color;
-    let at = canvas.rect.min + vec2(12.0, 28.0);
+    let at = pos2(canvas.rect.left() + 12.0, (canvas.rect.top() + 28.0).max(below + 8.0));
     let sixty = canvas.extent_metres * 60_f64.to_radians().sin();
     let width = (canvas.at(Place::new(-sixty, 0.0)).x - BESIDE_ARC - at.x).clamp(NARROWEST, WIDEST);
     let galley = painter.layout(said.to_owned(), FontId::proportional(12.0), ink, width);
@@ -136,7 +137,6 @@ pub fn write(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, said: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::pos2;
 
     #[test]
     fn a_sign_is_on_the_edge_that_the_object_is_beyond() {

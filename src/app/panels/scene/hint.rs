@@ -3,7 +3,8 @@
 use super::canvas::Canvas;
 use crate::app::widgets::theme::{CAPTION, CAPTION_INK};
 use crate::interact::Place;
-use eframe::egui::{FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use eframe::egui::{FontId, Galley, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use std::sync::Arc;
 
 /// What to do, or what happened.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,12 +26,18 @@ impl Hint {
     pub fn draw(&self, painter: &Painter, canvas: Canvas<'_>) {
         let way: Vec<Pos2> = self.way.iter().map(|place| canvas.at(*place)).collect();
         arrow(painter, &way, Stroke::new(2.5, canvas.inks.selected));
+        let (galley, patch) = self.patch(painter, canvas);
+        painter.rect_filled(patch, 6.0, CAPTION);
+        painter.galley(patch.min + vec2(10.0, 5.0), galley, CAPTION_INK);
+    }
+
+    /// The text, and the patch beneath it.
+    pub fn patch(&self, painter: &Painter, canvas: Canvas<'_>) -> (Arc<Galley>, Rect) {
         let room = (canvas.rect.width() - 32.0).max(60.0);
         let galley = painter.layout(self.text.clone(), FontId::proportional(15.0), CAPTION_INK, room);
         let middle = canvas.rect.center_top() + vec2(0.0, 26.0 + galley.size().y / 2.0);
         let patch = Rect::from_center_size(middle, galley.size() + Vec2::new(20.0, 10.0));
-        painter.rect_filled(patch, 6.0, CAPTION);
-        painter.galley(patch.min + vec2(10.0, 5.0), galley, CAPTION_INK);
+        (galley, patch)
     }
 }
 

@@ -108,7 +108,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     if let Some(hint) = &input.hint {
         hint.draw(&painter, canvas);
     }
-    say(ui, &painter, rect, editor.scene().objects.is_empty() && input.found.is_empty(), input.error);
+    let is_empty = editor.scene().objects.is_empty() && input.found.is_empty() && input.hint.is_none();
+    say(ui, &painter, rect, is_empty, input.error);
     if let Some(hit) = editor.dragged().or(hovered) {
         ui.set_cursor_icon(match (hit.grip, editor.dragged()) {
             (Grip::Body, Some(_)) => CursorIcon::Grabbing,
@@ -175,7 +176,8 @@ fn elsewhere(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, input: &Input<'_>, 
     let beyond = beyond::warn(ui, painter, canvas, scene);
     let said: Vec<String> = later.into_iter().chain(behind).chain(beyond).collect();
     if !said.is_empty() {
-        beyond::write(ui, painter, canvas, &said.join("\n"));
+        let below = input.hint.as_ref().map_or(0.0, |hint| hint.patch(painter, canvas).1.bottom());
+        beyond::write(ui, painter, canvas, below, &said.join("\n"));
     }
 }
 

@@ -13,24 +13,29 @@ struct Held {
     asked: Vec<Command>,
 }
 
+/// What the canvas shows where nothing is found, wrong or moved.
+fn input(radar: &Radar) -> Input<'_> {
+    Input {
+        radar,
+        snapshot_range_metres: None,
+        snap: Snap::Off,
+        fields_of_view: false,
+        found: &[],
+        found_stale: false,
+        trails: &[],
+        cursor: None,
+        error: None,
+        numbers: true,
+        hint: None,
+        tells_maps: true,
+        moved: None,
+    }
+}
+
 fn panel(scene: Scene) -> Harness<'static, Held> {
     let radar = Radar::default();
     let draw = move |ui: &mut Ui, held: &mut Held| {
-        let input = Input {
-            radar: &radar,
-            snapshot_range_metres: None,
-            snap: Snap::Off,
-            fields_of_view: false,
-            found: &[],
-            found_stale: false,
-            trails: &[],
-            cursor: None,
-            error: Some("too far"),
-            numbers: true,
-            hint: None,
-            tells_maps: true,
-            moved: None,
-        };
+        let input = Input { error: Some("too far"), ..input(&radar) };
         let commands = show(ui, input, &mut held.editor, &mut held.view);
         held.asked.extend(commands);
     };
@@ -101,25 +106,7 @@ fn labels_stand_around_the_half_disc() {
         let radar = Radar::default();
         let mut state = (Editor::new(Scene::default()), SceneView::default());
         let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
-            let (snap, fields_of_view) = (Snap::Off, false);
-            let (found, trails, cursor, error, snapshot_range_metres) = (&[], &[], None, None, None);
-            let radar = &radar;
-            let input = Input {
-                radar,
-                snapshot_range_metres,
-                snap,
-                fields_of_view,
-                found,
-                found_stale: false,
-                trails,
-                cursor,
-                error,
-                numbers: true,
-                hint: None,
-                tells_maps: true,
-                moved: None,
-            };
-            _ = show(ui, input, editor, view);
+            _ = show(ui, input(&radar), editor, view);
         };
         state.0.add(crate::scene::Object::Point(crate::scene::Point::new(-12.0, y_metres)));
         let scene = Harness::builder().with_size(size).build_ui_state(draw, state);
@@ -140,24 +127,7 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
     let radar = Radar { samples: 1, elements: 86, ..Radar::default() };
     let found = [Reflector { x_metres: 0.0, y_metres: 15.0, reflectivity: 1.0 }];
     let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
-        let (snap, fields_of_view) = (Snap::Off, false);
-        let (radar, found, trails, cursor, error) = (&radar, &found, &[], None, None);
-        let snapshot_range_metres = Some(15.0);
-        let input = Input {
-            radar,
-            snapshot_range_metres,
-            snap,
-            fields_of_view,
-            found,
-            found_stale: false,
-            trails,
-            cursor,
-            error,
-            numbers: true,
-            hint: None,
-            tells_maps: true,
-            moved: None,
-        };
+        let input = Input { snapshot_range_metres: Some(15.0), found: &found, ..input(&radar) };
         _ = show(ui, input, editor, view);
     };
     let state = (Editor::new(Scene::default()), SceneView::default());

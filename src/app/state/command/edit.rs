@@ -2,7 +2,7 @@
 
 use super::NewObject;
 use crate::interact::blob::BlobHit;
-use crate::interact::{Alignment, Along, Coordinates, Field, FieldChange, Place, SelectionMode, Snap};
+use crate::interact::{Coordinates, Field, FieldChange, Place, SelectionMode, Snap};
 
 /// Commands that select objects and change the scene on screen.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,10 +37,6 @@ pub enum EditCommand {
     SetField(Field, FieldChange),
     /// Name the selected object.
     Name(String),
-    /// Align the selected objects.
-    Align(Alignment),
-    /// Put the selected objects the same distance apart.
-    Distribute(Along),
     /// Start dragging the object behind a blob.
     Grab(BlobHit),
     /// Drag what is held here.

@@ -12,12 +12,6 @@ pub enum ExportCommand {
     MapsTo(PathBuf),
     /// Save the figures as CSV in this file.
     MetricsTo(PathBuf),
-    /// Record the next drag in this file.
-    RecordDragTo(PathBuf),
-    /// Draw the steps of the lesson beside this file, numbered.
-    DrawLessonTo(PathBuf),
-    /// Give up what is recorded or drawn.
-    StopRecording,
     /// Copy the picture of a map to the clipboard.
     CopyMap(MapKind),
     /// Copy scene, radar, view, method and lesson step as one line of text.

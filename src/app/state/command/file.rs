@@ -51,10 +51,6 @@ purposes! {
     ExportPicture: "Export a picture", "Picture" ["png", "svg"], "apertura.png";
     /// Where the maps are to be written.
     ExportMaps: "Export the maps", "NumPy arrays" ["npz"], "maps.npz";
-    /// Where the next drag is to be recorded.
-    RecordDrag: "Record the next drag", "Animation" ["gif"], "drag.gif";
-    /// Where the steps of a lesson are to be drawn.
-    DrawLesson: "Draw the steps of the lesson", "Pictures" ["png"], "lesson.png";
     /// Where the figures are to be written.
     ExportMetrics: "Export the metrics", "Table" ["csv"], "metrics.csv";
     /// Rows of an evaluation to show.

@@ -132,8 +132,6 @@ impl Purpose {
             Purpose::SaveScene => DocumentCommand::SaveTo(path).into(),
             Purpose::ExportPicture => ExportCommand::PictureTo(path).into(),
             Purpose::ExportMaps => ExportCommand::MapsTo(path).into(),
-            Purpose::RecordDrag => ExportCommand::RecordDragTo(path).into(),
-            Purpose::DrawLesson => ExportCommand::DrawLessonTo(path).into(),
             Purpose::ExportMetrics => ExportCommand::MetricsTo(path).into(),
             Purpose::OpenRows => RowsCommand::OpenFile(path).into(),
             Purpose::SaveRows => RowsCommand::SaveTo(path).into(),

@@ -87,8 +87,6 @@ pub enum ViewCommand {
     SetCompare(Box<Compare>),
     /// Put the other of two compared maps in the place of the one on screen.
     Flip,
-    /// Move the edge between two compared maps to this part of their width.
-    Swipe(f32),
     /// Reconstruct with the method of this name.
     Method(&'static str),
     /// The next reconstruction method.

@@ -7,10 +7,6 @@ use std::path::PathBuf;
 /// Commands that start long work, or stop it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WorkCommand {
-    /// Run every method once on the scene on screen, to know how long each takes on this machine.
-    MeasureMethodTimes,
-    /// Stop that; times measured before stay.
-    CancelMethodTimes,
     /// Stop the reconstruction that runs.
     CancelMethod,
     /// Stop the second method's reconstruction.
@@ -28,10 +24,6 @@ pub enum WorkCommand {
     CancelMeasurement,
     /// Watch this log of a training.
     WatchLog(PathBuf),
-    /// Start a training by the recipe of this name, and watch it.
-    Train(&'static str),
-    /// Stop the training that was started here.
-    CancelTraining,
     /// Listen to a capture card, and show its newest frame.
     Listen(CardPlan),
     /// Stop listening.

@@ -2,7 +2,7 @@
 
 use super::super::command::{Command, DocumentCommand, EditCommand, ExportCommand, NewObject, Purpose, WindowCommand};
 use super::entry::{Entry, command, command_shift, entries, entry, key, shift};
-use crate::interact::{Alignment, Along, Coordinates};
+use crate::interact::Coordinates;
 use crate::recording::card::USUAL_PORT;
 use eframe::egui::Key;
 
@@ -32,9 +32,6 @@ pub(super) const COMMANDS: &[Entry] = {
         AskFile(Purpose::ExportPicture), "Export picture…",
             "Save the maps of this scene with scene and figures, as PNG or SVG", command(Key::E);
         AskFile(Purpose::ExportMaps), "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None;
-        AskFile(Purpose::RecordDrag), "Record a drag…", "Record the next drag as an animation (.gif) for slides", None;
-        AskFile(Purpose::DrawLesson), "Draw lesson…", "Draw every step of the lesson as a picture (.png) for slides", None;
-        Export(ExportCommand::StopRecording), "Stop recording", "Give up what is recorded or drawn; nothing is written", None;
         AskFile(Purpose::ExportMetrics), "Export metrics…", "Save P_D, P_FA and SE of this scene as CSV", None;
         Edit(EditCommand::Undo), "Undo", "Undo the last change of the scene", command(Key::Z);
         Edit(EditCommand::Redo), "Redo", "Redo what was undone", command_shift(Key::Z);
@@ -53,14 +50,6 @@ pub(super) const COMMANDS: &[Entry] = {
         Edit(EditCommand::SetCoordinates(Coordinates::Cartesian)), "Places: x and y", "Tell and enter places as x and y", None;
         Edit(EditCommand::SetCoordinates(Coordinates::Polar)), "Places: range and angle",
             "Tell and enter places as range and direction", None;
-        Edit(EditCommand::Align(Alignment::Left)), "Align left", "Move the selected objects' left ends to the leftmost", None;
-        Edit(EditCommand::Align(Alignment::Centre)), "Align centres", "Move the selected objects one behind the other", None;
-        Edit(EditCommand::Align(Alignment::Right)), "Align right", "Move the selected objects' right ends to the rightmost", None;
-        Edit(EditCommand::Align(Alignment::Near)), "Align near", "Move the selected objects' near ends to the nearest", None;
-        Edit(EditCommand::Align(Alignment::Middle)), "Align middles", "Move the selected objects one beside the other", None;
-        Edit(EditCommand::Align(Alignment::Far)), "Align far", "Move the selected objects' far ends to the farthest", None;
-        Edit(EditCommand::Distribute(Along::X)), "Distribute along x", "The same distance in x between selected objects", None;
-        Edit(EditCommand::Distribute(Along::Y)), "Distribute along y", "The same distance in y between selected objects", None;
         Window(WindowCommand::Escape), "Deselect", "Cancel a drag, show all panels, select nothing", key(Key::Escape);
     }
 };

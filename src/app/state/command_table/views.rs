@@ -87,7 +87,6 @@ pub(super) const COMMANDS: &[Entry] = {
         View(ViewCommand::Flip), "Flip two maps",
             "Put the other of the two maps of the panel Compare in the place of the one on screen", key(Key::X);
         View(ViewCommand::NextMethod), "Next method", "Reconstruct with the next method", key(Key::N);
-        Work(WorkCommand::MeasureMethodTimes), "Measure the methods' times", "Run every method once on the scene on screen", None;
         Work(WorkCommand::CancelMethod), "Cancel reconstruction", "Stop the reconstruction that runs", None;
         Window(WindowCommand::Present), "Presentation",
             "The scene and the maps on the whole screen, in large type; the same key brings everything back", key(Key::F11);

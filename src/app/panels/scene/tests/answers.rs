@@ -1,7 +1,7 @@
 //! The scene while a lesson's question is open: nothing that is drawn gives the answer away.
 
 use super::super::*;
-use super::Held;
+use super::{Held, input};
 use crate::lesson::question::Answer;
 use crate::lesson::{Stage, Step, Truth, shipped};
 use crate::scattering::{EchoKind, heard_in_the_middle};
@@ -12,21 +12,7 @@ use egui_kittest::kittest::Queryable;
 fn step_drawn(step: &Step, tells_maps: bool) -> (Harness<'static, Held>, Vec<egui::Shape>) {
     let (radar, scene) = (step.radar.clone(), step.scene());
     let draw = move |ui: &mut Ui, held: &mut Held| {
-        let input = Input {
-            radar: &radar,
-            snapshot_range_metres: None,
-            snap: Snap::Off,
-            fields_of_view: false,
-            found: &[],
-            found_stale: false,
-            trails: &[],
-            cursor: None,
-            error: None,
-            numbers: true,
-            hint: None,
-            tells_maps,
-            moved: None,
-        };
+        let input = Input { tells_maps, ..input(&radar) };
         _ = show(ui, input, &mut held.editor, &mut held.view);
     };
     let held = Held { editor: Editor::new(scene), view: SceneView::default(), asked: Vec::new() };
