@@ -45,4 +45,5 @@ fn a_drag_along_the_ring_merges_post_and_wall_in_inputs() {
     for degrees in [26.0, 28.0] {
         assert_eq!(blobs_at(degrees), [1, 1, 2], "the post at {degrees}°");
     }
+    assert_eq!(blobs_at(31.0), [1, 1, 1], "24 columns before the wall");
 }
