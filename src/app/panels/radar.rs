@@ -148,7 +148,7 @@ fn about(ui: &mut Ui, text: &str) {
 
 const CARRIER: Quantity = Quantity::metres(
     "carrier",
-    "Frequency that the chirps are centred on: with the spacing it decides how wide beams are",
+    "Frequency at which the chirp begins (half of it in the thesis' convention): with the spacing it decides how wide beams are",
 )
 .with(" GHz", [0.1, 1000.0], 0.05, 3);
 const BANDWIDTH: Quantity =
