@@ -235,7 +235,7 @@ impl Method {
         self.inner.weights(&apertura::radar::Radar::default()).unwrap_or_default().sha256
     }
 
-    /// Threshold of its output, chosen on validation scenes.
+    /// Threshold of an answer that brings none of its own, chosen on validation scenes.
     #[getter]
     fn eta(&self) -> f32 {
         self.inner.eta()

@@ -220,7 +220,7 @@ impl Scene {
         to_toml(&self.0).map_err(value)
     }
 
-    /// The scene as a line of text, as *Copy scene as text* in the window writes it: `apertura TEXT` opens it, and so does a page behind `#`.
+    /// The scene as a line of text, as *Copy all as text* in the window writes it: `apertura TEXT` opens it, and so does a page behind `#`.
     ///
     /// Args:
     ///     floor: What lies beneath the reflectors.

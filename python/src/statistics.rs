@@ -42,7 +42,7 @@ pub fn paired<'py>(
 ///
 /// Args:
 ///     rows: Rows as `evaluate` and `read_rows` give them.
-///     bad: Which rows are bad, as a filter of the window's panel Failures.
+///     bad: Which rows are bad, as a filter of the window's panel Evaluate.
 ///
 /// Returns:
 ///     One object a rule, the surest first: `text` (a filter), `rows` of which it is true and how many of them are `bad`, `other_rows` and

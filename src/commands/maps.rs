@@ -61,7 +61,7 @@ pub struct Args {
     #[arg(long, value_name = "min-max|db=RANGE", default_value_t = Normalisation::MinMax)]
     normalisation: Normalisation,
 
-    /// Reconstruction to show as the output [default: live, or iaa for a recording of another radar]; an archive has an output only with --method
+    /// Reconstruction to show as the output [default: live where it takes the radar, or else iaa]; an archive has an output only with --method
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
 
@@ -123,7 +123,7 @@ impl Args {
                 print(&span(&full))
             }
             Output::Picture(format) => {
-                let method = self.method(methods::preferred)?;
+                let method = self.method(|| methods::preferred_for(&radar))?;
                 let style = Style { floor: self.floor.floor, ..self.style() };
                 let bytes =
                     compose(&radar, &scene, &signal, method.as_ref(), &style, format).map_err(CommandError::failed)?;

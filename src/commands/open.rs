@@ -124,7 +124,7 @@ fn draw_instead(input: &InputArgs, method: Option<Arc<dyn Reconstructor>>) -> Re
         InputArgs::Scene(file) => {
             let SceneFile { scene, radar } = &**file;
             let signal = signal::simulate(radar, scene, style.floor, scene.noise_seed).map_err(CommandError::failed)?;
-            let method = method.unwrap_or_else(methods::preferred);
+            let method = method.unwrap_or_else(|| methods::preferred_for(radar));
             compose(radar, scene, &signal, method.as_ref(), &style, PictureFormat::Png)
         }
         InputArgs::Recording(recording) => {

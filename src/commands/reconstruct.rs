@@ -26,7 +26,7 @@ use std::time::Instant;
 /// IN has sub0 and sub1: complex128 [512, 12], or [samples, elements of an end] of another radar, of any gain. For the thesis' networks it may have
 /// polar_partial_mag_phase (f64 [4, 512, 1024]) instead. An archive of `apertura maps` and a recording's .toml name their own radar.
 ///
-/// OUT gets net_output (f32 [512, 1024] or [samples, elements], 0 to 1), eta (the method's threshold, chosen on validation scenes) and
+/// OUT gets net_output (f32 [512, 1024] or [samples, elements], 0 to 1), eta (the threshold of this answer) and
 /// milliseconds; cos_theta (f64 [1024]) and columns_left_to_right (0 where cos_theta falls from column to column) say which way the columns run.
 /// It also gets the echoes found, the strongest first: the method's reflectors, or the peaks of its map within 20 dB. These are found_cos_theta,
 /// found_range_metres (NaN for a snapshot of unknown range), found_db (relative to the strongest) and found_confidence (0 to 1: the fraction that
@@ -44,7 +44,7 @@ pub struct Args {
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
 
-    /// Reconstruction method [default: that of --method-command, or else live for table 3.1, or else iaa]
+    /// Reconstruction method [default: that of --method-command, or else live where it takes the radar, or else iaa]
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
 

@@ -36,7 +36,7 @@ pub struct Args {
     false_alarm: f64,
 
     #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', default_value = "1,2,3",
-          help = format!("Kinds of scenes with echoes, separated by commas: {}", Kind::names()))]
+          help = format!("Kinds of scenes with echoes, separated by commas: {}", Kind::names().trim_end_matches(", noise")))]
     set: Vec<Kind>,
 
     /// Scenes of each kind

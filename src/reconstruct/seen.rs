@@ -1,6 +1,6 @@
 //! How places look from elsewhere on the array's axis, and which directions a radar sees at all.
 //!
-//! The ends of table 3.1 stand a metre to the left and right of the centre: they see one reflector at ranges up to 27 bins apart.
+//! The ends of table 3.1 stand a metre to the left and right of the centre: they see one reflector at ranges up to 26 bins apart.
 
 use crate::radar::{Pair, Radar};
 

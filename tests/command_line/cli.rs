@@ -160,9 +160,11 @@ fn a_start_without_display_draws_the_output_of_the_asked_method() {
 fn a_start_without_display_draws_the_scene_that_was_asked_for() {
     let folder = folder();
     apertura(&folder).arg("missing.toml").assert().failure().stderr(contains("error: missing.toml"));
-    std::fs::write(folder.path().join("s.toml"), TWO_POINTS).unwrap();
+    // A radar of another shape, which the default method doesn't take.
+    std::fs::write(folder.path().join("s.toml"), format!("[radar]\nelements = 128\n{TWO_POINTS}")).unwrap();
     apertura(&folder).arg("s.toml").assert().success();
-    assert_eq!(names(folder.path()), ["apertura.png", "s.toml"]);
+    apertura(&folder).args(["maps", "s.toml", "-o", "s.png"]).assert().success();
+    assert_eq!(names(folder.path()), ["apertura.png", "s.png", "s.toml"]);
 }
 
 #[test]

@@ -45,4 +45,13 @@ fn a_drag_along_the_ring_merges_post_and_wall_in_inputs() {
     for degrees in [26.0, 28.0] {
         assert_eq!(blobs_at(degrees), [1, 1, 2], "the post at {degrees}°");
     }
+    assert_eq!(blobs_at(31.0), [1, 1, 1], "24 columns before the wall");
+}
+
+#[test]
+fn two_points_close_in_range_stand_two_bins_apart() {
+    let scene = presets::Preset::by_id("two-close-in-range").unwrap().load().unwrap().scene;
+    let ranges: Vec<f64> = scene.reflectors().iter().map(|r| r.x_metres.hypot(r.y_metres)).collect();
+    let bins = (ranges[1] - ranges[0]) / Radar::default().range_resolution_metres();
+    assert!((bins - 2.0).abs() < 0.1, "{bins} bins");
 }

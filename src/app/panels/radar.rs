@@ -139,7 +139,7 @@ const OF_YOUR_OWN: &str = "Its constants are those of no radar in the list.";
 
 const CARRIER: Quantity = Quantity::metres(
     "carrier",
-    "Frequency that the chirps are centred on: with the spacing it decides how wide beams are",
+    "Frequency at which the chirp begins (half of it in the thesis' convention): with the spacing it decides how wide beams are",
 )
 .with(" GHz", [0.1, 1000.0], 0.05, 3);
 const BANDWIDTH: Quantity =

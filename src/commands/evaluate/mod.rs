@@ -30,7 +30,8 @@ use std::time::Duration;
 
 /// Fill tables 4.1 to 4.3: squared error, detection and false-alarm rates of reconstruction methods on random test scenes
 ///
-/// P_D and P_FA are at the threshold that each method ships with, which was chosen on validation scenes. A further column gives P_D
+/// P_D and P_FA are at the threshold that each method ships with, which was chosen on validation scenes, or at that which it reads off each answer
+/// (live, hybrid, and nomp where something is unexplained). A further column gives P_D
 /// with a threshold for each scene that holds its P_FA to the printed one. The thesis' P_D is at one fixed threshold and cannot be compared with
 /// that column. Below each mean stands the median over the scenes. An object is missed when less than half of the cells in which the whole
 /// array shows it exceed the threshold. A ghost is a blob where the whole array shows nothing. "Near best" is the fraction of scenes on

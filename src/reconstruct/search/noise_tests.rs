@@ -85,7 +85,7 @@ fn under_thermal_noise_the_error_is_about_that_of_the_noise() {
 }
 
 #[test]
-#[ignore = "prints README's figures; half a minute"]
+#[ignore = "prints figures of docs/results.md; half a minute"]
 fn under_thermal_noise_on_twenty_test_scenes_a_set() {
     costs_hardly_more_than_the_noise(Purpose::Test, 20);
 }

@@ -39,6 +39,56 @@ fn table() -> Vec<(String, BTreeSet<String>)> {
     rooms
 }
 
+/// Crates that few rooms import, and which; ARCHITECTURE.md lists the same.
+const CRATES: [(&str, &[&str]); 3] =
+    [("rustfft", &["maps", "signal", "reconstruct", "benchmark"]), ("burn", &["network"]), ("rfd", &["platform"])];
+
+#[test]
+fn some_crates_belong_to_few_rooms() {
+    let src = root().join("src");
+    for (name, rooms) in CRATES {
+        let (mut inside, mut outside) = (0, Vec::new());
+        for path in rust_files(&src) {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let is_code = |line: &&str| !line.trim_start().starts_with("//");
+            if text.lines().filter(is_code).any(|line| line.contains(&format!("{name}::"))) {
+                let is_allowed = rooms.iter().any(|room| path.starts_with(src.join(room)));
+                if is_allowed { inside += 1 } else { outside.push(path) }
+            }
+        }
+        assert!(inside > 0 && outside.is_empty(), "{name}: {outside:?}");
+    }
+}
+
+/// Names that ARCHITECTURE.md and CONTRIBUTING.md give in backticks: a path of Rust, or of a file.
+#[test]
+fn the_names_that_contributors_read_are_there() {
+    let sources: String = ["src", "tests", "python/src", "examples"]
+        .iter()
+        .flat_map(|folder| rust_files(&root().join(folder)))
+        .map(|path| std::fs::read_to_string(path).unwrap())
+        .collect();
+    let words: BTreeSet<&str> = sources.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+    let mut missing = Vec::new();
+    for page in ["ARCHITECTURE.md", "CONTRIBUTING.md"] {
+        let text = std::fs::read_to_string(root().join(page)).unwrap();
+        let prose: String = text.split("```").step_by(2).collect();
+        for span in prose.split('`').skip(1).step_by(2) {
+            let is_path = span.starts_with("src/") || span.starts_with("tests/") || span.starts_with("scripts/");
+            let is_name = span.contains("::") && span.chars().all(|c| c.is_alphanumeric() || "_:".contains(c));
+            let is_there = match (is_path && !span.contains(' '), is_name) {
+                (true, _) => root().join(span).exists(),
+                (_, true) => span.split("::").all(|part| words.contains(part)),
+                _ => continue,
+            };
+            if !is_there {
+                missing.push(format!("{page}: {span}"));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{missing:#?}");
+}
+
 fn listed<T: std::fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
     let names: Vec<String> = names.into_iter().map(|n| n.to_string()).collect();
     if names.is_empty() { "nothing".into() } else { names.join(", ") }
