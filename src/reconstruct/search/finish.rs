@@ -292,6 +292,27 @@ fn reflectivities(gains: &[Gains]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::radar::hann;
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
+    use crate::task::Task;
+
+    #[test]
+    fn of_two_points_in_one_cell_the_stronger_stays() {
+        let (radar, task) = (Radar::default(), Task::default());
+        let scene = Scene::of_points([(3.0, 11.0), (-6.0, 17.0)]);
+        let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let bench = Workbench::new(&radar, &hann(radar.samples), &task, usize::MAX);
+        let samples = Samples::new(&bench.sensor, &ends.flat());
+        let point = |x_metres: f64, y_metres: f64| Atom::Point { x_metres, y_metres };
+        // The second is a few millimetres beside the first, the third a range bin.
+        let atoms = vec![point(3.0, 11.0), point(3.001, 11.004), point(3.02, 11.08), point(-6.0, 17.0)];
+        let fit = bench.solve(&samples, atoms.clone(), Tie::PerEnd, 0.0);
+        let kept = merged(&radar, &bench, &samples, fit).atoms;
+        assert_eq!(kept, [atoms[0], atoms[2], atoms[3]]);
+        let alone = bench.solve(&samples, kept.clone(), Tie::PerEnd, 0.0);
+        assert_eq!(merged(&radar, &bench, &samples, alone).atoms, kept);
+    }
 
     #[test]
     fn the_common_phase_is_not_a_reflectivity() {
