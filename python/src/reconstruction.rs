@@ -47,6 +47,9 @@ impl Reconstruction {
     }
 
     /// The reflectors it believes in, float64 `[reflectors, 3]`: x and y in metres, reflectivity. Empty where the method draws maps only.
+    ///
+    /// A reflectivity's sign is a guess where noise leaves the range uncertain by half a turn of the echo's phase: half a wavelength where the
+    /// way counts once, a quarter where it counts twice. The sum of all is positive by convention.
     #[getter]
     fn reflectors<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         owned(py, rows_of(&self.answer.reflectors))

@@ -56,7 +56,8 @@ impl Default for Request {
 pub struct Reconstruction {
     /// Estimate of the whole array's Lambda, `[range bins, columns]`.
     pub lambda: RangeAngleMap,
-    /// The reflectors it believes in, where the method finds any.
+    /// The reflectors it believes in, where the method finds any. A reflectivity's sign is a guess where noise leaves the range uncertain by
+    /// half a turn of the echo's phase; the sum of all is positive by convention.
     pub reflectors: Vec<Reflector>,
     /// How far each of `reflectors` is needed, 0 to 1 ([`Detection::confidence`]); empty where the method does not say.
     pub confidences: Vec<f64>,
