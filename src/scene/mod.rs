@@ -184,7 +184,7 @@ impl Scene {
             within_limit(self.reflector_count().saturating_mul(4), "reflectors and ghosts")?;
         }
         for (index, object) in self.objects.iter().enumerate() {
-            object_check::validate(object, index)?;
+            object.validate(index)?;
             if let Some(element) = object.body().and_then(|body| body.covered_element(radar)) {
                 return Err(SceneError::Covers { object: index, kind: object.kind(), element });
             }

@@ -78,43 +78,46 @@ impl Check {
     }
 }
 
-pub(super) fn validate(of: &Object, object: usize) -> Result<(), SceneError> {
-    of.check_velocity(object)?;
-    let check = Check { object, kind: of.kind() };
-    match of {
-        Object::Point(p) => check.place([("x_metres", p.x_metres), ("y_metres", p.y_metres)])?,
-        Object::Line(l) => {
-            let spacing = ("spacing_metres", l.spacing_metres);
-            check.place([("x_metres", l.x_metres), ("y_start_metres", l.y_start_metres), spacing])?;
-            check.finite("direction_degrees", l.direction_degrees)?;
+impl Object {
+    /// Checks the numbers of object number `object` of a scene, counted from 0.
+    pub(super) fn validate(&self, object: usize) -> Result<(), SceneError> {
+        self.check_velocity(object)?;
+        let check = Check { object, kind: self.kind() };
+        match self {
+            Object::Point(p) => check.place([("x_metres", p.x_metres), ("y_metres", p.y_metres)])?,
+            Object::Line(l) => {
+                let spacing = ("spacing_metres", l.spacing_metres);
+                check.place([("x_metres", l.x_metres), ("y_start_metres", l.y_start_metres), spacing])?;
+                check.finite("direction_degrees", l.direction_degrees)?;
+            }
+            Object::Gaussian(g) => {
+                check.place([("x_metres", g.x_metres), ("y_metres", g.y_metres)])?;
+                check.spread("x_std_metres", g.x_std_metres)?;
+                check.spread("y_std_metres", g.y_std_metres)?;
+            }
+            Object::Wall(w) => {
+                check.place([("x_metres", w.x_metres), ("y_metres", w.y_metres)])?;
+                check.size("length_metres", w.length_metres)?;
+                check.finite("angle_degrees", w.angle_degrees)?;
+            }
+            Object::Box(b) => {
+                check.place([("x_metres", b.x_metres), ("y_metres", b.y_metres)])?;
+                check.size("length_metres", b.length_metres)?;
+                check.size("width_metres", b.width_metres)?;
+                check.finite("angle_degrees", b.angle_degrees)?;
+            }
+            Object::Post(p) => {
+                check.place([("x_metres", p.x_metres), ("y_metres", p.y_metres)])?;
+                let radius = p.radius_metres;
+                let usable = (MIN_RADIUS_METRES..=MAX_SIZE_METRES).contains(&radius);
+                check.value("radius_metres", radius, usable, "0.01 to 10000 m; a thinner post is a point")?;
+            }
+            Object::Polygon(p) => check.outline(&p.corners_metres)?,
         }
-        Object::Gaussian(g) => {
-            check.place([("x_metres", g.x_metres), ("y_metres", g.y_metres)])?;
-            check.spread("x_std_metres", g.x_std_metres)?;
-            check.spread("y_std_metres", g.y_std_metres)?;
-        }
-        Object::Wall(w) => {
-            check.place([("x_metres", w.x_metres), ("y_metres", w.y_metres)])?;
-            check.size("length_metres", w.length_metres)?;
-            check.finite("angle_degrees", w.angle_degrees)?;
-        }
-        Object::Box(b) => {
-            check.place([("x_metres", b.x_metres), ("y_metres", b.y_metres)])?;
-            check.size("length_metres", b.length_metres)?;
-            check.size("width_metres", b.width_metres)?;
-            check.finite("angle_degrees", b.angle_degrees)?;
-        }
-        Object::Post(p) => {
-            check.place([("x_metres", p.x_metres), ("y_metres", p.y_metres)])?;
-            let radius = p.radius_metres;
-            let usable = (MIN_RADIUS_METRES..=MAX_SIZE_METRES).contains(&radius);
-            check.value("radius_metres", radius, usable, "0.01 to 10000 m; a thinner post is a point")?;
-        }
-        Object::Polygon(p) => check.outline(&p.corners_metres)?,
+        check.reflectivity(self.reflectivity())?;
+        let rough = self.body().map_or(0.0, |body| body.surface().roughness_millimetres);
+        check.value("roughness_millimetres", rough, (0.0..=MAX_ROUGHNESS_MILLIMETRES).contains(&rough), "0 to 100 mm")
     }
-    check.reflectivity(of.reflectivity())?;
-    let rough = of.body().map_or(0.0, |body| body.surface().roughness_millimetres);
-    check.value("roughness_millimetres", rough, (0.0..=MAX_ROUGHNESS_MILLIMETRES).contains(&rough), "0 to 100 mm")
 }
 
 #[cfg(test)]
