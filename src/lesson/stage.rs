@@ -74,8 +74,6 @@ pub struct Stage {
     pub scene: Scene,
     maps: [RangeAngleMap; 3],
     output: Result<RangeAngleMap, String>,
-    /// The output's threshold.
-    pub eta: f32,
 }
 
 impl Stage {
@@ -86,19 +84,16 @@ impl Stage {
         let signal = signal::simulate(radar, scene, view.floor, view.seed)?;
         let log = LogMaps::of_signal(radar, &signal);
         let maps = [log.first, log.last, log.full].map(|m| m.normalise(view.normalisation));
-        let method = methods::by_name(&view.method).map_err(|e| e.to_string());
-        let mut eta = method.as_ref().map_or(crate::evaluate::TARGET_ETA, |m| m.eta());
         let output = if with_output {
             let request = Request { noise: view.floor.into(), normalisation: view.normalisation, ..Request::default() };
-            method.and_then(|m| {
-                let answer = m.reconstruct(radar, &signal.two_ends(radar), &request).map_err(|e| e.to_string())?;
-                eta = m.eta_of(&answer);
-                Ok(answer.lambda)
+            methods::by_name(&view.method).map_err(|e| e.to_string()).and_then(|method| {
+                let answer = method.reconstruct(radar, &signal.two_ends(radar), &request);
+                Ok(answer.map_err(|e| e.to_string())?.lambda)
             })
         } else {
             Err("the output was not asked for".to_owned())
         };
-        Ok(Stage { radar: radar.clone(), scene: scene.clone(), maps, output, eta })
+        Ok(Stage { radar: radar.clone(), scene: scene.clone(), maps, output })
     }
 
     /// A map.

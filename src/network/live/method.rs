@@ -92,13 +92,6 @@ impl LiveMethod {
         &self.engine
     }
 
-    /// The map in decades relative to the samples' own scale, before it is normalised.
-    /// # Errors
-    /// [`ReconstructError`] on a radar the network wasn't trained for and on unusable samples.
-    pub fn decades(&self, radar: &Radar, ends: &TwoEnds) -> Result<Decades, ReconstructError> {
-        self.on(radar).with_doubt(radar, ends).map(|(decades, _)| decades)
-    }
-
     fn extractor(&self, radar: &Radar) -> Result<Arc<FeatureExtractor>, ReconstructError> {
         // A panic elsewhere leaves whole tables or none.
         let kept = || self.extractor.lock().unwrap_or_else(PoisonError::into_inner);
