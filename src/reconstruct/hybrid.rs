@@ -13,7 +13,7 @@ use crate::signal::TwoEnds;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What it knows beside the samples.
-const TOLD: &str = "what nomp is told; and by its network, what live was trained on";
+const TOLD_TO_HYBRID: &str = "what nomp is told; and by its network, what live was trained on";
 
 /// [`super::search::Nomp`], and a network for what it can't take apart, or not in time.
 #[derive(Clone)]
@@ -68,7 +68,7 @@ impl Hybrid {
         About {
             name: "hybrid",
             description: "draws the exact map of the objects it finds; in cells that they don't explain it believes a network more",
-            told: TOLD,
+            told: TOLD_TO_HYBRID,
             eta: super::search::ETA,
         }
     }

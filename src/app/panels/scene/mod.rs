@@ -79,8 +79,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
         Some(_) => {}
     }
     let hover = response.hover_pos().map(|pos| view.to_scene(rect, pos));
-    let hovered = hover.filter(|_| input.moved.is_none());
-    let hovered = hovered.and_then(|place| editor.hit(place, view.metres_per_point));
+    let hovered = hover.filter(|_| input.moved.is_none()).and_then(|place| editor.hit(place, view.metres_per_point));
     let painter = ui.painter().with_clip_rect(rect);
     let canvas = Canvas { rect, view: *view, radar: input.radar, extent_metres, inks: Inks::of(ui.visuals()) };
     canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
