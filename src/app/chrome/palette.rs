@@ -134,7 +134,7 @@ fn words(command: &Command) -> &'static str {
 }
 
 /// The commands that `text` finds by name, by another word for it, or by the menu it stands in: first those whose name it is, of these
-/// the ones that were run last.
+/// those that have it as it was typed, and of these the ones that were run last.
 fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<Found> {
     let commands = listed().iter().filter(|e| e.command != Command::Window(WindowCommand::Palette)).map(|e| Found {
         command: e.command.clone(),
@@ -163,7 +163,8 @@ fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<
     };
     let mut found: Vec<Found> = commands.chain(methods).chain(lessons).filter(any).collect();
     let since = |name: &str| recent.iter().position(|r| r == name).unwrap_or(recent.len());
-    found.sort_by_key(|f| (!matches(&f.name, text), since(&f.name)));
+    let whole = |name: &str| name.to_lowercase().contains(text.trim().to_lowercase().as_str());
+    found.sort_by_key(|f| (!matches(&f.name, text), !whole(&f.name), since(&f.name)));
     found
 }
 
@@ -297,6 +298,7 @@ mod tests {
             ("regulators wide sweep", "Lesson: Range and bandwidth"),
             ("range becomes a frequency", "Lesson: Range and bandwidth"),
             ("thesis compares with", "Method: baseline"),
+            ("two reflections", "Recording: cascade 86"),
         ] {
             let found = find(&Context::default(), &input, text, &[]);
             let names: Vec<&String> = found.iter().map(|found| &found.name).collect();
@@ -311,6 +313,8 @@ mod tests {
         // What is called by the word comes before what is found by another word for it.
         let found = names("undo", &["Export maps…"]);
         assert_eq!(found[0], "Undo");
+        // And what has the words as they were typed before what has them anywhere: "Floor: thesis".
+        assert!(names("the floor", &[])[0].starts_with("Lesson: The floor"));
         let mut memory = PaletteMemory::remembering(vec!["Redo".to_owned()]);
         memory.remember("Undo".to_owned());
         memory.remember("Redo".to_owned());

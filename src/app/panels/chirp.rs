@@ -52,10 +52,6 @@ pub struct Input<'a> {
     pub result: Option<Result<&'a ChirpResult, &'a str>>,
 }
 
-fn chosen<'a>(input: &Input<'a>) -> choices::Chosen<'a> {
-    choices::Chosen { radar: input.radar, settings: input.settings, is_recorded: input.is_recorded }
-}
-
 /// Draws [`Panel::Chirp`](crate::app::state::Panel::Chirp).
 pub struct ChirpPanel;
 
@@ -102,7 +98,7 @@ fn contents(ui: &mut Ui, input: &Input<'_>, height: f32, asked: &mut Vec<Command
         false => heard(input.radar, input.scene, element),
     };
     echoes.truncate(ECHOES);
-    choices::show(ui, &chosen(input), element, asked);
+    choices::show(ui, input.radar, element, asked);
     let stretch = stretch(input.radar, &chirp);
     legend(ui, input, stretch);
     if input.radar.carrier == Carrier::OneWay {
@@ -230,7 +226,6 @@ impl Shown<'_> {
 
     /// Both ends of what is sent are dragged: the beginning up and down for the carrier, the end for bandwidth and duration.
     fn handles(&self, ui: &mut Ui, drawn: &Drawn, [microseconds, giga]: [f64; 2], asked: &mut Vec<Command>) {
-        let settings = self.input.settings;
         let mut radar = self.input.radar.clone();
         let size = vec2(6.0 * HANDLE, 6.0 * HANDLE);
         for (at, name, icon) in [
@@ -262,7 +257,7 @@ impl Shown<'_> {
             );
             response.on_hover_cursor(icon).on_hover_text(name);
         }
-        choices::ask(&chosen(self.input), settings, radar, asked);
+        choices::set(self.input.radar, radar, asked);
     }
 
     /// The beat over the chirp, its samples as dots.

@@ -123,7 +123,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut FalseAlarmsMemory) -> Ve
         group(ui, "Maps", |ui| {
             maps::show(ui, input.is_recorded, settings, input.radar, input.noise_seed, asked);
         });
-        group(ui, "Display", |ui| display::show(ui, settings, input.uses, asked));
+        group(ui, "Display", |ui| display::show(ui, settings, asked));
     })
 }
 

@@ -1,4 +1,4 @@
-//! The element that is looked at, and the numbers of the chirp.
+//! The element that is looked at, and the length of the chirp.
 
 use crate::app::state::{ChirpSettings, Command, RadarCommand, ViewCommand};
 use crate::app::widgets::labelled::labelled;
@@ -9,58 +9,30 @@ use eframe::egui::Ui;
 /// Shortest and longest chirp that is dragged to, seconds.
 pub const DRAGGED_SECONDS: [f64; 2] = [1e-6, 1e-2];
 
-/// What the numbers are of.
-pub struct Chosen<'a> {
-    /// The radar.
-    pub radar: &'a Radar,
-    /// Which element.
-    pub settings: ChirpSettings,
-    /// Whether a recording stands in the place of the scene, whose radar is what it was.
-    pub is_recorded: bool,
-}
-
-/// Draws the numbers; what is asked of settings and radar.
-pub fn show(ui: &mut Ui, chosen: &Chosen<'_>, element: usize, asked: &mut Vec<Command>) {
+/// Draws the numbers; what is asked of settings and radar. `element` is the one that is drawn.
+pub fn show(ui: &mut Ui, radar: &Radar, element: usize, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        let (radar, mut settings) = (chosen.radar, ChirpSettings { element });
-        let mut changed = radar.clone();
+        let mut settings = ChirpSettings { element };
         let number = NumberField::new(&mut settings.element).range(0..=radar.elements - 1).speed(0.3);
         labelled(ui, "Element", "The element whose chirp and beat are drawn, from the left", number);
+        if settings.element != element {
+            asked.push(ViewCommand::SetChirp(settings).into());
+        }
         let tooltip = "Time that the samples span. No echo at rest depends on it: a beat turns 2RB/c times in a chirp of any length.";
         let mut microseconds = 1e6 * radar.chirp_seconds;
         let range = 1e6 * DRAGGED_SECONDS[0]..=1e6 * DRAGGED_SECONDS[1];
         let field = NumberField::new(&mut microseconds).range(range).speed(0.05).suffix(" µs");
         if labelled(ui, "Chirp", tooltip, field).changed() {
+            let mut changed = radar.clone();
             changed.set_chirp_seconds(1e-6 * microseconds);
+            set(radar, changed, asked);
         }
-        ask(chosen, settings, changed, asked);
-    });
-    ui.add_enabled_ui(!chosen.is_recorded, |ui| {
-        ui.horizontal_wrapped(|ui| {
-            let mut changed = chosen.radar.clone();
-            let samples = NumberField::new(&mut changed.samples).range(1..=65536);
-            labelled(ui, "Samples", "Samples of the beat, and range bins of its spectrum", samples);
-            gigahertz(ui, "Bandwidth", "Drag the end of the chirp up or down", &mut changed.bandwidth_hz);
-            gigahertz(ui, "Carrier", "Drag the beginning of the chirp up or down", &mut changed.carrier_hz);
-            ask(chosen, chosen.settings, changed, asked);
-        });
     });
 }
 
-fn gigahertz(ui: &mut Ui, name: &str, tooltip: &str, hertz: &mut f64) {
-    let mut giga = *hertz / 1e9;
-    let field = NumberField::new(&mut giga).range(1e-3..=300.0).speed(0.01).suffix(" GHz");
-    if labelled(ui, name, tooltip, field).changed() {
-        *hertz = 1e9 * giga;
-    }
-}
-
-/// Asks for what differs from what is shown.
-pub fn ask(chosen: &Chosen<'_>, settings: ChirpSettings, radar: Radar, asked: &mut Vec<Command>) {
-    if settings != chosen.settings {
-        asked.push(ViewCommand::SetChirp(settings).into());
-    }
-    if radar != *chosen.radar {
-        asked.push(RadarCommand::Set(Box::new(radar)).into());
+/// Asks for a radar that differs from the one on screen.
+pub fn set(radar: &Radar, changed: Radar, asked: &mut Vec<Command>) {
+    if changed != *radar {
+        asked.push(RadarCommand::Set(Box::new(changed)).into());
     }
 }

@@ -1,11 +1,11 @@
-//! How maps are made: normalisation, floor, window, carrier and the seed of the noise.
+//! How maps are made: normalisation, floor, window and the seed of the noise.
 
 use super::choices::choices;
 use crate::app::state::{Command, EditCommand, RadarCommand, Settings, ViewCommand};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::setting_row::{rarely, row, row_of};
 use crate::maps::Normalisation;
-use crate::radar::{Carrier, DecibelMilliwatts, Decibels, Radar, WindowFunction};
+use crate::radar::{DecibelMilliwatts, Decibels, Radar, WindowFunction};
 use crate::signal::{self, Floor};
 use eframe::egui::Ui;
 
@@ -28,12 +28,9 @@ pub(super) fn show(
     }
     window(ui, radar.window, asked);
     let has_noise = !is_recorded && settings.floor != Floor::Exact;
-    rarely(ui, if has_noise { "Carrier and noise seed" } else { "Carrier" }, |ui| {
-        carrier(ui, radar.carrier, asked);
-        if has_noise {
-            noise_seed(ui, seed, asked);
-        }
-    });
+    if has_noise {
+        rarely(ui, "Seed of the noise", |ui| noise_seed(ui, seed, asked));
+    }
 }
 
 fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
@@ -111,14 +108,6 @@ fn noise_seed(ui: &mut Ui, mut seed: u64, asked: &mut Vec<Command>) {
 fn short_seed(seed: u64) -> Option<String> {
     let digits = seed.to_string();
     (digits.len() > 8).then(|| format!("{}…{}", &digits[..3], &digits[digits.len() - 3..]))
-}
-
-fn carrier(ui: &mut Ui, carrier: Carrier, asked: &mut Vec<Command>) {
-    let tooltip = "One-way: the thesis' convention, unambiguous. Two-way: as equation 3.1 is printed; each column stands for two directions";
-    row_of(ui, "Carrier", tooltip, |ui| {
-        let of = [(Carrier::OneWay, "One-way", ""), (Carrier::TwoWay, "Two-way", "")];
-        choices(ui, carrier, of, RadarCommand::SetCarrier, asked);
-    });
 }
 
 fn window(ui: &mut Ui, window: WindowFunction, asked: &mut Vec<Command>) {

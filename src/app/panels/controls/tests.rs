@@ -5,7 +5,7 @@ use crate::evaluate::Metrics;
 use crate::interact::Snap;
 use crate::maps::Normalisation;
 use crate::maps::cfar::{Cfar, Statistic};
-use crate::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
+use crate::radar::{DecibelMilliwatts, Decibels, WindowFunction};
 use crate::reconstruct::{Baseline, CAPON, Reconstructor};
 use crate::signal::Floor;
 use egui_kittest::Harness;
@@ -89,19 +89,16 @@ fn every_click_is_one_command() {
     controls.run();
     assert!(controls.state().is_empty(), "nobody but the user moves anything: {:?}", controls.state());
     unfold(&mut controls);
-    for label in ["hamming", "Two-way", "Exact", "found", "0.5 m", "Min–max", "60 dB", "dB", "absolute"] {
+    for label in ["hamming", "Exact", "0.5 m", "Min–max", "60 dB", "dB"] {
         controls.get_by_label(label).click();
         controls.run();
     }
     let asked = [
         Command::Radar(RadarCommand::SetWindow(WindowFunction::Hamming)),
-        Command::Radar(RadarCommand::SetCarrier(Carrier::TwoWay)),
         Command::View(ViewCommand::SetFloor(Floor::Exact)),
-        Command::View(ViewCommand::ToggleFound),
         Command::Edit(EditCommand::SetSnap(Snap::Metres(0.5))),
         Command::View(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0)))),
         Command::View(ViewCommand::SetUnits(Units::Decibels)),
-        Command::View(ViewCommand::ToggleAbsoluteDifference),
     ];
     assert_eq!(controls.state(), &asked, "and what is chosen already is not asked for");
 }
@@ -122,7 +119,7 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
 
 /// Opens what is folded away.
 fn unfold<State>(controls: &mut Harness<'_, State>) {
-    for title in ["η by false alarms", "Carrier and noise seed", "Snap, difference and failures"] {
+    for title in ["η by false alarms", "Seed of the noise"] {
         controls.get_by_label(title).click();
         controls.run();
     }
@@ -132,7 +129,7 @@ fn unfold<State>(controls: &mut Harness<'_, State>) {
 fn every_choice_is_called_what_it_says() {
     let mut controls = panel(Run::default);
     unfold(&mut controls);
-    for label in ["Min–max", "Thesis", "One-way", "hann", "Range–angle", "Λ", "grey", "reflectors", "Off"] {
+    for label in ["Min–max", "Thesis", "hann", "cos θ", "Λ", "grey", "Off"] {
         let _one = controls.get_by_label(label);
     }
 }
@@ -162,7 +159,7 @@ fn no_choice_leaves_a_narrow_panel() {
     let mut controls = panel_of([260.0, 1100.0], Settings::default(), |input| input);
     seen::assert_readable(controls.output());
     unfold(&mut controls);
-    for label in ["100 dB", "SNR", "dBm", "Two-way", "rectangular", "inferno", "views", "Cells"] {
+    for label in ["100 dB", "SNR", "dBm", "rectangular", "inferno", "degrees", "Cells"] {
         assert!(controls.get_by_label(label).rect().right() <= 260.0, "{label}");
     }
     seen::assert_readable(controls.output());
@@ -184,17 +181,16 @@ fn figures_stand_beside_the_bar_that_cancels() {
 fn what_a_lesson_does_not_use_is_not_shown() {
     let shown = |uses: Uses| {
         let panel = panel_for(uses, Run::default);
-        ["Reconstruction", "Method", "η", "η'", "found", "hann", "Colours"]
-            .map(|text| panel.query_all_by_label(text).count() > 0)
+        ["Reconstruction", "Method", "η", "η'", "Colours"].map(|text| panel.query_all_by_label(text).count() > 0)
     };
-    let [reconstruction, method, eta, target_eta, found, ..] = shown(Uses::ALL);
-    assert!(reconstruction && method && eta && target_eta && found);
-    let [reconstruction, method, eta, target_eta, found, _, colours] = shown(Uses { output: false, threshold: false });
-    assert!(!reconstruction && !method && !eta && !target_eta && !found && colours);
-    let [reconstruction, method, eta, target_eta, ..] = shown(Uses { output: false, threshold: true });
-    assert!(!reconstruction && !method && !eta && target_eta);
-    let [reconstruction, method, eta, target_eta, ..] = shown(Uses { output: true, threshold: false });
-    assert!(reconstruction && method && !eta && !target_eta);
+    assert_eq!(shown(Uses::ALL), [true; 5]);
+    for (output, threshold, expected) in [
+        (false, false, [false, false, false, false, true]),
+        (false, true, [false, false, false, true, true]),
+        (true, false, [true, true, false, false, true]),
+    ] {
+        assert_eq!(shown(Uses { output, threshold }), expected, "{output} {threshold}");
+    }
 }
 
 /// The panel with a detector in use.

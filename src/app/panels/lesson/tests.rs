@@ -22,14 +22,15 @@ fn run(lesson: &str, step: usize) -> LessonRun {
 type Drawn = (Option<LessonRun>, LessonMemory, Vec<Command>);
 
 fn harness(run: Option<LessonRun>) -> Harness<'static, Drawn> {
-    let draw = |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
-        asked.extend(show(
-            ui,
-            Input { run: run.as_ref(), progress: &Progress::default(), hidden: None, presenting: false },
-            memory,
-        ));
+    harness_of([640.0, 1600.0], run, Progress::default(), false)
+}
+
+/// The panel of a size, after what the learner did, on the whole screen or not.
+fn harness_of(size: [f32; 2], run: Option<LessonRun>, progress: Progress, presenting: bool) -> Harness<'static, Drawn> {
+    let draw = move |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
+        asked.extend(show(ui, Input { run: run.as_ref(), progress: &progress, hidden: None, presenting }, memory));
     };
-    Harness::builder().with_size([640.0, 1600.0]).build_ui_state(draw, (run, LessonMemory::default(), Vec::new()))
+    Harness::builder().with_size(size).build_ui_state(draw, (run, LessonMemory::default(), Vec::new()))
 }
 
 #[test]
@@ -81,13 +82,8 @@ fn a_digit_that_is_typed_elsewhere_goes_to_the_field() {
 fn the_question_is_in_view_however_little_room_there_is() {
     for (lesson, step) in [("which-points-a-car-is", 3), ("range-and-bandwidth", 1), ("where-a-wall-shines", 2)] {
         for size in [[360.0, 300.0], [520.0, 480.0]] {
-            let draw = |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
-                let progress = Progress::default();
-                let input = Input { run: run.as_ref(), progress: &progress, hidden: None, presenting: true };
-                asked.extend(show(ui, input, memory));
-            };
-            let state = (Some(self::run(lesson, step)), LessonMemory::default(), Vec::new());
-            let mut panel = Harness::builder().with_size(size).build_ui_state(draw, state);
+            let run = Some(self::run(lesson, step));
+            let mut panel = harness_of(size, run, Progress::default(), true);
             panel.run_steps(3);
             let step = panel.state().0.as_ref().and_then(LessonRun::current).unwrap().clone();
             let (title, question) = (panel.get_by_label_contains("Step "), step.predict.unwrap());
@@ -212,19 +208,11 @@ fn previous_keeps_the_verdict() {
     assert!(!run.is_predicting() && run.judgement.is_some_and(|j| j.is_ok_and(|j| !j.is_right)));
 }
 
-fn with_progress(progress: Progress) -> Harness<'static, Drawn> {
-    let draw = move |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
-        let input = Input { run: run.as_ref(), progress: &progress, hidden: None, presenting: false };
-        asked.extend(show(ui, input, memory));
-    };
-    Harness::builder().with_size([640.0, 1600.0]).build_ui_state(draw, (None, LessonMemory::default(), Vec::new()))
-}
-
 #[test]
 fn starting_over_asks_before_it_forgets() {
     let mut progress = Progress::default();
     progress.note_guess("range-and-bandwidth", 1, true);
-    let mut panel = with_progress(progress);
+    let mut panel = harness_of([640.0, 1600.0], None, progress, false);
     panel.get_by_label("Progress").click();
     panel.run();
     panel.get_by_label("Start over…").click();
@@ -240,7 +228,7 @@ fn starting_over_asks_before_it_forgets() {
 fn every_lesson_of_the_list_shows_how_far_it_was_taken() {
     let mut progress = Progress::default();
     progress.note_guess("range-and-bandwidth", 1, true);
-    let panel = with_progress(progress);
+    let panel = harness_of([640.0, 1600.0], None, progress, false);
     let texts = crate::app::widgets::seen::texts(panel.output());
     let bars = texts.iter().filter(|t| t.text.contains(" of ") && t.text.ends_with("steps")).count();
     assert_eq!(bars, crate::lesson::shipped::ALL.len());
