@@ -274,9 +274,6 @@ fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
         state.notices.error(format!("An unsaved scene of the last session can't be read: {problem}"));
     }
     let asked = asked.and_then(|path| apply::read(state, &path));
-    if asked.as_ref().is_some_and(|document| document.recording().is_some()) {
-        apply::show_recording_panels(state);
-    }
     match (&restored.on_screen, &asked) {
         (Some(_), None) => {
             state.notices.info("The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it.");
@@ -290,8 +287,12 @@ fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
         state.notices.info("Unsaved scenes of earlier sessions are in File > Unsaved scenes.");
     }
     let otherwise = state.editor.document().clone();
+    let is_asked = asked.is_some();
     state.editor = Editor::start(restored, asked, otherwise);
     state.scene_view.fit = true;
+    if is_asked {
+        apply::show_what_belongs(state);
+    }
 }
 
 impl eframe::App for App {

@@ -72,10 +72,14 @@ fn open_weights(state: &mut State, path: &Path) {
 
 /// Puts a document on screen, and where it is a recording, what recordings are looked at with.
 fn show(state: &mut State, label: &str, document: Document) {
-    let recording = document.recording().cloned();
     state.set_document(label, document);
+    show_what_belongs(state);
+}
+
+/// A method that takes the radar of the document on screen, and of a recording the panels it is looked at with.
+pub fn show_what_belongs(state: &mut State) {
     use_a_method_that_can(state);
-    if let Some(recording) = recording {
+    if let Some(recording) = state.editor.document().recording().cloned() {
         show_recording_panels(state);
         // What is doubtful stands in the panel.
         if recording.origin.is_some() || !recording.doubts.is_empty() {
@@ -95,7 +99,7 @@ fn use_a_method_that_can(state: &mut State) {
 }
 
 /// The list of what was found in front, where the method finds anything, and what reflectors leave unexplained behind the output.
-pub fn show_recording_panels(state: &mut State) {
+fn show_recording_panels(state: &mut State) {
     let lists = state.finds_reflectors().then_some(Panel::Found);
     for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output)].into_iter().chain(lists) {
         state.arrangement.set_open(panel, true);

@@ -17,7 +17,7 @@ mod work;
 
 pub use document::next_frame;
 
-pub use document::{read, show_recording_panels};
+pub use document::{read, show_what_belongs};
 pub use effect::Effect;
 pub use failure_view::follow as follow_failure;
 pub use lesson::follow_challenge;

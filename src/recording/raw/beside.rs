@@ -14,7 +14,7 @@ pub(super) fn data_of(path: &Path) -> Result<PathBuf, RecordingError> {
     if !ends(path, "cfg") {
         return Ok(path.to_owned());
     }
-    let all = ["bin", "dat", "raw", "npy", "npz", "mat"];
+    let all = ["bin", "dat", "raw", "npy", "npz", "mat", "h5", "hdf5"];
     if let Some(same) = all.into_iter().map(|end| path.with_extension(end)).find(|same| fs::exists(same)) {
         return Ok(same);
     }

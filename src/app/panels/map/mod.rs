@@ -33,11 +33,13 @@ pub use swipe::Over;
 pub use theory::Theory;
 pub use told::{MapMemory, MapPanel, caption_of, cells, is_updating, map_input, marks_of, verdict};
 
-use crate::app::state::{Command, LessonCommand, MapKind, MapView, ViewCommand};
+use crate::app::state::{Command, LessonCommand, MapKind, MapView, Projection, ViewCommand};
 use crate::app::widgets::axes;
 use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::nudge::nudge;
 use crate::app::widgets::theme::{CAPTION, CAPTION_INK, Inks};
+use crate::maps::{Aperture, beam_columns};
+use crate::picture::LEAST_COLUMNS;
 use crate::radar::{End, Radar};
 use crate::scene::Object;
 use eframe::egui;
@@ -149,6 +151,9 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
             window::draw(inner, frame, cursor, cells, cfar);
         }
     }
+    if let Some(aperture) = aperture(input).filter(|_| at_rest) {
+        overlay::beam(inner, frame, beam_columns(input.radar, aperture));
+    }
     if input.veil.is_none() {
         let pointer = response.hover_pos();
         overlay::marks(inner, frame, input.marks.objects, pointer);
@@ -227,6 +232,19 @@ fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: 
         asked.push(LessonCommand::Predict(crate::lesson::Guess::Place(cell)).into());
     }
     asked.push(ViewCommand::Hover(cursor).into());
+}
+
+/// The elements whose beam is drawn over a map of few of them.
+fn aperture(input: &Input<'_>) -> Option<Aperture> {
+    if input.radar.elements >= LEAST_COLUMNS || input.projection != Projection::RangeAngle {
+        return None;
+    }
+    match input.kind {
+        MapKind::Input0 => Some(Aperture::End(End::First)),
+        MapKind::Input1 => Some(Aperture::End(End::Last)),
+        MapKind::Target => Some(Aperture::Full),
+        _ => None,
+    }
 }
 
 /// Middle of the elements that a map is of.
