@@ -36,7 +36,7 @@ impl Kind {
 }
 
 /// A floating-point number of 16 bits (IEEE 754).
-fn half_value(word: u16) -> f64 {
+pub fn half_value(word: u16) -> f64 {
     let sign = if word & 0x8000 == 0 { 1.0 } else { -1.0 };
     let (exponent, fraction) = (i32::from(word >> 10 & 31), f64::from(word & 1023) / 1024.0);
     match exponent {

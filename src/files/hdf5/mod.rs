@@ -11,6 +11,8 @@ mod object;
 #[cfg(test)]
 mod tests;
 
+pub use data::half_value;
+
 use ndarray::ArrayD;
 use num_complex::Complex64;
 use object::{Member, Object};

@@ -38,7 +38,7 @@ fn every_way_of_storing_gives_the_numbers() {
     let near = |v: f64, expected: f64| (v - expected).abs() <= 1e-3 * expected.abs();
     let expected = [0.0, -1.5, 6.1e-5, 2f64.powi(-24), 65504.0];
     assert!(half.iter().zip(expected).all(|(v, e)| near(*v, e)), "{half}");
-    assert!(reals(ARRAYS, "unwritten") == ArrayD::zeros(vec![3, 2]));
+    assert!(reals(ARRAYS, "unwritten") == ArrayD::<f64>::zeros(vec![3, 2]));
 }
 
 #[test]

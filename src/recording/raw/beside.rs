@@ -44,6 +44,17 @@ fn ends(path: &Path, end: &str) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end))
 }
 
+/// What the files of a cascade's chips are called by, in the order of TI's capture program.
+const CHIPS: [&str; 4] = ["master", "slave1", "slave2", "slave3"];
+
+/// Names of the files of the other chips of a cascade, where the capture is one chip's.
+pub(super) fn other_chips(data: &Path) -> Vec<String> {
+    let name = data.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    let Some(own) = CHIPS.into_iter().find(|chip| name.contains(chip)) else { return Vec::new() };
+    let others = CHIPS.into_iter().filter(|chip| *chip != own).map(|chip| name.replacen(own, chip, 1));
+    others.filter(|other| fs::exists(&data.with_file_name(other))).collect()
+}
+
 /// Files that go on from the first, where its name ends with `_0`: `_1` and so on, as capture programs split at a gigabyte.
 pub(super) fn more_files(data: &Path) -> Vec<PathBuf> {
     let Some(stem) = data.file_stem().and_then(|s| s.to_str()).and_then(|s| s.strip_suffix("_0")) else {

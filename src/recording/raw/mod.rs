@@ -135,6 +135,11 @@ fn described<R: Read + io::Seek>(
     doubts.extend(line.doubts.iter().cloned());
     doubts
         .extend((!more.is_empty()).then(|| format!("The capture goes on in {} more files, read as one.", more.len())));
+    let others = beside::other_chips(&data);
+    doubts.extend((!others.is_empty()).then(|| {
+        let others = others.join(", ");
+        format!("The file holds the receivers of one chip of a cascade. Those of the others, in {others}, are not read with it.")
+    }));
     let (constant, frames) = frame_of(&mut stream, best, profile);
     doubts.extend(constant.map(|db| {
         format!(

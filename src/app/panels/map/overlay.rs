@@ -8,8 +8,10 @@ use crate::app::widgets::direction::direction;
 use crate::app::widgets::levels::with_unit;
 use crate::app::widgets::theme::{MARK, MARK_EDGE, MARK_SELECTED};
 use crate::interact::Selection;
+use crate::maps::RangeAngleMap;
+use crate::picture::finer;
 use crate::scene::{Object, Reflector, Scene};
-use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, pos2, vec2};
 
 /// Most reflectors that are marked.
 pub const MARKS: usize = 4000;
@@ -32,6 +34,16 @@ pub fn found(painter: &Painter, frame: Frame<'_>, found: &[Reflector], old: bool
             cross(painter, frame.blob(r), 4.0, Stroke::new(width, colour.gamma_multiply(strength)));
         }
     }
+}
+
+/// The map of one range bin as a line: Lambda over directions.
+pub fn line(painter: &Painter, frame: Frame<'_>, map: &RangeAngleMap, ink: Color32) {
+    let cells = frame.radar.left_to_right(&map.lambda);
+    let fine = finer(cells);
+    let cells = fine.as_ref().map_or(cells, |fine| fine.view());
+    let across = |n: usize| (n as f32 + 0.5) / cells.ncols() as f32;
+    let point = |(n, lambda): (usize, &f32)| frame.view.to_screen(frame.rect, pos2(across(n), *lambda));
+    painter.add(Shape::line(cells.iter().enumerate().map(point).collect(), Stroke::new(1.6, ink)));
 }
 
 /// How wide the beam of the map's elements is, as a bar in a corner: echoes nearer to each other are one. Not where it is too narrow to see.
