@@ -2,16 +2,17 @@
 
 use ndarray::{Array2, ArrayView2};
 
-/// Columns that a map is drawn on at least.
-pub const LEAST_COLUMNS: usize = 256;
+/// A map of so many columns is fine enough for the eye; one of fewer is drawn on 256 at least.
+pub const FEW_COLUMNS: usize = 128;
+const LEAST_COLUMNS: usize = 256;
 
-/// `map`, `[range bins, columns]`, on [`LEAST_COLUMNS`] or more: each column stands for as many, which take its place evenly. Values between
+/// `map`, `[range bins, columns]`, on 256 columns or more: each column stands for as many, which take its place evenly. Values between
 /// follow the cubic through the four columns around (Catmull and Rom, 1974), within what the map has; the last column is followed by the
-/// first, as the transform has it. Nothing more is resolved than before. `None` where the map has as many columns already, or one.
+/// first, as the transform has it. Nothing more is resolved than before. `None` where the map has [`FEW_COLUMNS`] already, or one.
 pub fn finer(map: ArrayView2<'_, f32>) -> Option<Array2<f32>> {
     let (rows, columns) = map.dim();
     let times = LEAST_COLUMNS.div_ceil(columns.max(1));
-    if columns < 2 || times < 2 {
+    if !(2..FEW_COLUMNS).contains(&columns) {
         return None;
     }
     let (low, high) = map.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
@@ -45,9 +46,9 @@ mod tests {
 
     #[test]
     fn columns_enough_or_one_stay_as_they_are() {
-        assert_eq!(finer(Array2::zeros((4, 256)).view()), None);
+        assert_eq!(finer(Array2::zeros((4, 128)).view()), None);
         assert_eq!(finer(Array2::zeros((4, 1)).view()), None);
-        assert_eq!(finer(Array2::zeros((4, 255)).view()).unwrap().dim(), (4, 510));
+        assert_eq!(finer(Array2::zeros((4, 127)).view()).unwrap().dim(), (4, 381));
         assert_eq!(finer(Array2::from_elem((2, 3), f32::NAN).view()), None);
     }
 }

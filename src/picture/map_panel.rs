@@ -3,7 +3,7 @@
 use super::canvas::{FAINT_INK, HAIRLINE, INK, PanelArea, PictureError};
 use super::colour::{ColourMap, Rgb};
 use super::detections::CellVerdict;
-use super::finer::LEAST_COLUMNS;
+use super::finer::FEW_COLUMNS;
 use super::text::{self, Weight};
 use crate::radar::Radar;
 use ndarray::{Array2, ArrayView2, CowArray, Ix2};
@@ -43,7 +43,7 @@ pub(super) struct MapAxes {
 impl MapPanel<'_> {
     pub(super) fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>, radar: &Radar) -> Result<(), PictureError> {
         // A column stands for the direction in its middle; half of one counts where there are few.
-        let half = if radar.elements < LEAST_COLUMNS { 0.0 } else { 0.5 };
+        let half = if radar.elements < FEW_COLUMNS { 0.0 } else { 0.5 };
         let axes = MapAxes {
             x: [0.0, 1.0].map(|across| radar.cos_of_column(radar.column_across(across) + half)),
             y: [0.0, radar.max_range_metres()],

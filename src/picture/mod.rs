@@ -32,7 +32,7 @@ mod text;
 
 pub use colour::ColourMap;
 pub use detections::{CellVerdict, told_apart};
-pub use finer::{LEAST_COLUMNS, finer};
+pub use finer::{FEW_COLUMNS, finer};
 
 #[cfg(feature = "pictures")]
 pub use canvas::{Drawing, PictureError};

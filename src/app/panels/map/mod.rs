@@ -39,7 +39,7 @@ use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::nudge::nudge;
 use crate::app::widgets::theme::{CAPTION, CAPTION_INK, Inks};
 use crate::maps::{Aperture, RangeAngleMap, beam_columns};
-use crate::picture::LEAST_COLUMNS;
+use crate::picture::FEW_COLUMNS;
 use crate::radar::{End, Radar};
 use crate::scene::Object;
 use eframe::egui;
@@ -248,7 +248,7 @@ fn line_of<'a>(input: &'a Input<'_>) -> Option<&'a RangeAngleMap> {
 
 /// The elements whose beam is drawn over a map of few of them.
 fn aperture(input: &Input<'_>) -> Option<Aperture> {
-    if input.radar.elements >= LEAST_COLUMNS || input.projection != Projection::RangeAngle {
+    if input.radar.elements >= FEW_COLUMNS || input.projection != Projection::RangeAngle {
         return None;
     }
     match input.kind {
