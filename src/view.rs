@@ -117,6 +117,8 @@ view! {
     directions: Directions = Directions::default(),
     /// Whether inputs, target and output are drawn on one scale; each on its own where not.
     one_scale: bool = false,
+    /// Whether maps of fewer than 128 elements are drawn on 256 columns or more; on as many as they have where not.
+    fine_columns: bool = true,
     /// Whether range-Doppler maps of recordings leave out what stands still, the mean over the loops.
     static_clutter_out: bool = false,
     /// How the difference is drawn.

@@ -1,6 +1,7 @@
 //! Files that are either whole or not there, and NumPy archives with errors that name the key.
 
 pub mod entries;
+pub mod hdf5;
 pub mod kind;
 pub mod memory;
 pub mod npy;

@@ -57,9 +57,11 @@ impl RangeDopplerMap {
     pub fn of(radar: &Radar, samples: ChirpSamples) -> RangeDopplerMap {
         let (chirps, elements, bins) = samples.samples.dim();
         let empty = || RangeDopplerMap { power: Array2::zeros((bins, chirps)) };
-        let Ok(rows) = samples.samples.into_shape_with_order((chirps * elements, bins)) else { return empty() };
+        // In the order of its axes, whichever way the samples run.
+        let Ok(rows) = samples.samples.to_shape((chirps * elements, bins)) else { return empty() };
         let profiles = channels_range_transform(radar, rows.view()).profiles;
         drop(rows);
+        drop(samples);
         let Ok(profiles) = profiles.into_shape_with_order((chirps, elements, bins)) else { return empty() };
         let mut map = empty();
         let turns_back = radar.middle_turns_per_metre() < 0.0;

@@ -22,8 +22,8 @@ pub use lambda::{LambdaScale, Mask, Normalisation, NormalisationError, RangeAngl
 pub use log_map::{LOG_GUARD, LogMap, guard};
 pub use spectra::{Spectrum, centred_spectrum};
 pub use transform::{
-    Aperture, ComplexMap, RangeProfiles, angle_transform, channels_map, channels_range_transform, range_transform,
-    range_transform_in_place, windowed_range_transform,
+    Aperture, ComplexMap, RangeProfiles, angle_transform, beam_columns, channels_map, channels_range_transform,
+    range_transform, range_transform_in_place, windowed_range_transform,
 };
 
 use crate::radar::{BuiltArray, End, Radar};

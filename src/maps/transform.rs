@@ -41,6 +41,30 @@ pub struct ComplexMap {
     pub cells: Array2<Complex64>,
 }
 
+/// Columns over which a plane wave stays above half power in the map of `aperture`.
+pub fn beam_columns(radar: &Radar, aperture: Aperture) -> f64 {
+    let weights = radar.window.weights(aperture.channels(radar).len());
+    let magnitude = |columns: f64| {
+        let turns = std::f64::consts::TAU * columns / radar.elements as f64;
+        let heard = weights.iter().enumerate().map(|(n, w)| Complex64::from_polar(*w, turns * n as f64));
+        heard.sum::<Complex64>().norm()
+    };
+    let level = magnitude(0.0) * std::f64::consts::FRAC_1_SQRT_2;
+    // Half of the side of the main lobe of a rectangular window.
+    let step = radar.elements as f64 / (2 * weights.len().max(1)) as f64;
+    let most = radar.elements as f64 / 2.0;
+    let mut high = step.min(most);
+    while high < most && magnitude(high) >= level {
+        high = (high + step).min(most);
+    }
+    let mut low = high - step.min(high);
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if magnitude(middle) >= level { low = middle } else { high = middle }
+    }
+    2.0 * low
+}
+
 /// Range profiles of the whole array, `[elements, range bins]`.
 pub fn range_transform(radar: &Radar, signal: &BeatSignal) -> RangeProfiles {
     channels_range_transform(radar, signal.samples.view())
@@ -122,5 +146,24 @@ impl ComplexMap {
         // Squares of what is smaller than 1e-160 are zero.
         let guard = if largest > 0.0 { guard(largest.sqrt()) } else { LOG_GUARD };
         LogMap::new(Zip::from(&self.cells).par_map_collect(|v| (v.norm() + guard).log10()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::WindowFunction;
+
+    #[test]
+    fn beams_are_as_wide_as_harris_has_them() {
+        // Harris (1978), table 1: half-power widths in bins.
+        for (window, bins) in [(WindowFunction::Rectangular, 0.89), (WindowFunction::Hann, 1.44)] {
+            let radar = Radar { elements: 128, end_elements: 16, window, ..Radar::default() };
+            assert!((beam_columns(&radar, Aperture::Full) - bins).abs() < 0.03, "{window:?}");
+            let end = beam_columns(&radar, Aperture::End(End::First)) / 8.0;
+            assert!((end - bins).abs() < 0.15, "{window:?}: {end}");
+        }
+        let two = Radar { elements: 2, end_elements: 1, ..Radar::default() };
+        assert!((0.0..=2.0).contains(&beam_columns(&two, Aperture::End(End::First))));
     }
 }

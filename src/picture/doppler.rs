@@ -52,6 +52,7 @@ impl Drawing for Picture<'_> {
             radar.chirps,
             radar.unambiguous_velocity_metres_per_second()
         );
-        MapPanel { title, cells: MapCells::Lambda(self.lambda.lambda.view(), self.colours) }.draw_over(root, &axes)
+        MapPanel { title, cells: MapCells::Lambda(self.lambda.lambda.view().into(), self.colours) }
+            .draw_over(root, &axes)
     }
 }

@@ -3,15 +3,16 @@
 use super::canvas::{FAINT_INK, HAIRLINE, INK, PanelArea, PictureError};
 use super::colour::{ColourMap, Rgb};
 use super::detections::CellVerdict;
+use super::finer::FEW_COLUMNS;
 use super::text::{self, Weight};
 use crate::radar::Radar;
-use ndarray::{Array2, ArrayView2};
+use ndarray::{Array2, ArrayView2, CowArray, Ix2};
 use plotters::prelude::*;
 
 /// What a panel paints: cells `[range bins, columns]` as they are drawn, the leftmost column first.
 #[derive(Debug, Clone)]
 pub(super) enum MapCells<'a> {
-    Lambda(ArrayView2<'a, f32>, ColourMap),
+    Lambda(CowArray<'a, f32, Ix2>, ColourMap),
     Above(ArrayView2<'a, f32>, f32),
     /// The output above its threshold: hits, misses and false alarms.
     Detections(Array2<CellVerdict>),
@@ -44,8 +45,10 @@ pub(super) struct MapAxes {
 
 impl MapPanel<'_> {
     pub(super) fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>, radar: &Radar) -> Result<(), PictureError> {
+        // A column stands for the direction in its middle; half of one counts where there are few.
+        let half = if radar.elements < FEW_COLUMNS { 0.0 } else { 0.5 };
         let axes = MapAxes {
-            x: [0.0, 1.0].map(|across| radar.cos_of_column(radar.column_across(across) + 0.5)),
+            x: [0.0, 1.0].map(|across| radar.cos_of_column(radar.column_across(across) + half)),
             y: [0.0, radar.max_range_metres()],
             x_title: "cos \u{3b8}",
             x_digits: 1,
@@ -100,7 +103,8 @@ impl MapPanel<'_> {
 impl MapCells<'_> {
     fn dim(&self) -> (usize, usize) {
         match self {
-            MapCells::Lambda(map, _) | MapCells::Above(map, _) => map.dim(),
+            MapCells::Lambda(map, _) => map.dim(),
+            MapCells::Above(map, _) => map.dim(),
             MapCells::Detections(kinds) => kinds.dim(),
         }
     }

@@ -5,6 +5,7 @@
 
 pub mod colour;
 mod detections;
+mod finer;
 
 #[cfg(feature = "pictures")]
 mod canvas;
@@ -31,6 +32,7 @@ mod text;
 
 pub use colour::ColourMap;
 pub use detections::{CellVerdict, told_apart};
+pub use finer::{FEW_COLUMNS, finer};
 
 #[cfg(feature = "pictures")]
 pub use canvas::{Drawing, PictureError};

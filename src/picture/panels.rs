@@ -2,6 +2,7 @@
 
 use super::canvas::{Drawing, FAINT_INK, INK, PAPER, PanelArea, PictureError};
 use super::detections::{CellVerdict, told_apart};
+use super::finer::finer;
 use super::lettering::Lettered;
 use super::map_panel::{MapCells, MapPanel};
 use super::scene_panel::{self, SceneContent};
@@ -11,7 +12,7 @@ use crate::maps::RangeAngleMap;
 use crate::radar::{End, Radar};
 use crate::scene::Scene;
 use image::RgbImage;
-use ndarray::{Array2, ArrayView2};
+use ndarray::{Array2, ArrayView2, CowArray};
 use plotters::prelude::*;
 
 /// Everything a picture shows.
@@ -115,7 +116,11 @@ impl<'a> Panels<'a> {
             format!("elements {} to {}", range.start, range.end - 1)
         };
         let drawn = |map: &'a RangeAngleMap| self.radar.left_to_right(&map.lambda);
-        let lambda = |title: String, map| MapPanel { title, cells: MapCells::Lambda(drawn(map), self.colours) };
+        let lambda = |title: String, map| {
+            let cells = drawn(map);
+            let cells = finer(cells).map_or_else(|| CowArray::from(cells), CowArray::from);
+            MapPanel { title, cells: MapCells::Lambda(cells, self.colours) }
+        };
         let mut panels = vec![
             lambda(format!("Input 0: {}", elements(End::First)), self.first),
             lambda(format!("Input 1: {}", elements(End::Last)), self.last),

@@ -140,9 +140,14 @@ impl Reconstruction {
             .into_iter()
             .map(|(amplitude, r, confidence)| {
                 let polar = radar.polar_of(r.x_metres, r.y_metres);
+                // Of samples of one range bin none is told; else ranges wrap where those of the map do.
+                let range_metres = match radar.samples {
+                    1 => polar.range_metres,
+                    _ => polar.range_metres.rem_euclid(radar.max_range_metres()),
+                };
                 Detection {
                     cos_theta: polar.cos_theta,
-                    range_metres: polar.range_metres,
+                    range_metres,
                     relative_power: Decibels(20.0 * (amplitude / strongest).log10()),
                     confidence,
                 }
@@ -169,6 +174,15 @@ mod tests {
         assert_eq!((far.cos_theta, far.range_metres), (0.0, 20.0));
         assert_eq!((near.confidence, far.confidence), (Some(0.75), Some(0.25)), "each keeps its own");
         assert!((far.relative_power.0 - 20.0 * 0.5f64.log10()).abs() < 1e-12, "twice the size at twice the distance");
+    }
+
+    #[test]
+    fn ranges_beyond_the_axis_wrap_as_the_map_does() {
+        let radar = Radar::default();
+        let y_metres = radar.max_range_metres() + 1.5;
+        let reflectors = vec![Reflector { x_metres: 0.0, y_metres, reflectivity: 1.0 }];
+        let found = Reconstruction { reflectors, ..Reconstruction::silence(&radar) }.detections(&radar);
+        assert!((found[0].range_metres - 1.5).abs() < 1e-9, "{found:?}");
     }
 
     #[test]

@@ -164,20 +164,36 @@ pub(crate) mod tests {
         let bytes: Vec<u8> = (0..5 * FRAME).map(|n| (n % 250 + 1) as u8).collect();
         let mut card = Card::listen(0, FRAME).unwrap();
         card.log = Some(File::create(&path).unwrap());
-        card.silence = Some(Duration::from_secs(1));
+        card.silence = Some(Duration::from_secs(60));
+        card.most_frames = Some(5);
         let mut packets = sent(&bytes);
         packets.swap(3, 7);
         packets.swap(60, 62);
         // The 41st packet is lost: it lies within the second frame.
         packets.remove(40);
-        let replay = replay(packets, card.port().unwrap(), Duration::from_micros(300), 70);
+        let port = card.port().unwrap();
+        // Each packet waits until the one before was taken: a machine that is busy with other work loses none.
+        let (taken_one, wait) = std::sync::mpsc::channel();
+        let replay = std::thread::spawn(move || {
+            let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+            for (n, packet) in packets.iter().enumerate() {
+                std::thread::sleep(Duration::from_millis(if n == 70 { 400 } else { 0 }));
+                socket.send_to(packet, (Ipv4Addr::LOCALHOST, port)).unwrap();
+                wait.recv_timeout(Duration::from_secs(60)).ok();
+            }
+        });
         let mut taken = Vec::new();
         // Two frames are looked at; the others are dropped.
         let take = |frame: CardFrame| {
             taken.push((frame.number, frame.lost_bytes));
             if taken.len() > 2 { Handed::Dropped } else { Handed::Taken }
         };
-        let summary = card.run(take, |_| true).unwrap();
+        let goes_on = |_: &CardSummary| {
+            taken_one.send(()).ok();
+            true
+        };
+        let summary = card.run(take, goes_on).unwrap();
+        drop(taken_one);
         replay.join().unwrap();
         assert_eq!((summary.frames, summary.dropped, summary.packets.lost_bytes), (5, 3, DATA as u64));
         assert_eq!(taken[..2], [(0, 0), (1, DATA as u64)]);

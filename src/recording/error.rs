@@ -2,6 +2,7 @@
 
 use super::layout::LayoutError;
 use super::{AxesError, CalibrationError, CaptureError, MatError, NumpyError, ProfileError};
+use crate::files::hdf5::Hdf5Error;
 use crate::radar::RadarError;
 use crate::scene::file::SceneTextError;
 use std::io;
@@ -45,6 +46,9 @@ pub enum Fault {
     /// The array can't be read.
     #[error("{0}")]
     Mat(#[from] MatError),
+    /// The array can't be read.
+    #[error("{0}")]
+    Hdf5(#[from] Hdf5Error),
     /// The capture can't be read.
     #[error("{0}")]
     Capture(#[from] CaptureError),

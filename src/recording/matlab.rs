@@ -138,11 +138,6 @@ fn damaged(what: &str, reason: impl ToString) -> MatError {
 fn header(file: &mut impl Read) -> Result<bool, MatError> {
     let mut header = [0; HEADER_BYTES];
     file.read_exact(&mut header).map_err(|_| MatError::Header("it is shorter than the header"))?;
-    if header.starts_with(b"MATLAB 7.3") || header.starts_with(b"\x89HDF") {
-        return Err(MatError::Header(
-            "it is version 7.3, an HDF5 file; save it with the option -v7, or as an .npz by numpy.savez",
-        ));
-    }
     match &header[124..] {
         [0, 1, b'I', b'M'] => Ok(false),
         [1, 0, b'M', b'I'] => Ok(true),

@@ -9,6 +9,7 @@
 //! | `chain` | files that go on from one to the next |
 //! | `numpy` | `.npy` and `.npz` |
 //! | `matlab` | `.mat`, versions 5 and 7 |
+//! | `hdf5` | `.h5`, and `.mat` of version 7.3 |
 //! | `capture`, `profile` | samples of a capture card, and the `.cfg` that set the radar up |
 //! | [`layout`] | how the bytes of a raw capture stand for samples, by evidence |
 //! | [`raw`] | raw captures and arrays as they are: the text that describes them is made |
@@ -32,6 +33,7 @@ mod doubts;
 mod error;
 pub mod explain;
 pub mod file;
+mod hdf5;
 pub mod layout;
 mod matlab;
 mod numbers;

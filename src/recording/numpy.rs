@@ -1,6 +1,7 @@
 //! NumPy's `.npy` and `.npz` files: what the header says is checked before any memory is asked for.
 
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
+use crate::files::hdf5::half_value;
 use crate::files::npy::header_bytes;
 use crate::files::npz::{Npz, NpzError};
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
@@ -97,7 +98,7 @@ fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, NumpyError> {
         "<i8" | ">i8" => Numbers::Real(array::<i64>(whole).map_err(|e| damaged(e.to_string()))?.mapv(|v| v as f64)),
         "<u2" | ">u2" => Numbers::Real(array::<u16>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
         "|i1" => Numbers::Real(array::<i8>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "<f2" => Numbers::Real(words(whole, header_length, &header, 1, half).map_err(damaged)?.remove(0)),
+        "<f2" => Numbers::Real(words(whole, header_length, &header, 1, half_value).map_err(damaged)?.remove(0)),
         _ if is_pair(&found) => {
             let mut parts = words(whole, header_length, &header, 2, |word| f64::from(word as i16)).map_err(damaged)?;
             let (second, first) = (parts.remove(1), parts.remove(0));
@@ -134,18 +135,6 @@ fn words(
         ArrayD::from_shape_vec(shape.clone(), values).map_err(|e| e.to_string())
     };
     (0..parts).map(part).collect()
-}
-
-/// A number of half precision (IEEE 754 binary16).
-fn half(word: u16) -> f64 {
-    let sign = if word >> 15 == 1 { -1.0 } else { 1.0 };
-    let (exponent, fraction) = (i32::from(word >> 10 & 0x1f), f64::from(word & 0x3ff));
-    match exponent {
-        0 => sign * fraction * 2f64.powi(-24),
-        0x1f if fraction == 0.0 => sign * f64::INFINITY,
-        0x1f => f64::NAN,
-        _ => sign * (1.0 + fraction / 1024.0) * 2f64.powi(exponent - 15),
-    }
 }
 
 fn array<T: ReadableElement>(file: impl Read) -> Result<ArrayD<T>, ReadNpyError> {

@@ -7,7 +7,7 @@ use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
 use super::said_recording::{Covers, Table};
 use super::signs::Signs;
-use super::{AxisKind, Capture, Chirp, Fault, RadarProfile, Recorded, matlab};
+use super::{AxisKind, Capture, Chirp, Fault, RadarProfile, Recorded, hdf5};
 use crate::radar::Radar;
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array2, Array3, Axis, concatenate};
@@ -175,7 +175,7 @@ fn turns(radar: &Radar) -> Vec<f64> {
 }
 
 fn check_capture(table: &Table) -> Result<(), Fault> {
-    if ["npz", "npy", "mat"].contains(&table.extension().as_str()) {
+    if ["npz", "npy", "mat", "h5", "hdf5"].contains(&table.extension().as_str()) {
         return Err(Fault::key("[recording.capture]", "is there", "it only beside a raw capture, such as a .bin file"));
     }
     let arrays = [("array", table.array.is_some()), ("first", table.first.is_some()), ("last", table.last.is_some())];
@@ -308,7 +308,8 @@ fn numbers(table: &Table, open: Open<'_>, key: Option<&str>) -> Result<Numbers, 
     let named = || key.ok_or_else(|| Fault::key("recording.array", "is missing", "the array's name in the file"));
     match extension.as_str() {
         "npz" => Ok(read_npz(open(&table.file)?, named()?)?),
-        "mat" => Ok(matlab::read_mat(open(&table.file)?, named()?)?),
+        "mat" => hdf5::read_mat(open(&table.file)?, named()?),
+        "h5" | "hdf5" => hdf5::read_h5(open(&table.file)?, named()?),
         "npy" if key.is_some() => {
             Err(Fault::key("recording.array", "is there", "it not beside an .npy file, which holds one array"))
         }
@@ -317,7 +318,7 @@ fn numbers(table: &Table, open: Open<'_>, key: Option<&str>) -> Result<Numbers, 
         _ => Err(Fault::key(
             "recording.file",
             format!("is \"{}\"", table.file),
-            "a name ending in .npz, .npy, .mat or .bin",
+            "a name ending in .npz, .npy, .mat, .h5 or .bin",
         )),
     }
 }

@@ -93,11 +93,15 @@ fn cfg(chirps: &Chirps, masks: &[u32], loops: usize, more: &str) -> String {
     format!("{text}frameCfg 0 {} {loops} 0 100 1 0\n{more}", masks.len() - 1)
 }
 
-fn opened(bytes: &[u8], cfg: &str) -> Recording {
+fn folder(bytes: &[u8], cfg: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("c.bin"), bytes).unwrap();
     fs::write(folder.path().join("c.cfg"), cfg).unwrap();
-    raw::open(&folder.path().join("c.bin"), None).unwrap()
+    folder
+}
+
+fn opened(bytes: &[u8], cfg: &str) -> Recording {
+    raw::open(&folder(bytes, cfg).path().join("c.bin"), None).unwrap()
 }
 
 /// The strongest echo that `iaa` finds stands within a range bin and 0.03 in cosine of where it was put.
@@ -183,16 +187,17 @@ fn real_samples_give_the_place() {
 
 #[test]
 fn range_with_velocity_of_a_capture_stand_in_its_map() {
-    let echo = Echo { speed: 3.0, ..STILL };
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("c.bin"), two_lanes(samples(&RISING, echo, 2, 32).into_iter().flatten())).unwrap();
-    fs::write(folder.path().join("c.cfg"), cfg(&RISING, &[1, 4], 32, "")).unwrap();
-    let recording = raw::open(&folder.path().join("c.bin"), None).unwrap();
-    let FrameLoops { radar, samples, knows_interval } = recording.origin.unwrap().loops().unwrap();
-    assert!(knows_interval);
-    let map = apertura::maps::doppler::RangeDopplerMap::of(&radar, samples);
-    let (bin, column) = map.peak();
-    assert!((radar.range_of_bin_metres(bin as f64) - echo.x.hypot(echo.y)).abs() < RISING.bin_metres());
-    let velocity = radar.velocity_of_column_metres_per_second(column as f64);
-    assert!((velocity - 3.0).abs() < radar.velocity_resolution_metres_per_second(), "{velocity}");
+    for (chirps, speed) in [(RISING, 3.0), (FALLING, 3.0), (FALLING, -2.0)] {
+        let echo = Echo { speed, ..STILL };
+        let bytes = two_lanes(samples(&chirps, echo, 2, 32).into_iter().flatten());
+        let folder = folder(&bytes, &cfg(&chirps, &[1, 4], 32, ""));
+        let recording = raw::open(&folder.path().join("c.bin"), None).unwrap();
+        let FrameLoops { radar, samples, knows_interval } = recording.origin.unwrap().loops().unwrap();
+        assert!(knows_interval);
+        let map = apertura::maps::doppler::RangeDopplerMap::of(&radar, samples);
+        let (bin, column) = map.peak();
+        assert!((radar.range_of_bin_metres(bin as f64) - echo.x.hypot(echo.y)).abs() < chirps.bin_metres(), "{bin}");
+        let velocity = radar.velocity_of_column_metres_per_second(column as f64);
+        assert!((velocity - speed).abs() < radar.velocity_resolution_metres_per_second(), "{velocity}");
+    }
 }

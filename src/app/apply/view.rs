@@ -18,6 +18,7 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::SetUnits(units) => settings.units = units,
         ViewCommand::SetDirections(directions) => settings.directions = directions,
         ViewCommand::ToggleOneScale => settings.one_scale ^= true,
+        ViewCommand::ToggleFineColumns => settings.fine_columns ^= true,
         ViewCommand::ToggleAbsoluteDifference => settings.difference.absolute ^= true,
         ViewCommand::ToggleWholeDifference => settings.difference.whole ^= true,
         ViewCommand::Colours(colours) => settings.colours = colours,

@@ -358,6 +358,7 @@ fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         ViewCommand::ToggleProjection,
         ViewCommand::ToggleUnits,
         ViewCommand::ToggleOneScale,
+        ViewCommand::ToggleFineColumns,
         ViewCommand::ToggleFieldsOfView,
         ViewCommand::ResetMaps,
         ViewCommand::NextMethod,

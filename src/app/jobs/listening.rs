@@ -279,7 +279,8 @@ mod tests {
         replay.join().unwrap();
         let first = shown.first().unwrap();
         assert!(first.is_first && is_live(&first.recording, &first.config));
-        assert_eq!((first.recording.name.as_str(), first.recording.radar.samples), ("frame 0", 64));
+        assert!(first.recording.name.starts_with("frame "), "{}", first.recording.name);
+        assert_eq!(first.recording.radar.samples, 64);
         assert!(shown[1..].iter().all(|frame| !frame.is_first));
         let doubted = shown.iter().any(|f| f.recording.doubts.iter().any(|d| d.contains("1456 bytes of frame 2")));
         assert!(doubted || listening.summary().dropped > 0, "{:?}", listening.summary());

@@ -7,7 +7,7 @@ use crate::app::widgets::textures::colour_table;
 use crate::app::widgets::theme;
 use crate::evaluate::TARGET_ETA;
 use crate::maps::{RangeAngleMap, cartesian};
-use crate::picture::{CellVerdict, ColourMap, told_apart};
+use crate::picture::{CellVerdict, ColourMap, finer, told_apart};
 use crate::radar::Radar;
 use eframe::egui::{Color32, ColorImage};
 use ndarray::ArrayView2;
@@ -32,6 +32,7 @@ pub struct Picture {
 pub struct Painter {
     cache: BTreeMap<MapKind, (Subject, Picture)>,
     projector: Option<cartesian::Projector>,
+    is_fine: bool,
     /// Pictures painted since the start: a test asks what was not painted.
     pub painted: u64,
 }
@@ -43,6 +44,14 @@ const OUTSIDE: Color32 = Color32::TRANSPARENT;
 const ON_SCREEN: [usize; 2] = [340, 128];
 
 impl Painter {
+    /// Whether maps of few columns are painted on more of them, but for masks, which are told cell by cell.
+    pub fn draw_finely(&mut self, is_fine: bool) {
+        if self.is_fine != is_fine {
+            self.is_fine = is_fine;
+            self.cache.clear();
+        }
+    }
+
     /// The picture of `subject`; the same [`Arc`] as before where nothing changed.
     pub fn paint(&mut self, radar: &Radar, kind: MapKind, subject: &Subject) -> Picture {
         if let Some((last, picture)) = self.cache.get(&kind)
@@ -50,12 +59,21 @@ impl Painter {
         {
             return picture.clone();
         }
-        let (rows, columns) = subject.map.lambda.dim();
+        let (rows, mut columns) = subject.map.lambda.dim();
+        let is_mask = matches!(subject.paint, Paint::Above { .. } | Paint::Detections { .. });
         let end = end_of(subject);
         let pixels = match subject.projection {
             Projection::RangeAngle => {
                 let minus = subject.minus.as_ref().map(|minus| radar.left_to_right(&minus.lambda));
-                colour(subject, radar.left_to_right(&subject.map.lambda), minus, end)
+                let map = radar.left_to_right(&subject.map.lambda);
+                match finer(map).filter(|_| self.is_fine && !is_mask) {
+                    None => colour(subject, map, minus, end),
+                    Some(fine) => {
+                        columns = fine.ncols();
+                        let minus = minus.and_then(finer);
+                        colour(subject, fine.view(), minus.as_ref().map(|minus| minus.view()), end)
+                    }
+                }
             }
             Projection::Cartesian => {
                 let projector = match &mut self.projector {

@@ -131,6 +131,7 @@ impl Pipeline {
             colours: settings.colours,
             projection: settings.projection,
             one_scale: settings.one_scale,
+            fine_columns: settings.fine_columns,
             difference: settings.difference,
             dark: state.dark,
             target_eta: settings.target_eta,

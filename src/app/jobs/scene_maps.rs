@@ -56,6 +56,8 @@ pub struct MapsRequest {
     pub projection: Projection,
     /// Whether inputs, target and output are drawn on one scale.
     pub one_scale: bool,
+    /// Whether maps of few elements are drawn on more columns.
+    pub fine_columns: bool,
     /// How the difference is drawn.
     pub difference: DifferenceView,
     /// Whether the window is dark.
@@ -157,6 +159,7 @@ impl MapsState {
         let detected = self.detector.detect(request.cfar, &frame, needs_target, outputs);
         let outputs = request.pairs.each_ref().map(|pair| pair.as_ref().map(|pair| &pair.output));
         let on_one_scale = if request.one_scale { self.one_scale.of(&frame, outputs) } else { BTreeMap::new() };
+        self.painter.draw_finely(request.fine_columns);
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
             if let Some(mut subject) = subject(&frame, unexplained.as_ref(), &request, &detected, kind) {

@@ -58,6 +58,7 @@ fn view_words(command: &ViewCommand) -> &'static str {
         ViewCommand::ToggleProjection | ViewCommand::SetProjection(_) => "polar xy coordinates morph bend projection",
         ViewCommand::ToggleUnits | ViewCommand::SetUnits(_) => "decibel lambda scale logarithmic units",
         ViewCommand::ToggleOneScale => "level weaker stronger common absolute",
+        ViewCommand::ToggleFineColumns => "smooth interpolate padding coarse pixels few elements",
         ViewCommand::Normalise(_) => "dynamic range contrast normalize",
         ViewCommand::Detect(_) => "cfar constant false alarm rate threshold guard training rohling",
         ViewCommand::SetFloor(_) => "noise snr thermal",
@@ -141,6 +142,7 @@ fn view_menus(command: &ViewCommand) -> &'static [&'static str] {
         ViewCommand::ToggleProjection
         | ViewCommand::ToggleUnits
         | ViewCommand::ToggleOneScale
+        | ViewCommand::ToggleFineColumns
         | ViewCommand::ResetMaps
         | ViewCommand::ToggleFieldsOfView
         | ViewCommand::NextMethod => &["View"],

@@ -16,6 +16,7 @@ impl State {
                 ViewCommand::SetUnits(units) => Some(settings.units == *units),
                 ViewCommand::SetDirections(directions) => Some(settings.directions == *directions),
                 ViewCommand::ToggleOneScale => Some(settings.one_scale),
+                ViewCommand::ToggleFineColumns => Some(settings.fine_columns),
                 ViewCommand::ToggleAbsoluteDifference => Some(settings.difference.absolute),
                 ViewCommand::ToggleWholeDifference => Some(!settings.difference.whole),
                 ViewCommand::Colours(colours) => Some(settings.colours == *colours),

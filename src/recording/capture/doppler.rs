@@ -144,9 +144,11 @@ impl Cells {
         [chirps, receivers]: [usize; 2],
         channels: &Channels,
     ) -> Array3<Complex64> {
+        // Counted from the loop in the middle: neighbouring bins, whose turns are a little off, then keep their phases to each other.
+        let middle = (self.weights.len() / 2) as f64;
         let loops: Vec<Complex64> = (0..)
             .zip(&self.weights)
-            .map(|(n, w): (u32, _)| Complex64::from_polar(*w, -TAU * turns * f64::from(n)))
+            .map(|(n, w): (u32, _)| Complex64::from_polar(*w, -TAU * turns * (f64::from(n) - middle)))
             .collect();
         let mut found = Array3::zeros((chirps, receivers, 1));
         for ((chirp, receiver, _), value) in found.indexed_iter_mut() {

@@ -174,7 +174,7 @@ fn faults_name_file_key_shape_expectation() {
         ),
         (
             "[recording]\nfile = \".\"\naxes = [\"element\", \"sample\"]".to_owned(),
-            ["recording.file", ".npz, .npy, .mat or .bin"],
+            ["recording.file", ".npz, .npy, .mat, .h5 or .bin"],
         ),
         ("[recording]\nfile = \"d.npz\"\narray = \"a\"".to_owned(), ["r.toml", "recording.axes is missing"]),
         (usual("").replace("\"a\"", "\"b\""), ["d.npz", "\"b\"; expected it beside what is there: a, cube"]),

@@ -43,6 +43,8 @@ const LONGEST_ROW: usize = 16384;
 const PLAUSIBLE: f64 = 0.5;
 /// Log-odds below the best length from which another is none to look at.
 const LIKELY_LENGTH: f64 = 30.0;
+/// So much more gain of another length makes the one that a `.cfg` says doubtful: of 120 right ones none had more than 40.
+const DOUBTED: f64 = 50.0;
 /// Log-odds of a length of which the file holds no whole number, and of a usual one.
 const UNFILLED: f64 = -3.0;
 const USUAL_LENGTH: f64 = 2.0;
@@ -256,6 +258,25 @@ fn likely_words(bytes: &[u8]) -> Words {
     } else {
         Words::Int16
     }
+}
+
+/// What is doubtful of counts that a `.cfg` says, where the samples of `bytes`, whole chirps, begin anew at other distances.
+pub(super) fn doubted(layout: &Layout, counts: Counts, bytes: &[u8]) -> Option<String> {
+    let stride = if layout.receivers == ReceiverOrder::Interleaved { counts.receivers } else { 1 };
+    let said = counts.samples * stride;
+    let most = (JUDGED_NUMBERS / 2).max(4 * said);
+    let numbers = decode::numbers(layout, bytes, (bytes.len() / layout.parts.bytes()).min(most));
+    let longest = numbers.len() / 3;
+    let breaks = Breaks::of(&numbers, stride);
+    let gain = |length: &usize| breaks.gain(*length);
+    let best = (SAMPLES[0]..=longest).max_by(|a, b| gain(a).total_cmp(&gain(b)))?;
+    let is_other = said <= longest && gain(&best) > gain(&said) + DOUBTED;
+    is_other.then(|| {
+        format!(
+            "By the .cfg the samples of a chirp begin anew every {said} numbers, but they do so every {best}: it may be the .cfg of another \
+             capture."
+        )
+    })
 }
 
 /// The numbers as rows of `samples`, of `mixed` receivers sample by sample.

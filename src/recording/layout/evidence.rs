@@ -50,7 +50,7 @@ const OF_IMAGE: f64 = 15.0;
 const MOST_IMAGES: usize = 6;
 /// Log-odds of what the `.cfg` says: of I and Q, of the receivers' order, and of real samples.
 const OF_ORDER: f64 = 5.0;
-const OF_RECEIVERS: f64 = 2.0;
+const OF_RECEIVERS: f64 = 8.0;
 const OF_REAL: f64 = 40.0;
 
 /// What is known of a file beside its samples.
@@ -142,38 +142,38 @@ fn images(spectrum: &Spectrum) -> Evidence {
 }
 
 fn config(layout: &Layout, profile: &RadarProfile) -> Evidence {
-    let mut log_odds = 0.0;
-    let mut agrees = Vec::new();
-    let mut say = |said: Option<bool>, is: bool, odds: f64, what: &'static str| {
-        if let Some(said) = said {
-            log_odds += if said == is { odds } else { -odds };
-            agrees.extend((said == is).then_some(what));
-        }
-    };
-    say(
-        Some(profile.real),
-        layout.parts == Parts::Real,
-        OF_REAL,
-        if profile.real { "real samples" } else { "complex samples" },
-    );
-    if layout.parts != Parts::Real {
-        say(profile.q_first, layout.q_first, OF_ORDER, if layout.q_first { "Q first" } else { "I first" });
-    }
-    if profile.receivers > 1 {
-        let interleaved = layout.receivers == ReceiverOrder::Interleaved;
-        say(
-            profile.interleaved,
-            interleaved,
-            OF_RECEIVERS,
-            if interleaved { "receivers sample by sample" } else { "receivers one after another" },
-        );
-    }
+    let all = said(layout, profile);
+    let agrees: Vec<&str> = all.iter().filter(|s| s.said == s.is).map(|s| s.is).collect();
     let sentence = if agrees.is_empty() {
         "the .cfg says otherwise".to_owned()
     } else {
         format!("the .cfg says {}", agrees.join(", "))
     };
+    let log_odds = all.iter().map(|s| if s.said == s.is { s.log_odds } else { -s.log_odds }).sum();
     Evidence { kind: Kind::Config, log_odds, sentence }
+}
+
+/// What a `.cfg` says of the order of samples, and what a layout has.
+pub(in crate::recording) struct Said {
+    /// As the `.cfg` has it.
+    pub said: &'static str,
+    /// As the layout has it.
+    pub is: &'static str,
+    log_odds: f64,
+}
+
+/// What the `.cfg` says of data in this layout.
+pub(in crate::recording) fn said(layout: &Layout, profile: &RadarProfile) -> Vec<Said> {
+    let real = (Some(profile.real), layout.parts == Parts::Real, OF_REAL, ["complex samples", "real samples"]);
+    let order = (profile.q_first, layout.q_first, OF_ORDER, ["I first", "Q first"]);
+    let mixed = layout.receivers == ReceiverOrder::Interleaved;
+    let words = ["receivers one after another", "receivers sample by sample"];
+    let receivers = (profile.interleaved.filter(|_| profile.receivers > 1), mixed, OF_RECEIVERS, words);
+    let of = |(said, is, log_odds, words): (Option<bool>, bool, f64, [&'static str; 2])| {
+        Some(Said { said: words[usize::from(said?)], is: words[usize::from(is)], log_odds })
+    };
+    let is_told = |n: &usize| *n != 1 || layout.parts != Parts::Real;
+    [real, order, receivers].into_iter().enumerate().filter(|(n, _)| is_told(n)).filter_map(|(_, s)| of(s)).collect()
 }
 
 fn usual(layout: &Layout) -> f64 {

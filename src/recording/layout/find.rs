@@ -83,8 +83,8 @@ pub enum LayoutError {
         /// How many layouts were tried.
         tried: usize,
     },
-    /// Every sample is zero.
-    #[error("holds nothing but zeros")]
+    /// Every sample that was looked at is zero.
+    #[error("begins with nothing but zeros or one constant: no echo to find a layout by")]
     Zeros,
 }
 
@@ -107,31 +107,39 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     };
     notes.extend(hides_counts.then(|| counts::CLIPPED_NOTE.to_owned()));
     let header_bytes = headers(marks, ways.first().map(|way| way.counts), profile, &mut notes);
-    let packets = stream.has_packets();
+    let (packets, bytes) = (stream.has_packets(), stream.bytes());
+    let known = Known { profile, bytes };
     let mut candidates = Vec::new();
     let mut none = None;
     for way in &ways {
-        let known = Known { profile, bytes: stream.bytes() };
         match of_way(stream, way, &Job { counts: way.counts, only: way.parts, header_bytes, packets, known }) {
             Ok(of_way) => candidates.extend(of_way),
             Err(LayoutError::Io(error)) => return Err(error.into()),
             Err(error) => none = Some(error),
         }
     }
-    if candidates.is_empty()
-        && let Some(error) = none
-    {
+    if let Some(error) = none.filter(|_| candidates.is_empty()) {
         return Err(error);
     }
     candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
     let Some(best) = candidates.first() else {
-        return Err(LayoutError::Short { bytes: stream.bytes(), expected: 1024, whose: "" });
+        return Err(match stream.bytes() {
+            bytes @ ..1024 => LayoutError::Short { bytes, expected: 1024, whose: "" },
+            _ => LayoutError::Zeros,
+        });
     };
     if best.power.iter().all(|p| *p < 0.5) {
         return Err(LayoutError::Zeros);
     }
     if best.flatness_db < FLAT_DB {
         return Err(LayoutError::NoEcho { tried: candidates.len() });
+    }
+    if profile.is_some() {
+        let Candidate { layout, counts, .. } = best;
+        let job = Job { counts: *counts, only: None, header_bytes, packets, known };
+        let numbers = counts.samples * counts.receivers;
+        let chirps = job.chirps(stream, layout.chirp_bytes(counts.samples, counts.receivers), numbers)?;
+        notes.extend(counts::doubted(layout, *counts, &chirps.concat()));
     }
     if packets {
         let lost = match stream.lost_packets() {

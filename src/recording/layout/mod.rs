@@ -30,6 +30,7 @@ mod tests;
 mod verdict;
 mod words;
 
+pub(super) use evidence::said;
 pub use evidence::{Evidence, Kind};
 pub use find::{Candidate, Found, LayoutError, find};
 pub use parts::{Parts, ReceiverOrder};

@@ -2,7 +2,7 @@
 
 use crate::maps::windowed_range_transform;
 use crate::radar::{Radar, WindowFunction};
-use ndarray::{Array2, ArrayView2, Axis};
+use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
 use num_complex::Complex64;
 
 /// Power that rounding to whole numbers leaves in a bin: a twelfth for each part.
@@ -15,6 +15,8 @@ const BELOW_PEAK_DB: f64 = 40.0;
 /// An image stands at most so far from its echo, decibels, and an echo that may have one so far below the strongest: those of unequal
 /// converters stand farther below.
 const IMAGE_DB: f64 = 20.0;
+/// Least coherence of an echo with its image.
+const COHERENT: f64 = 0.5;
 /// Bins beside the constant part that hold no echo.
 const NEAR_CONSTANT: usize = 4;
 
@@ -58,16 +60,17 @@ impl Spectrum {
         }
         of_receivers.mapv_inplace(|p| p + ROUNDING);
         let power: Vec<f64> = of_receivers.mean_axis(Axis(0)).map_or_else(Vec::new, |mean| mean.to_vec());
-        let spectrum = Spectrum::of_power(power, alike(of_receivers.view()));
+        let images = images(&power, |bin| coherence(profiles.view(), bin) > COHERENT);
+        let spectrum = Spectrum::of_power(power, alike(of_receivers.view()), images);
         // The logarithm of a mean of few powers lies below that of the mean of many: ln n less the digamma function of n.
         let few = 1.0 / count.max(1) as f64;
         Spectrum { level: spectrum.level + few / 2.0 + few * few / 12.0, rows: count, ..spectrum }
     }
 
-    fn of_power(power: Vec<f64>, alike: f64) -> Spectrum {
+    fn of_power(power: Vec<f64>, alike: f64, images: usize) -> Spectrum {
         let bins = power.len().max(1);
         let level = power.iter().map(|p| p.ln()).sum::<f64>() / bins as f64;
-        let (echoes, images) = (echoes(&power), images(&power));
+        let echoes = echoes(&power);
         let half = |range: std::ops::Range<usize>| power.get(range).map_or(0.0, |part| part.iter().sum::<f64>());
         // A constant stands in bin 0 and, by the window, beside it.
         let (near, far) = (half(2..bins / 2), half(bins / 2 + 1..bins.saturating_sub(1)));
@@ -88,7 +91,7 @@ impl Spectrum {
         let bins = self.power.len();
         let power: Vec<f64> = self.power[..bins.div_ceil(2)].iter().map(|p| 2.0 * p).collect();
         let level = self.level + std::f64::consts::LN_2;
-        Spectrum { near: 0.0, level, rows: self.rows, ..Spectrum::of_power(power, self.alike) }
+        Spectrum { near: 0.0, level, rows: self.rows, ..Spectrum::of_power(power, self.alike, 0) }
     }
 
     /// How far the mean level lies below that of a flat spectrum of the same power, decibels.
@@ -112,7 +115,7 @@ fn echoes(power: &[f64]) -> [usize; 2] {
 
 /// Echoes of the near half, away from a constant part, that stand as far into the far half, but not to the last digit: those are real samples
 /// that are stored as complex ones.
-fn images(power: &[f64]) -> usize {
+fn images(power: &[f64], is_coherent: impl Fn(usize) -> bool) -> usize {
     let bins = power.len();
     let Some((peak, median)) = peak_and_median(power) else { return 0 };
     let range = 10f64.powf(IMAGE_DB / 10.0);
@@ -121,9 +124,18 @@ fn images(power: &[f64]) -> usize {
         let (louder, fainter) = (at.max(other), at.min(other));
         let stands_out = louder * range >= peak && fainter * range >= louder && fainter >= median * ABOVE_MEDIAN;
         let is_peak = at > power[n - 1] && at >= power[n + 1];
-        is_peak && stands_out && louder - fainter > 1e-9 * louder
+        is_peak && stands_out && louder - fainter > 1e-9 * louder && is_coherent(*n)
     };
     (NEAR_CONSTANT..(bins / 2).saturating_sub(1)).filter(is_image).count()
+}
+
+/// How alike a bin's values are to the conjugates of those as far into the far half, up to one factor, over all profiles: 1 for an image. The
+/// phases of two echoes turn each by its own direction and speed.
+fn coherence(profiles: ArrayView2<'_, Complex64>, bin: usize) -> f64 {
+    let [near, far] = [bin, profiles.ncols() - bin].map(|n| profiles.column(n));
+    let power = |of: &ArrayView1<'_, Complex64>| of.iter().map(|v| v.norm_sqr()).sum::<f64>();
+    let together: Complex64 = near.iter().zip(&far).map(|(a, b)| a * b).sum();
+    together.norm() / (power(&near) * power(&far)).sqrt().max(f64::MIN_POSITIVE)
 }
 
 fn peak_and_median(power: &[f64]) -> Option<(f64, f64)> {

@@ -167,6 +167,35 @@ fn samples_with_receivers_are_found_without_a_cfg() {
 }
 
 #[test]
+fn a_cfg_of_another_capture_is_doubted() {
+    let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
+    let bytes = written(&right, &(0..5).flat_map(|_| chirps()).collect::<Vec<_>>());
+    for (samples, is_doubted) in [(96, false), (128, true), (250, true)] {
+        let more = format!("profileCfg 0 77 10 6 60 0 0 50 1 {samples} 4000 0 0 30\n");
+        let notes = found(bytes.clone(), Some(&profile(&more))).notes;
+        assert_eq!(notes.iter().any(|n| n.contains("but they do so every 96")), is_doubted, "{samples}: {notes:?}");
+    }
+}
+
+#[test]
+fn two_echoes_at_mirrored_places_are_no_image() {
+    let mut state = 3u32;
+    let mut noise = move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        8.0 * (f64::from(state >> 16) / 65536.0 - 0.5)
+    };
+    let mut sample = |n: usize| {
+        let (receiver, n) = ((n / SAMPLES) as f64, (n % SAMPLES) as f64 / SAMPLES as f64);
+        let far = Complex64::from_polar(900.0, TAU * (66.0 * n + 0.13 * receiver));
+        far + Complex64::from_polar(500.0, TAU * (30.0 * n + 0.21 * receiver)) + Complex64::new(noise(), noise())
+    };
+    let all: Vec<Vec<Complex64>> = (0..8).map(|_| (0..3 * SAMPLES).map(&mut sample).collect()).collect();
+    let right = layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother);
+    let found = found(written(&right, &all), Some(&profile("adcbufCfg -1 0 0 1 1\n")));
+    assert_eq!((found.best().layout, found.best().of_kind(Kind::Images)), (right, 0.0), "{:#?}", found.sentences());
+}
+
+#[test]
 fn a_constant_part_or_saturation_leaves_the_words() {
     let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
     let changed = |change: fn(Complex64) -> Complex64| -> Vec<Vec<Complex64>> {

@@ -64,6 +64,7 @@ fn other_dialects_are_told_by_name() {
         ("{ \"mmWaveDevices\": [] }", "mmWave Studio's JSON"),
         ("{ \"a\": 1 }", "JSON"),
         ("ar1.ProfileConfig(0, 77, 100)", "Lua"),
+        ("<?xml version=\"1.0\"?>\n<radar/>", "XML"),
     ] {
         let message = RadarProfile::parse(text).unwrap_err().to_string();
         assert!(message.contains(name) && message.contains("what would help"), "{message}");
@@ -90,6 +91,7 @@ fn comments_marks_prompts_and_line_ends_do_not_matter() {
 fn the_command_that_stands_last_holds() {
     assert_eq!(with("sensorStart", "channelCfg 3 5 0").receivers, 2);
     assert_eq!(with("sensorStart", "profileCfg 0 77 429 7 57.14 0 0 70 1 16 5209 0 0 30").samples, 16);
+    assert_eq!(with(" 8 5209", " 125 5209").samples, 125);
     assert!(refused("sensorStart", "flushCfg").contains("profileCfg"));
 }
 

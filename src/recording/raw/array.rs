@@ -9,7 +9,7 @@ use crate::recording::described::open_file;
 use crate::recording::layout::{Certainty, Counts};
 use crate::recording::numbers::Numbers;
 use crate::recording::profile::RadarProfile;
-use crate::recording::{AxisKind, Fault, Offer, Origin, RecordingError, matlab, numpy};
+use crate::recording::{AxisKind, Fault, Offer, Origin, RecordingError, hdf5, numpy};
 use crate::scene::npz::X_KEY;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -101,15 +101,15 @@ fn largest(data: &Path) -> Result<(Option<String>, Numbers), Fault> {
             Ok((Some(key), numbers))
         }
         "mat" => {
-            let key = most(matlab::shapes(open()?)?)?;
-            let numbers = matlab::read_mat(open()?, &key)?;
+            let key = most(hdf5::mat_shapes(open()?)?)?;
+            let numbers = hdf5::read_mat(open()?, &key)?;
             Ok((Some(key), numbers))
         }
-        _ => Err(Fault::key(
-            "the file",
-            "is HDF5, which is not read",
-            "the array as an .npz (numpy.savez) or as a .mat saved with the option -v7",
-        )),
+        _ => {
+            let key = most(hdf5::h5_shapes(open()?)?)?;
+            let numbers = hdf5::read_h5(open()?, &key)?;
+            Ok((Some(key), numbers))
+        }
     }
 }
 
@@ -204,12 +204,22 @@ mod tests {
     }
 
     #[test]
+    fn axes_of_matlab_stand_as_it_has_them() {
+        let new = include_bytes!("../../../tests/data/hdf5/new.mat");
+        let folder = folder(&[("new.mat", new), ("new.h5", new)]);
+        for (name, shape) in [("new.mat", [4, 3, 2]), ("new.h5", [2, 3, 4])] {
+            let (key, numbers) = super::largest(&folder.path().join(name)).unwrap();
+            assert_eq!((key.as_deref(), numbers.shape()), (Some("radar.adcData"), &shape[..]));
+        }
+    }
+
+    #[test]
     fn what_is_no_cube_is_told() {
         let flat = ArrayD::from_elem(vec![64], Complex64::ONE);
         let folder = folder(&[("flat.npy", &npy(flat)), ("new.h5", b"\x89HDF"), ("no.npz", b"PK")]);
         let told = |name: &str| load(&folder.path().join(name)).unwrap_err().to_string();
         assert!(told("flat.npy").contains("has shape [64]; expected 2 to 5 axes"), "{}", told("flat.npy"));
-        assert!(told("new.h5").contains("HDF5") && told("new.h5").contains("-v7"), "{}", told("new.h5"));
+        assert!(told("new.h5").contains("not an HDF5 file"), "{}", told("new.h5"));
         assert!(told("no.npz").contains("no.npz"), "{}", told("no.npz"));
     }
 }

@@ -14,7 +14,7 @@ pub(super) fn data_of(path: &Path) -> Result<PathBuf, RecordingError> {
     if !ends(path, "cfg") {
         return Ok(path.to_owned());
     }
-    let all = ["bin", "dat", "raw", "npy", "npz", "mat"];
+    let all = ["bin", "dat", "raw", "npy", "npz", "mat", "h5", "hdf5"];
     if let Some(same) = all.into_iter().map(|end| path.with_extension(end)).find(|same| fs::exists(same)) {
         return Ok(same);
     }
@@ -42,6 +42,17 @@ fn only(path: &Path, endings: &[&str]) -> Option<PathBuf> {
 
 fn ends(path: &Path, end: &str) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end))
+}
+
+/// What the files of a cascade's chips are called by, in the order of TI's capture program.
+const CHIPS: [&str; 4] = ["master", "slave1", "slave2", "slave3"];
+
+/// Names of the files of the other chips of a cascade, where the capture is one chip's.
+pub(super) fn other_chips(data: &Path) -> Vec<String> {
+    let name = data.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    let Some(own) = CHIPS.into_iter().find(|chip| name.contains(chip)) else { return Vec::new() };
+    let others = CHIPS.into_iter().filter(|chip| *chip != own).map(|chip| name.replacen(own, chip, 1));
+    others.filter(|other| fs::exists(&data.with_file_name(other))).collect()
 }
 
 /// Files that go on from the first, where its name ends with `_0`: `_1` and so on, as capture programs split at a gigabyte.

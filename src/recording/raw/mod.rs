@@ -28,7 +28,7 @@ use super::capture::{Capture, Frame, Part, Plan, ReceiverOrder, Together, Turn};
 use super::chain::{Chain, Source};
 use super::described::{config_text, open_file};
 use super::layout::stream::Stream;
-use super::layout::{Candidate, Certainty, Found, Kind, find};
+use super::layout::{Candidate, Certainty, Found, Kind, find, said as said_of};
 use super::profile::RadarProfile;
 use super::{Fault, Offer, Origin, Recording, RecordingError};
 use boards::Board;
@@ -127,10 +127,19 @@ fn described<R: Read + io::Seek>(
     let found = find(&mut stream, profile).map_err(|e| Fault::from(e).of(&data))?;
     let best = found.best();
     let line = line::line(best.counts, profile, board);
+    if line.transmitter_x_metres.len() * line.receiver_x_metres.len() < 2 {
+        let found = "has one transmitter and one receiver, which tell ranges and no directions";
+        return Err(Fault::key("the capture", found, "two elements or more").of(&data));
+    }
     let mut doubts = doubts_of(&found, profile);
     doubts.extend(line.doubts.iter().cloned());
     doubts
         .extend((!more.is_empty()).then(|| format!("The capture goes on in {} more files, read as one.", more.len())));
+    let others = beside::other_chips(&data);
+    doubts.extend((!others.is_empty()).then(|| {
+        let others = others.join(", ");
+        format!("The file holds the receivers of one chip of a cascade. Those of the others, in {others}, are not read with it.")
+    }));
     let (constant, frames) = frame_of(&mut stream, best, profile);
     doubts.extend(constant.map(|db| {
         format!(
@@ -192,12 +201,13 @@ fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
             next.described()
         ));
     }
-    let against = |kind: Kind| found.best().of_kind(kind) < 0.0;
-    if profile.is_some() && against(Kind::Config) {
-        doubts.push(
-            "The samples speak against what the .cfg says of their order: the layout follows the samples.".to_owned(),
-        );
-    } else if profile.is_some() && against(Kind::Half) {
+    let best = found.best();
+    let Some(profile) = profile else { return doubts };
+    let against: Vec<_> = said_of(&best.layout, profile).into_iter().filter(|s| s.said != s.is).collect();
+    doubts.extend(against.iter().map(|s| {
+        format!("The .cfg says {}, but the samples look like {}: the layout follows the samples.", s.said, s.is)
+    }));
+    if against.is_empty() && best.of_kind(Kind::Half) < 0.0 {
         doubts.push(
             "The .cfg decides between I first and Q first; the samples alone would have it the other way.".to_owned(),
         );

@@ -74,6 +74,24 @@ fn parts_of_a_split_capture_are_read_as_one() {
 }
 
 #[test]
+fn one_chip_of_a_cascade_is_told() {
+    let bytes = frame();
+    let folder =
+        folder(&[("master_0000_data.bin", &bytes), ("slave2_0000_data.bin", &bytes), ("c.cfg", CFG.as_bytes())]);
+    let told = |name: &str| open(&folder.path().join(name), None).unwrap().doubts.join(" ");
+    assert!(told("master_0000_data.bin").contains("in slave2_0000_data.bin, are not read"));
+    assert!(told("slave2_0000_data.bin").contains("in master_0000_data.bin, are not read"));
+}
+
+#[test]
+fn a_capture_of_one_element_is_told() {
+    let one = CFG.replace("channelCfg 15", "channelCfg 1").replace("frameCfg 0 1", "frameCfg 0 0");
+    let folder = folder(&[("a.bin", &frame()), ("a.cfg", one.as_bytes())]);
+    let told = open(&folder.path().join("a.bin"), None).unwrap_err().to_string();
+    assert!(told.contains("one transmitter and one receiver, which tell ranges and no directions"), "{told}");
+}
+
+#[test]
 fn transmitters_at_another_height_are_left_out_of_the_line() {
     let three = CFG.replace("frameCfg 0 1 4", "chirpCfg 2 2 0 0 0 0 0 2\nframeCfg 0 2 4");
     let bytes = [frame(), frame()].concat();

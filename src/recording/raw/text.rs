@@ -4,7 +4,7 @@ use super::axes::Reading;
 use super::line::{Line, USUAL_CARRIER_HZ};
 use crate::radar::{Antennas, SPEED_OF_LIGHT};
 use crate::recording::AxisKind;
-use crate::recording::layout::{Candidate, Kind, Layout, Parts};
+use crate::recording::layout::{Candidate, Layout, Parts};
 use crate::recording::profile::RadarProfile;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -158,10 +158,6 @@ fn capture(out: &mut String, best: &Candidate, about: &About<'_>) {
     put(out, "loop", "\"strongest\"");
     if about.takes_constant_out {
         put(out, "constant", "\"out\"");
-    }
-    let against = best.of_kind(Kind::Config) < 0.0;
-    if against {
-        out.push_str("# The samples speak against what the .cfg says of their order.\n");
     }
 }
 

@@ -31,11 +31,13 @@ pub use kinds::Kinds;
 pub use theory::Theory;
 pub use told::{MapMemory, MapPanel, caption_of, cells, is_updating, map_input, marks_of, verdict};
 
-use crate::app::state::{Command, LessonCommand, MapKind, MapView, ViewCommand};
+use crate::app::state::{Command, LessonCommand, MapKind, MapView, Projection, ViewCommand};
 use crate::app::widgets::axes;
 use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::nudge::nudge;
 use crate::app::widgets::theme::{CAPTION, CAPTION_INK, Inks};
+use crate::maps::{Aperture, RangeAngleMap, beam_columns};
+use crate::picture::FEW_COLUMNS;
 use crate::radar::{End, Radar};
 use crate::scene::Object;
 use eframe::egui;
@@ -84,7 +86,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
         let free = bar.as_ref().map_or(0.0, |bar| bar.overhang(&painter, rect.width()));
         let mut appearing = painter.clone();
         appearing.multiply_opacity(rest);
-        draw_axes(ui, &appearing, frame, input.directions, free);
+        draw_axes(ui, &appearing, frame, input.directions, (free, line_of(&input).is_some()));
     }
     legend.draw(ui, &painter, frame.shown());
     draw_over(&inner, frame, &input, &response, is_drawn);
@@ -140,6 +142,9 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
             window::draw(inner, frame, cursor, cells, cfar);
         }
     }
+    if let Some(aperture) = aperture(input).filter(|_| at_rest) {
+        overlay::beam(inner, frame, beam_columns(input.radar, aperture));
+    }
     if input.veil.is_none() {
         let pointer = response.hover_pos();
         overlay::marks(inner, frame, input.marks.objects, pointer);
@@ -193,6 +198,10 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
             let uv = Rect::from_min_max(pos2(view.low.x, view.high.y), pos2(view.high.x, view.low.y));
             let tint = if input.stale { Color32::from_gray(120) } else { Color32::WHITE };
             inner.rect_filled(frame.shown(), 0.0, Inks::of(ui.visuals()).beyond);
+            if let Some(map) = line_of(input).filter(|_| frame.morph.is_none()) {
+                overlay::line(inner, frame, map, ui.visuals().strong_text_color());
+                return true;
+            }
             match frame.morph.is_none() && input.pictured == input.projection {
                 true => _ = inner.image(texture, rect, uv, tint),
                 false => morph::picture(inner, frame, texture, input.pictured, tint),
@@ -215,6 +224,27 @@ fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: 
         asked.push(LessonCommand::Predict(crate::lesson::Guess::Place(cell)).into());
     }
     asked.push(ViewCommand::Hover(cursor).into());
+}
+
+/// The map of one range bin, where it is drawn as a line over directions.
+fn line_of<'a>(input: &'a Input<'_>) -> Option<&'a RangeAngleMap> {
+    let is_flat = input.projection == Projection::RangeAngle && input.pictured == input.projection;
+    let is_lambda = !input.kind.is_above() && input.kind != MapKind::Doubt;
+    let cells = input.cells.as_ref().filter(|cells| cells.minus.is_none());
+    cells.filter(|_| input.radar.samples == 1 && is_flat && is_lambda).map(|cells| cells.map)
+}
+
+/// The elements whose beam is drawn over a map of few of them.
+fn aperture(input: &Input<'_>) -> Option<Aperture> {
+    if input.radar.elements >= FEW_COLUMNS || input.projection != Projection::RangeAngle {
+        return None;
+    }
+    match input.kind {
+        MapKind::Input0 => Some(Aperture::End(End::First)),
+        MapKind::Input1 => Some(Aperture::End(End::Last)),
+        MapKind::Target => Some(Aperture::Full),
+        _ => None,
+    }
 }
 
 /// Middle of the elements that a map is of.

@@ -8,14 +8,20 @@ use crate::app::widgets::direction::direction;
 use crate::app::widgets::levels::with_unit;
 use crate::app::widgets::theme::{MARK, MARK_EDGE, MARK_SELECTED};
 use crate::interact::Selection;
+use crate::maps::RangeAngleMap;
+use crate::picture::finer;
 use crate::scene::{Object, Reflector, Scene};
-use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, vec2};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, pos2, vec2};
 
 /// Most reflectors that are marked.
 pub const MARKS: usize = 4000;
 
 /// Radius of a ring, points.
 const RADIUS: f32 = 6.0;
+
+/// Shortest beam that is drawn, points, and half the height of the marks at its ends.
+const LEAST_BEAM_POINTS: f32 = 12.0;
+const TICK: Vec2 = vec2(0.0, 4.0);
 
 /// How near the pointer must be to a ring to be told the true direction.
 const RING_REACH_POINTS: f32 = 9.0;
@@ -28,6 +34,32 @@ pub fn found(painter: &Painter, frame: Frame<'_>, found: &[Reflector], old: bool
             cross(painter, frame.blob(r), 4.0, Stroke::new(width, colour.gamma_multiply(strength)));
         }
     }
+}
+
+/// The map of one range bin as a line: Lambda over directions.
+pub fn line(painter: &Painter, frame: Frame<'_>, map: &RangeAngleMap, ink: Color32) {
+    let cells = frame.radar.left_to_right(&map.lambda);
+    let fine = finer(cells);
+    let cells = fine.as_ref().map_or(cells, |fine| fine.view());
+    let across = |n: usize| (n as f32 + 0.5) / cells.ncols() as f32;
+    let point = |(n, lambda): (usize, &f32)| frame.view.to_screen(frame.rect, pos2(across(n), *lambda));
+    painter.add(Shape::line(cells.iter().enumerate().map(point).collect(), Stroke::new(1.6, ink)));
+}
+
+/// How wide the beam of the map's elements is, as a bar in a corner: echoes nearer to each other are one. Not where it is too narrow to see.
+pub fn beam(painter: &Painter, frame: Frame<'_>, columns: f64) {
+    let part = columns as f32 / frame.radar.elements as f32;
+    let length = part * frame.rect.width() / (frame.view.high.x - frame.view.low.x);
+    if !(LEAST_BEAM_POINTS..frame.rect.width() - 80.0).contains(&length) {
+        return;
+    }
+    let from = frame.rect.left_top() + vec2(10.0, 14.0);
+    let to = from + vec2(length, 0.0);
+    let ticks = [[from, to], [from, from], [to, to]].map(|[a, b]| if a == b { [a - TICK, b + TICK] } else { [a, b] });
+    for (width, colour) in [(3.0, MARK_EDGE), (1.4, MARK)] {
+        ticks.iter().for_each(|ends| _ = painter.line_segment(*ends, Stroke::new(width, colour)));
+    }
+    axes::text_on_patch(painter, to + vec2(8.0, 0.0), Align2::LEFT_CENTER, "beam");
 }
 
 /// True reflectors as rings or as outlines of lines: where the map shows what stands there. The one under the `pointer` tells the

@@ -113,8 +113,9 @@ fn degrees(painter: &Painter, low: f64, high: f64, length: f32) -> Vec<Tick> {
     ticks
 }
 
-/// Draws both axes of the part that is shown; the title below leaves `free` points at each end.
-pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, directions: Directions, free: f32) {
+/// Draws both axes of the part that is shown; the title below leaves `free` points at each end. Upwards Lambda is counted where the map is a
+/// line.
+pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, directions: Directions, (free, is_line): (f32, bool)) {
     let Frame { rect, view, radar, projection, .. } = frame;
     let marks;
     let (x, y) = match projection {
@@ -139,6 +140,7 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, directions: Direc
             };
             // The one row of a snapshot stands for no range.
             let y = match radar.samples {
+                _ if is_line => Axis::new(view.low.y.into(), view.high.y.into(), "Λ of one range"),
                 1 => Axis { ticks: Some(&[]), ..Axis::new(0.0, 1.0, "one range") },
                 _ => Axis::new(range(view.low.y), range(view.high.y), "range, m"),
             };

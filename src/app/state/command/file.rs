@@ -38,7 +38,7 @@ macro_rules! purposes {
 purposes! {
     /// A scene to open.
     Open: "Open a scene or a recording", "Scenes, recordings and weights"
-        ["toml", "npz", "bin", "dat", "raw", "cfg", "npy", "mat", "safetensors"], "";
+        ["toml", "npz", "bin", "dat", "raw", "cfg", "npy", "mat", "h5", "hdf5", "safetensors"], "";
     /// The `.cfg` of a capture card to listen to on this UDP port.
     Listen(u16): "Listen with the .cfg that set the radar up", "Settings of a radar" ["cfg"], "";
     /// The log of a training to watch.

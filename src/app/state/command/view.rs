@@ -29,6 +29,8 @@ pub enum ViewCommand {
     SetDirections(Directions),
     /// Inputs, target and output on one scale or each on its own, the other way round.
     ToggleOneScale,
+    /// Maps of few elements on 256 columns or on as many as they have, the other way round.
+    ToggleFineColumns,
     /// The difference with its sign or without, the other way round.
     ToggleAbsoluteDifference,
     /// The difference on a scale that just holds it or on one up to 1, the other way round.

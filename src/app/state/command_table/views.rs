@@ -39,6 +39,8 @@ pub(super) const COMMANDS: &[Entry] = {
             "Count degrees from straight ahead along the axis of directions of every map", None;
         View(ViewCommand::ToggleOneScale), "One scale for all maps",
             "Draw inputs, target and output on the scale of the strongest: what is weaker looks weaker", None;
+        View(ViewCommand::ToggleFineColumns), "Maps on 256 columns",
+            "Draw maps of few elements on 256 columns: values between are interpolated, and nothing more is resolved", None;
         View(ViewCommand::ToggleAbsoluteDifference), "|Difference|", "Draw the difference with its sign or without", None;
         View(ViewCommand::ToggleWholeDifference), "Difference: automatic scale",
             "Draw the difference on a scale that just holds it, or on one up to 1", None;

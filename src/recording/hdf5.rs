@@ -1,0 +1,52 @@
+//! Arrays of HDF5 files; MATLAB's version 7.3 is one, whose axes stand the other way round.
+
+use super::numbers::{MAX_NUMBERS, Numbers};
+use super::{Fault, matlab};
+use crate::files::hdf5::{Hdf5, Hdf5Values};
+use std::io::{self, Read, Seek, SeekFrom};
+
+/// The array called `key` of an HDF5 file; those in groups are `group.name`.
+///
+/// # Errors
+/// [`Fault`] names the array, and what was expected of it.
+pub(super) fn read_h5(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
+    Ok(match Hdf5::open(file)?.values(key, MAX_NUMBERS)? {
+        Hdf5Values::Real(values) => Numbers::Real(values),
+        Hdf5Values::Complex(values) => Numbers::Complex(values),
+    })
+}
+
+/// Names and shapes of its arrays of numbers.
+///
+/// # Errors
+/// [`Fault`].
+pub(super) fn h5_shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
+    Ok(Hdf5::open(file)?.shapes()?)
+}
+
+/// [`matlab::read_mat`], and the same of version 7.3.
+pub(super) fn read_mat(mut file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
+    if !is_new(&mut file)? {
+        return Ok(matlab::read_mat(file, key)?);
+    }
+    Ok(match read_h5(file, key)? {
+        Numbers::Real(values) => Numbers::Real(values.reversed_axes()),
+        Numbers::Complex(values) => Numbers::Complex(values.reversed_axes()),
+    })
+}
+
+/// [`matlab::shapes`], and the same of version 7.3.
+pub(super) fn mat_shapes(mut file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
+    if !is_new(&mut file)? {
+        return Ok(matlab::shapes(file)?);
+    }
+    Ok(h5_shapes(file)?.into_iter().map(|(key, shape)| (key, shape.into_iter().rev().collect())).collect())
+}
+
+/// Whether a `.mat` is of version 7.3.
+fn is_new(file: &mut (impl Read + Seek)) -> io::Result<bool> {
+    let mut start = Vec::new();
+    file.by_ref().take(10).read_to_end(&mut start)?;
+    file.seek(SeekFrom::Start(0))?;
+    Ok(start == b"MATLAB 7.3" || start.starts_with(b"\x89HDF"))
+}
