@@ -16,12 +16,16 @@ use std::path::PathBuf;
 ///     rows: Rows as `evaluate` and `read_rows` give them.
 ///
 /// Raises:
-///     ValueError: Something is no row; the message names its line in the file and the column.
+///     ValueError: Something is no row, and the message names its line in the file and the column; or the name ends in `.parquet`.
 ///     OSError: The file can't be written.
 #[pyfunction]
 #[pyo3(name = "write_rows")]
 pub fn write_rows_to(py: Python<'_>, path: PathBuf, rows: Vec<Bound<'_, PyDict>>) -> PyResult<()> {
     let rows = rows_of(py, &rows)?;
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet")) {
+        let told = format!("{}: rows are written as CSV; expected a name that does not end in .parquet", path.display());
+        return Err(value(told));
+    }
     write_atomically(&path, |out| write_rows(out, &rows)).map_err(|e| system(&e, format!("{}: {e}", path.display())))
 }
 

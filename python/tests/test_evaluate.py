@@ -224,6 +224,8 @@ def test_a_parquet_table_is_read(tmp_path):
     bad = campaign.failed(campaign.Run(("baseline",), ("1",), 3), ("1", 2, "baseline"), "no memory")
     _journal.write_table(tmp_path / "rows.parquet", [*rows, bad])
     assert ap.read_rows(tmp_path / "rows.parquet") == rows
+    with pytest.raises(ValueError, match="written as CSV"):
+        ap.write_rows(tmp_path / "rows.parquet", rows)
     (tmp_path / "text.parquet").write_text("mine")
     with pytest.raises(ValueError, match="text.parquet"):
         ap.read_rows(tmp_path / "text.parquet")
