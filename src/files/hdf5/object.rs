@@ -1,37 +1,32 @@
 //! Headers of objects: groups with their members, arrays with their shape, kind and place.
 
-use super::data::{Filter, Kind};
-use super::{Hdf5, Hdf5Error, MOST_OBJECTS, MOST_PART_BYTES, Part};
+use super::number::{Member, NumberKind};
+use super::source::{Hdf5Bytes, Hdf5Error, HeaderBytes};
 use std::io::{Read, Seek};
 
+/// Most objects that are looked at.
+pub(super) const MOST_OBJECTS: usize = 1 << 14;
+/// Most bytes of one part of a header.
+const MOST_PART_BYTES: u64 = 1 << 20;
 /// Most parts of a header.
 const MOST_PARTS: usize = 256;
 /// Most axes of an array.
 const MOST_AXES: usize = 32;
 
-/// What a number of an array is.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Member {
-    One(Kind),
-    /// A compound of two: real and imaginary part, where they stand in it.
-    Two {
-        bytes: usize,
-        parts: [(usize, Kind); 2],
-    },
-}
-
-impl Member {
-    pub fn bytes(&self) -> usize {
-        match self {
-            Member::One(kind) => kind.bytes,
-            Member::Two { bytes, .. } => *bytes,
-        }
-    }
+/// What was done to the bytes of a chunk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum ChunkFilter {
+    Deflate,
+    /// First bytes of all numbers, then the second ones.
+    Shuffle,
+    /// A sum behind the bytes, which is not compared.
+    Sum,
+    Unread,
 }
 
 /// Where an array's numbers are.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Place {
+pub(super) enum Storage {
     /// In its header.
     Here(Vec<u8>),
     /// In one piece; `None` where nothing was written.
@@ -44,31 +39,31 @@ pub(super) enum Place {
 
 /// A group or an array.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Object {
+pub(super) struct Hdf5Object {
     pub shape: Vec<usize>,
     /// What its numbers are; nothing where they are something else.
     pub number: Option<Member>,
-    pub place: Option<Place>,
-    pub filters: Vec<Filter>,
+    pub place: Option<Storage>,
+    pub filters: Vec<ChunkFilter>,
     /// Members of a group, by name and address.
     pub children: Vec<(String, u64)>,
 }
 
-impl<R: Read + Seek> Hdf5<R> {
+impl<R: Read + Seek> Hdf5Bytes<R> {
     /// The object whose header stands at `address`.
-    pub(super) fn object(&mut self, address: u64) -> Result<Object, Hdf5Error> {
+    pub(super) fn object(&mut self, address: u64) -> Result<Hdf5Object, Hdf5Error> {
         let start = self.up_to(address, 64)?;
-        let mut object = Object::default();
+        let mut object = Hdf5Object::default();
         // Blocks of messages: where each begins, and how long it is.
         let (is_new, marks_order, first) = if start.starts_with(b"OHDR") {
-            let mut part = Part::new(&start[4..]);
+            let mut part = HeaderBytes::new(&start[4..]);
             part.skip(1)?;
             let flags = part.byte()?;
             part.skip(16 * usize::from(flags & 0x20 != 0) + 4 * usize::from(flags & 0x10 != 0))?;
             let length = part.number(1 << (flags & 3))?;
             (true, flags & 4 != 0, (address + (start.len() - part.rest.len()) as u64, length))
         } else {
-            let mut part = Part::new(&start);
+            let mut part = HeaderBytes::new(&start);
             part.skip(8)?;
             let length = part.word()? as u64;
             (false, false, (address + 16, length))
@@ -81,7 +76,7 @@ impl<R: Read + Seek> Hdf5<R> {
                 return Err(Hdf5Error::Damaged("a header is too long"));
             }
             let block = self.at(at, length)?;
-            let mut part = Part::new(&block);
+            let mut part = HeaderBytes::new(&block);
             // A new header's block behind the first begins with its signature and ends with a sum.
             if is_new && next > 1 {
                 part.skip(4)?;
@@ -93,7 +88,7 @@ impl<R: Read + Seek> Hdf5<R> {
                 let size = part.half()?;
                 let flags = part.byte()?;
                 part.skip(if !is_new { 3 } else { usize::from(marks_order) * 2 })?;
-                let mut message = Part::new(part.take(size)?);
+                let mut message = HeaderBytes::new(part.take(size)?);
                 match kind {
                     0x10 => blocks.push((message.number(self.offset_bytes)?, message.number(self.length_bytes)?)),
                     _ => self.message(kind, flags, message, &mut object)?,
@@ -103,7 +98,13 @@ impl<R: Read + Seek> Hdf5<R> {
         Ok(object)
     }
 
-    fn message(&mut self, kind: usize, flags: u8, mut message: Part<'_>, object: &mut Object) -> Result<(), Hdf5Error> {
+    fn message(
+        &mut self,
+        kind: usize,
+        flags: u8,
+        mut message: HeaderBytes<'_>,
+        object: &mut Hdf5Object,
+    ) -> Result<(), Hdf5Error> {
         match kind {
             0x01 => object.shape = self.shape(message)?,
             // A kind that several arrays share stands elsewhere.
@@ -128,7 +129,7 @@ impl<R: Read + Seek> Hdf5<R> {
         Ok(())
     }
 
-    fn shape(&self, mut message: Part<'_>) -> Result<Vec<usize>, Hdf5Error> {
+    fn shape(&self, mut message: HeaderBytes<'_>) -> Result<Vec<usize>, Hdf5Error> {
         let version = message.byte()?;
         let axes = usize::from(message.byte()?);
         message.skip(if version == 1 { 6 } else { 2 })?;
@@ -139,34 +140,34 @@ impl<R: Read + Seek> Hdf5<R> {
     }
 
     /// An address, unless it stands for none.
-    fn address(&self, message: &mut Part<'_>) -> Result<Option<u64>, Hdf5Error> {
+    fn address(&self, message: &mut HeaderBytes<'_>) -> Result<Option<u64>, Hdf5Error> {
         let bits = 8 * self.offset_bytes as u32;
         let none = u64::MAX >> (64 - bits);
         Ok(Some(message.number(self.offset_bytes)?).filter(|address| *address != none))
     }
 
-    fn place(&self, mut message: Part<'_>) -> Result<Place, Hdf5Error> {
+    fn place(&self, mut message: HeaderBytes<'_>) -> Result<Storage, Hdf5Error> {
         let (version, class) = (message.byte()?, message.byte()?);
         Ok(match (version, class) {
             (3 | 4, 0) => {
                 let size = message.half()?;
-                Place::Here(message.take(size)?.to_vec())
+                Storage::Here(message.take(size)?.to_vec())
             }
-            (3 | 4, 1) => Place::Whole(self.address(&mut message)?),
+            (3 | 4, 1) => Storage::Whole(self.address(&mut message)?),
             (3, 2) => {
                 // The last length is that of a number.
                 let axes = usize::from(message.byte()?).saturating_sub(1);
                 let tree = self.address(&mut message)?;
                 let shape = (0..axes).map(|_| message.word()).collect::<Result<_, _>>()?;
-                Place::Chunks { tree, shape }
+                Storage::Chunks { tree, shape }
             }
-            (4, 2) => Place::Unread("an array in chunks of HDF5's version 1.10 and later (libver \"latest\")"),
-            _ => Place::Unread("an array of a very old or a virtual layout"),
+            (4, 2) => Storage::Unread("an array in chunks of HDF5's version 1.10 and later (libver \"latest\")"),
+            _ => Storage::Unread("an array of a very old or a virtual layout"),
         })
     }
 
     /// A member of a group, where it is no link to another place.
-    fn link(&self, mut message: Part<'_>) -> Result<Option<(String, u64)>, Hdf5Error> {
+    fn link(&self, mut message: HeaderBytes<'_>) -> Result<Option<(String, u64)>, Hdf5Error> {
         message.skip(1)?;
         let flags = message.byte()?;
         let is_hard = flags & 8 == 0 || message.byte()? == 0;
@@ -180,7 +181,7 @@ impl<R: Read + Seek> Hdf5<R> {
     fn members(&mut self, tree: u64, heap: u64) -> Result<Vec<(String, u64)>, Hdf5Error> {
         let (offset, length) = (self.offset_bytes, self.length_bytes);
         let head = self.at(heap, (8 + 2 * length + offset) as u64)?;
-        let mut part = Part::new(&head[8..]);
+        let mut part = HeaderBytes::new(&head[8..]);
         let size = part.number(length)?;
         part.skip(length)?;
         let place = part.number(offset)?;
@@ -193,12 +194,12 @@ impl<R: Read + Seek> Hdf5<R> {
             let head = self.at(leaf, 8)?;
             let count = usize::from(u16::from_le_bytes([head[6], head[7]]));
             let entries = self.at(leaf + 8, (count * (2 * offset + 24)) as u64)?;
-            let mut part = Part::new(&entries);
+            let mut part = HeaderBytes::new(&entries);
             for _ in 0..count {
                 let (name, address) = (part.number(offset)? as usize, part.number(offset)?);
                 part.skip(24)?;
                 let name = names.get(name..).ok_or(Hdf5Error::Damaged("a member of a group has no name"))?;
-                members.push((Part::new(name).text()?, address));
+                members.push((HeaderBytes::new(name).text()?, address));
             }
             if members.len() > MOST_OBJECTS {
                 return Err(Hdf5Error::Damaged("a group has too many members"));
@@ -233,7 +234,7 @@ impl<R: Read + Seek> Hdf5<R> {
             let (level, count) = (head[5], usize::from(u16::from_le_bytes([head[6], head[7]])));
             let size = count * (key_bytes + self.offset_bytes);
             let entries = self.at(address + head.len() as u64, size as u64)?;
-            let mut part = Part::new(&entries);
+            let mut part = HeaderBytes::new(&entries);
             for _ in 0..count {
                 let (key, child) = (part.take(key_bytes)?, part.number(self.offset_bytes)?);
                 if level == 0 { leaf(key, child) } else { waiting.push(child) }
@@ -244,7 +245,7 @@ impl<R: Read + Seek> Hdf5<R> {
 }
 
 /// The kind of an array's numbers, where they are numbers.
-fn number(message: &mut Part<'_>) -> Result<Option<Member>, Hdf5Error> {
+fn number(message: &mut HeaderBytes<'_>) -> Result<Option<Member>, Hdf5Error> {
     let (version, class, bits, bytes) = kind_head(message)?;
     if class != 6 {
         return Ok(kind(class, bits, bytes, message)?.map(Member::One));
@@ -267,18 +268,18 @@ fn number(message: &mut Part<'_>) -> Result<Option<Member>, Hdf5Error> {
         parts.push((name, (at, kind)));
     }
     parts.sort_by_key(|(name, _)| name.to_ascii_lowercase().starts_with('i') || name.eq_ignore_ascii_case("q"));
-    let parts: Vec<(usize, Kind)> = parts.into_iter().map(|(_, part)| part).collect();
-    Ok(<[(usize, Kind); 2]>::try_from(parts).ok().map(|parts| Member::Two { bytes, parts }))
+    let parts: Vec<(usize, NumberKind)> = parts.into_iter().map(|(_, part)| part).collect();
+    Ok(<[(usize, NumberKind); 2]>::try_from(parts).ok().map(|parts| Member::Two { bytes, parts }))
 }
 
-fn kind_head(message: &mut Part<'_>) -> Result<(u8, u8, u64, usize), Hdf5Error> {
+fn kind_head(message: &mut HeaderBytes<'_>) -> Result<(u8, u8, u64, usize), Hdf5Error> {
     let head = message.byte()?;
     let bits = message.number(3)?;
     Ok((head >> 4, head & 15, bits, message.word()?))
 }
 
 /// One number, its own properties left behind.
-fn kind(class: u8, bits: u64, bytes: usize, message: &mut Part<'_>) -> Result<Option<Kind>, Hdf5Error> {
+fn kind(class: u8, bits: u64, bytes: usize, message: &mut HeaderBytes<'_>) -> Result<Option<NumberKind>, Hdf5Error> {
     let (is_float, properties) = match class {
         0 => (false, 4),
         1 => (true, 12),
@@ -286,11 +287,11 @@ fn kind(class: u8, bits: u64, bytes: usize, message: &mut Part<'_>) -> Result<Op
     };
     message.skip(properties)?;
     let is_known = if is_float { [2, 4, 8].contains(&bytes) } else { [1, 2, 4, 8].contains(&bytes) };
-    let kind = Kind { bytes, is_float, is_signed: bits & 8 != 0, is_big: bits & 1 != 0 };
+    let kind = NumberKind { bytes, is_float, is_signed: bits & 8 != 0, is_big: bits & 1 != 0 };
     Ok(Some(kind).filter(|_| is_known))
 }
 
-fn filters(mut message: Part<'_>) -> Result<Vec<Filter>, Hdf5Error> {
+fn filters(mut message: HeaderBytes<'_>) -> Result<Vec<ChunkFilter>, Hdf5Error> {
     let (version, count) = (message.byte()?, message.byte()?);
     message.skip(if version == 1 { 6 } else { 0 })?;
     let mut all = Vec::new();
@@ -302,10 +303,10 @@ fn filters(mut message: Part<'_>) -> Result<Vec<Filter>, Hdf5Error> {
         message.skip(if version == 1 { length.next_multiple_of(8) } else { length })?;
         message.skip(4 * (values + usize::from(version == 1 && values % 2 == 1)))?;
         all.push(match id {
-            1 => Filter::Deflate,
-            2 => Filter::Shuffle,
-            3 => Filter::Sum,
-            _ => Filter::Unread,
+            1 => ChunkFilter::Deflate,
+            2 => ChunkFilter::Shuffle,
+            3 => ChunkFilter::Sum,
+            _ => ChunkFilter::Unread,
         });
     }
     Ok(all)

@@ -187,6 +187,10 @@ impl Reconstructor for LiveMethod {
         self.on(radar).trained.check(self.name, radar)
     }
 
+    fn knows_pairs(&self) -> bool {
+        std::iter::once(self).chain(&self.other_radars).any(|network| network.trained.is_of_pairs())
+    }
+
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let (Decades { mut map, minimum, .. }, doubt) = self.on(radar).with_doubt(radar, ends)?;
         let peak = map.par_iter().copied().reduce(|| f32::NEG_INFINITY, f32::max);

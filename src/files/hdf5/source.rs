@@ -1,0 +1,132 @@
+//! The bytes of a file and of its headers, each read held against the file's size.
+
+use std::io::{self, Read, Seek, SeekFrom};
+
+/// Why an array could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum Hdf5Error {
+    /// The system could not read.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// The file has no superblock.
+    #[error("not an HDF5 file; expected one as h5py or MATLAB (-v7.3) writes it")]
+    Signature,
+    /// The bytes contradict themselves or end too soon.
+    #[error("the HDF5 file is damaged: {0}")]
+    Damaged(&'static str),
+    /// A way of storing that is not read.
+    #[error("{0} is not read; expected it as h5py writes by itself, or as an .npz")]
+    Unread(&'static str),
+    /// The file lacks the array.
+    #[error("has no array \"{key}\"; expected it beside what is there: {found}")]
+    Missing {
+        /// The name asked for.
+        key: String,
+        /// The names the file has.
+        found: String,
+    },
+    /// More numbers than are read.
+    #[error("array \"{key}\" has shape {shape:?}; expected at most {most} numbers")]
+    TooLarge {
+        /// The name.
+        key: String,
+        /// Its shape.
+        shape: Vec<usize>,
+        /// Most numbers that are read.
+        most: usize,
+    },
+}
+
+/// The file, and how long its addresses and lengths are.
+#[derive(Debug)]
+pub struct Hdf5Bytes<R> {
+    file: R,
+    /// Bytes of the file.
+    pub bytes: u64,
+    /// Where addresses count from.
+    pub base: u64,
+    /// Bytes of an address.
+    pub offset_bytes: usize,
+    /// Bytes of a length.
+    pub length_bytes: usize,
+}
+
+impl<R: Read + Seek> Hdf5Bytes<R> {
+    /// Of a whole file, with the usual lengths.
+    ///
+    /// # Errors
+    /// [`Hdf5Error::Io`].
+    pub fn new(mut file: R) -> Result<Self, Hdf5Error> {
+        let bytes = file.seek(SeekFrom::End(0))?;
+        Ok(Hdf5Bytes { file, bytes, base: 0, offset_bytes: 8, length_bytes: 8 })
+    }
+
+    /// Bytes of the file.
+    pub fn read(&mut self, place: u64, count: u64) -> Result<Vec<u8>, Hdf5Error> {
+        if place.checked_add(count).is_none_or(|end| end > self.bytes) {
+            return Err(Hdf5Error::Damaged("it points beyond its end"));
+        }
+        let mut bytes = vec![0; count as usize];
+        self.file.seek(SeekFrom::Start(place))?;
+        self.file.read_exact(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// Bytes at an address, which counts from the superblock's base.
+    pub fn at(&mut self, address: u64, count: u64) -> Result<Vec<u8>, Hdf5Error> {
+        self.read(address.checked_add(self.base).ok_or(Hdf5Error::Damaged("it points beyond its end"))?, count)
+    }
+
+    /// At most so many bytes at an address: fewer where the file ends.
+    pub fn up_to(&mut self, address: u64, most: u64) -> Result<Vec<u8>, Hdf5Error> {
+        let there = self.bytes.saturating_sub(address.saturating_add(self.base));
+        self.at(address, most.min(there))
+    }
+}
+
+/// A part of the file that is read from its beginning.
+#[derive(Clone, Copy)]
+pub(super) struct HeaderBytes<'a> {
+    pub rest: &'a [u8],
+}
+
+impl<'a> HeaderBytes<'a> {
+    pub fn new(rest: &'a [u8]) -> Self {
+        HeaderBytes { rest }
+    }
+
+    pub fn take(&mut self, count: usize) -> Result<&'a [u8], Hdf5Error> {
+        let (taken, rest) = self.rest.split_at_checked(count).ok_or(Hdf5Error::Damaged("a header ends too soon"))?;
+        self.rest = rest;
+        Ok(taken)
+    }
+
+    pub fn skip(&mut self, count: usize) -> Result<(), Hdf5Error> {
+        self.take(count).map(|_| ())
+    }
+
+    pub fn byte(&mut self) -> Result<u8, Hdf5Error> {
+        Ok(self.take(1)?[0])
+    }
+
+    /// A number of up to 8 bytes, low byte first.
+    pub fn number(&mut self, bytes: usize) -> Result<u64, Hdf5Error> {
+        Ok(self.take(bytes)?.iter().rev().fold(0, |n, b| n << 8 | u64::from(*b)))
+    }
+
+    pub fn word(&mut self) -> Result<usize, Hdf5Error> {
+        Ok(self.number(4)? as usize)
+    }
+
+    pub fn half(&mut self) -> Result<usize, Hdf5Error> {
+        Ok(self.number(2)? as usize)
+    }
+
+    /// The text up to the next zero.
+    pub fn text(&mut self) -> Result<String, Hdf5Error> {
+        let end = self.rest.iter().position(|b| *b == 0).ok_or(Hdf5Error::Damaged("a name has no end"))?;
+        let name = String::from_utf8_lossy(self.take(end)?).into_owned();
+        self.skip(1)?;
+        Ok(name)
+    }
+}
