@@ -250,7 +250,7 @@ fn number(message: &mut HeaderBytes<'_>) -> Result<Option<Member>, Hdf5Error> {
     if class != 6 {
         return Ok(kind(class, bits, bytes, message)?.map(Member::One));
     }
-    if bits & 0xffff != 2 || bytes > 16 {
+    if bits & 0xffff != 2 || !(1..=16).contains(&bytes) {
         return Ok(None);
     }
     let mut parts = Vec::new();
@@ -263,8 +263,11 @@ fn number(message: &mut HeaderBytes<'_>) -> Result<Option<Member>, Hdf5Error> {
         }
         let at = if version < 3 { message.word()? } else { message.number(1)? as usize };
         message.skip(if version == 1 { 28 } else { 0 })?;
-        let (_, class, bits, bytes) = kind_head(message)?;
-        let Some(kind) = kind(class, bits, bytes, message)? else { return Ok(None) };
+        let (_, class, bits, part_bytes) = kind_head(message)?;
+        let Some(kind) = kind(class, bits, part_bytes, message)? else { return Ok(None) };
+        if at > bytes || kind.bytes > bytes - at {
+            return Err(Hdf5Error::Damaged("a part of a complex number lies beyond it"));
+        }
         parts.push((name, (at, kind)));
     }
     parts.sort_by_key(|(name, _)| name.to_ascii_lowercase().starts_with('i') || name.eq_ignore_ascii_case("q"));
@@ -310,4 +313,16 @@ fn filters(mut message: HeaderBytes<'_>) -> Result<Vec<ChunkFilter>, Hdf5Error> 
         });
     }
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_compound_of_no_bytes_is_no_number() {
+        // Version 1, class 6 (a compound), two members, 0 bytes.
+        let message = [0x16, 2, 0, 0, 0, 0, 0, 0];
+        assert!(number(&mut HeaderBytes::new(&message)).unwrap().is_none());
+    }
 }
