@@ -1,9 +1,8 @@
-//! Where walls begin: rows over two points, from the edge of a wall, or long lines as a whole, and which of them are borne out.
+//! Where walls begin: rows over two points or from the edge of a wall, and which of them are borne out.
 
 use super::grow::{Grower, tried};
 use super::on_wall::is_on;
 use super::propose::edges::Edges;
-use super::propose::source::Unexplained;
 use super::propose::strides::Strides;
 use super::trace::decades;
 use super::without::Part;
@@ -27,33 +26,14 @@ const LEAST_OF_LONG: f64 = 0.6;
 /// Fewest reflectors of a long wall, and fewest range bins that it goes through.
 const LEAST_LONG: usize = 45;
 
-/// The same of a line that was looked up as a whole.
-const LEAST_OF_LINE: f64 = 0.45;
-
-/// Fewest reflectors of such a line.
-const LEAST_OF_LINE_REFLECTORS: usize = 50;
-
 /// Echoes that the look for rows over one point takes as long as.
 const LOOK_A_POINT: usize = 20;
 
-/// Where walls may begin.
-pub enum Seeds {
-    /// At points (x, y; metres), over neighbouring ones.
-    Points(Vec<[f64; 2]>),
-    /// At these lines along y, too long to be found by their ends.
-    LongLines(Vec<Atom>),
-}
-
-impl Seeds {
-    /// Whether a wall from one of them that explains this part of the energy in its range bins can be believed.
-    fn are_borne_out(&self, radar: &Radar, wall: &Atom, explained: f64) -> bool {
-        let count = wall.reflector_count();
-        match self {
-            Seeds::Points(_) if is_long(radar, wall) && explained >= LEAST_OF_LONG => true,
-            Seeds::Points(_) => LEAST_EXPLAINED.iter().any(|&(least, part)| count >= least && explained >= part),
-            Seeds::LongLines(_) => count >= LEAST_OF_LINE_REFLECTORS && explained >= LEAST_OF_LINE,
-        }
-    }
+/// Whether a wall that explains this part of the energy in its range bins can be believed.
+fn is_borne_out(radar: &Radar, wall: &Atom, explained: f64) -> bool {
+    let count = wall.reflector_count();
+    (is_long(radar, wall) && explained >= LEAST_OF_LONG)
+        || LEAST_EXPLAINED.iter().any(|&(least, part)| count >= least && explained >= part)
 }
 
 /// Whether `wall` has many reflectors, most of them told apart.
@@ -79,37 +59,22 @@ struct Begun {
 }
 
 impl Grower<'_> {
-    /// A wall from one of `seeds`, followed to its ends in what `fit` leaves, that is borne out by how much it explains.
-    pub fn next_wall(&self, fit: &Fit, seeds: &mut Seeds) -> Option<Fit> {
+    /// A wall that begins at one of `points` (x, y; metres), followed to its ends in what `fit` leaves, that is borne out by how much it explains.
+    /// Points on the walls of `fit` are taken from `points`.
+    pub fn next_wall(&self, fit: &Fit, points: &mut Vec<[f64; 2]>) -> Option<Fit> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let profile = Profile::new(self.radar, &flat);
         let left = Left { fit, profile, spectra: Spectra::new(self.radar, self.bench, &fit.residual) };
-        match seeds {
-            Seeds::Points(points) => {
-                points.retain(|&[x_metres, y_metres]| {
-                    !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
-                });
-                let points = points.clone();
-                self.next_from_points(&left, &self.unexplained(&flat, fit).with_points(&points), seeds)
-            }
-            Seeds::LongLines(lines) => {
-                // What a line that is not quite right yet has left is no other.
-                let along = |a: &Atom, b: &Atom| a.reflectors(1.0).filter(|r| is_on(b, &Atom::from(r))).count();
-                lines.retain(|line| !fit.atoms.iter().any(|wall| 2 * along(line, wall) > line.reflector_count()));
-                let lines = lines.clone();
-                self.borne_out(&left, seeds, &lines)
-            }
-        }
-    }
-
-    /// A wall over two points or from one alone; the last takes longest.
-    fn next_from_points(&self, left: &Left, all: &Unexplained, seeds: &Seeds) -> Option<Fit> {
-        self.bench.work.spend(LOOK_A_POINT * all.points_metres.len());
-        let rows = self.proposed(Part::Strides, &Strides, all);
-        self.borne_out(left, seeds, &rows).or_else(|| {
-            let are_long = all.echoes().are_long();
-            let from_edges = if are_long { self.proposed(Part::Edges, &Edges, all) } else { Vec::new() };
-            self.borne_out(left, seeds, &from_edges)
+        points.retain(|&[x_metres, y_metres]| {
+            !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
+        });
+        let all = self.unexplained(&flat, fit).with_points(points);
+        self.bench.work.spend(LOOK_A_POINT * points.len());
+        let rows = self.proposed(Part::Strides, &Strides, &all);
+        // Looks from one point alone take longest.
+        self.borne_out(&left, &rows).or_else(|| {
+            let from_edges = if all.is_long() { self.proposed(Part::Edges, &Edges, &all) } else { Vec::new() };
+            self.borne_out(&left, &from_edges)
         })
     }
 
@@ -129,14 +94,14 @@ impl Grower<'_> {
     }
 
     /// The best of `rows`, if it is borne out when it is followed to its ends.
-    fn borne_out(&self, left: &Left, seeds: &Seeds, rows: &[Atom]) -> Option<Fit> {
+    fn borne_out(&self, left: &Left, rows: &[Atom]) -> Option<Fit> {
         let fit = left.fit;
         let best = self.best_begun(left, rows).filter(|row| row.part > LEAST_BEGUN)?;
         let wall = self.followed_to_its_ends(&fit.residual, best.atom);
         let explained = (fit.cost() - wall.cost()) / left.profile.at(&rows_of(self.radar, &wall.atoms[0]));
         tracing::debug!(?best, explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
         let part = best.part.max(explained);
-        if seeds.are_borne_out(self.radar, &wall.atoms[0], part) {
+        if is_borne_out(self.radar, &wall.atoms[0], part) {
             return Some(wall);
         }
         self.refuse(tried(&wall.atoms[0]), decades(fit.cost(), wall.cost()), Refusal::ExplainsTooLittle(part));

@@ -37,20 +37,6 @@ pub const LADDER: &[Rung] = &[
         climb: |search, state| search.climb_tones(state),
     },
     Rung {
-        name: "long lines",
-        does: "Looks up long lines along y as a whole, and follows each to its ends.",
-        skipped: Some("No echo is long in range."),
-        is_due: |state| state.is_long,
-        climb: |search, state| search.climb_long_lines(state),
-    },
-    Rung {
-        name: "points beside long lines",
-        does: "Pairs the tones that the long lines leave into points. Keeps them only if they are all there is besides.",
-        skipped: Some("No long line was found."),
-        is_due: |state| !state.fit.atoms.is_empty(),
-        climb: |search, state| search.climb_points_beside_lines(state),
-    },
-    Rung {
         name: "lines",
         does: "Looks for lines of any direction that begin where both ends may hear a point.",
         skipped: None,

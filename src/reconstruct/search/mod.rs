@@ -89,9 +89,8 @@ const EVEN_ODDS_DECADES: f64 = 0.8;
 const CONFIDENCE_SLOPE: f64 = 0.8;
 
 /// What the search knows beside the samples.
-const TOLD_TO_SEARCH: &str = "that a scene holds single reflectors or straight rows of equal ones; for long rows along y also the \
-    spacings that the lines of the tables' scenes have; that rows often run along or across the array's axis, or each other; the kind \
-    of floor beneath the samples, and how the thesis' program rounds";
+const TOLD_TO_SEARCH: &str = "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
+    along or across the array's axis, or each other; the kind of floor beneath the samples, and how the thesis' program rounds";
 
 /// Detect, refine, draw: objects from the raw samples, and the exact map of them.
 #[derive(Debug, Clone, Copy, Default)]

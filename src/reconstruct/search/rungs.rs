@@ -1,20 +1,14 @@
 //! What each rung of the search does.
 
-use super::begin::Seeds;
 use super::grow::ROUGHLY;
 use super::on_wall::is_on;
-use super::propose::lines::LongLines;
 use super::propose::pairs::Pairs;
-use super::propose::source::Propose;
 use super::state::{Answer, Search, State};
 use super::trace::decades;
 use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 use crate::reconstruct::fit::{Atom, Fit, Gains, Tie};
-
-/// Work that a look for long lines amounts to.
-const LOOK_FOR_LINES: usize = 2000;
 
 /// Most rounds of pairing what is left.
 const MOST_ROUNDS: usize = 3;
@@ -48,33 +42,6 @@ impl Search<'_> {
         self.grower().refuse(tried, decades(known.cost(), fit.cost()), Refusal::LeavesSomething);
     }
 
-    /// Long lines along y, looked for as a whole.
-    pub fn climb_long_lines(&self, state: &mut State) -> Result<(), ReconstructError> {
-        state.fit = self.long_lines(state.fit.clone())?;
-        if !state.fit.atoms.is_empty() || state.pairs.is_none() {
-            state.pairs = Some(self.pairs(&state.fit));
-        }
-        Ok(())
-    }
-
-    /// Points beside the long lines, kept where they are all there is besides.
-    pub fn climb_points_beside_lines(&self, state: &mut State) -> Result<(), ReconstructError> {
-        let pairs = state.pairs.get_or_insert_default();
-        let fit = self.nearly_there(self.paired(state.fit.clone(), pairs, true)?)?;
-        if self.is_nearly_all(&fit) {
-            let left = self.pairs(&fit);
-            let answer = self.paired_again(fit, left, state.is_long)?;
-            if answer.is_sure {
-                state.reach(answer);
-            } else {
-                self.refuse_together(&state.fit, &answer.fit);
-            }
-        } else {
-            self.refuse_together(&state.fit, &fit);
-        }
-        Ok(())
-    }
-
     /// Lines of any direction that begin where both ends may hear points.
     pub fn climb_lines(&self, state: &mut State) -> Result<(), ReconstructError> {
         let pairs = state.pairs.take().unwrap_or_default();
@@ -100,33 +67,12 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// `fit` and long lines along y, looked for as a whole as long as something long is left.
-    fn long_lines(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..MOST_ROUNDS {
-            let (grower, before) = (self.grower(), fit.atoms.len());
-            let flat = fit.residual.flat(&self.bench.sensor);
-            let lines = {
-                let left = grower.unexplained(&flat, &fit);
-                if !left.echoes().are_long() {
-                    break;
-                }
-                self.bench.work.spend(LOOK_FOR_LINES);
-                LongLines.propose(&left)
-            };
-            fit = grower.more_walls(self.samples, fit, Seeds::LongLines(lines))?;
-            if fit.atoms.len() == before {
-                break;
-            }
-        }
-        Ok(fit)
-    }
-
     /// Walls that begin where both ends may hear points, and the points besides that they agree on; and again, as what was found may have
     /// hidden more. `pairs` are those of `fit`; those of the answer come with it.
     fn walls(&self, mut fit: Fit, mut pairs: Pairs) -> Result<(Fit, Pairs), ReconstructError> {
         for _ in 0..MOST_ROUNDS {
             let (before, cost) = (fit.atoms.len(), fit.cost());
-            fit = self.grower().more_walls(self.samples, fit, Seeds::Points(pairs.guesses_metres.clone()))?;
+            fit = self.grower().more_walls(self.samples, fit, pairs.guesses_metres.clone())?;
             let sure = pairs.points.iter().filter(|point| point.is_sure());
             let more: Vec<Atom> =
                 sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();

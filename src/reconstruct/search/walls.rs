@@ -1,6 +1,5 @@
 //! Walls, one after another: each is looked for in what the others leave, and all are followed to their ends again.
 
-use super::begin::Seeds;
 use super::grow::{Grower, ROUGHLY};
 use super::without::Part;
 use crate::reconstruct::ReconstructError;
@@ -19,15 +18,20 @@ const MOST_TURNS: usize = 4;
 const WORTH_ANOTHER_TURN: f64 = 0.9;
 
 impl Grower<'_> {
-    /// `fit` and the walls that begin at `seeds`, as long as each explains much of what there is in its range bins.
+    /// `fit` and the walls that begin at `points` (x, y; metres), as long as each explains much of what there is in its range bins.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn more_walls(&self, samples: &Samples, mut fit: Fit, mut seeds: Seeds) -> Result<Fit, ReconstructError> {
+    pub fn more_walls(
+        &self,
+        samples: &Samples,
+        mut fit: Fit,
+        mut points: Vec<[f64; 2]>,
+    ) -> Result<Fit, ReconstructError> {
         let (known, before) = (fit.atoms.len(), self.bench.work.spent());
         while fit.atoms.len() < known + MOST_WALLS && self.bench.work.spent() < before + MOST_SPENT {
             self.task.check()?;
-            let Some(wall) = self.next_wall(&fit, &mut seeds) else { break };
+            let Some(wall) = self.next_wall(&fit, &mut points) else { break };
             fit.atoms.push(wall.atoms[0]);
             fit.gains.push(wall.gains[0]);
             (fit.residual, fit.energy) = (wall.residual, wall.energy);

@@ -12,14 +12,10 @@
 //! | `phased` | each end's beams with their phases, and lines looked up in them |
 //! | `strides` | lines from their first two reflectors |
 //! | `edges` | lines from their first reflector alone |
-//! | `runs` | range bins that hold an echo |
-//! | `blocks` | a few neighbouring reflectors of a line along y at a time |
-//! | `lines` | long lines along y, looked up as a whole |
+//! | `runs` | how many range bins in a row hold an echo |
 
-mod blocks;
 pub mod edges;
 pub mod end_beams;
-pub mod lines;
 pub mod pairs;
 pub mod peaks;
 pub mod phased;

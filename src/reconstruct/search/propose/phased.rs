@@ -90,19 +90,6 @@ impl PhasedBeams {
         }
     }
 
-    /// Energy of all elements' profiles in each range bin of an end, summed up to it: one entry more than there are bins.
-    pub fn running_energy(&self, end: usize) -> Vec<f64> {
-        let mut running = vec![0.0; self.bins + 1];
-        for beam in self.beams[end].chunks_exact(self.bins) {
-            // By Parseval's theorem, as the beams are evenly spaced.
-            running[1..].iter_mut().zip(beam).for_each(|(sum, v)| *sum += v.norm_sqr() / BEAMS as f64);
-        }
-        for bin in 0..self.bins {
-            running[bin + 1] += running[bin];
-        }
-        running
-    }
-
     /// The strongest beams of all range bins.
     pub fn strongest(&self) -> Strongest {
         Strongest(self.beams.each_ref().map(|beams| {
@@ -150,25 +137,13 @@ impl PhasedBeams {
     /// What each reflector of `row`, one for each of `heard`, would have left at an end.
     #[inline(always)]
     pub fn listen<const FMA: bool>(&self, end: usize, row: &Row, heard: &mut [Heard]) {
-        self.listen_to::<FMA>(end, row, |n| n as f64, heard);
-    }
-
-    /// The same of those reflectors of `row` alone that are numbered so.
-    #[inline(always)]
-    pub fn listen_to<const FMA: bool>(
-        &self,
-        end: usize,
-        row: &Row,
-        number: impl Fn(usize) -> f64,
-        heard: &mut [Heard],
-    ) {
         let PhasedBeams { bins, bins_per_metre, turns_per_metre, wrap_sign, .. } = *self;
         let [x, y] = row.first_metres;
         let [step_x, step_y] = row.step_metres;
         let view = &self.views[end];
         let from = x - view.centre_metres;
         for (block, heard) in heard.chunks_mut(W).enumerate() {
-            let i = Lanes::<f64, W>(std::array::from_fn(|lane| number(block * W + lane)));
+            let i = Lanes::<f64, W>(std::array::from_fn(|lane| (block * W + lane) as f64));
             let dx = i * Lanes::splat(step_x) + Lanes::splat(from);
             let y = i * Lanes::splat(step_y) + Lanes::splat(y);
             let range = view.range_metres(dx, y).map(|r| if r > NEAREST_METRES { r } else { NEAREST_METRES });

@@ -1,7 +1,7 @@
 //! What every source of candidates is, and what all of them look at.
 
 use super::phased::PhasedBeams;
-use super::runs::EchoBins;
+use super::runs::{LONG_RUN_BINS, longest_run_bins};
 use crate::radar::Radar;
 use crate::reconstruct::fit::{Atom, Fit};
 use crate::reconstruct::hearing::Hearing;
@@ -24,14 +24,12 @@ pub struct Unexplained<'a> {
     /// To be cancelled by.
     pub task: &'a Task,
     beams: OnceCell<PhasedBeams>,
-    echoes: OnceCell<EchoBins>,
 }
 
 impl<'a> Unexplained<'a> {
     /// What `found` leaves, laid out as `flat`.
     pub fn new(radar: &'a Radar, flat: &'a [Complex64], hearing: Hearing, found: &'a Fit, task: &'a Task) -> Self {
-        let (beams, echoes) = (OnceCell::new(), OnceCell::new());
-        Unexplained { radar, flat, hearing, found, points_metres: &[], task, beams, echoes }
+        Unexplained { radar, flat, hearing, found, points_metres: &[], task, beams: OnceCell::new() }
     }
 
     /// The same with places where points may be.
@@ -44,10 +42,10 @@ impl<'a> Unexplained<'a> {
         self.beams.get_or_init(|| PhasedBeams::new(self.radar, self.flat))
     }
 
-    /// The range bins that hold an echo.
-    pub fn echoes(&self) -> &EchoBins {
-        let variance = || self.hearing.noise_variance(self.radar, self.flat);
-        self.echoes.get_or_init(|| EchoBins::of(self.radar, self.flat, variance()))
+    /// Whether something longer than a few reflectors is left.
+    pub fn is_long(&self) -> bool {
+        let variance = self.hearing.noise_variance(self.radar, self.flat);
+        longest_run_bins(self.radar, self.flat, variance) >= LONG_RUN_BINS
     }
 
     /// The first points within the maximum range, `most` of them.
