@@ -68,7 +68,7 @@ pub fn apply_responses(array: &BuiltArray, signal: &mut BeatSignal) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::radar::{Decibels, ElementError, LinkBudget, Tolerances};
+    use crate::radar::{Decibels, ElementError, LinkBudget};
     use crate::scene::{Object, Reflector, Wall};
     use crate::signal::simulate;
 
@@ -242,30 +242,6 @@ mod tests {
                     assert_eq!(built.samples.row(n), ideal.samples.row(n), "element {n} keeps its bits");
                 }
             }
-        }
-    }
-
-    /// Prints how many times longer the samples of displaced elements take.
-    #[test]
-    #[ignore = "measures time: run in release"]
-    fn displaced_elements_take_at_most_three_times_as_long() {
-        let radar = Radar::default();
-        let tolerances = Tolerances { gain: Decibels(0.0), phase_degrees: 0.0, position_millimetres: 0.05 };
-        let array = tolerances.build(&radar, 2);
-        for count in [10, 300] {
-            let place = |i: usize| (f64::from(i as u32 * 37 % 61) / 4.0 - 7.0, 3.0 + f64::from(i as u32 * 53 % 33));
-            let scene = Scene::of_points((0..count).map(place));
-            let time = |array: &BuiltArray| {
-                let once = |_| {
-                    let start = std::time::Instant::now();
-                    simulate_built(&radar, &scene, array, Floor::Thesis, 0).unwrap();
-                    start.elapsed().as_secs_f64()
-                };
-                (0..9).map(once).fold(f64::INFINITY, f64::min)
-            };
-            let [ideal, displaced] = [BuiltArray::default(), array.clone()].map(|array| time(&array));
-            println!("{count} reflectors: {:.2} times as long", displaced / ideal);
-            assert!(displaced < 3.0 * ideal, "{count} reflectors: {:.1}", displaced / ideal);
         }
     }
 }

@@ -211,17 +211,6 @@ mod tests {
     }
 
     #[test]
-    fn a_link_budget_is_kept() {
-        let text = "[radar]\nchirp_seconds = 5e-5\n[radar.budget]\nantenna_gain_dbi = 13\n\
-                    half_power_width_degrees = 70\n";
-        let file = from_toml(text).unwrap();
-        let budget = file.radar.budget.unwrap();
-        assert_eq!((budget.antenna_gain_dbi, budget.half_power_width_degrees), (13.0, Some(70.0)));
-        let written = to_toml(&file).unwrap();
-        assert_eq!(from_toml(&written).unwrap(), file, "{written}");
-    }
-
-    #[test]
     fn faults_name_place_with_expectation() {
         let point = "[[object]]\nkind = \"point\"\nx_metres = 1\n";
         let crowd =

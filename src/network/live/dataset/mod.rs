@@ -10,7 +10,6 @@
 //! The scenes of the splits come from streams that never meet ([`Purpose`]). Example `i` of a split is scene `i / kinds` of kind `i % kinds`: a longer
 //! dataset begins with the examples of a shorter one.
 
-mod half;
 mod manifest;
 mod shard;
 
