@@ -63,7 +63,6 @@ pub struct Args {
 }
 
 impl Args {
-    /// Reconstructs and writes.
     pub fn run(self) -> Result<(), CommandError> {
         if self.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("npz")) {
             let name = self.output.display();

@@ -62,7 +62,6 @@ const MOST_MINUTES: f64 = 525_600.0;
 const CHECKPOINT: &str = "checkpoint";
 
 impl Args {
-    /// Trains, showing progress and time left.
     pub fn run(self) -> Result<(), CommandError> {
         if self.list {
             return list();

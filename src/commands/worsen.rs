@@ -69,7 +69,6 @@ const LEAST_REACH: f64 = 1e-6;
 const MOST_MINUTES: f64 = 525_600.0;
 
 impl Args {
-    /// Searches, prints, and writes what was found.
     pub fn run(self) -> Result<(), CommandError> {
         file::SceneFormat::of_path(&self.output).map_err(CommandError::failed)?;
         let time = Duration::from_secs_f64(60.0 * self.minutes.unwrap_or(10.0));

@@ -29,7 +29,6 @@ pub(super) struct BankUpdate<'a> {
 }
 
 impl BankUpdate<'_> {
-    /// So many of what the scene echoes with.
     fn counted(&self, count: usize) -> String {
         match self.scene.has_bodies() {
             true => counted(count, "echo", "echoes"),

@@ -192,7 +192,6 @@ impl Engine {
         Ok(EngineFrame { first, last, full, ends, settled: false, report })
     }
 
-    /// Error of a sample that the maps may have.
     fn tolerance(&self, wanted: &MapRequest) -> f64 {
         self.forced.tolerance.unwrap_or_else(|| tolerance::tolerance_for(wanted.floor, wanted.normalisation))
     }

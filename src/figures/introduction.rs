@@ -46,7 +46,6 @@ pub fn random_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(1, (760, 340), vec![SheetPanel::chart("Elements on the aperture", x, y, series)]))
 }
 
-/// Three transmitters and four receivers, and their twelve virtual elements.
 pub fn virtual_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
     let mimo = Mimo::filled(&source.radar, 3, 4);
     let unit = source.radar.element_spacing_metres;

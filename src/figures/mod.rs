@@ -22,17 +22,14 @@ pub use source::{FigureError, SceneSource};
 
 use sheet::Sheet;
 
-/// A figure of the thesis.
 pub struct Figure {
     /// Its number in the thesis, as `4-7`.
     pub number: &'static str,
-    /// What it shows.
     pub shows: &'static str,
     /// What differs from the printed one, and why.
     pub differs: &'static str,
     /// Whether it takes less than a second.
     pub cheap: bool,
-    /// Its panels, from this program's data.
     pub sheet: fn(&SceneSource) -> Result<Sheet, FigureError>,
 }
 
@@ -51,7 +48,6 @@ const TEST_SCENE: &str = "The printed scene is not given; this is a test scene o
 the thesis' network has a quarter of its filters.";
 const MAP_SCENE: &str = "The printed scene is not given; this is test scene 1 of set 3, seed 0.";
 
-/// Every figure, in the thesis' order.
 pub const ALL: &[Figure] = &[
     figure(
         "1-2",
@@ -286,7 +282,6 @@ pub const ALL: &[Figure] = &[
     ),
 ];
 
-/// The figure of this number.
 pub fn by_number(number: &str) -> Option<&'static Figure> {
     ALL.iter().find(|f| f.number == number)
 }

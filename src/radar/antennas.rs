@@ -45,7 +45,6 @@ impl fmt::Debug for Antennas {
     }
 }
 
-/// The pairs from left to right, and their midpoints.
 struct Midpoints {
     pairs: Vec<[usize; 2]>,
     x_metres: Vec<f64>,

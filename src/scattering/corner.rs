@@ -44,7 +44,6 @@ fn one_order(wave: &Wave, antennas: &AntennaPlaces, first: &Face, second: &Face)
     both.lit_echoes(wave, &seen, lit).map(|echo| PathEcho { kind: EchoKind::DoubleBounce, ..echo })
 }
 
-/// The image of `place` in the line of a face.
 pub(super) fn mirrored(place: V, face: &Face) -> V {
     let to = place - face.from;
     face.from + face.along * (2.0 * to.dot(face.along)) - to

@@ -51,7 +51,6 @@ impl Array {
         Array { corners: [V(left, hind), V(right, hind), V(right, fore), V(left, fore)], faded }
     }
 
-    /// Greatest distance of any of `places` from an antenna, metres.
     fn farthest(&self, places: &[V]) -> f64 {
         let far = |corner: V| places.iter().map(move |p| (*p - corner).norm());
         self.corners.into_iter().flat_map(far).fold(0.0, f64::max)

@@ -42,7 +42,6 @@ pub struct SideLobe {
 struct Profile {
     /// Magnitudes, the highest first, rising columns, all around the map.
     cells: Vec<f64>,
-    /// Column of the highest.
     column: f64,
 }
 
@@ -54,7 +53,6 @@ impl Profile {
         Profile { column: highest as f64 * columns as f64 / cells.len().max(1) as f64, cells }
     }
 
-    /// Magnitude `step` fine columns above or below the highest.
     fn at(&self, step: usize, upward: bool) -> f64 {
         let len = self.cells.len();
         self.cells[if upward { step % len } else { (len - step % len) % len }]

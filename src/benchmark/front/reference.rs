@@ -13,7 +13,6 @@ use rayon::prelude::*;
 
 /// Elements whose range profiles are compared with the judge's, spread over the array.
 const JUDGED: usize = 4;
-/// Apertures in the order of every triple of maps.
 const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
 /// Picks the floor's noise in every measurement.
 pub(in crate::benchmark) const SEED: u64 = 0;
@@ -49,7 +48,6 @@ impl Reference {
         self.profiles.error(radar, profile, self.profiles.peak())
     }
 
-    /// Errors of three maps drawn by `convention`.
     pub fn lambda_error(&self, convention: MapConvention, maps: [&RangeAngleMap; 3]) -> LambdaError {
         let [fixed_range, thesis] = &self.maps;
         let expected = if convention == MapConvention::THESIS { thesis } else { fixed_range };
@@ -71,7 +69,6 @@ impl JudgedProfiles {
         JudgedProfiles { profiles: channels_range_transform(radar, judged.view()).profiles }
     }
 
-    /// Largest magnitude of a cell.
     pub fn peak(&self) -> f64 {
         self.profiles.iter().fold(0.0, |m: f64, v| m.max(v.norm()))
     }

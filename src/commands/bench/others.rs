@@ -153,7 +153,6 @@ impl Reference {
 }
 
 impl Equal {
-    /// Prints a table a task.
     pub fn print(&self) -> Result<(), CommandError> {
         for task in &self.tasks {
             print(&format!(

@@ -44,7 +44,6 @@ fn part_below(sorted: &[f64], score: f64) -> f64 {
     0.5 * (smaller + not_larger) as f64 / sorted.len() as f64
 }
 
-/// Variance of the mean of `values`; `None` of fewer than two.
 fn variance_of_mean(values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;

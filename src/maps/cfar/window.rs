@@ -20,7 +20,6 @@ impl Window {
         Window { guard, reach }
     }
 
-    /// The rows of a map that stand at most `side` from `bin`.
     fn rows(bin: usize, side: usize, bins: usize) -> Range<usize> {
         bin.saturating_sub(side)..(bin + side + 1).min(bins)
     }

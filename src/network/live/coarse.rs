@@ -13,7 +13,6 @@ use std::f64::consts::PI;
 #[derive(Debug)]
 pub(super) struct Coarse {
     rows: usize,
-    /// The centre's grid from either end.
     centre: [Registration<COARSE>; 2],
     /// `[rows, 64]`: what makes the phase of a reflector's cells one and the same, see [`even_phases`].
     even: Vec<Complex64>,
@@ -21,7 +20,6 @@ pub(super) struct Coarse {
     beams: Array2<Complex64>,
 }
 
-/// What is said of one end.
 #[derive(Debug)]
 struct Seen {
     /// `[rows, 64]` log10 amplitude.

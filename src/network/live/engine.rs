@@ -286,7 +286,6 @@ fn decades_in(v: f32) -> f32 {
     ((v + 3.0) / 3.0).clamp(-4.0, 2.0)
 }
 
-/// The fine features of a row as the network takes them.
 fn fine_in(fine: &[f32], row: usize) -> [[f32; FINE]; FINE_CHANNELS] {
     std::array::from_fn(|channel| {
         let at = (channel * (fine.len() / FINE_CHANNELS / FINE) + row) * FINE;

@@ -150,7 +150,6 @@ fn object_spans(text: &str, index: usize) -> Spans {
     entries.and_then(|e| e.get(index)).map_or(Spans { whole: 0..0, fields: Vec::new() }, Spans::of)
 }
 
-/// Where the table of disturbances stands in a text that was read before.
 fn disturbances_span(text: &str) -> Range<usize> {
     table(text).ok().and_then(|d| d.get_ref().get("disturbances").map(Spanned::span)).unwrap_or(0..0)
 }

@@ -90,7 +90,6 @@ impl ExamplePart {
     }
 }
 
-/// As [`FromStr`] reads it.
 impl fmt::Display for ExamplePart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
