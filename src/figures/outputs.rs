@@ -9,16 +9,16 @@ use crate::scene::Scene;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 
 const PANEL: (u32, u32) = (460, 380);
-const EXPERIMENT_1: &str = "thesis-1";
-const EXPERIMENT_2: &str = "thesis";
+pub const EXPERIMENT_1: &str = "thesis-1";
+pub const EXPERIMENT_2: &str = "thesis";
 
 fn title(method: &str, seen: &ScenePictures, output: &RangeAngleMap) -> String {
     let metrics = Metrics::of(&seen.lambda[2], output, TARGET_ETA);
     format!("{method}: SE {:.0}", metrics.squared_error)
 }
 
-/// Inputs and target, then the thesis' network, `live` and `hybrid` on the same scene.
-fn beside(source: &SceneSource, seen: &ScenePictures, network: &str) -> Result<Sheet, FigureError> {
+/// A scene's inputs and target, then the thesis' network, `live` and `hybrid` on it.
+pub fn beside(source: &SceneSource, seen: &ScenePictures, network: &str) -> Result<Sheet, FigureError> {
     let [first, last, full] = &seen.lambda;
     let mut panels = vec![
         source.lambda_panel("Input 0", first),
@@ -49,14 +49,6 @@ pub fn unet_on_training(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(2, (560, 340), panels))
 }
 
-pub fn experiment_1_points(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.test_scene(Kind::Set2, 0)?, EXPERIMENT_1)
-}
-
-pub fn experiment_1_lines(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.test_scene(Kind::Set3, 0)?, EXPERIMENT_1)
-}
-
 pub fn merged_and_apart(source: &SceneSource) -> Result<Sheet, FigureError> {
     let place = |cos: f64| (31.0 * cos, 31.0 * (1.0 - cos * cos).sqrt());
     let seen = source.see(Scene::of_points([place(0.30), place(0.40)]))?;
@@ -66,18 +58,6 @@ pub fn merged_and_apart(source: &SceneSource) -> Result<Sheet, FigureError> {
         panels.push(source.lambda_panel(title(method, &seen, &output), &output));
     }
     Ok(Sheet::of(3, PANEL, panels))
-}
-
-pub fn experiment_2_points(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.test_scene(Kind::Set2, 0)?, EXPERIMENT_2)
-}
-
-pub fn experiment_2_point(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.test_scene(Kind::Set1, 0)?, EXPERIMENT_2)
-}
-
-pub fn experiment_2_lines(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.test_scene(Kind::Set3, 0)?, EXPERIMENT_2)
 }
 
 pub fn thresholds(source: &SceneSource) -> Result<Sheet, FigureError> {
@@ -100,10 +80,6 @@ pub fn baseline(source: &SceneSource) -> Result<Sheet, FigureError> {
         source.above_panel("Target: Λ > 0.9", &seen.lambda[2], TARGET_ETA),
     ];
     Ok(Sheet::of(2, (560, 420), panels))
-}
-
-pub fn taken_for_a_line(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.preset("points-by-a-line")?, EXPERIMENT_2)
 }
 
 /// Inputs of two points a tenth of a radian apart: alike in the middle, different at the edges.
