@@ -14,7 +14,7 @@ use apertura::network::live::constants::turn_rows;
 use apertura::network::live::dataset::{self as files, DatasetError, DatasetRequest, ExamplePart};
 use apertura::network::live::examples::{self, EndSamples, Example, ExamplesRequest, Features};
 use apertura::network::live::features::{FeatureExtractor, LiveInput};
-use apertura::network::live::grid::{COARSE, COARSE_CHANNELS, FINE, FINE_CHANNELS, ROW_CHANNELS};
+use apertura::network::live::grid::{COARSE_CHANNELS, COARSE_COLUMNS, FINE_CHANNELS, FINE_COLUMNS, ROW_CHANNELS};
 use apertura::network::live::radars::Radars;
 use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::check_ends;
@@ -389,8 +389,8 @@ pub fn live_input<'py>(
 fn set_input(dict: &Bound<'_, PyDict>, input: LiveInput) -> PyResult<()> {
     let py = dict.py();
     let rows = input.rows.len() / ROW_CHANNELS;
-    dict.set_item("fine", owned(py, shaped(input.fine, &[FINE_CHANNELS, rows, FINE])?))?;
-    dict.set_item("coarse", owned(py, shaped(input.coarse, &[COARSE_CHANNELS, rows, COARSE])?))?;
+    dict.set_item("fine", owned(py, shaped(input.fine, &[FINE_CHANNELS, rows, FINE_COLUMNS])?))?;
+    dict.set_item("coarse", owned(py, shaped(input.coarse, &[COARSE_CHANNELS, rows, COARSE_COLUMNS])?))?;
     dict.set_item("rows", owned(py, shaped(input.rows, &[ROW_CHANNELS, rows])?))?;
     dict.set_item("scalars", owned(py, Array1::from(input.scalars.to_vec())))?;
     dict.set_item("constants", owned(py, Array1::from(input.constants.to_vec())))?;

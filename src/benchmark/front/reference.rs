@@ -12,7 +12,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Elements whose range profiles are compared with the judge's, spread over the array.
-const JUDGED: usize = 4;
+const JUDGED_ELEMENTS: usize = 4;
 const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
 /// Picks the floor's noise in every measurement.
 pub(in crate::benchmark) const SEED: u64 = 0;
@@ -65,7 +65,7 @@ impl JudgedProfiles {
     pub fn new(radar: &Radar, reflectors: &[Reflector]) -> Self {
         let elements: Vec<usize> = elements(radar).collect();
         let signals: Vec<_> = elements.par_iter().map(|n| judge::element_signal(radar, reflectors, *n)).collect();
-        let judged = Array2::from_shape_fn((JUDGED, radar.samples), |(i, n1)| signals[i][n1]);
+        let judged = Array2::from_shape_fn((JUDGED_ELEMENTS, radar.samples), |(i, n1)| signals[i][n1]);
         JudgedProfiles { profiles: channels_range_transform(radar, judged.view()).profiles }
     }
 
@@ -100,7 +100,7 @@ pub(in crate::benchmark) fn difference(
 
 fn elements(radar: &Radar) -> impl Iterator<Item = usize> {
     let last = radar.elements.saturating_sub(1);
-    (0..JUDGED).map(move |i| i * last / (JUDGED - 1))
+    (0..JUDGED_ELEMENTS).map(move |i| i * last / (JUDGED_ELEMENTS - 1))
 }
 
 /// White noise of unit variance, made once: making it takes longer than most maps, and every floor scales the same.

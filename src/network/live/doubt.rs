@@ -1,7 +1,7 @@
 //! How far off the live network expects its map to be: a small head on its picture that learned from its errors.
 
 use super::columns::ColumnTaps;
-use super::grid::{COARSE, COLUMNS, FINE};
+use super::grid::{COARSE_COLUMNS, COLUMNS, FINE_COLUMNS};
 use super::planes::{Plane, rectified};
 use super::reading::LiveLayers;
 use super::winograd::{Conv3x3, Results};
@@ -15,8 +15,8 @@ use rayon::prelude::*;
 
 const PREFIX: &str = "doubt.";
 /// Numbers that the head says of a coarse cell.
-const DOUBTS_PER_CELL: usize = FINE / COARSE;
-const COLUMNS_PER_DOUBT: usize = COLUMNS / FINE;
+const DOUBTS_PER_CELL: usize = FINE_COLUMNS / COARSE_COLUMNS;
+const COLUMNS_PER_DOUBT: usize = COLUMNS / FINE_COLUMNS;
 
 /// Decades between which what is said of a cell counts.
 const CELL_DECADES: [f32; 2] = [-4.0, 0.0];
@@ -53,22 +53,22 @@ impl DoubtHead {
     /// What it says of a picture, for columns by `taps`, where they are not the network's.
     pub(super) fn read(&self, picture: &Plane, taps: Option<&ColumnTaps>, columns: usize) -> RangeAngleMap {
         let (rows, lanes) = (picture.h, self.conv2.output());
-        let mut said = vec![0.0; rows * COARSE * lanes];
+        let mut said = vec![0.0; rows * COARSE_COLUMNS * lanes];
         let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&picture.data[row * line.len()..][..line.len()]);
         let simd = Simd::chosen();
         let heads = |results: Results, out: &mut [f32]| {
             let sums = results.sums();
             sums.iter_mut().for_each(|v| *v = rectified(*v));
-            self.conv2.line(simd, sums, COARSE, COARSE, out);
+            self.conv2.line(simd, sums, COARSE_COLUMNS, COARSE_COLUMNS, out);
         };
-        self.conv1.run([rows, COARSE], read, &mut said, heads);
+        self.conv1.run([rows, COARSE_COLUMNS], read, &mut said, heads);
         let of_scene = mean(said.chunks_exact(lanes).map(|cell| cell[DOUBTS_PER_CELL]))
             .clamp(-SCENE_DECADES, SCENE_DECADES) as f32;
         let [least, most] = CELL_DECADES;
         let mut error = Array2::zeros((rows, columns));
         let lines = error.as_slice_mut().unwrap_or_default().par_chunks_mut(columns);
-        lines.zip(said.par_chunks(COARSE * lanes)).for_each(|(line, said)| {
-            let mut fine = [0.0; FINE];
+        lines.zip(said.par_chunks(COARSE_COLUMNS * lanes)).for_each(|(line, said)| {
+            let mut fine = [0.0; FINE_COLUMNS];
             for (to, cell) in fine.chunks_exact_mut(DOUBTS_PER_CELL).zip(said.chunks_exact(lanes)) {
                 to.copy_from_slice(&cell[..DOUBTS_PER_CELL]);
             }
@@ -129,9 +129,9 @@ mod tests {
     fn the_head_agrees_with_its_twin() {
         let reference = WeightFile::parse("reference", REFERENCE).unwrap();
         let found = doubt_of(WEIGHTS, &reference).unwrap().lambda;
-        let expected = reference.tensor("doubt", &[ROWS / 16, FINE / 4]).unwrap();
+        let expected = reference.tensor("doubt", &[ROWS / 16, FINE_COLUMNS / 4]).unwrap();
         for (i, expected) in expected.iter().enumerate() {
-            let [row, column] = [i / (FINE / 4) * 16, i % (FINE / 4) * 4 * COLUMNS_PER_DOUBT];
+            let [row, column] = [i / (FINE_COLUMNS / 4) * 16, i % (FINE_COLUMNS / 4) * 4 * COLUMNS_PER_DOUBT];
             let gap = (found[[row, column]] - expected).abs();
             assert!(
                 gap < 1e-4 && found[[row, column]] == found[[row, column + COLUMNS_PER_DOUBT - 1]],

@@ -13,16 +13,16 @@ use rayon::prelude::*;
 use std::cell::RefCell;
 
 /// Rows of sources, and rows that they add to, of a tile.
-const FROM: usize = 8;
-const TO: usize = 16;
+const TILE_SOURCE_ROWS: usize = 8;
+const TILE_ROWS: usize = 16;
 
-const _: () = assert!(ROWS_STEP.is_multiple_of(FROM), "whole tiles of sources");
+const _: () = assert!(ROWS_STEP.is_multiple_of(TILE_SOURCE_ROWS), "whole tiles of sources");
 
 /// What all tiles together may add to a cell unseen, as a part of what the cell has at least.
 const ALL_UNSEEN: f32 = 0.0096;
 
 /// Words of a bit for each tile of sources.
-const WORDS: usize = MAX_ROWS / FROM / BITS;
+const WORDS: usize = MAX_ROWS / TILE_SOURCE_ROWS / BITS;
 const BITS: usize = u64::BITS as usize;
 
 /// A learned kernel over the rows, which wraps around, and where it is how strong.
@@ -31,7 +31,7 @@ pub(super) struct RangeLobes {
     rows: usize,
     /// `[rows, rows]`
     kernel: Vec<f32>,
-    /// `[rows / TO, rows / FROM]`, the first rounded up: the kernel's least and greatest value in a tile.
+    /// `[rows / TILE_ROWS, rows / TILE_SOURCE_ROWS]`, the first rounded up: the kernel's least and greatest value in a tile.
     reach: Vec<[f32; 2]>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct RangeLobes {
 struct Kept {
     /// `[rows, BLOCK]`
     sources: Vec<f32>,
-    /// `[rows / FROM, BLOCK]`
+    /// `[rows / TILE_SOURCE_ROWS, BLOCK]`
     sums: Vec<f32>,
 }
 
@@ -53,17 +53,19 @@ impl RangeLobes {
         let rows = 2 * (decades.len() - 1);
         let kernel = circulant(decades, rows);
         let of_tile = |tile: usize| {
-            let (to, from) = (tile / (rows / FROM) * TO, tile % (rows / FROM) * FROM);
-            let cells = (to..(to + TO).min(rows)).flat_map(|row| &kernel[row * rows + from..][..FROM]);
+            let (to, from) =
+                (tile / (rows / TILE_SOURCE_ROWS) * TILE_ROWS, tile % (rows / TILE_SOURCE_ROWS) * TILE_SOURCE_ROWS);
+            let cells =
+                (to..(to + TILE_ROWS).min(rows)).flat_map(|row| &kernel[row * rows + from..][..TILE_SOURCE_ROWS]);
             cells.fold([f32::INFINITY, 0.0], |[least, most]: [f32; 2], v| [least.min(*v), most.max(*v)])
         };
-        let reach = (0..rows.div_ceil(TO) * (rows / FROM)).map(of_tile).collect();
+        let reach = (0..rows.div_ceil(TILE_ROWS) * (rows / TILE_SOURCE_ROWS)).map(of_tile).collect();
         RangeLobes { rows, kernel, reach }
     }
 
     /// What a tile may add to a cell unseen, as a part of what the cell has at least: less than a hundredth for all tiles.
     pub(super) fn unseen(&self) -> f32 {
-        ALL_UNSEEN / (self.rows / FROM) as f32
+        ALL_UNSEEN / (self.rows / TILE_SOURCE_ROWS) as f32
     }
 
     /// Side lobes `[1024 / BLOCK, rows, BLOCK]` of sources, of which `read` writes those of a block of columns, over a `floor`. Neither the
@@ -84,7 +86,7 @@ impl RangeLobes {
                 kept.sources.resize(rows * BLOCK, 0.0);
                 read(block, &mut kept.sources);
                 simd.run(Sums { sources: &kept.sources, sums: &mut kept.sums });
-                let parts = out.chunks_mut(TO * BLOCK).enumerate();
+                let parts = out.chunks_mut(TILE_ROWS * BLOCK).enumerate();
                 parts.map(|(to, out)| self.add_to(simd, floor, unseen, to, kept, out)).sum::<usize>()
             })
         };
@@ -92,21 +94,21 @@ impl RangeLobes {
         tiles as f32 / (COLUMNS / BLOCK * self.reach.len()) as f32
     }
 
-    /// What a block's sources add to the rows of a tile, [`TO`] or what is left, in how many tiles.
+    /// What a block's sources add to the rows of a tile, [`TILE_ROWS`] or what is left, in how many tiles.
     fn add_to(&self, simd: Simd, floor: f32, unseen: f32, to: usize, kept: &Kept, out: &mut [f32]) -> usize {
-        let (rows, tiles) = (self.rows, self.rows / FROM);
+        let (rows, tiles) = (self.rows, self.rows / TILE_SOURCE_ROWS);
         let reach = &self.reach[to * tiles..][..tiles];
         let shows = simd.run(Shows { reach, sums: &kept.sums, floor, unseen });
         let tiles = (0..tiles).filter(|tile| shows[tile / BITS] >> (tile % BITS) & 1 == 1);
-        let runs = tiles.map(|tile| tile * FROM..(tile + 1) * FROM);
-        product(simd, &self.kernel[to * TO * rows..][..out.len() / BLOCK * rows], &kept.sources, runs, out);
+        let runs = tiles.map(|tile| tile * TILE_SOURCE_ROWS..(tile + 1) * TILE_SOURCE_ROWS);
+        product(simd, &self.kernel[to * TILE_ROWS * rows..][..out.len() / BLOCK * rows], &kept.sources, runs, out);
         shows.iter().map(|word| word.count_ones() as usize).sum()
     }
 }
 
 type Vector = Lanes<f32, LANES_F32>;
 
-/// Sums of [`FROM`] rows of sources each.
+/// Sums of [`TILE_SOURCE_ROWS`] rows of sources each.
 struct Sums<'a> {
     sources: &'a [f32],
     sums: &'a mut Vec<f32>,
@@ -117,11 +119,11 @@ impl Kernel for Sums<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        self.sums.resize(self.sources.len() / FROM, 0.0);
-        for (rows, sums) in self.sources.chunks_exact(FROM * BLOCK).zip(self.sums.chunks_exact_mut(BLOCK)) {
+        self.sums.resize(self.sources.len() / TILE_SOURCE_ROWS, 0.0);
+        for (rows, sums) in self.sources.chunks_exact(TILE_SOURCE_ROWS * BLOCK).zip(self.sums.chunks_exact_mut(BLOCK)) {
             for at in (0..BLOCK).step_by(LANES) {
                 let row = |row: usize| Vector::load(&rows[row * BLOCK + at..]);
-                (1..FROM).fold(row(0), |sum, i| sum + row(i)).store(&mut sums[at..]);
+                (1..TILE_SOURCE_ROWS).fold(row(0), |sum, i| sum + row(i)).store(&mut sums[at..]);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, LiveConfig, WIDE_COLUMNS};
 use super::constants::WINDOWS;
-use super::grid::{COARSE, COLUMNS, FINE, ROWS};
+use super::grid::{COARSE_COLUMNS, COLUMNS, FINE_COLUMNS, ROWS};
 use crate::network::domain::Domain;
 use crate::network::kernels::convolution::padded;
 use crate::network::weights::{WeightFile, WeightsError};
@@ -165,7 +165,8 @@ impl LiveSize {
         let kernels = WINDOWS as u64 * (rows * rows + (WIDE_COLUMNS * WIDE_COLUMNS) as u64);
         // Of a row: a level, what is convolved and what comes from below; heads and features; maps.
         let of_levels: u64 = channels.iter().enumerate().map(|(level, c)| 3 * (wide(*c) >> (2 * level))).sum();
-        let pictures = COARSE as u64 * (of_levels + 64) + FINE as u64 * 32 + 2 * COLUMNS as u64 + 3 * columns;
+        let pictures =
+            COARSE_COLUMNS as u64 * (of_levels + 64) + FINE_COLUMNS as u64 * 32 + 2 * COLUMNS as u64 + 3 * columns;
         4 * (levels + steps + heads + kernels + rows * pictures)
     }
 }

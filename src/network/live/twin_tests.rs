@@ -3,7 +3,7 @@
 use super::LiveConfig;
 use super::engine::{LiveEngine, LiveScratch};
 use super::features::{FeatureExtractor, LiveInput};
-use super::grid::{COARSE, COLUMNS, CONSTANTS, FINE, ROWS};
+use super::grid::{COARSE_COLUMNS, COLUMNS, CONSTANTS, FINE_COLUMNS, ROWS};
 use crate::network::weights::WeightFile;
 use crate::radar::Radar;
 use crate::scene::Reflector;
@@ -48,8 +48,8 @@ fn features_agree_with_the_twin() {
         let (mean, largest) = distance(values, &expected, rows, columns, row, column);
         assert!(mean < 1e-4 && largest < 5e-2, "{name}: mean {mean}, largest {largest}");
     };
-    check("fine", &found.fine, &[4, 16, 32], ROWS, FINE, 32, 8);
-    check("coarse", &found.coarse, &[10, 16, 16], ROWS, COARSE, 32, 4);
+    check("fine", &found.fine, &[4, 16, 32], ROWS, FINE_COLUMNS, 32, 8);
+    check("coarse", &found.coarse, &[10, 16, 16], ROWS, COARSE_COLUMNS, 32, 4);
     check("rows", &found.rows, &[6, 64], 1, ROWS, 1, 8);
     check("scalars", &found.scalars, &[2], 1, 2, 1, 1);
     assert_eq!(found.constants, [0.0; CONSTANTS]);

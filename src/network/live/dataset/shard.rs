@@ -3,7 +3,9 @@
 use super::{ArrayKind, DatasetPrecision};
 use crate::network::live::examples::{EndSamples, Example};
 use crate::network::live::features::LiveInput;
-use crate::network::live::grid::{COARSE, COARSE_CHANNELS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
+use crate::network::live::grid::{
+    COARSE_CHANNELS, COARSE_COLUMNS, CONSTANTS, FINE_CHANNELS, FINE_COLUMNS, ROW_CHANNELS, SCALARS,
+};
 use crate::radar::Radar;
 use half::f16;
 use num_complex::Complex64;
@@ -43,8 +45,8 @@ impl ArrayKind {
         match self {
             ArrayKind::Ends => vec![2, radar.end_elements, radar.samples],
             ArrayKind::Layout(elements) => vec![elements, radar.samples],
-            ArrayKind::Fine => vec![FINE_CHANNELS, radar.samples, FINE],
-            ArrayKind::Coarse => vec![COARSE_CHANNELS, radar.samples, COARSE],
+            ArrayKind::Fine => vec![FINE_CHANNELS, radar.samples, FINE_COLUMNS],
+            ArrayKind::Coarse => vec![COARSE_CHANNELS, radar.samples, COARSE_COLUMNS],
             ArrayKind::Rows => vec![ROW_CHANNELS, radar.samples],
             ArrayKind::Scalars => vec![SCALARS],
             ArrayKind::Constants => vec![CONSTANTS],
