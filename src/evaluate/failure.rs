@@ -272,13 +272,16 @@ mod tests {
     use ndarray::Array2;
 
     /// A target, where its objects show, and how far a threshold lies from its cells' edge.
-    fn scene(points: &[(f64, f64)]) -> (RangeAngleMap, Footprints) {
-        let radar = Radar::default();
-        let scene = Scene::of_points(points.iter().copied());
+    fn seen(objects: Vec<Object>) -> (RangeAngleMap, Footprints) {
+        let (radar, scene) = (Radar::default(), Scene { objects, ..Scene::default() });
         let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
         let target = full.normalise(Normalisation::MinMax);
         let footprints = Footprints::new(&radar, &scene, &target, full.scale(Normalisation::MinMax));
         (target, footprints)
+    }
+
+    fn scene(points: &[(f64, f64)]) -> (RangeAngleMap, Footprints) {
+        seen(Scene::of_points(points.iter().copied()).objects)
     }
 
     fn shifted(map: &RangeAngleMap, by: i32) -> RangeAngleMap {
@@ -352,12 +355,8 @@ mod tests {
 
     #[test]
     fn the_ends_of_a_wall_are_the_wall_and_no_ghosts() {
-        let radar = Radar::default();
         let objects = vec![Object::Wall(Wall::new(0.0, 10.0, 5.0, 0.0)), Object::Point(Point::new(-6.0, 20.0))];
-        let scene = Scene { objects, ..Scene::default() };
-        let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
-        let (target, scale) = (full.normalise(Normalisation::MinMax), full.scale(Normalisation::MinMax));
-        let footprints = Footprints::new(&radar, &scene, &target, scale);
+        let (target, footprints) = seen(objects);
         assert_eq!(footprints.echoes.iter().map(Vec::len).collect::<Vec<_>>(), [3, 0], "a glint and two ends");
         let mut output = RangeAngleMap { lambda: Array2::zeros(target.lambda.raw_dim()) };
         let draw = |output: &mut RangeAngleMap, [row, column]: CellIndex| {
@@ -379,12 +378,8 @@ mod tests {
 
     #[test]
     fn an_object_that_the_target_hides_is_no_failure() {
-        let radar = Radar::default();
         let point = |x_metres, reflectivity| Object::Point(Point { reflectivity, ..Point::new(x_metres, 15.0) });
-        let scene = Scene { objects: vec![point(-5.0, 1.0), point(5.0, 1e-6)], ..Scene::default() };
-        let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
-        let target = full.normalise(Normalisation::MinMax);
-        let footprints = Footprints::new(&radar, &scene, &target, full.scale(Normalisation::MinMax));
+        let (target, footprints) = seen(vec![point(-5.0, 1.0), point(5.0, 1e-6)]);
         let found = footprints.judge(&target, &target, TARGET_ETA);
         assert_eq!(found.objects, [Fate::Found, Fate::Hidden]);
     }

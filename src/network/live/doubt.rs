@@ -95,11 +95,9 @@ mod tests {
     use super::*;
     use crate::network::live::LiveConfig;
     use crate::network::live::engine::{LiveEngine, LiveScratch};
-    use crate::network::live::features::FeatureExtractor;
     use crate::network::live::grid::ROWS;
+    use crate::network::live::twin_tests::heard;
     use crate::radar::Radar;
-    use crate::scene::Reflector;
-    use crate::signal::exact;
 
     // `training/reference.py` writes these files.
     /// Weights of a tiny network that has the head.
@@ -112,16 +110,8 @@ mod tests {
     fn doubt_of(weights: &[u8], reference: &WeightFile) -> Option<RangeAngleMap> {
         let config = LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 };
         let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &config.into()).unwrap();
-        let radar = Radar::default();
-        let points = reference.tensor("points", &[3, 2]).unwrap();
-        let reflectors: Vec<Reflector> = points
-            .chunks(2)
-            .map(|p| Reflector { x_metres: p[0].into(), y_metres: p[1].into(), reflectivity: 1.0 })
-            .collect();
-        let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
-        let input = FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap();
         let mut scratch = LiveScratch::default();
-        engine.forward(&input, &mut scratch);
+        engine.forward(&heard(&Radar::default(), reference, 1.0).1, &mut scratch);
         engine.doubt(&scratch)
     }
 
