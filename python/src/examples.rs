@@ -62,7 +62,7 @@ pub struct Examples {
 static EXTRACTOR: OnceLock<FeatureExtractor> = OnceLock::new();
 
 /// Largest tolerance of elements, in decibels, degrees or millimetres.
-const MOST_TOLERANCE: f64 = 360.0;
+const MAX_TOLERANCE: f64 = 360.0;
 
 /// Most examples that one call may ask for.
 const MAX_EXAMPLES: usize = 4096;
@@ -216,11 +216,11 @@ fn floors_of(floor: &str, thermal: Option<(f64, f64, f64)>) -> PyResult<Floors> 
 fn arrays_of(elements: Option<(f64, f64, f64, f64)>) -> PyResult<Arrays> {
     let Some((share, gain, phase_degrees, position_millimetres)) = elements else { return Ok(Arrays::IDEAL) };
     let tolerances = Tolerances { gain: Decibels(gain), phase_degrees, position_millimetres };
-    let usable = [gain, phase_degrees, position_millimetres].iter().all(|v| (0.0..=MOST_TOLERANCE).contains(v));
+    let usable = [gain, phase_degrees, position_millimetres].iter().all(|v| (0.0..=MAX_TOLERANCE).contains(v));
     if !usable || !(0.0..=1.0).contains(&share) {
         let found = format!("elements is ({share}, {gain}, {phase_degrees}, {position_millimetres})");
         return Err(value(format!(
-            "{found}; expected a share of 0 to 1 and three tolerances of 0 to {MOST_TOLERANCE}"
+            "{found}; expected a share of 0 to 1 and three tolerances of 0 to {MAX_TOLERANCE}"
         )));
     }
     Ok(Arrays { share, tolerances })

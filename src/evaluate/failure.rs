@@ -23,7 +23,7 @@ const MIN_FOUND_PART: f64 = 0.5;
 /// Error of a footprint's simulation, relative to the object's amplitudes.
 const TOLERANCE: f64 = 1e-6;
 /// Columns that a wrong tooth is looked for to either side. The two ends' ambiguity has a peak about every column.
-const MOST_TEETH: i32 = 8;
+const MAX_TOOTH_COLUMNS: i32 = 8;
 /// An output belongs to another tooth when the target moved there leaves at most this part of the squared error.
 const LEFT_BY_TOOTH: f64 = 0.5;
 /// Cells that a detection may lie from a footprint without being a ghost: side lobes and smeared edges.
@@ -214,11 +214,12 @@ fn alone(cells: &[CellIndex], target: &RangeAngleMap, output: &RangeAngleMap, fo
         hits as f64 / cells.len() as f64
     };
     let error = |shift: i32| -> f64 {
-        let edges = cells.iter().flat_map(|&cell| [-MOST_TEETH, 0, MOST_TEETH].map(|edge| at(cell, edge)));
+        let edges =
+            cells.iter().flat_map(|&cell| [-MAX_TOOTH_COLUMNS, 0, MAX_TOOTH_COLUMNS].map(|edge| at(cell, edge)));
         edges.map(|cell| f64::from(output.lambda[at(cell, shift)] - target.lambda[cell]).powi(2)).sum()
     };
     let (here, part) = (error(0), covered(0));
-    let best = (-MOST_TEETH..=MOST_TEETH)
+    let best = (-MAX_TOOTH_COLUMNS..=MAX_TOOTH_COLUMNS)
         .map(|shift| (shift, error(shift)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .filter(|(shift, error)| *shift != 0 && *error <= LEFT_BY_TOOTH * here && covered(*shift) >= MIN_FOUND_PART);

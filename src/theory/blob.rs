@@ -13,7 +13,7 @@ const STEPS_PER_BIN: f64 = 4.0;
 const GOLDEN_SECTION: f64 = 0.381_966_011_250_105_1;
 
 /// Weakest side lobe that is reported: weaker ones lie below every floor but the exact one.
-pub const LEAST_LOBE: Decibels = Decibels(-100.0);
+pub const MIN_LOBE: Decibels = Decibels(-100.0);
 
 /// The blob of one reflector on the map of one aperture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +26,7 @@ pub struct Blob {
     pub columns: [f64; 2],
     /// From the peak to nearer and farther ranges, the bins over which it stays above half power.
     pub bins: [f64; 2],
-    /// The first side lobe at lower and at higher columns in the peak's row, where there is one above [`LEAST_LOBE`].
+    /// The first side lobe at lower and at higher columns in the peak's row, where there is one above [`MIN_LOBE`].
     pub side_lobes: [Option<SideLobe>; 2],
 }
 
@@ -114,7 +114,7 @@ impl Blob {
         let side_lobe = |upward: bool| {
             let (steps, height) = profile.side_lobe(upward)?;
             let level = Decibels(20.0 * (height / magnitude).log10());
-            (level.0 > LEAST_LOBE.0).then_some(SideLobe { columns: steps * fine, level })
+            (level.0 > MIN_LOBE.0).then_some(SideLobe { columns: steps * fine, level })
         };
         Some(Blob {
             peak: MapPlace {

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 const MAX_RUN_TIME: Duration = Duration::from_secs(120);
 
 /// Least difference between P_D and P_FA on a crowded scene.
-const LEAST_APART: f64 = 0.1;
+const MIN_SEPARATION: f64 = 0.1;
 
 fn radar() -> Radar {
     Radar::default()
@@ -152,7 +152,7 @@ fn a_crowded_scene_is_told_from_its_surroundings_in_time() {
         let (detection, false_alarm) = detection_rates(&target, &answer.lambda, method.eta_of(&answer));
         // A map that is the same everywhere has both rates alike.
         let apart = detection.unwrap() - false_alarm;
-        assert!(apart > LEAST_APART, "{}: P_D {detection:?}, P_FA {false_alarm}", method.name());
+        assert!(apart > MIN_SEPARATION, "{}: P_D {detection:?}, P_FA {false_alarm}", method.name());
     }
 }
 

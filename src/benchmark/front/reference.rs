@@ -19,7 +19,7 @@ pub(in crate::benchmark) const SEED: u64 = 0;
 
 /// Up to so many reflectors the exact path, phasor by phasor, is what maps are compared with; beyond, its time grows out of hand, and the
 /// phasor split in f64 stands in, which the tests hold to the last bits.
-const MOST_EXACT: usize = 300;
+const MAX_EXACT_REFLECTORS: usize = 300;
 
 pub(in crate::benchmark) struct Reference {
     pub reflectors: Vec<Reflector>,
@@ -32,7 +32,7 @@ pub(in crate::benchmark) struct Reference {
 impl Reference {
     pub fn new(radar: &Radar, reflectors: Vec<Reflector>) -> Self {
         let signal = match reflectors.len() {
-            0..=MOST_EXACT => exact::beat_signal(radar, &reflectors),
+            0..=MAX_EXACT_REFLECTORS => exact::beat_signal(radar, &reflectors),
             many => {
                 let amplitude = crate::signal::plan::amplitude_bound(radar, &reflectors);
                 beat_signal(radar, &reflectors, &Plan::cheapest(many, amplitude, BEST_TOLERANCE))

@@ -1,6 +1,6 @@
 //! The coarse features: each end's beams, the same on the grid that the array's centre sees, and their phases.
 
-use super::grid::{COARSE_CHANNELS, COARSE_COLUMNS, LEAST_ROWS, cosine};
+use super::grid::{COARSE_CHANNELS, COARSE_COLUMNS, MIN_ROWS, cosine};
 use super::registration::Registration;
 use crate::radar::{End, Radar, hann};
 use crate::signal::simd::powers::logarithm;
@@ -95,7 +95,7 @@ impl Coarse {
 }
 
 fn rows_of(plane: &mut [f32]) -> impl IndexedParallelIterator<Item = (usize, &mut [f32])> {
-    plane.par_chunks_mut(COARSE_COLUMNS).with_min_len(LEAST_ROWS).enumerate()
+    plane.par_chunks_mut(COARSE_COLUMNS).with_min_len(MIN_ROWS).enumerate()
 }
 
 struct Look<'a> {
@@ -115,7 +115,7 @@ impl Kernel for Look<'_> {
         let cells = self.beams.iter().zip(self.even);
         for (((v, factor), magnitude), (phase, even)) in cells.zip(magnitude).zip(phase.iter_mut().zip(even)) {
             let power = v.norm_sqr();
-            *magnitude = 0.5 * logarithm((power as f32).max(LEAST_POWER));
+            *magnitude = 0.5 * logarithm((power as f32).max(MIN_POWER));
             *phase = narrow(v * (power.sqrt() + 1e-300).recip());
             *even = narrow(v * factor * self.strongest);
         }
@@ -123,7 +123,7 @@ impl Kernel for Look<'_> {
 }
 
 /// Less than any sample's rounding leaves, and more than the least f32.
-const LEAST_POWER: f32 = 1e-36;
+const MIN_POWER: f32 = 1e-36;
 
 /// `[rows, 64]` factors that take out of a map's phase what changes from cell to cell within one reflector's blob: the phases of mid-chirp and of
 /// (half an element off) the end's middle; the half lets the angle axis close, the phase at cos(theta) = -1 and 1 being the same.

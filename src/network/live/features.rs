@@ -25,7 +25,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Fewest samples of a chirp whose pictures can be registered.
-pub const LEAST_SAMPLES: usize = 8;
+pub const MIN_CHIRP_SAMPLES: usize = 8;
 
 /// The tensors of one scene, row-major.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,12 +64,12 @@ pub struct FeatureExtractor {
 impl FeatureExtractor {
     /// Tables for `radar`.
     /// # Errors
-    /// [`ReconstructError::Unusable`] for ends of a single element or fewer than [`LEAST_SAMPLES`] samples.
+    /// [`ReconstructError::Unusable`] for ends of a single element or fewer than [`MIN_CHIRP_SAMPLES`] samples.
     pub fn new(radar: &Radar) -> Result<Self, ReconstructError> {
-        if radar.end_elements < 2 || radar.samples < LEAST_SAMPLES {
+        if radar.end_elements < 2 || radar.samples < MIN_CHIRP_SAMPLES {
             let (elements, samples) = (radar.end_elements, radar.samples);
             let reason = format!(
-                "its input needs ends of 2 elements or more and {LEAST_SAMPLES} samples or more; this radar has {elements} and {samples}"
+                "its input needs ends of 2 elements or more and {MIN_CHIRP_SAMPLES} samples or more; this radar has {elements} and {samples}"
             );
             return Err(ReconstructError::Unusable { method: "live", reason });
         }

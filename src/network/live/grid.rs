@@ -20,7 +20,7 @@ pub const SCALARS: usize = 2;
 pub const CONSTANTS: usize = 6;
 
 pub(super) const ELEMENTS: usize = 12;
-pub(super) const LEAST_ROWS: usize = 32;
+pub(super) const MIN_ROWS: usize = 32;
 
 /// cos(theta) of column `k` of a grid of `columns`.
 pub(super) fn cosine(k: usize, columns: usize) -> f64 {
