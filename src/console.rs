@@ -16,7 +16,6 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs the program with the same arguments; its exit code.
 fn run() -> io::Result<i32> {
     // Ctrl-C reaches both programs. It ends the other one, whose exit code says so.
     #[cfg(windows)]

@@ -4,7 +4,6 @@ use clap_complete::Shell;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Shells that completions are written for.
 const SHELLS: [Shell; 3] = [Shell::Bash, Shell::Fish, Shell::Zsh];
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -23,11 +23,11 @@ pub const PREFIX: &str = "apertura:";
 /// The version this program writes and reads.
 pub const VERSION: &str = "1";
 /// Most bytes of TOML within: a scene of some fifty thousand objects.
-pub const MOST_BYTES: usize = 4 << 20;
+pub const MAX_TOML_BYTES: usize = 4 << 20;
 /// Most letters that are looked at: TOML that can't be packed at all.
-pub const MOST_LETTERS: usize = 6 << 20;
+pub const MAX_LINK_LETTERS: usize = 6 << 20;
 const KEY: &str = "shared";
-const LEAST_PART: f32 = 0.005;
+const MIN_EXTENT_PART: f32 = 0.005;
 
 /// A scene, its radar, and how they are looked at.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,7 +113,7 @@ pub enum ShareError {
         "the text is of version \"{0}\"; this program reads version {VERSION}: open it with the program that wrote it"
     )]
     Version(String),
-    #[error("the text holds more than {} MiB; save the scene as a file instead", MOST_BYTES >> 20)]
+    #[error("the text holds more than {} MiB; save the scene as a file instead", MAX_TOML_BYTES >> 20)]
     Large,
     #[error("the text is damaged ({0}): copy all of it again, from \"{PREFIX}\" to the last letter")]
     Damaged(String),
@@ -141,7 +141,7 @@ impl SharedScene {
     pub fn to_text(&self) -> Result<String, ShareError> {
         let unwritable = |e: String| ShareError::Unwritable(e);
         let toml = to_toml_beside(&self.file, KEY, &self.view).map_err(|e| unwritable(e.to_string()))?;
-        if toml.len() > MOST_BYTES {
+        if toml.len() > MAX_TOML_BYTES {
             return Err(ShareError::Large);
         }
         let mut packed = ZlibEncoder::new(Vec::new(), Compression::best());
@@ -154,7 +154,7 @@ impl SharedScene {
     /// # Errors
     /// [`ShareError`] says what is wrong and what was expected.
     pub fn from_text(text: &str) -> Result<SharedScene, ShareError> {
-        if text.len() > MOST_LETTERS {
+        if text.len() > MAX_LINK_LETTERS {
             return Err(ShareError::Large);
         }
         let letters: String = text.chars().filter(|c| !c.is_whitespace()).collect();
@@ -176,13 +176,13 @@ impl SharedScene {
     }
 }
 
-/// What a zlib stream holds, at most [`MOST_BYTES`] of it.
+/// What a zlib stream holds, at most [`MAX_TOML_BYTES`] of it.
 fn unpack(packed: &[u8]) -> Result<String, ShareError> {
     let damaged = |e: std::io::Error| ShareError::Damaged(e.to_string());
     let mut stream = ZlibDecoder::new(packed);
     let mut bytes = Vec::new();
-    stream.by_ref().take(MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(damaged)?;
-    if bytes.len() > MOST_BYTES {
+    stream.by_ref().take(MAX_TOML_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(damaged)?;
+    if bytes.len() > MAX_TOML_BYTES {
         return Err(ShareError::Large);
     }
     if !stream.into_inner().is_empty() {
@@ -240,7 +240,7 @@ impl SharedView {
         }
         for (field, part) in [("range_angle_part", self.range_angle_part), ("cartesian_part", self.cartesian_part)] {
             let VisiblePart { left, bottom, right, top } = part;
-            let inside = |low: f32, high: f32| low >= 0.0 && high <= 1.0 && high - low >= LEAST_PART;
+            let inside = |low: f32, high: f32| low >= 0.0 && high <= 1.0 && high - low >= MIN_EXTENT_PART;
             if !(inside(left, right) && inside(bottom, top)) {
                 return wrong(
                     field,
@@ -375,7 +375,7 @@ mod tests {
         let bomb = pack(&vec![b'#'; 64 << 20]);
         assert!(bomb.len() < 200_000, "{} letters", bomb.len());
         assert_eq!(SharedScene::from_text(&bomb), Err(ShareError::Large));
-        let long = "a".repeat(MOST_LETTERS + 1);
+        let long = "a".repeat(MAX_LINK_LETTERS + 1);
         assert_eq!(SharedScene::from_text(&long), Err(ShareError::Large));
         let many = Scene::of_points((0..200_000).map(|i| (f64::from(i) * 1e-4, 5.0)));
         let shared = SharedScene { file: SceneFile { scene: many, ..SceneFile::default() }, view: view() };

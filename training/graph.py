@@ -10,7 +10,7 @@ FIRST = 5
 class Replayed:
     """Calls `step` with a batch, at first as it is and then from a recording.
 
-    `step` takes a dict of tensors and returns the loss as a tensor. Whatever else changes from one step to the next must be a tensor on the GPU that is
+    `step` takes a dict of tensors and returns the loss as a tensor. What else changes from one step to the next must be a tensor on the GPU that is
     filled before the call. The batches have the same shapes."""
 
     def __init__(self, step):

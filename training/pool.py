@@ -49,7 +49,7 @@ class Pool:
                 if stream:
                     stream.synchronize()
                 self.made.put((start, scenes))
-        except Exception as error:  # whatever it is, the training must end with it
+        except Exception as error:  # any exception must end the training
             self.made.put((None, error))
 
     def _moved(self, example):

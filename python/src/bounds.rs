@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyList;
 
 /// Most reflectors that a bound may be asked of: the work grows with their square.
-const MOST_REFLECTORS: usize = 64;
+const MAX_REFLECTORS: usize = 64;
 
 fn layout_of(name: &str, radar: &apertura::radar::Radar) -> PyResult<Layout> {
     named::<LayoutKind>(name)?.layout(radar).map_err(value)
@@ -45,8 +45,8 @@ pub fn cramer_rao<'py>(
 ) -> PyResult<Bound<'py, PyList>> {
     let radar = or_default(radar);
     let reflectors = self::reflectors(reflectors, "reflectors")?;
-    let Some(first) = reflectors.first().filter(|_| reflectors.len() <= MOST_REFLECTORS) else {
-        return Err(value(format!("there are {} reflectors; expected 1 to {MOST_REFLECTORS}", reflectors.len())));
+    let Some(first) = reflectors.first().filter(|_| reflectors.len() <= MAX_REFLECTORS) else {
+        return Err(value(format!("there are {} reflectors; expected 1 to {MAX_REFLECTORS}", reflectors.len())));
     };
     if reflectors.iter().any(|r| ![r.x_metres, r.y_metres, r.reflectivity].iter().all(|v| v.is_finite())) {
         return Err(value("reflectors: not all numbers are finite"));

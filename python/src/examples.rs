@@ -14,7 +14,7 @@ use apertura::network::live::constants::turn_rows;
 use apertura::network::live::dataset::{self as files, DatasetError, DatasetRequest, ExamplePart};
 use apertura::network::live::examples::{self, EndSamples, Example, ExamplesRequest, Features};
 use apertura::network::live::features::{FeatureExtractor, LiveInput};
-use apertura::network::live::grid::{COARSE, COARSE_CHANNELS, FINE, FINE_CHANNELS, ROW_CHANNELS};
+use apertura::network::live::grid::{COARSE_CHANNELS, COARSE_COLUMNS, FINE_CHANNELS, FINE_COLUMNS, ROW_CHANNELS};
 use apertura::network::live::radars::Radars;
 use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::check_ends;
@@ -62,7 +62,7 @@ pub struct Examples {
 static EXTRACTOR: OnceLock<FeatureExtractor> = OnceLock::new();
 
 /// Largest tolerance of elements, in decibels, degrees or millimetres.
-const MOST_TOLERANCE: f64 = 360.0;
+const MAX_TOLERANCE: f64 = 360.0;
 
 /// Most examples that one call may ask for.
 const MAX_EXAMPLES: usize = 4096;
@@ -216,11 +216,11 @@ fn floors_of(floor: &str, thermal: Option<(f64, f64, f64)>) -> PyResult<Floors> 
 fn arrays_of(elements: Option<(f64, f64, f64, f64)>) -> PyResult<Arrays> {
     let Some((share, gain, phase_degrees, position_millimetres)) = elements else { return Ok(Arrays::IDEAL) };
     let tolerances = Tolerances { gain: Decibels(gain), phase_degrees, position_millimetres };
-    let usable = [gain, phase_degrees, position_millimetres].iter().all(|v| (0.0..=MOST_TOLERANCE).contains(v));
+    let usable = [gain, phase_degrees, position_millimetres].iter().all(|v| (0.0..=MAX_TOLERANCE).contains(v));
     if !usable || !(0.0..=1.0).contains(&share) {
         let found = format!("elements is ({share}, {gain}, {phase_degrees}, {position_millimetres})");
         return Err(value(format!(
-            "{found}; expected a share of 0 to 1 and three tolerances of 0 to {MOST_TOLERANCE}"
+            "{found}; expected a share of 0 to 1 and three tolerances of 0 to {MAX_TOLERANCE}"
         )));
     }
     Ok(Arrays { share, tolerances })
@@ -389,8 +389,8 @@ pub fn live_input<'py>(
 fn set_input(dict: &Bound<'_, PyDict>, input: LiveInput) -> PyResult<()> {
     let py = dict.py();
     let rows = input.rows.len() / ROW_CHANNELS;
-    dict.set_item("fine", owned(py, shaped(input.fine, &[FINE_CHANNELS, rows, FINE])?))?;
-    dict.set_item("coarse", owned(py, shaped(input.coarse, &[COARSE_CHANNELS, rows, COARSE])?))?;
+    dict.set_item("fine", owned(py, shaped(input.fine, &[FINE_CHANNELS, rows, FINE_COLUMNS])?))?;
+    dict.set_item("coarse", owned(py, shaped(input.coarse, &[COARSE_CHANNELS, rows, COARSE_COLUMNS])?))?;
     dict.set_item("rows", owned(py, shaped(input.rows, &[ROW_CHANNELS, rows])?))?;
     dict.set_item("scalars", owned(py, Array1::from(input.scalars.to_vec())))?;
     dict.set_item("constants", owned(py, Array1::from(input.constants.to_vec())))?;

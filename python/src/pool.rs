@@ -8,7 +8,7 @@ use std::ptr;
 use std::sync::atomic::{AtomicPtr, AtomicU32, AtomicUsize, Ordering};
 
 /// Most threads that a caller may ask for.
-const MOST_THREADS: usize = 1024;
+const MAX_THREADS: usize = 1024;
 
 /// A pool and the process whose threads it has.
 struct Pool {
@@ -72,8 +72,8 @@ pub fn current() -> PyResult<&'static ThreadPool> {
 ///     ValueError: `count` is out of range.
 #[pyfunction]
 pub fn set_threads(count: usize) -> PyResult<()> {
-    if !(1..=MOST_THREADS).contains(&count) {
-        return Err(PyValueError::new_err(format!("count is {count}; expected 1 to {MOST_THREADS} threads")));
+    if !(1..=MAX_THREADS).contains(&count) {
+        return Err(PyValueError::new_err(format!("count is {count}; expected 1 to {MAX_THREADS} threads")));
     }
     ASKED_THREADS.store(count, Ordering::Relaxed);
     ASKED_IN.store(std::process::id(), Ordering::Relaxed);

@@ -17,10 +17,8 @@ const WARM_UP: usize = 2;
 
 const REFLECTORS: [usize; 2] = [10, 300];
 
-/// How far the first reflector is dragged and back, metres.
 const DRAG_METRES: f64 = 0.01;
 
-/// A computation and its run time.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Timed {
     pub name: String,

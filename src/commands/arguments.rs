@@ -61,7 +61,6 @@ where
     }
 }
 
-/// Parses a seed.
 pub fn seed(text: &str) -> Result<u64, String> {
     whole(0..=u64::MAX)(text)
 }

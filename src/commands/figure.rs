@@ -38,7 +38,6 @@ pub fn save_bitmap(figure: &impl Plot, folder: &Path, stem: &str) -> Result<(), 
     write(folder, stem, "png", &encode_png(&bitmap).map_err(CommandError::failed)?)
 }
 
-/// Writes what a figure shows as `STEM.json` beside it.
 pub fn save_numbers(numbers: &impl Serialize, folder: &Path, stem: &str) -> Result<(), CommandError> {
     let text = serde_json::to_string_pretty(numbers).map_err(CommandError::failed)?;
     write(folder, stem, "json", text.as_bytes())

@@ -16,12 +16,10 @@ const INTERVAL: Duration = Duration::from_millis(100);
 pub struct Frames(Recording);
 
 impl Frames {
-    /// Those of `recording`.
     pub fn of(recording: Recording) -> Frames {
         Frames(recording)
     }
 
-    /// The frame that was opened.
     pub fn opened(&self) -> &Recording {
         &self.0
     }

@@ -7,7 +7,6 @@ use crate::scene::file::{self, SceneFile};
 use crate::share::{SharedScene, is_shared};
 use std::path::{Path, PathBuf};
 
-/// A scene or a recording, as the file says.
 #[derive(Debug, Clone)]
 pub enum InputArgs {
     /// A scene and the radar that looks at it.
@@ -63,7 +62,6 @@ pub fn print_doubts(path: &Path, doubts: &[String]) {
     doubts.iter().for_each(|doubt| eprintln!("note: {}: {doubt}", path.display()));
 }
 
-/// The board of this name.
 pub fn load_board(name: &str) -> Result<&'static Board, CommandError> {
     boards::by_name(name).ok_or_else(|| {
         let names: Vec<&str> = boards::ALL.iter().map(|b| b.name).collect();

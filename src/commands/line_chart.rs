@@ -17,7 +17,6 @@ pub struct LineChart {
     pub lines: Vec<ChartLine>,
 }
 
-/// Title and range of an axis.
 pub struct ChartAxis {
     pub title: String,
     pub range: Range<f64>,
@@ -30,11 +29,9 @@ impl ChartAxis {
 }
 
 pub struct ChartLine {
-    /// Its entry in the legend.
     pub name: Option<String>,
     pub style: ShapeStyle,
     pub points: Vec<(f64, f64)>,
-    /// Whether a line joins the points.
     pub is_joined: bool,
     /// Radius of a point's dot, pixels; 0 for none.
     pub dot: i32,

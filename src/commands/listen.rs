@@ -50,7 +50,6 @@ pub struct Args {
 const WAITING: usize = 2;
 
 impl Args {
-    /// Receives and tells until it is to end.
     pub fn run(self) -> Result<(), CommandError> {
         let board = self.board.as_deref().map(load_board).transpose()?;
         let frame_bytes = raw::frame_bytes(&self.config).map_err(CommandError::failed)?;

@@ -17,7 +17,6 @@ pub fn print(text: &str) -> Result<(), CommandError> {
     }
 }
 
-/// Prints one JSON object.
 pub fn print_json(report: &impl Serialize) -> Result<(), CommandError> {
     print(&serde_json::to_string_pretty(report).map_err(CommandError::failed)?)
 }

@@ -17,7 +17,6 @@ pub struct RadarArg {
 }
 
 impl RadarArg {
-    /// Whether one was named.
     pub fn is_given(&self) -> bool {
         self.radar.is_some()
     }

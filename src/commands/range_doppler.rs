@@ -76,7 +76,6 @@ const UNKNOWN_INTERVAL: &str = "Nothing says the interval of chirps: a step of v
 const CHIRPS: usize = 128;
 
 impl Args {
-    /// Simulates the chirps and writes their map.
     pub fn run(self) -> Result<(), CommandError> {
         let is_archive = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz"));
         let format = PictureFormat::of_path(&self.output);

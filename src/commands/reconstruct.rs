@@ -63,7 +63,6 @@ pub struct Args {
 }
 
 impl Args {
-    /// Reconstructs and writes.
     pub fn run(self) -> Result<(), CommandError> {
         if self.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("npz")) {
             let name = self.output.display();
@@ -263,11 +262,11 @@ fn rounded(number: f64, decimals: i32) -> f64 {
 }
 
 /// Most echoes that are printed; OUT has all.
-const MOST_PRINTED: usize = 10;
+const MAX_PRINTED_ECHOES: usize = 10;
 
 /// Prints the strongest echoes, a line each.
 fn print_echoes(found: &[Detection]) -> Result<(), CommandError> {
-    for echo in found.iter().take(MOST_PRINTED) {
+    for echo in found.iter().take(MAX_PRINTED_ECHOES) {
         let Detection { cos_theta, range_metres, .. } = echo;
         let range = if range_metres.is_finite() { format!("{range_metres:8.2} m") } else { "unknown range".to_owned() };
         let angle = rounded(cos_theta.clamp(-1.0, 1.0).asin().to_degrees(), 2);
@@ -278,7 +277,7 @@ fn print_echoes(found: &[Detection]) -> Result<(), CommandError> {
             rounded(echo.relative_power.0, 1)
         ))?;
     }
-    match found.len().saturating_sub(MOST_PRINTED) {
+    match found.len().saturating_sub(MAX_PRINTED_ECHOES) {
         0 => Ok(()),
         more => print(&format!("and {more} weaker")),
     }

@@ -82,7 +82,6 @@ pub struct Args {
 const MAX_TOLERANCE: f64 = 180.0;
 
 impl Args {
-    /// Measures, prints and draws.
     pub fn run(self) -> Result<(), CommandError> {
         self.own.start()?;
         let methods: Vec<Arc<dyn Reconstructor>> = self

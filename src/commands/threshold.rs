@@ -92,7 +92,6 @@ impl From<ThresholdMeans> for Rates {
 }
 
 impl Args {
-    /// Tries the method, and prints the threshold.
     pub fn run(self) -> Result<(), CommandError> {
         self.own.start()?;
         let method = methods::by_name(self.method.trim()).map_err(CommandError::failed)?;

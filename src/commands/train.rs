@@ -43,7 +43,7 @@ pub struct Args {
     steps: Option<u64>,
 
     /// Stop with a checkpoint after this many minutes
-    #[arg(long, value_name = "M", value_parser = real(0.0..=MOST_MINUTES))]
+    #[arg(long, value_name = "M", value_parser = real(0.0..=MAX_MINUTES))]
     minutes: Option<f64>,
 
     /// Write random weights if no step was taken
@@ -56,13 +56,12 @@ pub struct Args {
 }
 
 /// A year.
-const MOST_MINUTES: f64 = 525_600.0;
+const MAX_MINUTES: f64 = 525_600.0;
 
 /// Folder of a run's checkpoint, inside the run's own.
 const CHECKPOINT: &str = "checkpoint";
 
 impl Args {
-    /// Trains, showing progress and time left.
     pub fn run(self) -> Result<(), CommandError> {
         if self.list {
             return list();

@@ -36,7 +36,7 @@ pub struct Args {
 
     /// How far objects may move, metres
     #[arg(long, value_name = "METRES", default_value_t = WorseningSearch::default().within_metres,
-          value_parser = real(LEAST_REACH..=1000.0))]
+          value_parser = real(MIN_REACH_METRES..=1000.0))]
     within: f64,
 
     /// Scenes to try [default: 256; no limit with --minutes]
@@ -44,7 +44,7 @@ pub struct Args {
     tries: Option<u32>,
 
     /// Stop after this many minutes [default: 10]
-    #[arg(long, value_name = "T", value_parser = real(0.001..=MOST_MINUTES))]
+    #[arg(long, value_name = "T", value_parser = real(0.001..=MAX_MINUTES))]
     minutes: Option<f64>,
 
     /// Seed of the scenes that are tried
@@ -63,13 +63,12 @@ pub struct Args {
 }
 
 /// Metres; a move below it changes nothing that a map shows.
-const LEAST_REACH: f64 = 1e-6;
+const MIN_REACH_METRES: f64 = 1e-6;
 
 /// A year.
-const MOST_MINUTES: f64 = 525_600.0;
+const MAX_MINUTES: f64 = 525_600.0;
 
 impl Args {
-    /// Searches, prints, and writes what was found.
     pub fn run(self) -> Result<(), CommandError> {
         file::SceneFormat::of_path(&self.output).map_err(CommandError::failed)?;
         let time = Duration::from_secs_f64(60.0 * self.minutes.unwrap_or(10.0));

@@ -29,7 +29,6 @@ pub(super) struct BankUpdate<'a> {
 }
 
 impl BankUpdate<'_> {
-    /// So many of what the scene echoes with.
     fn counted(&self, count: usize) -> String {
         match self.scene.has_bodies() {
             true => counted(count, "echo", "echoes"),
@@ -37,7 +36,8 @@ impl BankUpdate<'_> {
         }
     }
 
-    /// Amplitude that noise of a level of its own hardly ever exceeds: echoes may be far beneath it, as no other floor lets them be.
+    /// Ten standard deviations of a floor with a level of its own, 0 for the others: only beneath such a floor can all echoes lie far below
+    /// the noise.
     fn noise_amplitude(&self) -> f64 {
         self.wanted.floor.level_variance(self.radar).map_or(0.0, |variance| 10.0 * variance.sqrt())
     }
@@ -49,9 +49,9 @@ impl BankUpdate<'_> {
         if half.is_finite() { half } else { 0.0 }
     }
 
-    /// Bound of the amplitudes of these objects, and the same with every echo counted as three quarters of [`BankUpdate::quiet`] at least. A weak echo
-    /// has one error from when it was added, a quarter of the tolerance times twice that amplitude. It has another from when it is taken away, a
-    /// quarter of the tolerance times that amplitude.
+    /// Two bounds of the amplitudes of objects that leave the sum: of their echoes as they are, and with every echo counted as three quarters of
+    /// [`BankUpdate::quiet`] at least. The error of a weak echo does not shrink with it: a quarter of the tolerance times twice that amplitude
+    /// from when it was added, and times that amplitude from when it is subtracted.
     fn leaving(&self, objects: &[SeenObject]) -> [f64; 2] {
         let bounds = plan::amplitude_bounds(self.radar, objects.iter());
         let counted = objects.iter().zip(&bounds).map(|(one, bound)| {
@@ -97,6 +97,7 @@ impl KeptDecades {
     }
 }
 
+/// Objects that are summed together, and their range profiles.
 pub(super) struct Group<T, const W: usize> {
     objects: Vec<SeenObject>,
     pub(super) profiles: BlockProfiles<T, W>,

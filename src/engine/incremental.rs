@@ -86,19 +86,6 @@ impl Engine {
         }
     }
 
-    /// Largest difference between the range profiles that two engines hold, relative to the other's largest cell; `None` if either
-    /// computed none.
-    pub fn profile_difference(&self, other: &Engine) -> Option<f64> {
-        let (mut worst, mut peak) = (0.0f64, 0.0f64);
-        for element in 0..self.radar.elements {
-            for (a, b) in self.range_profile(element)?.iter().zip(other.range_profile(element)?) {
-                worst = worst.max((a - b).norm());
-                peak = peak.max(b.norm());
-            }
-        }
-        Some(if worst == 0.0 { 0.0 } else { worst / peak })
-    }
-
     /// Bytes held in caches.
     pub fn cache_bytes(&self) -> usize {
         let banks = self.single.as_ref().map_or(0, Bank::bytes) + self.double.as_ref().map_or(0, Bank::bytes);
@@ -192,7 +179,6 @@ impl Engine {
         Ok(EngineFrame { first, last, full, ends, settled: false, report })
     }
 
-    /// Error of a sample that the maps may have.
     fn tolerance(&self, wanted: &MapRequest) -> f64 {
         self.forced.tolerance.unwrap_or_else(|| tolerance::tolerance_for(wanted.floor, wanted.normalisation))
     }

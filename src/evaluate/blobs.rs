@@ -80,7 +80,6 @@ pub fn dip_between(radar: &Radar, map: &RangeAngleMap, places_metres: [[f64; 2];
     map.lambda[a].min(map.lambda[b]) - between.fold(f32::INFINITY, f32::min)
 }
 
-/// The brightest cell at most so many range bins and columns from a cell.
 fn brightest_near(map: &RangeAngleMap, [bin, column]: [usize; 2], reach: [usize; 2]) -> [usize; 2] {
     let (rows, columns) = map.lambda.dim();
     let bins = bin.saturating_sub(reach[0])..(bin + reach[0] + 1).min(rows);

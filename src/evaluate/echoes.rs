@@ -18,8 +18,8 @@ pub const CLASSES: usize = 6;
 const STANDS_OUT_DB: f64 = 10.0;
 /// An output shows it if it stands out there by this much, in dB.
 const SHOWN_DB: f64 = 3.0;
-/// No scene has more echoes of a class; a table that says so is damaged.
-const MOST_ECHOES: usize = 1 << 30;
+/// No scene has more echoes in one class; a table that says so is damaged.
+const MAX_ECHOES_OF_CLASS: usize = 1 << 30;
 /// Half a resolution cell, in range bins.
 const HALF_BINS: f64 = 1.0;
 /// The same in columns, for an echo that no near field smears.
@@ -43,7 +43,7 @@ impl FromStr for EchoCounts {
     fn from_str(text: &str) -> Result<Self, String> {
         let counts: Result<Vec<usize>, _> = text.split_whitespace().map(str::parse).collect();
         let counts = counts.ok().and_then(|counts| <[usize; CLASSES]>::try_from(counts).ok());
-        let counts = counts.filter(|counts| counts.iter().all(|count| *count <= MOST_ECHOES));
+        let counts = counts.filter(|counts| counts.iter().all(|count| *count <= MAX_ECHOES_OF_CLASS));
         counts.map(EchoCounts).ok_or_else(|| format!("\"{text}\" counts no echoes; expected six whole numbers from 0"))
     }
 }
@@ -73,15 +73,17 @@ impl EchoTally {
     }
 }
 
+/// Where a map shows an echo: the centre of its peak, in range bins and columns, and the peak's half width in columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Shown {
     bin: f64,
     column: f64,
     half_columns: f64,
+    /// How far the echo lies below the scene's strongest, in dB.
     below_db: f64,
 }
 
-/// Where the map of `scene` shows its echoes, but for those of rough surfaces, which have no place of their own.
+/// Where a map shows the echoes of `scene`, except those of rough surfaces, which have no place of their own.
 fn shown(radar: &Radar, scene: &Scene) -> Vec<Shown> {
     let echoing = Echoing::of(radar, scene);
     let mut heard = Vec::new();
@@ -106,7 +108,7 @@ fn shown(radar: &Radar, scene: &Scene) -> Vec<Shown> {
 }
 
 impl Shown {
-    /// Where the map shows an echo from a place, at a range; as strong as the strongest.
+    /// Where a map shows an echo from a place, at a range in metres; the caller sets how strong it is.
     fn at(radar: &Radar, [x, y]: [f64; 2], range: f64, is_glint: bool) -> Shown {
         let cos = |centre: f64| radar.blob_of(centre, x, y).cos_theta;
         let [first, last] = End::BOTH.map(|end| cos(radar.end_centre_metres(end)));

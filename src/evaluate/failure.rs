@@ -23,7 +23,7 @@ const MIN_FOUND_PART: f64 = 0.5;
 /// Error of a footprint's simulation, relative to the object's amplitudes.
 const TOLERANCE: f64 = 1e-6;
 /// Columns that a wrong tooth is looked for to either side. The two ends' ambiguity has a peak about every column.
-const MOST_TEETH: i32 = 8;
+const MAX_TOOTH_COLUMNS: i32 = 8;
 /// An output belongs to another tooth when the target moved there leaves at most this part of the squared error.
 const LEFT_BY_TOOTH: f64 = 0.5;
 /// Cells that a detection may lie from a footprint without being a ghost: side lobes and smeared edges.
@@ -214,11 +214,12 @@ fn alone(cells: &[CellIndex], target: &RangeAngleMap, output: &RangeAngleMap, fo
         hits as f64 / cells.len() as f64
     };
     let error = |shift: i32| -> f64 {
-        let edges = cells.iter().flat_map(|&cell| [-MOST_TEETH, 0, MOST_TEETH].map(|edge| at(cell, edge)));
+        let edges =
+            cells.iter().flat_map(|&cell| [-MAX_TOOTH_COLUMNS, 0, MAX_TOOTH_COLUMNS].map(|edge| at(cell, edge)));
         edges.map(|cell| f64::from(output.lambda[at(cell, shift)] - target.lambda[cell]).powi(2)).sum()
     };
     let (here, part) = (error(0), covered(0));
-    let best = (-MOST_TEETH..=MOST_TEETH)
+    let best = (-MAX_TOOTH_COLUMNS..=MAX_TOOTH_COLUMNS)
         .map(|shift| (shift, error(shift)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .filter(|(shift, error)| *shift != 0 && *error <= LEFT_BY_TOOTH * here && covered(*shift) >= MIN_FOUND_PART);
@@ -272,13 +273,16 @@ mod tests {
     use ndarray::Array2;
 
     /// A target, where its objects show, and how far a threshold lies from its cells' edge.
-    fn scene(points: &[(f64, f64)]) -> (RangeAngleMap, Footprints) {
-        let radar = Radar::default();
-        let scene = Scene::of_points(points.iter().copied());
+    fn seen(objects: Vec<Object>) -> (RangeAngleMap, Footprints) {
+        let (radar, scene) = (Radar::default(), Scene { objects, ..Scene::default() });
         let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
         let target = full.normalise(Normalisation::MinMax);
         let footprints = Footprints::new(&radar, &scene, &target, full.scale(Normalisation::MinMax));
         (target, footprints)
+    }
+
+    fn scene(points: &[(f64, f64)]) -> (RangeAngleMap, Footprints) {
+        seen(Scene::of_points(points.iter().copied()).objects)
     }
 
     fn shifted(map: &RangeAngleMap, by: i32) -> RangeAngleMap {
@@ -352,12 +356,8 @@ mod tests {
 
     #[test]
     fn the_ends_of_a_wall_are_the_wall_and_no_ghosts() {
-        let radar = Radar::default();
         let objects = vec![Object::Wall(Wall::new(0.0, 10.0, 5.0, 0.0)), Object::Point(Point::new(-6.0, 20.0))];
-        let scene = Scene { objects, ..Scene::default() };
-        let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
-        let (target, scale) = (full.normalise(Normalisation::MinMax), full.scale(Normalisation::MinMax));
-        let footprints = Footprints::new(&radar, &scene, &target, scale);
+        let (target, footprints) = seen(objects);
         assert_eq!(footprints.echoes.iter().map(Vec::len).collect::<Vec<_>>(), [3, 0], "a glint and two ends");
         let mut output = RangeAngleMap { lambda: Array2::zeros(target.lambda.raw_dim()) };
         let draw = |output: &mut RangeAngleMap, [row, column]: CellIndex| {
@@ -379,12 +379,8 @@ mod tests {
 
     #[test]
     fn an_object_that_the_target_hides_is_no_failure() {
-        let radar = Radar::default();
         let point = |x_metres, reflectivity| Object::Point(Point { reflectivity, ..Point::new(x_metres, 15.0) });
-        let scene = Scene { objects: vec![point(-5.0, 1.0), point(5.0, 1e-6)], ..Scene::default() };
-        let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
-        let target = full.normalise(Normalisation::MinMax);
-        let footprints = Footprints::new(&radar, &scene, &target, full.scale(Normalisation::MinMax));
+        let (target, footprints) = seen(vec![point(-5.0, 1.0), point(5.0, 1e-6)]);
         let found = footprints.judge(&target, &target, TARGET_ETA);
         assert_eq!(found.objects, [Fate::Found, Fate::Hidden]);
     }

@@ -6,7 +6,6 @@ use std::str::FromStr;
 /// A program and its arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CommandLine {
-    /// As it was written.
     text: String,
     pub(super) words: Vec<String>,
 }

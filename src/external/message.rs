@@ -12,11 +12,11 @@ use std::io::{self, BufRead, Read};
 /// Version of questions and answers.
 pub const VERSION: u32 = 1;
 
-const MOST_LINE_BYTES: u64 = 64 * 1024;
+const MAX_LINE_BYTES: u64 = 64 * 1024;
 
 const HEADER_BYTES: u64 = 4096 + 16;
 
-const MOST_ARRAYS: usize = 4;
+const MAX_ARRAYS: usize = 4;
 
 #[derive(Debug, Serialize)]
 struct Question<'a> {
@@ -126,7 +126,7 @@ pub fn most_array_bytes(radar: &Radar) -> u64 {
 /// [`io::ErrorKind::InvalidData`] says what it wrote instead; others are the pipe's.
 pub fn read_answer(from: &mut impl BufRead, most_bytes: &dyn Fn() -> u64) -> io::Result<Option<ExternalAnswer>> {
     let mut bytes = Vec::new();
-    (&mut *from).take(MOST_LINE_BYTES).read_until(b'\n', &mut bytes)?;
+    (&mut *from).take(MAX_LINE_BYTES).read_until(b'\n', &mut bytes)?;
     if bytes.is_empty() {
         return Ok(None);
     }
@@ -138,8 +138,8 @@ pub fn read_answer(from: &mut impl BufRead, most_bytes: &dyn Fn() -> u64) -> io:
         }
         None => return Err(rubbish(&bytes, "it lacks \"apertura\"")),
     }
-    if line.arrays.len() > MOST_ARRAYS {
-        return Err(invalid(format!("its answer has {} arrays; expected at most {MOST_ARRAYS}", line.arrays.len())));
+    if line.arrays.len() > MAX_ARRAYS {
+        return Err(invalid(format!("its answer has {} arrays; expected at most {MAX_ARRAYS}", line.arrays.len())));
     }
     let mut arrays = Vec::new();
     for Received { name, bytes } in &line.arrays {

@@ -297,13 +297,6 @@ mod tests {
     }
 
     #[test]
-    fn rubbish_is_told() {
-        let folder = tempfile::tempdir().unwrap();
-        let told = refused(&of(folder.path(), "echo 'epoch 1'; cat > /dev/null"));
-        assert!(told.contains("wrote \"epoch 1\" on its standard output"), "{told}");
-    }
-
-    #[test]
     fn an_answer_to_another_question_is_told() {
         let folder = tempfile::tempdir().unwrap();
         let told = refused(&of(folder.path(), "cat 2.bin; cat > /dev/null"));

@@ -19,7 +19,7 @@ const LAST_WORDS: Duration = Duration::from_millis(500);
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// Longest array of an answer that comes before a question says how long it may be, bytes.
-const MOST_UNASKED: u64 = 1 << 20;
+const MAX_UNASKED_BYTES: u64 = 1 << 20;
 
 /// A running process.
 pub struct Process {
@@ -67,7 +67,7 @@ impl Process {
         let (stdin, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         let (questions, asked) = channel::<Vec<u8>>();
         let (said, answers) = channel();
-        let (tail, most_bytes) = (Tail::default(), Arc::new(AtomicU64::new(MOST_UNASKED)));
+        let (tail, most_bytes) = (Tail::default(), Arc::new(AtomicU64::new(MAX_UNASKED_BYTES)));
         let process = Process {
             child,
             questions: Some(questions),

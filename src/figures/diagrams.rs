@@ -5,7 +5,6 @@ use super::source::{FigureError, SceneSource};
 use crate::network::thesis::ThesisConfig;
 use crate::network::unet::UnetConfig;
 
-/// The U-Net: a step down a level, a step up a level, joined across.
 pub fn unet(_: &SceneSource) -> Result<Sheet, FigureError> {
     let UnetConfig { channels, levels, rows } = UnetConfig::default();
     let size = |level: usize| format!("{} × {} × {}", channels << level, rows >> level, (2 * rows) >> level);
@@ -30,7 +29,6 @@ pub fn unet(_: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(1, (980, 480), vec![panel]))
 }
 
-/// The encoder-decoder: two towers, joined, and back up.
 pub fn encoder_decoder(source: &SceneSource) -> Result<Sheet, FigureError> {
     let ThesisConfig { filters, levels, .. } = ThesisConfig::default();
     let (rows, columns) = (source.radar.samples, source.radar.elements);
@@ -65,7 +63,6 @@ pub fn encoder_decoder(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(1, (1500, 330), vec![panel]))
 }
 
-/// From a scene to the loss.
 pub fn flow(_: &SceneSource) -> Result<Sheet, FigureError> {
     let boxes = [
         ((0.0, 2.0), "scene"),

@@ -8,7 +8,7 @@ use crate::scene::{Object, Point, Scene};
 use crate::signal::Floor;
 
 /// Elements of the random layout, and the seed of its places.
-const RANDOM: (usize, u64) = (24, 1);
+const RANDOM_LAYOUT: (usize, u64) = (24, 1);
 
 /// A signal that is non-zero in a few bands: one element's beat signal of three groups of points.
 pub fn band_sparsity(source: &SceneSource) -> Result<Sheet, FigureError> {
@@ -32,7 +32,8 @@ pub fn band_sparsity(source: &SceneSource) -> Result<Sheet, FigureError> {
 
 /// Nearly random element placement on the aperture, above it the two ends of as many elements.
 pub fn random_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
-    let random = Layout::random(&source.radar, RANDOM.0, RANDOM.1).map_err(|e| FigureError::Missing(e.to_string()))?;
+    let random = Layout::random(&source.radar, RANDOM_LAYOUT.0, RANDOM_LAYOUT.1)
+        .map_err(|e| FigureError::Missing(e.to_string()))?;
     let row = |name, layout: Layout, height: f64| {
         Series::line(name, layout.x_metres.into_iter().map(|x| (x, height))).with(Stroke::Dots)
     };
@@ -46,7 +47,6 @@ pub fn random_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(1, (760, 340), vec![SheetPanel::chart("Elements on the aperture", x, y, series)]))
 }
 
-/// Three transmitters and four receivers, and their twelve virtual elements.
 pub fn virtual_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
     let mimo = Mimo::filled(&source.radar, 3, 4);
     let unit = source.radar.element_spacing_metres;

@@ -40,7 +40,6 @@ pub fn equal_errors(_: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(3, (460, 340), panels))
 }
 
-/// A sparse and a denser signal, each estimated 1.2 times too large.
 pub fn denser_costs_more(_: &SceneSource) -> Result<Sheet, FigureError> {
     let sparse: Vec<usize> = vec![205, 240];
     let dense: Vec<usize> = (0..10).map(|i| 194 + 7 * i).collect();

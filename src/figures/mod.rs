@@ -20,19 +20,17 @@ mod waves;
 
 pub use source::{FigureError, SceneSource};
 
+use crate::scene::generate::Kind;
 use sheet::Sheet;
 
-/// A figure of the thesis.
 pub struct Figure {
     /// Its number in the thesis, as `4-7`.
     pub number: &'static str,
-    /// What it shows.
     pub shows: &'static str,
     /// What differs from the printed one, and why.
     pub differs: &'static str,
     /// Whether it takes less than a second.
     pub cheap: bool,
-    /// Its panels, from this program's data.
     pub sheet: fn(&SceneSource) -> Result<Sheet, FigureError>,
 }
 
@@ -51,7 +49,6 @@ const TEST_SCENE: &str = "The printed scene is not given; this is a test scene o
 the thesis' network has a quarter of its filters.";
 const MAP_SCENE: &str = "The printed scene is not given; this is test scene 1 of set 3, seed 0.";
 
-/// Every figure, in the thesis' order.
 pub const ALL: &[Figure] = &[
     figure(
         "1-2",
@@ -193,14 +190,14 @@ pub const ALL: &[Figure] = &[
     figure(
         "4-1",
         false,
-        outputs::experiment_1_points,
+        |source| outputs::beside(source, &source.test_scene(Kind::Set2, 0)?, outputs::EXPERIMENT_1),
         "Experiment 1's network on set 2: inputs, target, output.",
         TEST_SCENE,
     ),
     figure(
         "4-2",
         false,
-        outputs::experiment_1_lines,
+        |source| outputs::beside(source, &source.test_scene(Kind::Set3, 0)?, outputs::EXPERIMENT_1),
         "Experiment 1's network on set 3, whose lines it never saw.",
         TEST_SCENE,
     ),
@@ -211,9 +208,27 @@ pub const ALL: &[Figure] = &[
         "Experiment 1 against experiment 2 on one scene: two points at range 31 m, merged and apart.",
         "The angles are not given; cos θ = 0.3 and 0.4 are chosen. At a quarter of the filters neither network keeps them apart as the printed experiment 2 does.",
     ),
-    figure("4-4", false, outputs::experiment_2_points, "Experiment 2's network on set 2.", TEST_SCENE),
-    figure("4-5", false, outputs::experiment_2_point, "Experiment 2's network on set 1.", TEST_SCENE),
-    figure("4-6", false, outputs::experiment_2_lines, "Experiment 2's network on set 3.", TEST_SCENE),
+    figure(
+        "4-4",
+        false,
+        |source| outputs::beside(source, &source.test_scene(Kind::Set2, 0)?, outputs::EXPERIMENT_2),
+        "Experiment 2's network on set 2.",
+        TEST_SCENE,
+    ),
+    figure(
+        "4-5",
+        false,
+        |source| outputs::beside(source, &source.test_scene(Kind::Set1, 0)?, outputs::EXPERIMENT_2),
+        "Experiment 2's network on set 1.",
+        TEST_SCENE,
+    ),
+    figure(
+        "4-6",
+        false,
+        |source| outputs::beside(source, &source.test_scene(Kind::Set3, 0)?, outputs::EXPERIMENT_2),
+        "Experiment 2's network on set 3.",
+        TEST_SCENE,
+    ),
     figure(
         "4-7",
         false,
@@ -245,7 +260,7 @@ pub const ALL: &[Figure] = &[
     figure(
         "5-3",
         false,
-        outputs::taken_for_a_line,
+        |source| outputs::beside(source, &source.preset("points-by-a-line")?, outputs::EXPERIMENT_2),
         "Points beside a line, reconstructed as a line.",
         "The preset \"points-by-a-line\"; `live` and `hybrid` are added.",
     ),
@@ -286,7 +301,6 @@ pub const ALL: &[Figure] = &[
     ),
 ];
 
-/// The figure of this number.
 pub fn by_number(number: &str) -> Option<&'static Figure> {
     ALL.iter().find(|f| f.number == number)
 }

@@ -9,16 +9,16 @@ use crate::scene::Scene;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 
 const PANEL: (u32, u32) = (460, 380);
-const EXPERIMENT_1: &str = "thesis-1";
-const EXPERIMENT_2: &str = "thesis";
+pub const EXPERIMENT_1: &str = "thesis-1";
+pub const EXPERIMENT_2: &str = "thesis";
 
 fn title(method: &str, seen: &ScenePictures, output: &RangeAngleMap) -> String {
     let metrics = Metrics::of(&seen.lambda[2], output, TARGET_ETA);
     format!("{method}: SE {:.0}", metrics.squared_error)
 }
 
-/// Inputs and target, then the thesis' network, `live` and `hybrid` on the same scene.
-fn beside(source: &SceneSource, seen: &ScenePictures, network: &str) -> Result<Sheet, FigureError> {
+/// A scene's inputs and target, then the thesis' network, `live` and `hybrid` on it.
+pub fn beside(source: &SceneSource, seen: &ScenePictures, network: &str) -> Result<Sheet, FigureError> {
     let [first, last, full] = &seen.lambda;
     let mut panels = vec![
         source.lambda_panel("Input 0", first),
@@ -32,7 +32,6 @@ fn beside(source: &SceneSource, seen: &ScenePictures, network: &str) -> Result<S
     Ok(Sheet::of(3, PANEL, panels))
 }
 
-/// The U-Net on a training sample: its output is near zero.
 pub fn unet_on_training(source: &SceneSource) -> Result<Sheet, FigureError> {
     let generator = Generator::new(&source.radar, Reading::Program, Purpose::Training, 0);
     let seen = source.see(generator.scene(Kind::Points(3), 0))?;
@@ -50,17 +49,6 @@ pub fn unet_on_training(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(2, (560, 340), panels))
 }
 
-/// Experiment 1's network on set 2.
-pub fn experiment_1_points(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.test_scene(Kind::Set2, 0)?, EXPERIMENT_1)
-}
-
-/// Experiment 1's network on set 3.
-pub fn experiment_1_lines(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.test_scene(Kind::Set3, 0)?, EXPERIMENT_1)
-}
-
-/// Experiments 1 and 2 on two points at one range of 31 m.
 pub fn merged_and_apart(source: &SceneSource) -> Result<Sheet, FigureError> {
     let place = |cos: f64| (31.0 * cos, 31.0 * (1.0 - cos * cos).sqrt());
     let seen = source.see(Scene::of_points([place(0.30), place(0.40)]))?;
@@ -72,22 +60,6 @@ pub fn merged_and_apart(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(3, PANEL, panels))
 }
 
-/// Experiment 2's network on set 2.
-pub fn experiment_2_points(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.test_scene(Kind::Set2, 0)?, EXPERIMENT_2)
-}
-
-/// Experiment 2's network on set 1.
-pub fn experiment_2_point(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.test_scene(Kind::Set1, 0)?, EXPERIMENT_2)
-}
-
-/// Experiment 2's network on set 3.
-pub fn experiment_2_lines(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.test_scene(Kind::Set3, 0)?, EXPERIMENT_2)
-}
-
-/// Outputs on set 3 before and after thresholds of 0.7 and 0.9.
 pub fn thresholds(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.test_scene(Kind::Set3, 0)?;
     let row = |name: &str, map: &RangeAngleMap| -> Vec<SheetPanel> {
@@ -101,7 +73,6 @@ pub fn thresholds(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(3, (420, 330), panels))
 }
 
-/// The baseline: the first end above 0.9 beside the target above 0.9.
 pub fn baseline(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.test_scene(Kind::Set3, 0)?;
     let panels = vec![
@@ -109,11 +80,6 @@ pub fn baseline(source: &SceneSource) -> Result<Sheet, FigureError> {
         source.above_panel("Target: Λ > 0.9", &seen.lambda[2], TARGET_ETA),
     ];
     Ok(Sheet::of(2, (560, 420), panels))
-}
-
-/// Points beside a line.
-pub fn taken_for_a_line(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.preset("points-by-a-line")?, EXPERIMENT_2)
 }
 
 /// Inputs of two points a tenth of a radian apart: alike in the middle, different at the edges.
@@ -130,7 +96,6 @@ pub fn a_tenth_of_a_radian(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(3, PANEL, panels))
 }
 
-/// Gaussian clusters, which no training scene of the thesis holds.
 pub fn clusters(source: &SceneSource) -> Result<Sheet, FigureError> {
     beside(source, &source.preset("gaussian-clusters")?, EXPERIMENT_2)
 }

@@ -13,7 +13,6 @@ use std::f64::consts::{PI, TAU};
 const FOUR_REFLECTORS: &str = "four-reflectors";
 const LARGE_PANEL_PIXELS: (u32, u32) = (700, 520);
 
-/// The four points in Cartesian coordinates.
 pub fn four_points(source: &SceneSource) -> Result<Sheet, FigureError> {
     let scene = super::source::preset(FOUR_REFLECTORS)?;
     Ok(Sheet::of(1, (800, 440), vec![source.scene_panel("Four equal points", &scene)]))
@@ -42,25 +41,21 @@ pub fn radar_matrix(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(2, (620, 460), vec![SheetPanel::cells("Real part of the samples", matrix), ideal]))
 }
 
-/// Range-angle plot of the four points with every element.
 pub fn all_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.preset(FOUR_REFLECTORS)?;
     Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel("512 samples × 1024 elements", &seen.lambda[2])]))
 }
 
-/// The same with twelve elements.
 pub fn twelve_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.preset(FOUR_REFLECTORS)?;
     Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel("512 samples × 12 elements", &seen.lambda[0])]))
 }
 
-/// The range-angle plot above a threshold.
 pub fn thresholded(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.preset(FOUR_REFLECTORS)?;
     Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.above_panel("Λ > 0.9", &seen.lambda[2], TARGET_ETA)]))
 }
 
-/// The range-angle plot projected into Cartesian coordinates.
 pub fn cartesian(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.preset(FOUR_REFLECTORS)?;
     let panel =
@@ -68,7 +63,6 @@ pub fn cartesian(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(1, (800, 460), vec![panel]))
 }
 
-/// Ground truth, whole array and both ends of one scene.
 pub fn truth_and_maps(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.test_scene(Kind::Set3, 1)?;
     let [first, last, full] = &seen.lambda;
@@ -81,7 +75,6 @@ pub fn truth_and_maps(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(2, (560, 420), panels))
 }
 
-/// Lambda of the whole array of that scene.
 pub fn lambda_full(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.test_scene(Kind::Set3, 1)?;
     Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel("Λ of all 1024 elements", &seen.lambda[2])]))
@@ -92,7 +85,6 @@ fn first_end(source: &SceneSource) -> Result<ComplexMap, FigureError> {
     Ok(channels_map(&source.radar, seen.signal.end(&source.radar, End::First)))
 }
 
-/// Magnitude and phase of the first end's map.
 pub fn magnitude_and_phase(source: &SceneSource) -> Result<Sheet, FigureError> {
     let map = first_end(source)?;
     let magnitude = map.log_magnitude().normalise(Normalisation::MinMax);
@@ -104,7 +96,6 @@ pub fn magnitude_and_phase(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(2, (560, 420), panels))
 }
 
-/// Cosine and sine of the first end's phase, and its Lambda.
 pub fn cosine_sine_lambda(source: &SceneSource) -> Result<Sheet, FigureError> {
     let map = first_end(source)?;
     let part = |f: fn(f64) -> f64| map.cells.mapv(|v| (0.5 + 0.5 * f(v.arg())) as f32);

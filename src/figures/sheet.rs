@@ -4,10 +4,8 @@ use crate::picture::ColourMap;
 use ndarray::Array2;
 use std::ops::Range;
 
-/// A drawn figure's content: panels in rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
-    /// Panels, in reading order.
     pub panels: Vec<SheetPanel>,
     /// Panels beside one another; the rest follow below.
     pub columns: usize,
@@ -15,16 +13,12 @@ pub struct Sheet {
     pub panel_pixels: (u32, u32),
 }
 
-/// One panel with its title.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheetPanel {
-    /// Title above the panel.
     pub title: String,
-    /// What it shows.
     pub content: PanelContent,
 }
 
-/// What a panel shows.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PanelContent {
     /// Curves over two axes.
@@ -44,14 +38,10 @@ pub struct SheetAxis {
     pub span: Range<f64>,
 }
 
-/// Curves over two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheetChart {
-    /// Across.
     pub x: SheetAxis,
-    /// Up.
     pub y: SheetAxis,
-    /// Curves, in the order of the legend.
     pub series: Vec<Series>,
 }
 
@@ -71,9 +61,7 @@ pub enum Stroke {
 /// A named curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Name in the legend; empty for none.
     pub name: &'static str,
-    /// How it is drawn.
     pub stroke: Stroke,
     /// Points, in the axes' units.
     pub points: Vec<(f64, f64)>,
@@ -82,13 +70,10 @@ pub struct Series {
 /// Coloured cells over two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheetCells {
-    /// Across.
     pub x: SheetAxis,
-    /// Up.
     pub y: SheetAxis,
     /// Values in [0, 1], `[rows from below, columns]`; NaN stays paper.
     pub values: Array2<f32>,
-    /// How values become colours.
     pub colours: ColourMap,
     /// What 0 and 1 stand for, beside the colour bar; `None` for no bar.
     pub ends_of_bar: Option<(&'static str, &'static str)>,
@@ -99,9 +84,7 @@ pub struct SheetCells {
 /// Shapes in a plane of any unit, x to the right and y up.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sketch {
-    /// What the plane spans across.
     pub x: Range<f64>,
-    /// What the plane spans upwards.
     pub y: Range<f64>,
     /// Shapes, the last on top.
     pub shapes: Vec<SketchShape>,
@@ -157,14 +140,12 @@ pub enum SketchShape {
 }
 
 impl SheetAxis {
-    /// An axis from `from` to `to`.
     pub fn new(label: &'static str, from: f64, to: f64) -> Self {
         SheetAxis { label, span: from..to }
     }
 }
 
 impl Series {
-    /// A solid line.
     pub fn line(name: &'static str, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Series { name, stroke: Stroke::Solid, points: points.into_iter().collect() }
     }
@@ -176,17 +157,14 @@ impl Series {
 }
 
 impl SheetPanel {
-    /// A panel of curves.
     pub fn chart(title: impl Into<String>, x: SheetAxis, y: SheetAxis, series: Vec<Series>) -> Self {
         SheetPanel { title: title.into(), content: PanelContent::Chart(SheetChart { x, y, series }) }
     }
 
-    /// A panel of shapes.
     pub fn sketch(title: impl Into<String>, x: Range<f64>, y: Range<f64>, shapes: Vec<SketchShape>) -> Self {
         SheetPanel { title: title.into(), content: PanelContent::Sketch(Sketch { x, y, shapes }) }
     }
 
-    /// A panel of cells.
     pub fn cells(title: impl Into<String>, cells: SheetCells) -> Self {
         SheetPanel { title: title.into(), content: PanelContent::Cells(cells) }
     }
@@ -198,22 +176,18 @@ impl SketchShape {
         SketchShape::Line { places: places.into_iter().collect(), arrow: false, ink }
     }
 
-    /// A line with an arrow head.
     pub fn arrow(from: (f64, f64), to: (f64, f64), ink: Ink) -> Self {
         SketchShape::Line { places: vec![from, to], arrow: true, ink }
     }
 
-    /// A dot.
     pub fn dot(at: (f64, f64), pixels: i32, ink: Ink) -> Self {
         SketchShape::Dot { at, pixels, ink }
     }
 
-    /// A box with text.
     pub fn block(low: (f64, f64), high: (f64, f64), text: impl Into<String>) -> Self {
         SketchShape::Block { low, high, text: text.into() }
     }
 
-    /// Words.
     pub fn words(at: (f64, f64), text: impl Into<String>, ink: Ink) -> Self {
         SketchShape::Words { at, text: text.into(), ink }
     }
@@ -225,7 +199,6 @@ impl Sheet {
         Sheet { panels, columns: columns.max(1), panel_pixels }
     }
 
-    /// Width and height in pixels.
     pub fn pixels(&self) -> (u32, u32) {
         let columns = self.columns.min(self.panels.len()).max(1);
         let rows = self.panels.len().div_ceil(columns).max(1);

@@ -13,7 +13,6 @@ use crate::scene::{Object, Scene, SceneError};
 use crate::signal::{self, BeatSignal, Floor};
 use ndarray::Array2;
 
-/// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // Names and messages say it.
 pub enum FigureError {
@@ -29,22 +28,18 @@ pub enum FigureError {
 
 /// The thesis' radar and conventions: table 3.1, its floor, min-max.
 pub struct SceneSource {
-    /// Table 3.1.
     pub radar: Radar,
 }
 
 /// A scene simulated and transformed.
 pub struct ScenePictures {
-    /// The scene.
     pub scene: Scene,
-    /// Its samples.
     pub signal: BeatSignal,
     /// Lambda of the first end, the last end and the whole array.
     pub lambda: [RangeAngleMap; 3],
 }
 
 impl SceneSource {
-    /// Table 3.1.
     pub fn new() -> Self {
         SceneSource { radar: Radar::default() }
     }
@@ -120,7 +115,6 @@ impl SceneSource {
         )
     }
 
-    /// A map over x and y.
     pub fn cartesian_panel(&self, title: impl Into<String>, map: &RangeAngleMap, colours: ColourMap) -> SheetPanel {
         let extent = self.radar.max_range_metres();
         let values = project(&self.radar, map, 300).lambda;
@@ -128,7 +122,6 @@ impl SceneSource {
         SheetPanel::cells(title, SheetCells { x, y, values, colours, ends_of_bar: None, rings: Vec::new() })
     }
 
-    /// The scene's reflectors over x and y.
     pub fn scene_panel(&self, title: impl Into<String>, scene: &Scene) -> SheetPanel {
         let extent = self.radar.max_range_metres();
         let places = scene.objects.iter().flat_map(Object::marks).map(|r| (r.x_metres, r.y_metres.abs()));

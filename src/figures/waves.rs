@@ -8,7 +8,6 @@ use crate::scene::Scene;
 use crate::signal::Floor;
 use num_complex::Complex64;
 
-/// Amplitude in decibels below the largest.
 fn decibels(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let values: Vec<f64> = values.into_iter().collect();
     let peak = values.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
@@ -37,7 +36,6 @@ pub fn chirps(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(1, (760, 300), vec![top, bottom]))
 }
 
-/// Range profile of a point at 21 m.
 pub fn range_profile(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.see_over(Scene::of_points([(0.0, 21.0)]), Floor::Exact)?;
     let profiles = range_transform(&source.radar, &seen.signal).profiles;
@@ -53,7 +51,6 @@ pub fn range_profile(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(1, (760, 380), vec![panel]))
 }
 
-/// A plane wave on a uniform line array and its path difference.
 pub fn plane_wave(_: &SceneSource) -> Result<Sheet, FigureError> {
     let angle = 60f64.to_radians();
     let (ux, uy) = (angle.cos(), angle.sin());
@@ -75,18 +72,18 @@ pub fn plane_wave(_: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(1, (760, 360), vec![panel]))
 }
 
-/// Windows of 64 points and their transforms.
 pub fn windows(_: &SceneSource) -> Result<Sheet, FigureError> {
     const POINTS: usize = 64;
-    const PADDED: usize = 4096;
+    const PADDED_LENGTH: usize = 4096;
     let strokes = [Stroke::Solid, Stroke::Dashed, Stroke::Solid, Stroke::Dashed];
-    let spectrum = Spectrum::new(PADDED);
+    let spectrum = Spectrum::new(PADDED_LENGTH);
     let (mut weights, mut transforms) = (Vec::new(), Vec::new());
     for (window, stroke) in WindowFunction::ALL.into_iter().zip(strokes) {
         let values = window.weights(POINTS);
         let lobes = decibels(spectrum.of(values.iter().map(|w| Complex64::from(*w))).into_iter().map(|v| v.norm()));
-        let bins = POINTS as f64 / PADDED as f64;
-        let shown = lobes.into_iter().take(PADDED / 4).enumerate().map(|(k, db)| (k as f64 * bins, db.max(-120.0)));
+        let bins = POINTS as f64 / PADDED_LENGTH as f64;
+        let shown =
+            lobes.into_iter().take(PADDED_LENGTH / 4).enumerate().map(|(k, db)| (k as f64 * bins, db.max(-120.0)));
         weights
             .push(Series::line(window.name(), values.into_iter().enumerate().map(|(n, w)| (n as f64, w))).with(stroke));
         transforms.push(Series::line(window.name(), shown).with(stroke));
@@ -119,7 +116,6 @@ pub fn angle_spectra(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(2, (560, 360), panels))
 }
 
-/// Assumed parallel paths beside the true ones for a near reflector.
 pub fn near_paths(source: &SceneSource) -> Result<Sheet, FigureError> {
     let half = source.radar.aperture_metres() / 2.0;
     let at = (0.9, 2.2);

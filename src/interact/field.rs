@@ -62,7 +62,7 @@ pub enum Field {
 }
 
 /// The cross section of what reflects nothing, dBsm.
-const LEAST_DBSM: f64 = -300.0;
+const MIN_DBSM: f64 = -300.0;
 
 /// What happens to a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -142,7 +142,7 @@ impl Field {
             (Field::VelocityX, _) => object.velocity_metres_per_second()[0],
             (Field::VelocityY, _) => object.velocity_metres_per_second()[1],
             (Field::CrossSection, points) if points.body().is_none() => {
-                cross_section_dbsm(object.reflectivity()).max(LEAST_DBSM)
+                cross_section_dbsm(object.reflectivity()).max(MIN_DBSM)
             }
             (Field::Spacing, Object::Line(l)) => l.spacing_metres,
             (Field::Direction, Object::Line(l)) => 90.0 - l.direction_degrees,

@@ -64,7 +64,6 @@ fn wanted(requirement: &Requirement, scene: &Scene) -> String {
     letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
 }
 
-/// What was measured, with its unit.
 fn found(measure: &Measure, value: f64) -> String {
     let (times, unit) = measure.unit();
     with_unit(&digits(times * value), unit)

@@ -38,7 +38,6 @@ impl From<String> for Fault {
     }
 }
 
-/// Refuses a tolerance that no guess can meet.
 pub(super) fn check_tolerance(key: &'static str, name: &str, value: f64) -> Result<(), Fault> {
     match value.is_finite() && value >= 0.0 {
         true => Ok(()),

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub const FORMAT: u32 = 1;
 
 /// Largest lesson file that is read, bytes: sixty times the longest shipped one.
-pub const MOST_BYTES: u64 = 1 << 20;
+pub const MAX_LESSON_BYTES: u64 = 1 << 20;
 
 /// A lesson: a few steps, each a text, a scene, a prediction and something to change.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -79,7 +79,7 @@ pub enum LessonError {
         /// What the system said.
         source: std::io::Error,
     },
-    #[error("{}: larger than {MOST_BYTES} bytes, which no lesson is", path.display())]
+    #[error("{}: larger than {MAX_LESSON_BYTES} bytes, which no lesson is", path.display())]
     Large { path: PathBuf },
     #[error("{}: {source}", path.display())]
     Text { path: PathBuf, source: LessonTextError },
@@ -116,7 +116,7 @@ impl Lesson {
     /// [`LessonError`] names the file, the line and what was expected.
     pub fn load(path: &Path) -> Result<Lesson, LessonError> {
         let io = |source| LessonError::Io { path: path.to_owned(), source };
-        let bytes = read_bounded(path, MOST_BYTES).map_err(|error| match error.kind() {
+        let bytes = read_bounded(path, MAX_LESSON_BYTES).map_err(|error| match error.kind() {
             ErrorKind::FileTooLarge => LessonError::Large { path: path.to_owned() },
             _ => io(error),
         })?;
@@ -226,7 +226,7 @@ answer = { kind = "click", map = "target", object = 1, within_columns = 30.0, wi
     fn a_large_file_is_refused_before_it_is_read() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("large.toml");
-        std::fs::write(&path, vec![b'#'; MOST_BYTES as usize + 10]).unwrap();
+        std::fs::write(&path, vec![b'#'; MAX_LESSON_BYTES as usize + 10]).unwrap();
         assert!(Lesson::load(&path).unwrap_err().to_string().contains("larger"));
     }
 }

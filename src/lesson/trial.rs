@@ -30,7 +30,6 @@ impl Step {
         self.challenge.iter().try_for_each(|challenge| meet(self, challenge))
     }
 
-    /// The scene and the radar of a challenge's solution.
     fn solved(&self, challenge: &Challenge) -> (Scene, crate::radar::Radar) {
         let (mut scene, solution) = (self.scene(), &challenge.solution);
         if !solution.objects.is_empty() {
@@ -40,7 +39,6 @@ impl Step {
     }
 }
 
-/// Looks for the answer to a question.
 fn ask(step: &Step, question: &Question) -> Result<(), Fault> {
     let fault = |message: String| Fault::at("answer", message);
     let stage = Stage::new(&step.radar, &step.scene(), &step.view, question.needs_output());

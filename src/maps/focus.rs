@@ -61,7 +61,6 @@ fn sine_of(radar: &Radar, column: usize) -> f64 {
     (1.0 - cos * cos).max(0.0).sqrt()
 }
 
-/// Most turns of phase that an element's y makes.
 fn most_turns(radar: &Radar, y_metres: &[f64]) -> f64 {
     let [first, last] = [0.0, radar.samples as f64].map(|n1| radar.turns_per_metre(n1).abs());
     first.max(last) * y_metres.iter().fold(0.0, |most: f64, y| most.max(y.abs()))

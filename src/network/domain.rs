@@ -11,7 +11,7 @@ const SAME_QUANTITY: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Domain {
-    /// One radar, and all whose samples are as its.
+    /// One radar, and all others that hear the same samples of a scene.
     Radar(Box<Radar>),
     /// All radars within limits.
     Limits(RadarLimits),
@@ -44,6 +44,7 @@ pub struct RadarLimits {
     pub windows: Vec<WindowFunction>,
 }
 
+/// One quantity that differs, in words: as trained, and as found.
 type Difference = [String; 2];
 
 impl Domain {
@@ -101,7 +102,7 @@ pub(super) fn is_alike(trained: &Radar, radar: &Radar) -> bool {
     differences(trained, radar).is_empty()
 }
 
-/// Between how many range bins a reflector at end-fire migrates from the first element to the last.
+/// How many range bins a reflector at end-fire migrates from the first element to the last.
 pub(super) fn migration_bins(radar: &Radar) -> f64 {
     radar.aperture_metres() / radar.range_resolution_metres()
 }

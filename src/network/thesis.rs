@@ -27,7 +27,7 @@ pub struct ThesisConfig {
     pub filters: usize,
     /// Halvings of the map, 5 in the thesis.
     pub levels: usize,
-    /// Whether training starts with the last batch norm at [`ALIVE`], about where the targets lie, instead of at 0 +- 1 as in the author's
+    /// Whether training starts with the last batch norm at [`ALIVE_OUTPUT_MOMENTS`], about where the targets lie, instead of at 0 +- 1 as in the author's
     /// program. From there, half of the cells start below zero, where the final ReLU lets no gradient through.
     #[serde(default)]
     pub alive_output: bool,
@@ -41,7 +41,7 @@ impl ThesisConfig {
 }
 
 /// Mean and standard deviation of the output where training starts, if that is asked for.
-const ALIVE: [f64; 2] = [0.45, 0.15];
+const ALIVE_OUTPUT_MOMENTS: [f64; 2] = [0.45, 0.15];
 
 impl Default for ThesisConfig {
     fn default() -> Self {
@@ -99,8 +99,8 @@ impl Thesis {
             let out = if is_last { 1 } else { 2 * filters };
             let mut norm = BatchNormConfig::new(out).init(device);
             if is_last && alive_output {
-                norm.beta = Param::from_tensor(Tensor::full([out], ALIVE[0], device));
-                norm.gamma = Param::from_tensor(Tensor::full([out], ALIVE[1], device));
+                norm.beta = Param::from_tensor(Tensor::full([out], ALIVE_OUTPUT_MOMENTS[0], device));
+                norm.gamma = Param::from_tensor(Tensor::full([out], ALIVE_OUTPUT_MOMENTS[1], device));
             }
             UpStage {
                 conv: ConvTranspose2dConfig::new([2 * filters, out], [4, 4])

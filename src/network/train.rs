@@ -126,7 +126,6 @@ fn step<S: Student>(
     (optimizer.step(rate, network, gradients), value)
 }
 
-/// The training scenes of an epoch in the order that recipe and epoch alone decide.
 fn epoch_order(recipe: &Recipe, epoch: u32) -> Vec<(Kind, u32)> {
     let mut order = recipe.training_scenes();
     let mut rng = ChaCha8Rng::seed_from_u64(recipe.seed);

@@ -4,14 +4,14 @@ use ndarray::{Array2, ArrayView2};
 
 /// A map of so many columns is fine enough for the eye; one of fewer is drawn on 256 at least.
 pub const FEW_COLUMNS: usize = 128;
-const LEAST_COLUMNS: usize = 256;
+const MIN_DRAWN_COLUMNS: usize = 256;
 
 /// `map`, `[range bins, columns]`, on 256 columns or more: each column stands for as many, which take its place evenly. Values between
 /// follow the cubic through the four columns around (Catmull and Rom, 1974), not below the least of the map; the last column is followed by the
 /// first, as the transform has it. Nothing more is resolved than before. `None` where the map has [`FEW_COLUMNS`] already, or one.
 pub fn finer(map: ArrayView2<'_, f32>) -> Option<Array2<f32>> {
     let (rows, columns) = map.dim();
-    let times = LEAST_COLUMNS.div_ceil(columns.max(1));
+    let times = MIN_DRAWN_COLUMNS.div_ceil(columns.max(1));
     if !(2..FEW_COLUMNS).contains(&columns) {
         return None;
     }

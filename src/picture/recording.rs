@@ -15,7 +15,7 @@ use num_complex::Complex64;
 use plotters::style::RGBColor;
 
 /// Largest number of detections that are drawn.
-const MOST_DRAWN: usize = 64;
+const MAX_DRAWN_DETECTIONS: usize = 64;
 
 /// Columns that a snapshot's curves are padded to.
 const FINE_COLUMNS: usize = 8192;
@@ -86,7 +86,7 @@ fn panels(
     let scene = Scene {
         name: recording.name.clone(),
         notes: recording.notes.clone(),
-        objects: found.iter().take(MOST_DRAWN).map(|f| Object::Point(point(f))).collect(),
+        objects: found.iter().take(MAX_DRAWN_DETECTIONS).map(|f| Object::Point(point(f))).collect(),
         ..Scene::default()
     };
     let carrier = match radar.carrier {

@@ -9,7 +9,7 @@ mod off_line;
 pub use error::AntennasError;
 
 use super::{Convention, Pair, Radar};
-use error::{MAX_ELEMENTS, MIN_ELEMENTS, MOST_OFF, MOST_Y_METRES};
+use error::{MAX_ELEMENTS, MAX_OFF_LINE_PART, MAX_Y_METRES, MIN_ELEMENTS};
 use std::fmt;
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use std::sync::Arc;
 const ONE_PLACE: f64 = 0.02;
 
 /// Largest number of spacings in the smallest distance of midpoints. Distances of 2 and 3 spacings alone need 2.
-const MOST_DIVISIONS: usize = 4;
+const MAX_SPACING_DIVISIONS: usize = 4;
 
 /// The line is moved where its middle lies farther from x = 0 than this fraction of the spacing.
 const CENTRED: f64 = 1e-6;
@@ -45,7 +45,6 @@ impl fmt::Debug for Antennas {
     }
 }
 
-/// The pairs from left to right, and their midpoints.
 struct Midpoints {
     pairs: Vec<[usize; 2]>,
     x_metres: Vec<f64>,
@@ -79,7 +78,8 @@ impl Midpoints {
             return Err(AntennasError::OnePlace);
         }
         let even = |divisions: usize| self.even(smallest / divisions as f64);
-        (2..=MOST_DIVISIONS).fold(even(1), |found, divisions| found.or_else(|first| even(divisions).or(Err(first))))
+        (2..=MAX_SPACING_DIVISIONS)
+            .fold(even(1), |found, divisions| found.or_else(|first| even(divisions).or(Err(first))))
     }
 
     /// `about_metres`, made to fit the whole line, or which pair stands off it.
@@ -87,7 +87,7 @@ impl Midpoints {
         let spacing_metres = self.length_metres() / (self.length_metres() / about_metres).round();
         for (i, place) in self.places(spacing_metres).enumerate() {
             let off_metres = (self.x_metres[i] - self.x_metres[0] - place * spacing_metres).abs();
-            if off_metres > MOST_OFF * spacing_metres {
+            if off_metres > MAX_OFF_LINE_PART * spacing_metres {
                 let [transmitter, receiver] = self.pairs[i];
                 return Err(AntennasError::Uneven { transmitter, receiver, off_metres, spacing_metres });
             }

@@ -104,7 +104,7 @@ pub struct Pattern {
 }
 
 /// Lower bound of a one-way amplitude, -100 dB: no direction is silent.
-const LEAST_AMPLITUDE: f64 = 1e-5;
+const MIN_ONE_WAY_AMPLITUDE: f64 = 1e-5;
 
 impl Pattern {
     /// The pattern that leaves half of the power at half of this angle to either side, degrees.
@@ -119,7 +119,7 @@ impl Pattern {
 
     /// Amplitude of one way, relative to straight ahead: `cos^(n / 2)` of the angle off broadside.
     pub fn amplitude(self, cos_off_broadside: f64) -> f64 {
-        cos_off_broadside.abs().powf(self.exponent / 2.0).max(LEAST_AMPLITUDE)
+        cos_off_broadside.abs().powf(self.exponent / 2.0).max(MIN_ONE_WAY_AMPLITUDE)
     }
 
     /// The same from an antenna at (x, y) to a place, metres.
@@ -262,7 +262,7 @@ mod tests {
             assert_eq!(pattern.amplitude(1.0), 1.0);
         }
         let cosine = Pattern::of_half_power_width(120.0);
-        assert!((cosine.exponent() - 1.0).abs() < 1e-12 && cosine.amplitude(0.0) == LEAST_AMPLITUDE);
+        assert!((cosine.exponent() - 1.0).abs() < 1e-12 && cosine.amplitude(0.0) == MIN_ONE_WAY_AMPLITUDE);
         let wide = LinkBudget { half_power_width_degrees: Some(120.0), ..LinkBudget::default() };
         let lost = radar(wide).link(0.0, 10.0, 0.5).sample.0 - radar(wide).link(0.0, 10.0, 1.0).sample.0;
         assert!((lost - 20.0 * 0.5f64.log10()).abs() < 1e-9, "half there and half back: {lost}");

@@ -129,8 +129,8 @@ impl TryFrom<Lists> for BuiltArray {
 
     fn try_from(lists: Lists) -> Result<Self, String> {
         let Lists { count, gain_db, phase_degrees, position_millimetres, forward_millimetres, dead } = lists;
-        if count > MOST_ELEMENTS {
-            return Err(format!("elements: count is {count}; at most {MOST_ELEMENTS} are read"));
+        if count > MAX_ELEMENTS {
+            return Err(format!("elements: count is {count}; at most {MAX_ELEMENTS} are read"));
         }
         for (name, list) in [
             ("gain_db", &gain_db),
@@ -163,7 +163,7 @@ impl TryFrom<Lists> for BuiltArray {
     }
 }
 
-const MOST_ELEMENTS: usize = 65536;
+const MAX_ELEMENTS: usize = 65536;
 
 /// Why a list of element errors is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -175,9 +175,9 @@ pub enum BuiltArrayError {
     Value { element: usize, field: &'static str, value: f64, most: f64 },
 }
 
-const MOST_GAIN: f64 = 200.0;
-const MOST_PHASE: f64 = 3600.0;
-const MOST_POSITION: f64 = 1000.0;
+const MAX_GAIN_DB: f64 = 200.0;
+const MAX_PHASE_DEGREES: f64 = 3600.0;
+const MAX_POSITION_MILLIMETRES: f64 = 1000.0;
 
 impl BuiltArray {
     /// Whether no element has an error.
@@ -273,10 +273,10 @@ impl BuiltArray {
         }
         for (element, e) in self.elements.iter().enumerate() {
             for (field, value, most) in [
-                ("gain", e.gain.0, MOST_GAIN),
-                ("phase_degrees", e.phase_degrees, MOST_PHASE),
-                ("position_millimetres", e.position_millimetres, MOST_POSITION),
-                ("forward_millimetres", e.forward_millimetres, MOST_POSITION),
+                ("gain", e.gain.0, MAX_GAIN_DB),
+                ("phase_degrees", e.phase_degrees, MAX_PHASE_DEGREES),
+                ("position_millimetres", e.position_millimetres, MAX_POSITION_MILLIMETRES),
+                ("forward_millimetres", e.forward_millimetres, MAX_POSITION_MILLIMETRES),
             ] {
                 if value.is_nan() || value.abs() > most {
                     return Err(BuiltArrayError::Value { element, field, value, most });

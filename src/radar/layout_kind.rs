@@ -21,7 +21,7 @@ pub enum LayoutKind {
 }
 
 /// Most transmitters or receivers that a name may ask for.
-const MOST_CHANNELS: usize = 64;
+const MAX_CHANNELS: usize = 64;
 
 impl LayoutKind {
     /// Where the elements stand on `radar`.
@@ -78,7 +78,7 @@ impl FromStr for LayoutKind {
             Some(("mimo", rest)) => {
                 let (transmitters, receivers) = rest.split_once('x').ok_or_else(unknown)?;
                 let (transmitters, receivers) = (number(transmitters)?, number(receivers)?);
-                let allowed = 1..=MOST_CHANNELS;
+                let allowed = 1..=MAX_CHANNELS;
                 if !(allowed.contains(&transmitters) && allowed.contains(&receivers)) {
                     return Err(unknown());
                 }

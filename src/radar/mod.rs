@@ -127,24 +127,7 @@ pub struct Radar {
 
 impl Default for Radar {
     fn default() -> Self {
-        let carrier_hz = 77e9;
-        Radar {
-            transmit_power_watts: 100.0,
-            bandwidth_hz: 2e9,
-            carrier_hz,
-            element_spacing_metres: SPEED_OF_LIGHT / carrier_hz / 2.0,
-            elements: 1024,
-            end_elements: 12,
-            samples: 512,
-            chirp_seconds: CHIRP_SECONDS,
-            carrier: Carrier::OneWay,
-            window: WindowFunction::Hann,
-            antennas: None,
-            focus_off_line: false,
-            chirps: 1,
-            chirp_interval_seconds: CHIRP_SECONDS,
-            budget: None,
-        }
+        presets::TABLE_3_1
     }
 }
 

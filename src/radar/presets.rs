@@ -20,7 +20,7 @@ const fn half_wavelength_metres(carrier_hz: f64) -> f64 {
     SPEED_OF_LIGHT / carrier_hz / 2.0
 }
 
-const TABLE_3_1: Radar = Radar {
+pub(super) const TABLE_3_1: Radar = Radar {
     antennas: None,
     focus_off_line: false,
     budget: None,

@@ -75,11 +75,11 @@ pub fn hann_at(len: usize, n: f64) -> f64 {
 }
 
 /// Fewest points of a Hann window of which more than one weighs anything.
-const LEAST_WINDOWED: usize = 4;
+const MIN_HANN_POINTS: usize = 4;
 
 /// [`hann`] for a chirp of `samples`; ones where it would leave one sample or none.
 pub fn chirp_window(samples: usize) -> Vec<f64> {
-    if samples < LEAST_WINDOWED { vec![1.0; samples] } else { hann(samples) }
+    if samples < MIN_HANN_POINTS { vec![1.0; samples] } else { hann(samples) }
 }
 
 #[cfg(test)]

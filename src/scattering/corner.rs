@@ -11,7 +11,7 @@ use super::{AntennaPlaces, EchoKind, PathEcho, Wave};
 const BOUNCE: f64 = -1.0;
 
 /// A direction that misses the second arm's line by less is taken to be parallel to it, metres.
-const LEAST_METRES: f64 = 1e-9;
+const MIN_DISTANCE_METRES: f64 = 1e-9;
 
 /// The six echoes of the corner between two arms, the first order first; `first` ends where `second` begins.
 pub fn echoes(wave: &Wave, antennas: &AntennaPlaces, first: &Face, second: &Face) -> [PathEcho; 6] {
@@ -26,13 +26,13 @@ fn one_order(wave: &Wave, antennas: &AntennaPlaces, first: &Face, second: &Face)
     let outside = |place: V, face: &Face| (place - face.from).dot(face.outward());
     let receives = outside(V::from(antennas.receiver_metres), second) > 0.0;
     let sends = outside(transmitter, first) > 0.0;
-    let is_open = sends && receives && outside(image, second) > LEAST_METRES;
+    let is_open = sends && receives && outside(image, second) > MIN_DISTANCE_METRES;
     // Where rays from the image through the ends of the first arm meet the line of the second.
     let hit = |end: V| {
         let ray = end - image;
         let down = ray.dot(second.outward());
         // A ray that never comes down: lit to infinity on that side.
-        let down = if down >= -LEAST_METRES { -LEAST_METRES } else { down };
+        let down = if down >= -MIN_DISTANCE_METRES { -MIN_DISTANCE_METRES } else { down };
         let part = -outside(image, second) / down;
         (image - second.from).dot(second.along) + part * ray.dot(second.along)
     };
@@ -44,7 +44,6 @@ fn one_order(wave: &Wave, antennas: &AntennaPlaces, first: &Face, second: &Face)
     both.lit_echoes(wave, &seen, lit).map(|echo| PathEcho { kind: EchoKind::DoubleBounce, ..echo })
 }
 
-/// The image of `place` in the line of a face.
 pub(super) fn mirrored(place: V, face: &Face) -> V {
     let to = place - face.from;
     face.from + face.along * (2.0 * to.dot(face.along)) - to

@@ -7,7 +7,7 @@ use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
 
 /// An antenna on the line of a face is taken to be this far beside it, metres.
-const LEAST_HEIGHT_METRES: f64 = 1e-9;
+const MIN_HEIGHT_METRES: f64 = 1e-9;
 
 /// A face from one end to the other; its outside lies to the right.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,8 +111,8 @@ impl Heights {
         Heights {
             along_transmitter: t.dot(face.along),
             along_receiver: r.dot(face.along),
-            transmitter: ht.abs().max(LEAST_HEIGHT_METRES),
-            receiver: hr.abs().max(LEAST_HEIGHT_METRES),
+            transmitter: ht.abs().max(MIN_HEIGHT_METRES),
+            receiver: hr.abs().max(MIN_HEIGHT_METRES),
             same_side: ht * hr > 0.0,
             outside: ht > 0.0 && hr > 0.0,
         }

@@ -6,7 +6,7 @@ use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
 
 /// Radii over the wavelength, as physical wave number times radius, from which on the next term improves the first.
-const LEAST_REFINED: f64 = 5.0;
+const MIN_REFINED_SIZE: f64 = 5.0;
 
 const STEPS: usize = 3;
 
@@ -43,7 +43,7 @@ impl Circle {
         let spread = (leg_t.recip() + leg_r.recip()) / 2.0 + 1.0 / (radius * cos);
         let strength = wave.power_watts * reflectivity / (root(REFERENCE_LENGTH_METRES * spread) * leg_t * leg_r);
         let over = wave.radians_per_metre * radius;
-        let second = if refined && over / 2.0 >= LEAST_REFINED { -5.0 / (8.0 * over) } else { 0.0 };
+        let second = if refined && over / 2.0 >= MIN_REFINED_SIZE { -5.0 / (8.0 * over) } else { 0.0 };
         PathEcho {
             range_metres: (leg_t + leg_r) / 2.0,
             amplitude: Complex64::new(strength, strength * second),

@@ -191,7 +191,6 @@ fn point(wave: &Wave, antennas: &AntennaPlaces, point: &Reflector) -> PathEcho {
     }
 }
 
-/// What a body hides with.
 fn obstacles(body: &Body<'_>) -> Vec<Obstacle> {
     match body.shape() {
         Shape::Wall(ends) => vec![Obstacle::corners(&ends)],

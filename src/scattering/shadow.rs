@@ -43,7 +43,6 @@ pub struct Passage {
 }
 
 impl Passage {
-    /// A clear way.
     const CLEAR: Passage = Passage { factor: Complex64::new(1.0, 0.0), detour_metres: 0.0, part: 0.0 };
 }
 

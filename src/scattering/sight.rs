@@ -1,4 +1,4 @@
-//! Bodies near enough to the ways from the array to an object to change its echoes.
+//! Which bodies can shadow an object at all: those near enough to the paths between the array and the object to change its echoes.
 //!
 //! All ways together are the convex hull of the array and of the object. A body has no effect on a way, to the last bit, where the detour over
 //! each of its corners is so long that its ripple has faded ([`FADED`]). A detour of a given length is an ellipse around the ends of the way, so
@@ -10,14 +10,16 @@ use super::shadow::FADED;
 use crate::radar::{BuiltArray, Radar};
 use crate::scene::{Object, Shape};
 
+/// Where the antennas stand.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Array {
-    /// The corners of a rectangle that no antenna stands beyond, metres.
+    /// Corners of the rectangle around all antennas, metres.
     corners: [V; 4],
     /// Half a detour over which everything has faded, metres.
     faded: f64,
 }
 
+/// A body as an obstacle.
 #[derive(Debug, Clone)]
 pub(super) struct Screen {
     corners: Vec<V>,
@@ -27,6 +29,7 @@ pub(super) struct Screen {
     farthest: f64,
 }
 
+/// All paths between the antennas and an object.
 #[derive(Debug, Clone)]
 pub(super) struct Ways {
     hull: Vec<V>,
@@ -51,7 +54,6 @@ impl Array {
         Array { corners: [V(left, hind), V(right, hind), V(right, fore), V(left, fore)], faded }
     }
 
-    /// Greatest distance of any of `places` from an antenna, metres.
     fn farthest(&self, places: &[V]) -> f64 {
         let far = |corner: V| places.iter().map(move |p| (*p - corner).norm());
         self.corners.into_iter().flat_map(far).fold(0.0, f64::max)

@@ -229,12 +229,6 @@ mod tests {
     }
 
     #[test]
-    fn scenes_of_noise_differ_in_their_noise() {
-        let [a, b] = [0, 1].map(|number| generator(Purpose::Test).scene(Kind::Noise, number));
-        assert!(a.objects.is_empty() && a.is_silent() && a.noise_seed != b.noise_seed);
-    }
-
-    #[test]
     fn sets_hold_what_the_thesis_says() {
         let g = generator(Purpose::Test);
         for number in 0..200 {

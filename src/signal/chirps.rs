@@ -32,7 +32,7 @@ use std::ops::Range;
 pub const MAX_END_ELEMENTS: usize = 4;
 
 /// Samples between exact evaluations of a running phasor.
-const RESTART: usize = 128;
+const RESTART_SAMPLES: usize = 128;
 
 /// Independent phasor recurrences, so that no sample waits for its predecessor.
 const LANES: usize = 8;
@@ -241,9 +241,9 @@ impl Motion<'_> {
         // How much more the phase turns from one sample, lane or vector to the next.
         let [bend, leap_over_lane, leap_over_vector] =
             [1.0, lanes, lanes * lanes].map(|times| Complex64::cis(TAU * 2.0 * beat * times));
-        for (block, samples) in samples.chunks_mut(RESTART).enumerate() {
-            let n = (block * RESTART) as f64;
-            let turns = echo.turns_at(block * RESTART) + (carrier + beat * n) * n;
+        for (block, samples) in samples.chunks_mut(RESTART_SAMPLES).enumerate() {
+            let n = (block * RESTART_SAMPLES) as f64;
+            let turns = echo.turns_at(block * RESTART_SAMPLES) + (carrier + beat * n) * n;
             let mut turn = Complex64::cis(TAU * (step + beat * (2.0 * n + 1.0)));
             let mut phasors = [gain * Complex64::from_polar(echo.amplitude, TAU * turns); LANES];
             // From each sample to that of its lane in the next vector.

@@ -8,14 +8,14 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Samples between exact evaluations of a running phasor: keeps its rounding error at a few parts in 1e16.
-const RESTART: usize = 32;
+const RESTART_SAMPLES: usize = 32;
 
 /// Adds `gain` times the echo of a unit reflector to `samples` of `pair`.
 pub fn add_echo(model: &EchoModel, pair: Pair, reflector: &Reflector, gain: Complex64, samples: &mut [Complex64]) {
     let echo = model.echo(pair, reflector);
     let step = Complex64::cis(TAU * echo.turns_at(1) - TAU * echo.turns_at(0));
-    for (block, samples) in samples.chunks_mut(RESTART).enumerate() {
-        let mut phasor = gain * echo.sample(block * RESTART);
+    for (block, samples) in samples.chunks_mut(RESTART_SAMPLES).enumerate() {
+        let mut phasor = gain * echo.sample(block * RESTART_SAMPLES);
         for sample in samples {
             *sample += phasor;
             phasor *= step;

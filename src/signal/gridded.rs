@@ -128,7 +128,7 @@ impl<T: Real> Gridding<T> {
 const SUMMED_AT_ONCE: usize = 64;
 /// Largest sum that meets f32's tolerance even where all rounding errors agree, as for coincident points. Longer sums keep the rounding error
 /// of each addition and add it at the end (Kahan, Commun. ACM 8, 1965).
-const SHORT: usize = 16;
+const UNCORRECTED_TERMS: usize = 16;
 
 /// Beat signal of all that is `heard` at `pairs`, written to `out`, one vector a sample.
 #[inline(always)]
@@ -142,10 +142,10 @@ pub(super) fn block_signal<T: Real, const W: usize, const FMA: bool>(
 ) {
     let GriddedScratch { grid, spare } = scratch;
     grid.fill(ComplexLanes::zero());
-    if heard.len() > SHORT {
+    if heard.len() > UNCORRECTED_TERMS {
         spare.fill(ComplexLanes::zero());
     }
-    if T::EPSILON > f64::EPSILON && heard.len() > SHORT {
+    if T::EPSILON > f64::EPSILON && heard.len() > UNCORRECTED_TERMS {
         for i in 0..heard.len() {
             spread::<T, W, FMA, true>(plan, &heard.echo::<FMA>(model, pairs, i), grid, spare);
         }

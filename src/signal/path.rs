@@ -198,7 +198,6 @@ pub(super) fn range_span_metres(radar: &Radar, elements: usize, r: &Reflector) -
     (nearest, farthest)
 }
 
-/// The largest amplitude that `r` can have at the array.
 pub(super) fn largest_amplitude(radar: &Radar, r: &Reflector) -> f64 {
     let half = match radar.is_monostatic() {
         true => radar.aperture_metres() / 2.0,

@@ -100,7 +100,6 @@ pub fn refusal(sum: &Sum) -> Option<&'static str> {
     }
 }
 
-/// Whether f32 can hold the squares of such amplitudes.
 fn holds(amplitude: f64) -> bool {
     amplitude == 0.0 || F32_AMPLITUDES.contains(&amplitude)
 }

@@ -2,11 +2,6 @@
 
 use crate::radar::{Polar, Radar};
 
-/// [`Radar::fold_period_cos`]: the difference of cos(theta) after which directions share a column again.
-pub fn fold_period_cos(radar: &Radar) -> f64 {
-    radar.fold_period_cos()
-}
-
 /// The other directions, as cos(theta) in [-1, 1] from the lowest, whose blobs stand in the same column as that of `cos_theta`.
 pub fn fold_partners(radar: &Radar, cos_theta: f64) -> Vec<f64> {
     let period = radar.fold_period_cos();

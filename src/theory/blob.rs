@@ -7,13 +7,13 @@ use crate::maps::{Aperture, Spectrum};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
 
-const FINE: usize = 8;
+const FINE_PARTS: usize = 8;
 /// Steps per bin in the search of the peak.
 const STEPS_PER_BIN: f64 = 4.0;
-const GOLDEN: f64 = 0.381_966_011_250_105_1;
+const GOLDEN_SECTION: f64 = 0.381_966_011_250_105_1;
 
 /// Weakest side lobe that is reported: weaker ones lie below every floor but the exact one.
-pub const LEAST_LOBE: Decibels = Decibels(-100.0);
+pub const MIN_LOBE: Decibels = Decibels(-100.0);
 
 /// The blob of one reflector on the map of one aperture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +26,7 @@ pub struct Blob {
     pub columns: [f64; 2],
     /// From the peak to nearer and farther ranges, the bins over which it stays above half power.
     pub bins: [f64; 2],
-    /// The first side lobe at lower and at higher columns in the peak's row, where there is one above [`LEAST_LOBE`].
+    /// The first side lobe at lower and at higher columns in the peak's row, where there is one above [`MIN_LOBE`].
     pub side_lobes: [Option<SideLobe>; 2],
 }
 
@@ -42,7 +42,6 @@ pub struct SideLobe {
 struct Profile {
     /// Magnitudes, the highest first, rising columns, all around the map.
     cells: Vec<f64>,
-    /// Column of the highest.
     column: f64,
 }
 
@@ -54,7 +53,6 @@ impl Profile {
         Profile { column: highest as f64 * columns as f64 / cells.len().max(1) as f64, cells }
     }
 
-    /// Magnitude `step` fine columns above or below the highest.
     fn at(&self, step: usize, upward: bool) -> f64 {
         let len = self.cells.len();
         self.cells[if upward { step % len } else { (len - step % len) % len }]
@@ -89,7 +87,7 @@ impl Blob {
     /// The blob of `reflector` on the map of `aperture`; `None` for one without an echo. The radar must be valid ([`Radar::validate`]).
     pub fn of(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Option<Blob> {
         let response = Response::new(radar, reflector, aperture);
-        let spectrum = Spectrum::new(FINE * radar.elements);
+        let spectrum = Spectrum::new(FINE_PARTS * radar.elements);
         let profile = |bin: f64| Profile::new(&response.row(bin), &spectrum, radar.elements);
         let (first, last) = bins_heard(radar, reflector, aperture);
         let highest = |bin: f64| profile(bin).cells[0];
@@ -99,7 +97,7 @@ impl Blob {
         let bin = maximum(around - 1.0 / STEPS_PER_BIN, around + 1.0 / STEPS_PER_BIN, highest);
         let profile = profile(bin);
         let row = response.row(bin);
-        let fine = 1.0 / FINE as f64;
+        let fine = 1.0 / FINE_PARTS as f64;
         let column = maximum(profile.column - fine, profile.column + fine, |column| row.magnitude(column));
         let magnitude = row.magnitude(column);
         if magnitude.is_nan() || magnitude <= 0.0 {
@@ -109,14 +107,14 @@ impl Blob {
         let along_bins = |upward: bool| {
             let sign = if upward { fine } else { -fine };
             let level = magnitude * std::f64::consts::FRAC_1_SQRT_2;
-            let steps = radar.samples / 2 * FINE;
+            let steps = radar.samples / 2 * FINE_PARTS;
             let beyond = (1..steps).find(|i| response.magnitude(bin + sign * *i as f64, column) < level);
             beyond.map_or(radar.samples as f64 / 2.0, |i| (i as f64 - 0.5) * fine)
         };
         let side_lobe = |upward: bool| {
             let (steps, height) = profile.side_lobe(upward)?;
             let level = Decibels(20.0 * (height / magnitude).log10());
-            (level.0 > LEAST_LOBE.0).then_some(SideLobe { columns: steps * fine, level })
+            (level.0 > MIN_LOBE.0).then_some(SideLobe { columns: steps * fine, level })
         };
         Some(Blob {
             peak: MapPlace {
@@ -141,7 +139,7 @@ fn bins_heard(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> (f64,
 /// Where `f` is largest between `low` and `high`, by golden sections.
 fn maximum(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..14 {
-        let (a, b) = (low + GOLDEN * (high - low), high - GOLDEN * (high - low));
+        let (a, b) = (low + GOLDEN_SECTION * (high - low), high - GOLDEN_SECTION * (high - low));
         if f(a) < f(b) { low = a } else { high = b }
     }
     (low + high) / 2.0
@@ -218,7 +216,7 @@ pub(super) mod tests {
         map
     }
 
-    /// Row and column of the simulated map through any place between its cells, that place first, [`FINE`] parts to a cell.
+    /// Row and column of the simulated map through any place between its cells, that place first, [`FINE_PARTS`] parts to a cell.
     struct Cross {
         row: Vec<f64>,
         column: Vec<f64>,
@@ -241,8 +239,8 @@ pub(super) mod tests {
         let over_channels = |n: usize| (0..channels.len()).map(|m| weighted(m, n)).sum::<Complex64>();
         let magnitudes = |cells: Vec<Complex64>| cells.iter().map(|v| v.norm()).collect();
         Cross {
-            row: magnitudes(Spectrum::new(FINE * radar.elements).of((0..channels.len()).map(over_bins))),
-            column: magnitudes(Spectrum::new(FINE * radar.samples).of((0..radar.samples).map(over_channels))),
+            row: magnitudes(Spectrum::new(FINE_PARTS * radar.elements).of((0..channels.len()).map(over_bins))),
+            column: magnitudes(Spectrum::new(FINE_PARTS * radar.samples).of((0..radar.samples).map(over_channels))),
         }
     }
 
@@ -264,7 +262,7 @@ pub(super) mod tests {
         /// Cells to where it falls below `level` on the `side` of the lower (-1) or higher (1) cells.
         fn reach(&self, side: i64, level: f64) -> f64 {
             let beyond = (1..self.half()).find(|i| self.at(side * i) < level);
-            beyond.map_or(self.half() as f64, |i| i as f64 - 0.5) / FINE as f64
+            beyond.map_or(self.half() as f64, |i| i as f64 - 0.5) / FINE_PARTS as f64
         }
 
         /// Holds half-power widths to it, to half a cell. Where it runs level within two percent of half power, any place of that run will do.
@@ -284,7 +282,7 @@ pub(super) mod tests {
             let peak = valley.and_then(|valley| (valley + 1..self.half()).find(|i| at(i + 1) < at(*i)));
             let peak = peak.ok_or_else(|| TestCaseError::fail(format!("{lobe:?}, but none seen")))?;
             let level = 20.0 * (at(peak) / at(0)).log10();
-            let columns = peak as f64 / FINE as f64;
+            let columns = peak as f64 / FINE_PARTS as f64;
             prop_assert!((columns - lobe.columns).abs() <= 0.5, "{lobe:?}, seen {columns} columns off");
             prop_assert!((level - lobe.level.0).abs() < 0.5, "{lobe:?}, seen {level} dB");
             Ok(())
@@ -308,7 +306,8 @@ pub(super) mod tests {
 
         Around { cells: &cross.column, from: 0 }.hold_widths(blob.bins)?;
         // The row in the same fine columns as the prediction, so that both find the same shallow valleys.
-        let whole = MapPlace { column: (blob.peak.column * FINE as f64).round() / FINE as f64, ..blob.peak };
+        let whole =
+            MapPlace { column: (blob.peak.column * FINE_PARTS as f64).round() / FINE_PARTS as f64, ..blob.peak };
         let row = simulated_through(radar, reflector, aperture, whole).row;
         let near = [row.len() - 1, 0, 1];
         let from = near.into_iter().max_by(|a, b| row[*a].total_cmp(&row[*b])).unwrap_or(0);

@@ -50,7 +50,6 @@ fn direction_of(radar: &Radar, range_metres: f64, difference_metres: f64) -> Opt
 #[cfg(test)]
 mod tests {
     use super::super::blob::tests::any_place_of_any_radar;
-    use super::super::fold_period_cos;
     use super::*;
     use crate::bounds::ambiguity;
     use crate::radar::Layout;
@@ -58,7 +57,7 @@ mod tests {
 
     /// The next teeth on either side are where the echoes of both ends correlate most: within half a column, for any radar.
     fn hold(radar: &Radar, place: Polar) -> Result<(), TestCaseError> {
-        let column = fold_period_cos(radar) / radar.elements as f64;
+        let column = radar.fold_period_cos() / radar.elements as f64;
         let spacing = tooth_spacing_cos(radar, place);
         for tooth in comb_teeth(radar, place, 1) {
             let around: Vec<f64> = (-60..=60).map(|i| tooth + f64::from(i) / 120.0 * spacing).collect();
@@ -95,24 +94,6 @@ mod tests {
         #[ignore = "200 radars and places take a while"]
         fn teeth_of_two_hundred_radars_stand_within_half_a_column((radar, place) in any_place_of_a_sparse_radar()) {
             hold(&radar, place)?;
-        }
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(8))]
-
-        /// Teeth are where the echoes of the two ends correlate most, within a tenth of their distance.
-        #[test]
-        fn teeth_stand_where_echoes_are_alike(cos_theta in -0.9..0.9f64, range_metres in 6.0..36.0f64) {
-            let radar = Radar { samples: 128, ..Radar::default() };
-            let place = Polar { range_metres, cos_theta };
-            let spacing = tooth_spacing_cos(&radar, place);
-            for tooth in comb_teeth(&radar, place, 3) {
-                let around: Vec<f64> = (-40..=40).map(|i| tooth + f64::from(i) / 80.0 * spacing).collect();
-                let found = ambiguity(&radar, &Layout::two_ends(&radar), place, &[range_metres], &around).likeness;
-                let highest = (0..around.len()).max_by(|a, b| found[[0, *a]].total_cmp(&found[[0, *b]])).unwrap();
-                prop_assert!((around[highest] - tooth).abs() < 0.1 * spacing, "{tooth}: {}", around[highest]);
-            }
         }
     }
 

@@ -1,6 +1,6 @@
 //! Quantities that follow from a radar's constants alone.
 
-use super::{WindowPattern, fold_period_cos, squint_factor};
+use super::WindowPattern;
 use crate::radar::{Decibels, Radar};
 
 const HALF_POWER: Decibels = Decibels(3.010_299_956_639_812);
@@ -33,7 +33,7 @@ pub struct Consequences {
     /// Largest change of range across the whole array, in bins: beyond one, a blob off broadside migrates through range bins. With a common
     /// transmitter it would be half.
     pub migration_bins: f64,
-    /// Cosine at which a blob stands over the true one ([`squint_factor`]).
+    /// Cosine at which a blob stands over the true one ([`Radar::squint`]).
     pub squint_factor: f64,
 }
 
@@ -53,7 +53,7 @@ impl BeamWidth {
         let all = radar.elements as f64;
         let bins = WindowPattern::new(radar.window, elements).main_lobe_bins(HALF_POWER);
         let columns = bins.map_or(all, |bins| bins * all / elements as f64);
-        let cos_theta = (columns / all * fold_period_cos(radar)).min(2.0);
+        let cos_theta = (columns / all * radar.fold_period_cos()).min(2.0);
         BeamWidth { columns, cos_theta, radians: 2.0 * (cos_theta / 2.0).asin() }
     }
 }
@@ -72,12 +72,12 @@ impl Consequences {
             full_beam: BeamWidth::new(radar, radar.elements),
             end_beam: BeamWidth::new(radar, radar.end_elements),
             grating_columns: radar.elements as f64,
-            grating_cos: fold_period_cos(radar),
-            visible_columns: (2.0 / fold_period_cos(radar) * radar.elements as f64).min(radar.elements as f64),
+            grating_cos: radar.fold_period_cos(),
+            visible_columns: (2.0 / radar.fold_period_cos() * radar.elements as f64).min(radar.elements as f64),
             full_far_field_metres: radar.far_field_metres(),
             end_far_field_metres: radar.plane_beyond_metres(end_aperture),
             migration_bins: radar.aperture_metres() / bin,
-            squint_factor: squint_factor(radar),
+            squint_factor: radar.squint(),
         }
     }
 }

@@ -32,7 +32,7 @@ pub mod response;
 pub mod squint;
 pub mod streak;
 
-pub use aliases::{fold_partners, fold_period_cos, wrap_partners};
+pub use aliases::{fold_partners, wrap_partners};
 pub use blob::{Blob, SideLobe};
 pub use comb::comb_teeth;
 pub use consequences::Consequences;
@@ -41,7 +41,7 @@ pub use overlay::Overlay;
 pub use pattern::WindowPattern;
 pub use phasors::Phasors;
 pub use response::Response;
-pub use squint::{blob_cell, squint_factor};
+pub use squint::blob_cell;
 pub use streak::Streak;
 
 use crate::maps::Aperture;

@@ -9,7 +9,7 @@ use crate::scene::Reflector;
 pub const STREAK: Decibels = Decibels(20.0);
 const TEETH_DRAWN: usize = 3;
 /// Farthest wrap partners, in maximum ranges.
-const WRAPS: f64 = 3.0;
+const WRAPPED_RANGES: f64 = 3.0;
 
 /// Predictions for one reflector, drawn over the map of one aperture.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +32,7 @@ impl Overlay {
     /// The overlay of `reflector` on the map of `aperture`; `None` for one without an echo. The radar must be valid ([`Radar::validate`]).
     pub fn of(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Option<Overlay> {
         let place = radar.polar_of(reflector.x_metres - centre_metres(radar, aperture), reflector.y_metres);
-        let farthest = WRAPS * radar.max_range_metres();
+        let farthest = WRAPPED_RANGES * radar.max_range_metres();
         Some(Overlay {
             place,
             blob: Blob::of(radar, reflector, aperture)?,

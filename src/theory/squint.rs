@@ -10,11 +10,6 @@ use super::{MapPlace, centre_metres};
 use crate::maps::Aperture;
 use crate::radar::Radar;
 
-/// The cosine at which a blob stands over the true cosine of its reflector: 0.974 for table 3.1, 1.013 with the two-way carrier.
-pub fn squint_factor(radar: &Radar) -> f64 {
-    radar.squint()
-}
-
 /// Where the blob of a reflector at (`x_metres`, `y_metres`) stands on the map of an aperture: the range from the aperture's middle,
 /// and the squinted cosine seen from there.
 ///
@@ -29,7 +24,7 @@ pub(super) fn cell_seen_from(radar: &Radar, x_metres: f64, y_metres: f64, elemen
     let polar = radar.polar_of(x_metres - element_x_metres, y_metres);
     MapPlace {
         bin: radar.bin_of_range(polar.range_metres).rem_euclid(radar.samples as f64),
-        column: radar.column_of_cos(polar.cos_theta * squint_factor(radar)),
+        column: radar.column_of_cos(polar.cos_theta * radar.squint()),
     }
 }
 
@@ -41,9 +36,9 @@ mod tests {
     #[test]
     fn table_3_1_squints_by_bandwidth_over_carrier() {
         let radar = Radar::default();
-        assert!((squint_factor(&radar) - (1.0 - 2.0 / 77.0 * 511.0 / 512.0)).abs() < 1e-12);
+        assert!((radar.squint() - (1.0 - 2.0 / 77.0 * 511.0 / 512.0)).abs() < 1e-12);
         let two_way = Radar { carrier: Carrier::TwoWay, ..radar.clone() };
-        assert!((squint_factor(&two_way) - (1.0 + 1.0 / 77.0 * 511.0 / 512.0)).abs() < 1e-12);
+        assert!((two_way.squint() - (1.0 + 1.0 / 77.0 * 511.0 / 512.0)).abs() < 1e-12);
         // Seen on the program's maps: a reflector at cos(theta) = -0.832 has its blob at -0.81.
         let (cos, range) = (-0.832f64, 20.0);
         let blob = blob_cell(&radar, range * cos, range * (1.0 - cos * cos).sqrt(), Aperture::Full);

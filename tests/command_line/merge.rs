@@ -6,24 +6,6 @@ use predicates::str::contains;
 use serde_json::Value;
 use tempfile::TempDir;
 
-#[test]
-fn unlike_rows_are_not_merged() {
-    let folder = folder();
-    let evaluate = |more: &str| format!("evaluate --method baseline --set 1 --count 2 {more}");
-    apertura(&folder, &evaluate("--shard 0/2 --rows thesis.csv")).assert().success();
-    for (more, part) in [
-        ("--shard 1/2 --floor exact --rows other.csv", "floor is thesis in thesis.csv"),
-        ("--shard 1/2 --seed 5 --rows other.csv", "seed is 0 in thesis.csv"),
-        ("--shard 1/2 --carrier two-way --rows other.csv", "carrier is one-way in thesis.csv"),
-        ("--shard 1/2 --thesis-text --rows other.csv", "reading is program in thesis.csv"),
-    ] {
-        apertura(&folder, &evaluate(&format!("{more} --overwrite"))).assert().success();
-        let merge = apertura(&folder, "evaluate --merge thesis.csv other.csv").assert().failure().stdout("");
-        let told = String::from_utf8(merge.get_output().stderr.clone()).unwrap();
-        assert!(told.contains(part) && told.contains("in other.csv"), "{told}");
-    }
-}
-
 /// Rows as they were before they said what made them: the first columns alone.
 pub fn older(folder: &TempDir, name: &str, to: &str) {
     let text = std::fs::read_to_string(folder.path().join(name)).unwrap();

@@ -140,13 +140,3 @@ fn a_full_disk_is_told_in_one_sentence() {
     assert_eq!((done.status.code(), told.lines().count()), (Some(1), 1), "{told}");
     assert!(told.contains("standard output: No space left on device"), "{told}");
 }
-
-#[cfg(target_os = "linux")]
-#[test]
-fn a_missing_display_is_told_in_one_sentence() {
-    let folder = folder();
-    let told = apertura(&folder).assert().success().get_output().stderr.clone();
-    let told = String::from_utf8(told).unwrap();
-    assert!(told.contains("drawing its panels to a picture instead") && told.lines().count() == 1, "{told}");
-    assert!(folder.path().join("apertura.png").exists());
-}

@@ -83,14 +83,6 @@ fn the_command_is_told_the_samples() {
 }
 
 #[test]
-fn a_command_that_fails_is_told_with_its_last_words() {
-    let folder = tempfile::tempdir().unwrap();
-    script(folder.path(), "echo out of memory >&2; exit 7");
-    let failed = apertura(folder.path()).args(["evaluate", "--set", "1", "--count", "2"]).args(COMMAND).assert();
-    failed.failure().stderr(contains("mine: it ended (exit status: 7)").and(contains("out of memory")));
-}
-
-#[test]
 fn a_command_with_the_name_of_a_method_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let baseline = READ.replace("\"mine\"", "\"baseline\"") + "done\n";

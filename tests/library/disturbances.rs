@@ -30,14 +30,3 @@ fn an_interferer_is_heard_where_its_settings_say() {
         assert!((radar().cos_of_column(strongest as f64) - 0.6).abs() < 0.03, "bin {bin}: column {strongest}");
     }
 }
-
-#[test]
-fn it_raises_the_floor_of_the_whole_map() {
-    let points = Scene::of_points([(0.0, 9.0)]);
-    let median = |scene: &Scene| {
-        let signal = simulate(&radar(), scene, Floor::Exact, 0).unwrap();
-        LogMaps::of_signal(&radar(), &signal).full.median()
-    };
-    let disturbed = Scene { disturbances: scene(Interferer::default()).disturbances, ..points.clone() };
-    assert!(median(&disturbed) > median(&points) + 1.0);
-}

@@ -7,7 +7,7 @@ use apertura::maps::{Aperture, LogMap, LogMaps};
 use apertura::radar::{Decibels, End, Polar, Radar, SPEED_OF_LIGHT, WindowFunction};
 use apertura::scene::{Object, Point, Reflector, Scene};
 use apertura::signal::{BeatSignal, Floor, simulate};
-use apertura::theory::{Consequences, Response, WindowPattern, comb_teeth, fold_period_cos};
+use apertura::theory::{Consequences, Response, WindowPattern, comb_teeth};
 
 fn maps(radar: &Radar, scene: &Scene) -> LogMaps {
     LogMaps::of_signal(radar, &simulate(radar, scene, Floor::Exact, 0).unwrap())
@@ -210,7 +210,7 @@ fn a_grating_lobe_is_as_far_away_as_the_lesson_says() {
         let radar = &lesson.steps[step - 1].radar;
         let wavelength = SPEED_OF_LIGHT / (radar.carrier_hz + radar.bandwidth_hz / 2.0);
         assert!((wavelength / (2.0 * radar.element_spacing_metres) - said).abs() < 0.001);
-        assert!((fold_period_cos(radar) - said).abs() < 0.001);
+        assert!((radar.fold_period_cos() - said).abs() < 0.001);
         taught("grating-lobes", &format!("λ / 2d = {said}"));
     }
     let radar = &lesson.steps[2].radar;

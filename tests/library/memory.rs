@@ -7,7 +7,7 @@ use apertura::files::memory::{peak_resident_bytes, reset_peak_resident, resident
 use apertura::maps::archive::write_maps;
 use apertura::methods;
 use apertura::radar::Radar;
-use apertura::reconstruct::Request;
+use apertura::reconstruct::{Fista, Reconstructor, Request};
 use apertura::scene::Scene;
 use apertura::signal::{Floor, simulate};
 use std::process::Command;
@@ -44,6 +44,11 @@ fn child() {
             for floor in [Floor::Thesis, Floor::Exact] {
                 engine.update(&scene, &MapRequest { floor, ..MapRequest::default() }).unwrap();
             }
+        }
+        "candidates" => {
+            let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+            let fista = Fista { candidates: 10_000, iterations: 2, ..Fista::default() };
+            fista.reconstruct(&radar, &ends, &Request::default()).unwrap();
         }
         name => {
             let method = methods.iter().find(|m| m.name() == name).unwrap();
@@ -92,6 +97,13 @@ fn memory_stays_below_what_is_counted() {
         // The samples of the whole array, or one map and its decades.
         check(work, &radar, 8 << 20);
     }
+}
+
+/// Candidates' Gram matrix is bounded at 268 MB; ten thousand would take 1600.
+#[test]
+fn ten_thousand_candidates_fit_into_bounded_memory() {
+    let Some(held) = held("candidates", &Radar::default()) else { return };
+    assert!((200_000_000..600_000_000).contains(&held), "{held} bytes");
 }
 
 #[test]

@@ -4,9 +4,8 @@ use super::off_line::{largest_difference, sample, straight as small};
 use apertura::bounds::cramer_rao;
 use apertura::engine::{Engine, MapRequest};
 use apertura::files::npz::write_npz;
-use apertura::maps::{LogMaps, Normalisation};
 use apertura::methods;
-use apertura::radar::{Antennas, Decibels, Layout, Radar, presets::RadarPreset};
+use apertura::radar::{Antennas, Decibels, Layout, Radar};
 use apertura::reconstruct::found::reconstruct_and_find;
 use apertura::reconstruct::{Detection, NoisePrior, ReconstructError, Request};
 use apertura::recording::{Recording, file};
@@ -112,19 +111,6 @@ fn far_away_pairs_are_the_elements_halfway_between_them() {
 }
 
 #[test]
-fn the_map_of_a_near_point_is_that_of_its_pairs() {
-    let radar = RadarPreset::by_id("cascade-12x16").unwrap().radar.clone();
-    let scene = Scene::of_points([(0.4, 2.0)]);
-    let map = |radar: &Radar| {
-        let maps = LogMaps::of_signal(radar, &simulate(radar, &scene, Floor::Exact, 0).unwrap());
-        maps.full.normalise(Normalisation::DynamicRange(Decibels(30.0))).lambda
-    };
-    let (pairs, alone) = (map(&radar), map(&monostatic(&radar)));
-    let most = pairs.iter().zip(&alone).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    assert!(most > 0.1, "at 2 m the approximation by midpoints can be seen: {most}");
-}
-
-#[test]
 fn bounds_of_far_points_are_those_of_the_midpoints() {
     let radar = small(12, 16);
     let bound = |radar: &Radar, range: f64| {
@@ -198,22 +184,6 @@ fn found(method: &str, recording: &Recording) -> Vec<Detection> {
 /// A radar whose pairs are far apart at the ranges of its points.
 fn near_radar() -> Radar {
     Radar { end_elements: 16, ..small(6, 16) }
-}
-
-#[test]
-fn methods_that_know_pairs_place_a_near_point() {
-    let radar = near_radar();
-    let (x, y) = (0.5f64, 1.9f64);
-    let recording = captured(&radar, &[(x, y)], 0.1, &mut ChaCha8Rng::seed_from_u64(3));
-    let (range, cos) = (x.hypot(y), x / x.hypot(y));
-    // `fista` lists no echoes on few elements.
-    for name in KNOW_PAIRS.into_iter().filter(|name| !["baseline", "fista"].contains(name)) {
-        let found = found(name, &recording);
-        let first = found.first().unwrap_or_else(|| panic!("{name} found nothing"));
-        println!("{name}: {} m, {} of {}", first.range_metres - range, first.cos_theta - cos, found.len());
-        assert!((first.range_metres - range).abs() < 0.05, "{name}: {first:?}, expected {range} m");
-        assert!((first.cos_theta - cos).abs() < 0.02, "{name}: {first:?}, expected {cos}");
-    }
 }
 
 #[test]

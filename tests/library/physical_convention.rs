@@ -9,7 +9,6 @@ use apertura::reconstruct::{NoisePrior, Request};
 use apertura::recording::{Recording, file};
 use apertura::scene::{Reflector, Scene};
 use apertura::signal::{Floor, simulate};
-use apertura::theory;
 use ndarray::Array2;
 use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
@@ -87,7 +86,7 @@ fn physical_blobs_stand_farther_from_broadside() {
         let radar = Radar { bandwidth_hz: BANDWIDTH_HZ, ..radar() }.in_convention(convention);
         let seen = peak_cos(&radar, &scene, radar.bin_of_range(range)) / cos;
         assert!((seen - expected).abs() < 0.2 * (expected - 1.0).abs(), "{convention:?}: {seen}, expected {expected}");
-        assert!((theory::squint_factor(&radar) - expected).abs() < 2e-4, "{convention:?}");
+        assert!((radar.squint() - expected).abs() < 2e-4, "{convention:?}");
     }
 }
 

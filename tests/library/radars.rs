@@ -3,8 +3,7 @@
 use apertura::maps::{LogMaps, Normalisation};
 use apertura::methods;
 use apertura::radar::{Carrier, Decibels, Radar, SPEED_OF_LIGHT};
-use apertura::reconstruct::{Detection, IAA, ReconstructError, Reconstructor, Request, SBL};
-use apertura::recording::presets;
+use apertura::reconstruct::{Detection, ReconstructError, Request};
 use apertura::scene::Scene;
 use apertura::signal::{Floor, simulate};
 use proptest::prelude::*;
@@ -228,37 +227,5 @@ fn an_element_that_measured_nothing_makes_no_ghosts() {
         let found = methods::by_name(name).unwrap().reconstruct(&radar, &ends, &request).unwrap().detections(&radar);
         assert!(begins_with(&found, &radar, &places, (0.1, 0.002)), "{name}: {found:?}");
         assert!(found[2..].iter().all(|d| d.relative_power.0 < -30.0), "{name}: {found:?}");
-    }
-}
-
-/// Degrees from broadside of what `method` finds in `ends`, and decibels below the strongest.
-fn found_degrees(method: &dyn Reconstructor, radar: &Radar, ends: &apertura::signal::TwoEnds) -> Vec<(f64, f64)> {
-    let request = Request { snapshot_range_metres: Some(15.0), ..Request::default() };
-    let found = method.reconstruct(radar, ends, &request).unwrap().detections(radar);
-    assert!(found.iter().all(|d| (d.range_metres - 15.0).abs() < 1e-9));
-    found.into_iter().map(|d| (d.cos_theta.asin().to_degrees(), d.relative_power.0)).collect()
-}
-
-#[test]
-fn twelve_elements_at_either_end_find_what_all_86_see() {
-    let recording = presets::Preset::by_id("cascade-86").unwrap().load().unwrap();
-    let radar = &recording.radar;
-    let whole = Radar { end_elements: 43, ..radar.clone() };
-    let all = recording.signal().unwrap().two_ends(&whole);
-    let few = recording.two_ends();
-    assert_eq!((radar.elements, few.first.nrows(), few.last.nrows()), (86, 12, 12));
-    for method in [IAA, SBL] {
-        let seen = found_degrees(&method, &whole, &all);
-        let found = found_degrees(&method, radar, &few);
-        println!("{}: all {seen:.2?}, 12 + 12 {found:.2?}", method.name());
-        for (list, who) in [(&seen, "all"), (&found, "12 + 12")] {
-            for (expected, within) in [(0.0, 0.1), (6.96, 0.1)] {
-                let near = list.iter().find(|(degrees, _)| (degrees - expected).abs() < within);
-                assert!(near.is_some_and(|(_, db)| *db > -4.0), "{} of {who}: {expected} in {list:.2?}", method.name());
-            }
-            let other =
-                list.iter().find(|(degrees, db)| *db > -8.0 && degrees.abs() > 0.2 && (degrees - 6.96).abs() > 0.2);
-            assert_eq!(other, None, "{} of {who}", method.name());
-        }
     }
 }

@@ -211,34 +211,6 @@ fn a_file_that_does_not_fit_leaves_the_old_one() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no half file stays");
 }
 
-/// A real full disk: a small file system in memory, where this user may mount one.
-#[cfg(target_os = "linux")]
-#[test]
-fn a_full_disk_leaves_the_old_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=64k", "tmpfs"]).arg(folder.path()).output();
-    if !mount.as_ref().is_ok_and(|m| m.status.success()) {
-        return println!("skipped: this user can't mount a file system ({mount:?})");
-    }
-    let path = folder.path().join("scene.toml");
-    let result = std::panic::catch_unwind(|| {
-        file::save(&path, &numbered(3)).unwrap();
-        let message = file::save(&path, &numbered(5000)).unwrap_err().to_string();
-        assert!(message.contains("scene.toml") && message.contains("No space left"), "{message}");
-        assert_eq!(number_of(&file::load(&path).unwrap().scene), 3);
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no half file stays");
-        let mut editor = Editor::of(Document::read(&path).unwrap());
-        editor.edit("edit", None, |scene, _| *scene = numbered(5000).scene);
-        let message = Autosave::claim(&folder.path().join("data")).unwrap().keep_now(&editor).unwrap_err();
-        assert!(message.contains("autosave.toml") && message.contains("No space left"), "{message}");
-    });
-    let gone = Command::new("umount").arg(folder.path()).status();
-    assert!(gone.is_ok_and(|s| s.success()), "the file system can be taken away");
-    if let Err(panic) = result {
-        std::panic::resume_unwind(panic);
-    }
-}
-
 #[cfg(unix)]
 #[test]
 fn a_read_only_folder_is_named() {

@@ -19,7 +19,7 @@ const WARM_UP: usize = 3;
 const SLOW_REPEATS: [usize; 2] = [3, 1];
 
 /// More reflectors than this take the slow algorithms minutes: they are left out.
-const MOST_PLAIN: usize = 1000;
+const MAX_PLAIN_REFLECTORS: usize = 1000;
 
 #[derive(Clone, Copy)]
 struct Job {
@@ -113,7 +113,7 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
     for entrant in &request.entrants {
         if let Entrant::Forced(algorithm) = *entrant
             && !algorithm.is_fast()
-            && count <= MOST_PLAIN
+            && count <= MAX_PLAIN_REFLECTORS
             && request.tasks.contains(&FrontTask::Scratch)
         {
             let plan = Plan { tolerance: 1e-12, ..Plan::cheapest(count, amplitude, BEST_TOLERANCE) };

@@ -66,7 +66,6 @@ pub enum Entrant {
 }
 
 impl Entrant {
-    /// "plan" or the algorithm's name.
     pub fn name(self) -> &'static str {
         match self {
             Entrant::Planned => "plan",
@@ -160,7 +159,6 @@ pub struct LambdaError {
     pub rms: f64,
 }
 
-/// One measurement: a point of the front.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FrontRow {
     pub task: FrontTask,
@@ -177,7 +175,6 @@ pub struct FrontRow {
     pub median_ms: f64,
     /// From the first to the third quartile of the repeats.
     pub spread_ms: f64,
-    /// Fastest of the repeats.
     pub fastest_ms: f64,
     pub repeats: usize,
     /// Largest error of a range cell against the judge (every range bin of a few elements), relative to the largest.

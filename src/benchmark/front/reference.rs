@@ -12,15 +12,14 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Elements whose range profiles are compared with the judge's, spread over the array.
-const JUDGED: usize = 4;
-/// Apertures in the order of every triple of maps.
+const JUDGED_ELEMENTS: usize = 4;
 const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
 /// Picks the floor's noise in every measurement.
 pub(in crate::benchmark) const SEED: u64 = 0;
 
 /// Up to so many reflectors the exact path, phasor by phasor, is what maps are compared with; beyond, its time grows out of hand, and the
 /// phasor split in f64 stands in, which the tests hold to the last bits.
-const MOST_EXACT: usize = 300;
+const MAX_EXACT_REFLECTORS: usize = 300;
 
 pub(in crate::benchmark) struct Reference {
     pub reflectors: Vec<Reflector>,
@@ -33,7 +32,7 @@ pub(in crate::benchmark) struct Reference {
 impl Reference {
     pub fn new(radar: &Radar, reflectors: Vec<Reflector>) -> Self {
         let signal = match reflectors.len() {
-            0..=MOST_EXACT => exact::beat_signal(radar, &reflectors),
+            0..=MAX_EXACT_REFLECTORS => exact::beat_signal(radar, &reflectors),
             many => {
                 let amplitude = crate::signal::plan::amplitude_bound(radar, &reflectors);
                 beat_signal(radar, &reflectors, &Plan::cheapest(many, amplitude, BEST_TOLERANCE))
@@ -49,7 +48,6 @@ impl Reference {
         self.profiles.error(radar, profile, self.profiles.peak())
     }
 
-    /// Errors of three maps drawn by `convention`.
     pub fn lambda_error(&self, convention: MapConvention, maps: [&RangeAngleMap; 3]) -> LambdaError {
         let [fixed_range, thesis] = &self.maps;
         let expected = if convention == MapConvention::THESIS { thesis } else { fixed_range };
@@ -67,11 +65,10 @@ impl JudgedProfiles {
     pub fn new(radar: &Radar, reflectors: &[Reflector]) -> Self {
         let elements: Vec<usize> = elements(radar).collect();
         let signals: Vec<_> = elements.par_iter().map(|n| judge::element_signal(radar, reflectors, *n)).collect();
-        let judged = Array2::from_shape_fn((JUDGED, radar.samples), |(i, n1)| signals[i][n1]);
+        let judged = Array2::from_shape_fn((JUDGED_ELEMENTS, radar.samples), |(i, n1)| signals[i][n1]);
         JudgedProfiles { profiles: channels_range_transform(radar, judged.view()).profiles }
     }
 
-    /// Largest magnitude of a cell.
     pub fn peak(&self) -> f64 {
         self.profiles.iter().fold(0.0, |m: f64, v| m.max(v.norm()))
     }
@@ -103,7 +100,7 @@ pub(in crate::benchmark) fn difference(
 
 fn elements(radar: &Radar) -> impl Iterator<Item = usize> {
     let last = radar.elements.saturating_sub(1);
-    (0..JUDGED).map(move |i| i * last / (JUDGED - 1))
+    (0..JUDGED_ELEMENTS).map(move |i| i * last / (JUDGED_ELEMENTS - 1))
 }
 
 /// White noise of unit variance, made once: making it takes longer than most maps, and every floor scales the same.

@@ -114,26 +114,6 @@ fn an_unknown_place_costs_a_near_reflectors_amplitude() {
 }
 
 #[test]
-fn far_ahead_the_closed_forms_hold() {
-    // Ahead of a symmetric layout range and cos(theta) part: the first is the frequency of a line in M N samples with unknown
-    // phase (Rife and Boorstyn, 1974), the second a phase slope over the elements.
-    let radar = Radar::default();
-    let layout = Layout::two_ends(&radar);
-    let bound = alone(&layout, at(1e4, 0.0));
-    let (elements, samples) = (layout.len() as f64, radar.samples as f64);
-    let frequency = (6.0 / (elements * samples * (samples * samples - 1.0))).sqrt();
-    let range = frequency * radar.max_range_metres() / TAU;
-    assert!((bound.range_metres / range - 1.0).abs() < 1e-3, "{} {range}", bound.range_metres);
-    // The chirp's own phase runs against the carrier's: in the middle of the chirp it takes 2.6 % off the wave number.
-    let wave_number = TAU / radar.wavelength_metres() - TAU * (samples - 1.0) / 2.0 / radar.max_range_metres();
-    let spread: f64 = layout.x_metres.iter().map(|x| x * x).sum();
-    let cos = (1.0 / (2.0 * samples * wave_number * wave_number * spread)).sqrt();
-    assert!((bound.cos_theta / cos - 1.0).abs() < 1e-3, "{} {cos}", bound.cos_theta);
-    assert!((bound.x_metres / (1e4 * cos) - 1.0).abs() < 1e-3, "x is range times cos");
-    assert_eq!(bound.y_metres, bound.range_metres, "y is the range ahead of the array");
-}
-
-#[test]
 fn cartesian_covariance_gives_the_range_bound_back() {
     let bound = alone(&Layout::two_ends(&Radar::default()), at(15.0, 0.6));
     let (cos, sin) = (0.6, 0.8);

@@ -7,10 +7,10 @@ use crate::signal::Algorithm;
 use plotters::prelude::{BLACK, Color, RGBColor, SeriesLabelPosition, ShapeStyle};
 
 /// Errors below this are drawn on the axis.
-const LEAST_ERROR: f64 = 1e-16;
-const MOST_ERROR: f64 = 1e-2;
+const MIN_ERROR: f64 = 1e-16;
+const MAX_ERROR: f64 = 1e-2;
 /// Radius of the dot of the fewest reflectors, pixels.
-const LEAST_DOT: i32 = 4;
+const MIN_DOT_PIXELS: i32 = 4;
 const RING: i32 = 3;
 
 fn colour(entrant: Entrant) -> RGBColor {
@@ -52,7 +52,7 @@ pub fn front(measured: &Front) -> LineChart {
     let mut counts: Vec<usize> = scratch.iter().map(|r| r.reflectors).collect();
     counts.sort_unstable();
     counts.dedup();
-    let errors = LEAST_ERROR..MOST_ERROR;
+    let errors = MIN_ERROR..MAX_ERROR;
     let across = [(errors.start, bare), (errors.end, bare)];
     let mut lines = vec![ChartLine::new(BLACK.mix(0.4), across.into_iter()).named("bare 2-D transform, one thread")];
     let forced = Algorithm::ALL.into_iter().rev().map(Entrant::Forced);
@@ -61,14 +61,14 @@ pub fn front(measured: &Front) -> LineChart {
         for (rank, count) in counts.iter().enumerate() {
             let rows = scratch.iter().filter(|r| r.algorithm == entrant && r.reflectors == *count);
             let dots = rows.map(|r| dot_of(r, &scratch));
-            let points = dots.map(|dot| (dot.signal_error.clamp(LEAST_ERROR, MOST_ERROR), dot.median_ms)).collect();
+            let points = dots.map(|dot| (dot.signal_error.clamp(MIN_ERROR, MAX_ERROR), dot.median_ms)).collect();
             let name = if is_plan { "plan: a ring around what it chose" } else { entrant.name() };
             lines.push(ChartLine {
                 name: (rank == 0).then(|| name.to_owned()),
                 style: ShapeStyle { color: colour(entrant).to_rgba(), filled: !is_plan, stroke_width: 2 },
                 points,
                 is_joined: false,
-                dot: LEAST_DOT + 2 * rank as i32 + if is_plan { RING } else { 0 },
+                dot: MIN_DOT_PIXELS + 2 * rank as i32 + if is_plan { RING } else { 0 },
             });
         }
     }

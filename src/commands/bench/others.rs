@@ -14,7 +14,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-const JUDGED: [usize; 4] = [0, 341, 682, 1023];
+const JUDGED_ELEMENTS: [usize; 4] = [0, 341, 682, 1023];
 /// The tasks, by the name that the script knows, with how the maps are drawn and the error that a sample may have.
 const TASKS: [(&str, MapConvention, f64); 2] =
     [("thesis", MapConvention::THESIS, 1e-12), ("fixed", MapConvention::FIXED_RANGE, 1e-6)];
@@ -96,13 +96,14 @@ impl Reference {
     fn write(radar: &Radar, count: usize, folder: &Path) -> Result<Reference, CommandError> {
         use rayon::prelude::*;
         let reflectors = scattered(count).reflectors();
-        let judged: Vec<_> = JUDGED.par_iter().map(|n| judge::element_signal(radar, &reflectors, *n)).collect();
-        let samples = Array2::from_shape_fn((JUDGED.len(), radar.samples), |(i, n1)| judged[i][n1]);
+        let judged: Vec<_> =
+            JUDGED_ELEMENTS.par_iter().map(|n| judge::element_signal(radar, &reflectors, *n)).collect();
+        let samples = Array2::from_shape_fn((JUDGED_ELEMENTS.len(), radar.samples), |(i, n1)| judged[i][n1]);
         let column = |of: &dyn Fn(usize) -> f64, len: usize| Array1::from_shape_fn(len, of);
         write_npz(&folder.join(format!("{count}.npz")), |out| {
             out.add("x", &column(&|i| reflectors[i].x_metres, count))?;
             out.add("y", &column(&|i| reflectors[i].y_metres, count))?;
-            out.add("elements", &column(&|i| JUDGED[i] as f64, JUDGED.len()))?;
+            out.add("elements", &column(&|i| JUDGED_ELEMENTS[i] as f64, JUDGED_ELEMENTS.len()))?;
             out.add("samples", &samples)
         })
         .map_err(CommandError::failed)?;
@@ -142,7 +143,7 @@ impl Reference {
             let found = engine.range_profile(n).unwrap_or_default();
             judged.iter().zip(found).fold(0.0f64, |m, (a, b)| m.max((a - b).norm()))
         };
-        let worst = JUDGED.into_iter().zip(self.profiles.outer_iter()).map(error).fold(0.0, f64::max);
+        let worst = JUDGED_ELEMENTS.into_iter().zip(self.profiles.outer_iter()).map(error).fold(0.0, f64::max);
         Ok(Row {
             tool: "apertura".to_owned(),
             reflectors: self.count,
@@ -153,7 +154,6 @@ impl Reference {
 }
 
 impl Equal {
-    /// Prints a table a task.
     pub fn print(&self) -> Result<(), CommandError> {
         for task in &self.tasks {
             print(&format!(

@@ -41,7 +41,6 @@ impl Against {
     }
 }
 
-/// Adds them to a set's table.
 pub fn write(against: &[Against], text: &mut String) {
     for pair in against {
         let _ = writeln!(text, "{}", pair.told);

@@ -43,7 +43,6 @@ pub fn write_within<'a>(methods: impl IntoIterator<Item = (&'a String, &'a Estim
     }
 }
 
-/// Adds a line a method to a table.
 pub fn write<'a>(reports: impl IntoIterator<Item = &'a DoubtReport>, text: &mut String) {
     for DoubtReport { method, rows, failures, least_squared_error, area, standard_error } in reports {
         let area = area.map_or("-".to_owned(), |area| format!("{area:.3}"));

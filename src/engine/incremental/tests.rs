@@ -4,7 +4,6 @@ use crate::maps::{Aperture, LogMaps, Normalisation, RangeAngleMap};
 use crate::radar::{DecibelMilliwatts, Decibels, End};
 use crate::scene::{Object, Point};
 use crate::signal::{self, Floor};
-use proptest::prelude::*;
 
 mod bodies;
 
@@ -22,6 +21,19 @@ fn said(frame: &EngineFrame, stage: EngineStage) -> String {
         StageOutcome::Computed(what) => what.clone(),
         StageOutcome::Skipped(why) => (*why).to_owned(),
     }
+}
+
+/// Largest difference between the range profiles that two engines hold, relative to the other's largest cell.
+fn profile_difference(engine: &Engine, other: &Engine) -> f64 {
+    let (mut worst, mut peak) = (0.0f64, 0.0f64);
+    for element in 0..engine.radar().elements {
+        let [own, others] = [engine, other].map(|of| of.range_profile(element).unwrap());
+        for (a, b) in own.iter().zip(others) {
+            worst = worst.max((a - b).norm());
+            peak = peak.max(b.norm());
+        }
+    }
+    if worst == 0.0 { 0.0 } else { worst / peak }
 }
 
 #[test]
@@ -66,15 +78,6 @@ fn a_disturbed_scene_is_computed_as_commands_do() {
     assert_eq!(*disturbed.ends.unwrap(), signal.two_ends(&small()));
     let after = engine.update(&plain, &MapRequest::default()).unwrap();
     assert!(!after.settled && lambda(&after) == before);
-}
-
-#[test]
-fn hidden_maps_are_not_computed() {
-    let mut engine = Engine::new(small());
-    let wanted = MapRequest { first: false, full: false, ends: false, ..MapRequest::default() };
-    let frame = engine.update(&Scene::of_points([(0.3, 1.0)]), &wanted).unwrap();
-    assert!(frame.first.is_none() && frame.full.is_none() && frame.ends.is_none() && frame.last.is_some());
-    assert!(!frame.report.ran(EngineStage::FullMap));
 }
 
 #[test]
@@ -223,23 +226,8 @@ fn taking_away_a_giant_leaves_nothing_of_it() {
     engine.update(&without, &wanted).unwrap();
     let mut fresh = Engine::new(small());
     fresh.update(&without, &wanted).unwrap();
-    let off = engine.profile_difference(&fresh).unwrap();
+    let off = profile_difference(&engine, &fresh);
     assert!(off < 1e-12, "{off:e}");
-}
-
-#[test]
-fn dragging_evaluates_the_dragged_object_alone() {
-    let mut engine = Engine::new(small());
-    let mut scene = Scene::of_points((0..30).map(|i| (f64::from(i) * 0.05 - 0.7, 1.0)));
-    let wanted = MapRequest::default();
-    engine.update(&scene, &wanted).unwrap();
-    for step in 0..3 {
-        scene.objects[7].translate(0.01, 0.0);
-        let frame = engine.update(&scene, &wanted).unwrap();
-        let what = said(&frame, EngineStage::Signal);
-        let expected = if step == 0 { "2 of 30" } else { "1 of 30" };
-        assert!(what.starts_with(expected), "step {step}: {what}");
-    }
 }
 
 /// Over no floor too, where quiet echoes are taken as more than they are.
@@ -371,28 +359,4 @@ fn results_do_not_depend_on_the_number_of_threads() {
         pool.install(|| lambda(&Engine::new(small()).update(&scene, &MapRequest::default()).unwrap()))
     };
     assert_eq!(with(1).lambda, with(3).lambda);
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-
-    /// Of any scene, cells are in [0, 1] and none is NaN.
-    #[test]
-    fn cells_are_always_in_range(
-        points in prop::collection::vec((-50.0..50.0f64, -50.0..50.0f64, -30.0..30.0f64), 0..8),
-        snr in 0.0..200.0f64,
-        which in 0..4,
-    ) {
-        let objects = points
-            .into_iter()
-            .map(|(x_metres, y_metres, decades)| Object::Point(Point { reflectivity: 10f64.powf(decades), ..Point::new(x_metres, y_metres) }))
-            .collect();
-        let scene = Scene { objects, ..Scene::default() };
-        let floor = [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(snr)), Floor::Thesis][which as usize];
-        let normalisation = if which == 3 { Normalisation::DynamicRange(Decibels(80.0)) } else { Normalisation::MinMax };
-        let frame = Engine::new(small()).update(&scene, &MapRequest { floor, normalisation, ..MapRequest::default() }).unwrap();
-        for aperture in [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full] {
-            prop_assert!(frame.map(aperture).unwrap().lambda.lambda.iter().all(|v| (0.0..=1.0).contains(v)));
-        }
-    }
 }

@@ -33,13 +33,6 @@ fn the_shards_of_a_campaign_add_up_to_it() {
 }
 
 #[test]
-fn a_method_given_twice_does_not_count_twice() {
-    let sets = [SceneSet::Generated(Kind::Set1)];
-    let error = Campaign::default().run(&sets, &[&Baseline, &Baseline], &Task::default(), |_| ()).unwrap_err();
-    assert!(error.to_string().contains("\"baseline\" is given twice"), "{error}");
-}
-
-#[test]
 fn the_rest_of_a_campaign_is_what_lacked() {
     let sets = [SceneSet::Generated(Kind::Set1)];
     let methods: [&dyn Reconstructor; 2] = [&Baseline, &BARTLETT];

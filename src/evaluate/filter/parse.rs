@@ -228,7 +228,6 @@ impl Parser<'_> {
     }
 }
 
-/// A term that can be reckoned with.
 fn numeric(term: Term, start: usize) -> Result<Term, FilterError> {
     match term {
         Term::Text(_) | Term::Column(_, Column::Method) => error(start, "expected a number, found a name"),

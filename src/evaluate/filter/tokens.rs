@@ -91,7 +91,6 @@ pub(super) fn tokens(text: &[char]) -> Result<Vec<(usize, Token)>, FilterError> 
     Ok(found)
 }
 
-/// Whether a name may begin with `c`.
 pub(super) fn is_name(c: char) -> bool {
     c.is_alphabetic() || c == '_'
 }

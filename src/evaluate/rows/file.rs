@@ -275,15 +275,6 @@ mod tests {
     }
 
     #[test]
-    fn tables_from_before_anything_else_was_kept_are_read() {
-        let table = with_columns(&text(&[row("1", 0, "live")]), &names()[..18]);
-        let (found, merged, echoes, echoes_found) = (None, None, None, None);
-        let without =
-            Row { found, merged, echoes, echoes_found, doubt: None, within_doubt: None, ..row("1", 0, "live") };
-        assert_eq!(read_rows(table.as_bytes()).unwrap(), [without]);
-    }
-
-    #[test]
     fn a_last_line_without_an_end_is_left_out() {
         let whole = text(&[row("1", 0, "live"), row("1", 1, "live")]);
         let first = whole.lines().take(2).map(|line| line.len() + 1).sum::<usize>();

@@ -80,7 +80,6 @@ pub struct RowFile {
     out: csv::Writer<File>,
     /// The rows that were there already.
     pub present: Vec<Row>,
-    /// In the order of the file.
     appended: Vec<Row>,
     failed: Option<io::Error>,
 }

@@ -5,19 +5,19 @@ use crate::evaluate::shard::Shard;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-const MOST_NAMED: usize = 8;
-const MOST_SHARDS: u32 = 1000;
+const MAX_NAMED_SCENES: usize = 8;
+const MAX_SHARDS: u32 = 1000;
 
-/// Scenes of a set that no row of a method is of.
+/// Scenes of a set without a row by a method.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Lack {
     /// Name of the set.
     pub set: String,
     /// Name of the method.
     pub method: String,
-    /// How many scenes lack.
+    /// Number of scenes without a row.
     pub missing: u32,
-    /// How many the whole run has.
+    /// Number of scenes in the whole run.
     pub of: u32,
     first: Vec<u32>,
     shard: Option<String>,
@@ -39,8 +39,7 @@ impl fmt::Display for Lack {
     }
 }
 
-/// What lacks of the runs that `rows` are of. Of rows that don't say what their whole run was, gaps are found
-/// between the scenes that are there.
+/// Scenes that the runs of `rows` are missing: by the whole run that rows record, or else the gaps below their highest scene number.
 pub fn lacks(rows: &[Row]) -> Vec<Lack> {
     let mut present: BTreeMap<(&str, &str), BTreeSet<u32>> = BTreeMap::new();
     let mut runs: Vec<(&Text, &Text)> = Vec::new();
@@ -91,8 +90,8 @@ impl Lack {
         let is_whole = |shard: &Shard| {
             missing < of && missing == shard.size(of) && !there.range(..of).any(|index| shard.contains(*index))
         };
-        let shard = shards.iter().filter(|s| s.of() <= MOST_SHARDS).flat_map(|shard| shard.all()).find(is_whole);
-        let first = (0..of).filter(|index| !there.contains(index)).take(MOST_NAMED).collect();
+        let shard = shards.iter().filter(|s| s.of() <= MAX_SHARDS).flat_map(|shard| shard.all()).find(is_whole);
+        let first = (0..of).filter(|index| !there.contains(index)).take(MAX_NAMED_SCENES).collect();
         let shard = shard.map(|shard| shard.to_string());
         Some(Lack { set: set.to_owned(), method: method.to_owned(), missing, of, first, shard })
     }

@@ -101,6 +101,8 @@ fn difference(a: &Row, b: &Row) -> Option<Column> {
 mod tests {
     use super::super::tests::{made, row};
     use super::*;
+    use crate::radar::Carrier;
+    use crate::scene::generate::Reading;
     use crate::signal::Floor;
 
     #[test]
@@ -129,7 +131,13 @@ mod tests {
             "floor is thesis in a.csv (scene 0 of set 1, seed 7, by live) and exact in b.csv (scene 1 of set 1, seed 7, by nomp); \
              expected rows that were made alike"
         );
-        assert!(refused(first(), Row { seed: 8, ..made("1", 1, "live") }).starts_with("seed is 7 in a.csv"));
+        for (other, told) in [
+            (Row { seed: 8, ..first() }, "seed is 7 in a.csv"),
+            (Row { carrier: Some(Carrier::TwoWay), ..first() }, "carrier is one-way in a.csv"),
+            (Row { reading: Some(Reading::Text), ..first() }, "reading is program in a.csv"),
+        ] {
+            assert!(refused(first(), Row { index: 1, ..other }).starts_with(told), "{told}");
+        }
         let weighted = |weights: &str, method: &str| Row { weights: weights.into(), ..made("1", 0, method) };
         let weights = refused(weighted("aa", "live"), weighted("bb", "live"));
         assert!(weights.starts_with("weights is aa in a.csv") && weights.contains("bb in b.csv"), "{weights}");

@@ -7,5 +7,5 @@ mod paired;
 mod shared;
 
 pub use doubt::{DoubtArea, ONE_OF, RocArea};
-pub use paired::{MOST_RESAMPLED, Paired, RESAMPLES};
+pub use paired::{MAX_RESAMPLED_SCENES, Paired, RESAMPLES};
 pub use shared::{DISCOVERY_RATE, Rule, SharedTrait, USUALLY_BAD, rules};

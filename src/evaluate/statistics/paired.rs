@@ -12,7 +12,7 @@ pub const RESAMPLES: usize = 2000;
 
 /// Up to so many scenes the interval is that of the bootstrap. With more the mean's own distribution is normal enough, and drawing would take
 /// longer than a frame of the window.
-pub const MOST_RESAMPLED: usize = 5000;
+pub const MAX_RESAMPLED_SCENES: usize = 5000;
 
 /// Distance of the ends of an interval of 95 % from the mean, in standard deviations of a normal distribution.
 const NORMAL_95: f64 = 1.96;
@@ -25,7 +25,7 @@ pub struct Paired {
     /// Mean over these scenes of the first method's squared error less the second's.
     pub difference: f64,
     /// Interval of 95 % of that mean: the paired percentile bootstrap over scenes (Efron and Tibshirani, An Introduction to the Bootstrap,
-    /// 1993, chapter 13), or the normal one for more than [`MOST_RESAMPLED`] scenes.
+    /// 1993, chapter 13), or the normal one for more than [`MAX_RESAMPLED_SCENES`] scenes.
     pub interval: [f64; 2],
     /// Scenes in which the first finds every object and the second does not.
     pub first_alone: usize,
@@ -95,7 +95,7 @@ fn finds_all(row: &Row) -> bool {
 }
 
 fn interval(values: &[f64]) -> [f64; 2] {
-    if values.len() > MOST_RESAMPLED {
+    if values.len() > MAX_RESAMPLED_SCENES {
         let Estimate { mean, standard_error, .. } = Estimate::of(values);
         return [-1.0, 1.0].map(|side| mean + side * NORMAL_95 * standard_error);
     }
@@ -154,7 +154,7 @@ mod tests {
     fn many_scenes_have_nearly_the_same_interval_either_way() {
         let mut rng = ChaCha8Rng::seed_from_u64(2);
         let normal = Normal::new(0.0, 1.0).unwrap();
-        let values: Vec<f64> = (0..=MOST_RESAMPLED).map(|_| normal.sample(&mut rng)).collect();
+        let values: Vec<f64> = (0..=MAX_RESAMPLED_SCENES).map(|_| normal.sample(&mut rng)).collect();
         let [of_all, of_fewer] = [interval(&values), interval(&values[1..])];
         let width = |[low, high]: [f64; 2]| high - low;
         assert!((width(of_all) / width(of_fewer) - 1.0).abs() < 0.06, "{of_all:?}, {of_fewer:?}");

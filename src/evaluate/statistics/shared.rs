@@ -13,7 +13,7 @@ pub const DISCOVERY_RATE: f64 = 0.05;
 pub const USUALLY_BAD: &str = "missed > 0 | merged > 0 | wrong_tooth > 0 | ghosts > 0";
 
 /// What is known of a scene before a method answers. A rule about an answer's own figures would say that bad rows are bad.
-const BEFOREHAND: [Column; 8] = [
+const SCENE_COLUMNS: [Column; 8] = [
     Column::Set,
     Column::Method,
     Column::Objects,
@@ -86,7 +86,7 @@ pub fn rules(rows: &[Row], bad: &str) -> Result<SharedTrait, FilterError> {
     let half = |odd: bool| -> Vec<usize> { (0..rows.len()).filter(|&i| (rows[i].index % 2 == 1) == odd).collect() };
     let table = Table { rows, bad: &is_bad, factorials: Factorials::up_to(rows.len()) };
     let [suggesting, testing] = [half(false), half(true)];
-    let suggested: Vec<Rule> = BEFOREHAND.into_iter().filter_map(|column| table.best(column, &suggesting)).collect();
+    let suggested: Vec<Rule> = SCENE_COLUMNS.into_iter().filter_map(|column| table.best(column, &suggesting)).collect();
     let tested: Vec<Rule> = suggested.iter().filter_map(|rule| table.judged(&rule.text, &names, &testing)).collect();
     Ok(SharedTrait {
         bad: is_bad.iter().filter(|b| **b).count(),

@@ -11,13 +11,13 @@ pub(super) const BATCH: u32 = 8;
 /// Part of the candidates that is drawn anywhere within reach.
 const ANYWHERE_PART: f64 = 1.0 / 3.0;
 /// First steps, as a part of the reach.
-pub(super) const FIRST_STEP: f64 = 0.25;
+pub(super) const FIRST_STEP_PART: f64 = 0.25;
 /// Smallest steps, as a part of the reach.
-pub(super) const LEAST_STEP: f64 = 1e-3;
+pub(super) const MIN_STEP_PART: f64 = 1e-3;
 /// Echoes of an object change by at most this, dB of amplitude, either way.
-const MOST_LOUDER_DB: f64 = 6.0;
+const MAX_GAIN_CHANGE_DB: f64 = 6.0;
 /// Bodies turn by at most this much, either way, degrees.
-const MOST_TURN_DEGREES: f64 = 45.0;
+const MAX_TURN_DEGREES: f64 = 45.0;
 /// A repair has reached its whole reach after half of so many tries, however many are left.
 const GROWTH_STEPS: u32 = 256;
 /// How often other noise is drawn.
@@ -55,17 +55,17 @@ impl WorseningSearch {
         for (object, home) in scene.objects.iter_mut().zip(&start.objects).filter(|(object, _)| object.can_turn()) {
             let part = if anywhere { rng.random_range(-1.0..=1.0) } else { state.step * normal(rng) };
             let now = object.turned_degrees(home);
-            let then = (now + MOST_TURN_DEGREES * part).clamp(-MOST_TURN_DEGREES, MOST_TURN_DEGREES);
+            let then = (now + MAX_TURN_DEGREES * part).clamp(-MAX_TURN_DEGREES, MAX_TURN_DEGREES);
             object.turn(then - now);
         }
         // All louder together changes nothing.
         if scene.objects.len() > 1 {
             for (object, home) in scene.objects.iter_mut().zip(&start.objects) {
-                let db = MOST_LOUDER_DB * rng.random_range(-1.0..=1.0);
+                let db = MAX_GAIN_CHANGE_DB * rng.random_range(-1.0..=1.0);
                 let part = if anywhere { 1.0 } else { state.step };
                 let at_home = home.reflectivity();
                 let now = object.reflectivity() * 10f64.powf(part * db / 20.0);
-                let most = 10f64.powf(MOST_LOUDER_DB / 20.0);
+                let most = 10f64.powf(MAX_GAIN_CHANGE_DB / 20.0);
                 let (low, high) = (at_home.abs() / most, at_home.abs() * most);
                 object.set_reflectivity(now.abs().clamp(low, high).copysign(at_home));
             }

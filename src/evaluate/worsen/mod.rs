@@ -15,7 +15,7 @@ use super::trial::Trial;
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::{Scene, SceneError};
 use crate::task::Task;
-use candidate::{BATCH, FIRST_STEP, LEAST_STEP, WorseningState, distance};
+use candidate::{BATCH, FIRST_STEP_PART, MIN_STEP_PART, WorseningState, distance};
 use rayon::prelude::*;
 
 /// A repaired squared error is at most this part of the one at the start.
@@ -47,7 +47,7 @@ impl WorseningSearch {
         };
         let trial = self.trial(scene)?;
         let start = self.finding(scene, scene, &trial, method, &request, 0)?;
-        let mut state = WorseningState { step: FIRST_STEP, path: vec![start], tries: 0 };
+        let mut state = WorseningState { step: FIRST_STEP_PART, path: vec![start], tries: 0 };
         while state.tries < self.tries && !self.is_reached(&state) && on_try(state.tries, &state.path) {
             let batch = state.tries..(state.tries + BATCH).min(self.tries);
             state.tries = batch.end;
@@ -75,7 +75,7 @@ impl WorseningSearch {
             let factor = if better { 1.6 } else { 0.8 };
             // So near the worst there is nothing worse: look farther around it again.
             let next = state.step * factor;
-            state.step = if next < LEAST_STEP { FIRST_STEP } else { next.min(FIRST_STEP) };
+            state.step = if next < MIN_STEP_PART { FIRST_STEP_PART } else { next.min(FIRST_STEP_PART) };
         }
         on_try(state.tries, &state.path);
         Ok(WorseningOutcome { path: state.path, tries: state.tries })

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 const TABLE: &str = "document";
 
-/// Where a document belongs.
+/// The table of an autosaved scene that names its own file, or the recording that it is laid over.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Kept {
@@ -23,10 +23,11 @@ struct Kept {
     recording: Option<String>,
 }
 
+/// What the files are to hold: the document on screen where it is unsaved, and unsaved ones before it.
 #[derive(Debug, Clone)]
 pub(super) struct StartPlan {
     on_screen: Option<Document>,
-    /// Those that another took the place of, the latest last.
+    /// Unsaved documents that another replaced on screen, the latest last.
     left: Vec<Document>,
 }
 
@@ -51,6 +52,7 @@ impl StartPlan {
     }
 }
 
+/// A document that another replaced on screen, and the file of its copy.
 #[derive(Debug)]
 struct Behind {
     path: PathBuf,

@@ -79,18 +79,6 @@ fn a_named_document_comes_back_under_its_name_with_its_radar() {
 }
 
 #[test]
-fn a_saved_document_leaves_no_copy() {
-    let folder = tempfile::tempdir().unwrap();
-    let (data, path) = (folder.path().join("data"), folder.path().join("a.toml"));
-    let mut autosave = Autosave::claim(&data).unwrap();
-    let mut editor = edited(street());
-    autosave.keep_now(&editor).unwrap();
-    editor.save(&path).unwrap();
-    autosave.keep_now(&editor).unwrap();
-    assert_eq!(names(&data), [""; 0]);
-}
-
-#[test]
 fn a_start_with_a_file_keeps_the_unsaved_scene() {
     let folder = tempfile::tempdir().unwrap();
     let (data, path) = (folder.path().join("data"), folder.path().join("asked.toml"));
@@ -121,19 +109,6 @@ fn a_start_with_a_file_keeps_the_unsaved_scene() {
 }
 
 #[test]
-fn the_first_start_with_a_file_is_one_undo_from_the_scene() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("asked.toml");
-    file::save(&path, &SceneFile::default()).unwrap();
-    let restored = Restored { on_screen: Some(edited(street()).document().clone()), ..Restored::default() };
-    let mut editor = Editor::start(restored, Some(Document::read(&path).unwrap()), Document::default());
-    assert!(editor.scene().objects.is_empty());
-    assert!(editor.undo());
-    assert_eq!((editor.scene(), editor.left().len()), (edited(street()).scene(), 0));
-    assert_eq!(editor.document().title(), "A street •", "the scene's own name");
-}
-
-#[test]
 fn unreadable_copies_are_set_aside() {
     let folder = tempfile::tempdir().unwrap();
     Autosave::claim(folder.path()).unwrap().keep_now(&edited(street())).unwrap();
@@ -142,14 +117,6 @@ fn unreadable_copies_are_set_aside() {
     assert!(restored.on_screen.is_some() && restored.left.is_empty());
     assert_eq!(restored.problems.len(), 1);
     assert_eq!(names(folder.path()), ["autosave.behind-7.broken-1.txt", "autosave.toml"]);
-}
-
-#[test]
-fn a_copy_of_an_earlier_program_is_read() {
-    let folder = tempfile::tempdir().unwrap();
-    file::save(&folder.path().join("autosave.toml"), &presets::default_scene()).unwrap();
-    let back = found(folder.path()).on_screen.unwrap();
-    assert_eq!((back.scene(), back.title()), (street().scene(), "A street •".to_owned()));
 }
 
 #[test]

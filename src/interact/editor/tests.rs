@@ -89,14 +89,6 @@ fn an_edit_after_undo_forgets_what_was_undone() {
     assert!(!e.redo());
 }
 
-#[test]
-fn bad_text_changes_nothing() {
-    let mut e = editor();
-    let before = e.scene().clone();
-    assert!(e.paste("kind = 3").is_err());
-    assert!(Arc::ptr_eq(&before, e.scene()));
-}
-
 /// A folder with `a.toml` (one point) and `b.toml` (two points before 64 elements), and their whole paths.
 fn two_files() -> (TempDir, PathBuf, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
@@ -174,17 +166,6 @@ fn saving_under_another_name_moves_the_document() {
     e.save(&a).unwrap();
     e.open("open", Document::read(&a).unwrap());
     assert_eq!((count(&a), e.document().title()), (2, "a.toml".to_owned()));
-}
-
-#[test]
-fn one_file_opened_twice_is_known_by_what_it_holds() {
-    let (_folder, a, _) = two_files();
-    let mut e = Editor::of(Document::read(&a).unwrap());
-    e.open("open", Document::read(&a).unwrap());
-    e.add(Object::Point(Point::new(5.0, 5.0)));
-    e.save(&a).unwrap();
-    while e.undo() {}
-    assert_eq!(e.document().title(), "a.toml •", "the file has a point more");
 }
 
 #[test]

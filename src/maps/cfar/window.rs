@@ -10,6 +10,7 @@ use std::ops::Range;
 #[derive(Debug, Clone, Copy)]
 pub struct Window {
     guard: [usize; 2],
+    /// Guard and training cells together.
     reach: [usize; 2],
 }
 
@@ -20,7 +21,6 @@ impl Window {
         Window { guard, reach }
     }
 
-    /// The rows of a map that stand at most `side` from `bin`.
     fn rows(bin: usize, side: usize, bins: usize) -> Range<usize> {
         bin.saturating_sub(side)..(bin + side + 1).min(bins)
     }
@@ -31,6 +31,7 @@ impl Window {
         (all - guarded) * (2 * self.reach[1] + 1) + guarded * 2 * (self.reach[1] - self.guard[1])
     }
 
+    /// The rows of training cells, each with whether it also holds guard cells.
     fn training_rows(&self, bin: usize, bins: usize) -> impl Iterator<Item = (usize, bool)> + use<> {
         let guarded = Self::rows(bin, self.guard[0], bins);
         Self::rows(bin, self.reach[0], bins).map(move |row| (row, guarded.contains(&row)))

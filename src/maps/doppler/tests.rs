@@ -202,26 +202,3 @@ fn a_scene_that_can_not_be_simulated_is_told() {
     let still = scene(vec![moving(0.0, 9.0, [1.0, 0.0])]);
     assert!(range_doppler_for(&task, &radar, &still, Floor::Exact, 0).is_err());
 }
-
-/// 128 chirps of the table's radar, several objects, over noise: `cargo test --lib follows_a_drag -- --nocapture`.
-#[test]
-fn a_map_of_128_chirps_follows_a_drag() {
-    let radar = Radar { chirps: 128, ..Radar::default() };
-    let objects = (0..8).map(|i| moving(f64::from(i) - 4.0, 10.0 + f64::from(i), [f64::from(i), -5.0])).collect();
-    let scene = scene(objects);
-    let _warm = map(&radar, &scene, Floor::Thesis);
-    let start = std::time::Instant::now();
-    let samples = simulate_chirps(&radar, &scene, Floor::Thesis, 3).unwrap();
-    let simulated = start.elapsed();
-    let map = RangeDopplerMap::of(&radar, samples);
-    let all = start.elapsed();
-    println!("8 moving points, 128 chirps of 8 elements and 512 samples: {simulated:?} to simulate, {all:?} in all");
-    assert!(map.power.iter().all(|v| v.is_finite()) && all.as_secs_f64() < 5.0);
-    // Where a body moves, what it hides is worked out anew for every chirp.
-    let mut street = crate::scene::presets::Preset::by_id("street-of-things").unwrap().load().unwrap().scene;
-    let body = street.objects.iter_mut().find(|o| matches!(o, Object::Box(_))).unwrap();
-    *body.velocity_mut()[1] = -8.0;
-    let start = std::time::Instant::now();
-    let _bodies = self::map(&radar, &street, Floor::Thesis);
-    println!("the street of things with one box that moves: {:?}", start.elapsed());
-}

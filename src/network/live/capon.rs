@@ -1,7 +1,7 @@
 //! The Capon spectrum of every range row of one end, forward-backward smoothed (Pillai and Kwon 1989): with next to no noise it tells apart
 //! reflectors that the end's own beam cannot.
 
-use super::grid::{FINE, cosine};
+use super::grid::{FINE_COLUMNS, cosine};
 use crate::signal::simd::powers::logarithm;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use ndarray::ArrayView2;
@@ -29,7 +29,7 @@ type Complexes = ComplexLanes<f64, ROWS_AT_ONCE>;
 impl Capon {
     pub(super) fn new(elements: usize) -> Self {
         let subarray = SUBARRAYS.into_iter().find(|n| 3 * n <= 2 * elements).unwrap_or(1);
-        let phases = |lag: usize| (0..FINE).map(move |k| PI * lag as f64 * cosine(k, FINE));
+        let phases = |lag: usize| (0..FINE_COLUMNS).map(move |k| PI * lag as f64 * cosine(k, FINE_COLUMNS));
         let of = |lag| [phases(lag).map(|p| p.cos() as f32).collect(), phases(lag).map(|p| p.sin() as f32).collect()];
         Capon { lags: (0..subarray).map(of).collect() }
     }
@@ -37,8 +37,8 @@ impl Capon {
     /// log10 amplitude `[rows, 256]` of the spectrum of each row of `z` `[rows, elements]`.
     pub(super) fn decades(&self, z: ArrayView2<'_, Complex64>) -> Vec<f32> {
         let (rows, elements) = z.dim();
-        let mut out = vec![0.0f32; rows * FINE];
-        out.par_chunks_mut(ROWS_AT_ONCE * FINE).enumerate().for_each(|(chunk, out)| {
+        let mut out = vec![0.0f32; rows * FINE_COLUMNS];
+        out.par_chunks_mut(ROWS_AT_ONCE * FINE_COLUMNS).enumerate().for_each(|(chunk, out)| {
             let mut heard = vec![Complexes::zero(); elements];
             for (lane, row) in (chunk * ROWS_AT_ONCE..rows).take(ROWS_AT_ONCE).enumerate() {
                 for (element, v) in heard.iter_mut().zip(z.row(row)) {
@@ -73,7 +73,7 @@ impl<const N: usize> Kernel for Spectra<'_, N> {
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let (power, lags) = inverse_lags::<FMA, N>(self.elements);
-        for (lane, out) in self.out.chunks_exact_mut(FINE).enumerate() {
+        for (lane, out) in self.out.chunks_exact_mut(FINE_COLUMNS).enumerate() {
             out.fill(0.0);
             for (lag, [cos, sin]) in lags.iter().zip(self.lags) {
                 let (re, im) = (lag.re.0[lane] as f32, lag.im.0[lane] as f32);

@@ -1,6 +1,6 @@
 //! The coarse features: each end's beams, the same on the grid that the array's centre sees, and their phases.
 
-use super::grid::{COARSE, COARSE_CHANNELS, LEAST_ROWS, cosine};
+use super::grid::{COARSE_CHANNELS, COARSE_COLUMNS, MIN_ROWS, cosine};
 use super::registration::Registration;
 use crate::radar::{End, Radar, hann};
 use crate::signal::simd::powers::logarithm;
@@ -13,15 +13,13 @@ use std::f64::consts::PI;
 #[derive(Debug)]
 pub(super) struct Coarse {
     rows: usize,
-    /// The centre's grid from either end.
-    centre: [Registration<COARSE>; 2],
+    centre: [Registration<COARSE_COLUMNS>; 2],
     /// `[rows, 64]`: what makes the phase of a reflector's cells one and the same, see [`even_phases`].
     even: Vec<Complex64>,
     /// `[elements, 64]`: windowed steering vectors.
     beams: Array2<Complex64>,
 }
 
-/// What is said of one end.
 #[derive(Debug)]
 struct Seen {
     /// `[rows, 64]` log10 amplitude.
@@ -42,7 +40,7 @@ impl Coarse {
         let [first, last] = profiles;
         let (first, last) = rayon::join(|| self.seen(first), || self.seen(last));
         let both = [first, last];
-        let plane = self.rows * COARSE;
+        let plane = self.rows * COARSE_COLUMNS;
         let mut coarse = vec![0.0; COARSE_CHANNELS * plane];
         let (magnitudes, rest) = coarse.split_at_mut(2 * plane);
         let (registered, rest) = rest.split_at_mut(2 * plane);
@@ -55,7 +53,7 @@ impl Coarse {
             });
             let (cosines, sines) = steps[2 * e * plane..2 * (e + 1) * plane].split_at_mut(plane);
             rows_of(cosines).zip(rows_of(sines)).for_each(|((row, cosines), (_, sines))| {
-                let of = |row: usize| &seen.phase[row * COARSE..(row + 1) * COARSE];
+                let of = |row: usize| &seen.phase[row * COARSE_COLUMNS..(row + 1) * COARSE_COLUMNS];
                 let before = of((row + self.rows - 1) % self.rows);
                 let steps = of(row).iter().zip(before).map(|(here, before)| here * before.conj());
                 cosines
@@ -72,7 +70,7 @@ impl Coarse {
     fn seen(&self, profiles: &Array2<Complex64>) -> Seen {
         let beams = profiles.dot(&self.beams).into_raw_vec_and_offset().0;
         let strongest = beams.iter().map(|v| v.norm_sqr()).fold(1e-300, f64::max).sqrt().recip();
-        let plane = self.rows * COARSE;
+        let plane = self.rows * COARSE_COLUMNS;
         let zeros = || vec![Complex32::default(); plane];
         let mut seen = Seen { magnitude: vec![0.0; plane], phase: zeros(), even: zeros() };
         Simd::chosen().run(Look { beams: &beams, even: &self.even, strongest, seen: &mut seen });
@@ -82,7 +80,7 @@ impl Coarse {
     /// Cosine and sine of twice the phase between the two ends' maps, both registered on the centre's grid: one colour for every
     /// cell of a reflector, another for the next reflector. Twice, because side lobes change their sign.
     fn fill_phase_between(&self, both: &[Seen; 2], planes: &mut [f32]) {
-        let (cosines, sines) = planes.split_at_mut(self.rows * COARSE);
+        let (cosines, sines) = planes.split_at_mut(self.rows * COARSE_COLUMNS);
         rows_of(cosines).zip(rows_of(sines)).for_each(|((row, cosines), (_, sines))| {
             let [first, last] = [0, 1].map(|e| self.centre[e].row(&both[e].even, row));
             for ((cos, sin), (a, b)) in cosines.iter_mut().zip(sines).zip(first.zip(last)) {
@@ -97,7 +95,7 @@ impl Coarse {
 }
 
 fn rows_of(plane: &mut [f32]) -> impl IndexedParallelIterator<Item = (usize, &mut [f32])> {
-    plane.par_chunks_mut(COARSE).with_min_len(LEAST_ROWS).enumerate()
+    plane.par_chunks_mut(COARSE_COLUMNS).with_min_len(MIN_ROWS).enumerate()
 }
 
 struct Look<'a> {
@@ -117,7 +115,7 @@ impl Kernel for Look<'_> {
         let cells = self.beams.iter().zip(self.even);
         for (((v, factor), magnitude), (phase, even)) in cells.zip(magnitude).zip(phase.iter_mut().zip(even)) {
             let power = v.norm_sqr();
-            *magnitude = 0.5 * logarithm((power as f32).max(LEAST_POWER));
+            *magnitude = 0.5 * logarithm((power as f32).max(MIN_POWER));
             *phase = narrow(v * (power.sqrt() + 1e-300).recip());
             *even = narrow(v * factor * self.strongest);
         }
@@ -125,22 +123,24 @@ impl Kernel for Look<'_> {
 }
 
 /// Less than any sample's rounding leaves, and more than the least f32.
-const LEAST_POWER: f32 = 1e-36;
+const MIN_POWER: f32 = 1e-36;
 
 /// `[rows, 64]` factors that take out of a map's phase what changes from cell to cell within one reflector's blob: the phases of mid-chirp and of
 /// (half an element off) the end's middle; the half lets the angle axis close, the phase at cos(theta) = -1 and 1 being the same.
 fn even_phases(radar: &Radar) -> Vec<Complex64> {
     let (rows, elements) = (radar.samples, radar.end_elements);
     let row = |r: usize| PI * (rows - 1) as f64 / rows as f64 * r as f64;
-    let column = |k: usize| PI * (elements / 2) as f64 * cosine(k, COARSE);
-    (0..rows * COARSE).map(|i| Complex64::from_polar(1.0, row(i / COARSE) + column(i % COARSE))).collect()
+    let column = |k: usize| PI * (elements / 2) as f64 * cosine(k, COARSE_COLUMNS);
+    (0..rows * COARSE_COLUMNS)
+        .map(|i| Complex64::from_polar(1.0, row(i / COARSE_COLUMNS) + column(i % COARSE_COLUMNS)))
+        .collect()
 }
 
 /// Hann-windowed steering vectors of 64 beams over the elements of an end, scaled as the transform of the whole array.
 fn beams(radar: &Radar) -> Array2<Complex64> {
     let window = hann(radar.end_elements);
     let scale = (radar.elements as f64).sqrt();
-    Array2::from_shape_fn((radar.end_elements, COARSE), |(m, k)| {
-        Complex64::from_polar(window[m] / scale, -PI * m as f64 * cosine(k, COARSE))
+    Array2::from_shape_fn((radar.end_elements, COARSE_COLUMNS), |(m, k)| {
+        Complex64::from_polar(window[m] / scale, -PI * m as f64 * cosine(k, COARSE_COLUMNS))
     })
 }

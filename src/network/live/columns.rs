@@ -28,7 +28,6 @@ impl ColumnTaps {
         (elements != COLUMNS).then(|| ColumnTaps { taps: (0..elements).map(tap).collect() })
     }
 
-    /// Fills a row of the array from one of the network.
     pub(super) fn fill(&self, wide: &[f32; COLUMNS], row: &mut [f32]) {
         for (to, Tap { pair: [low, high], part }) in row.iter_mut().zip(&self.taps) {
             *to = wide[*low] * (1.0 - part) + wide[*high] * part;

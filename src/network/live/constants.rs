@@ -42,7 +42,6 @@ pub(super) fn cosine_scale(radar: &Radar) -> f64 {
     radar.cos_of_column(0.0).abs() * Radar::default().squint() / radar.squint()
 }
 
-/// The samples of an end as the thesis' convention has them.
 pub(super) fn in_thesis_convention(radar: &Radar, mut samples: Array2<Complex64>) -> Array2<Complex64> {
     if radar.carrier == Carrier::TwoWay {
         samples.invert_axis(Axis(1));

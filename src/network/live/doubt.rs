@@ -1,7 +1,8 @@
-//! How far off the live network expects its map to be: a small head on its picture that learned from its errors.
+//! How far off the live network expects its map to be: a small head, trained on the network's errors, gives each cell's expected error in
+//! Lambda as a power of ten.
 
 use super::columns::ColumnTaps;
-use super::grid::{COARSE, COLUMNS, FINE};
+use super::grid::{COARSE_COLUMNS, COLUMNS, FINE_COLUMNS};
 use super::planes::{Plane, rectified};
 use super::reading::LiveLayers;
 use super::winograd::{Conv3x3, Results};
@@ -14,20 +15,21 @@ use ndarray::Array2;
 use rayon::prelude::*;
 
 const PREFIX: &str = "doubt.";
-/// Numbers that the head says of a coarse cell.
-const DOUBTS_PER_CELL: usize = FINE / COARSE;
-const COLUMNS_PER_DOUBT: usize = COLUMNS / FINE;
+/// Exponents that the head gives for each coarse cell of the network's picture.
+const DOUBTS_PER_CELL: usize = FINE_COLUMNS / COARSE_COLUMNS;
+/// Columns of the map that share one exponent.
+const COLUMNS_PER_DOUBT: usize = COLUMNS / FINE_COLUMNS;
 
-/// Decades between which what is said of a cell counts.
+/// Limits of a cell's exponent.
 const CELL_DECADES: [f32; 2] = [-4.0, 0.0];
-/// How far the decades that are one for all cells of a scene may go.
+/// The largest amount by which the scene's exponent, added to those of all its cells, raises or lowers them.
 const SCENE_DECADES: f64 = 0.5;
 
 /// The head's weights.
 #[derive(Debug)]
 pub struct DoubtHead {
     conv1: Conv3x3,
-    /// What it says of the cells of a coarse one, and after these the coarse cell's part of what it says of the scene.
+    /// The exponents of a coarse cell, and as the last output the coarse cell's part of the scene's exponent.
     conv2: Packed,
 }
 
@@ -40,7 +42,7 @@ impl DoubtHead {
         let Some([hidden, ..]) = file.shape(&format!("{name}.weight")) else { return Ok(None) };
         let (hidden, layers) = (*hidden, LiveLayers { file });
         let [mut weights, mut bias] = layers.tensors(&format!("{PREFIX}conv2"), &[DOUBTS_PER_CELL, hidden, 1, 1])?;
-        // What is linear in the mean over the cells is the mean of what is linear in each.
+        // The scene's exponent is linear in the mean over the cells, hence the mean of one output in each cell.
         let [of_scene, constant] = layers.tensors(&format!("{PREFIX}scene"), &[1, hidden])?;
         weights.extend(of_scene);
         bias.extend(constant);
@@ -50,26 +52,27 @@ impl DoubtHead {
         }))
     }
 
-    /// What it says of a picture, for columns by `taps`, where they are not the network's.
+    /// The expected error of each cell of a map of `columns` columns, from the network's picture; `taps` interpolate where the map's columns
+    /// are not the network's.
     pub(super) fn read(&self, picture: &Plane, taps: Option<&ColumnTaps>, columns: usize) -> RangeAngleMap {
         let (rows, lanes) = (picture.h, self.conv2.output());
-        let mut said = vec![0.0; rows * COARSE * lanes];
+        let mut exponents = vec![0.0; rows * COARSE_COLUMNS * lanes];
         let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&picture.data[row * line.len()..][..line.len()]);
         let simd = Simd::chosen();
         let heads = |results: Results, out: &mut [f32]| {
             let sums = results.sums();
             sums.iter_mut().for_each(|v| *v = rectified(*v));
-            self.conv2.line(simd, sums, COARSE, COARSE, out);
+            self.conv2.line(simd, sums, COARSE_COLUMNS, COARSE_COLUMNS, out);
         };
-        self.conv1.run([rows, COARSE], read, &mut said, heads);
-        let of_scene = mean(said.chunks_exact(lanes).map(|cell| cell[DOUBTS_PER_CELL]))
+        self.conv1.run([rows, COARSE_COLUMNS], read, &mut exponents, heads);
+        let of_scene = mean(exponents.chunks_exact(lanes).map(|cell| cell[DOUBTS_PER_CELL]))
             .clamp(-SCENE_DECADES, SCENE_DECADES) as f32;
         let [least, most] = CELL_DECADES;
         let mut error = Array2::zeros((rows, columns));
         let lines = error.as_slice_mut().unwrap_or_default().par_chunks_mut(columns);
-        lines.zip(said.par_chunks(COARSE * lanes)).for_each(|(line, said)| {
-            let mut fine = [0.0; FINE];
-            for (to, cell) in fine.chunks_exact_mut(DOUBTS_PER_CELL).zip(said.chunks_exact(lanes)) {
+        lines.zip(exponents.par_chunks(COARSE_COLUMNS * lanes)).for_each(|(line, exponents)| {
+            let mut fine = [0.0; FINE_COLUMNS];
+            for (to, cell) in fine.chunks_exact_mut(DOUBTS_PER_CELL).zip(exponents.chunks_exact(lanes)) {
                 to.copy_from_slice(&cell[..DOUBTS_PER_CELL]);
             }
             each(&mut fine, |v| power_of_ten(v.clamp(least, most) + of_scene).min(1.0));
@@ -95,11 +98,9 @@ mod tests {
     use super::*;
     use crate::network::live::LiveConfig;
     use crate::network::live::engine::{LiveEngine, LiveScratch};
-    use crate::network::live::features::FeatureExtractor;
     use crate::network::live::grid::ROWS;
+    use crate::network::live::twin_tests::heard;
     use crate::radar::Radar;
-    use crate::scene::Reflector;
-    use crate::signal::exact;
 
     // `training/reference.py` writes these files.
     /// Weights of a tiny network that has the head.
@@ -112,16 +113,8 @@ mod tests {
     fn doubt_of(weights: &[u8], reference: &WeightFile) -> Option<RangeAngleMap> {
         let config = LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 };
         let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &config.into()).unwrap();
-        let radar = Radar::default();
-        let points = reference.tensor("points", &[3, 2]).unwrap();
-        let reflectors: Vec<Reflector> = points
-            .chunks(2)
-            .map(|p| Reflector { x_metres: p[0].into(), y_metres: p[1].into(), reflectivity: 1.0 })
-            .collect();
-        let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
-        let input = FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap();
         let mut scratch = LiveScratch::default();
-        engine.forward(&input, &mut scratch);
+        engine.forward(&heard(&Radar::default(), reference, 1.0).1, &mut scratch);
         engine.doubt(&scratch)
     }
 
@@ -129,9 +122,9 @@ mod tests {
     fn the_head_agrees_with_its_twin() {
         let reference = WeightFile::parse("reference", REFERENCE).unwrap();
         let found = doubt_of(WEIGHTS, &reference).unwrap().lambda;
-        let expected = reference.tensor("doubt", &[ROWS / 16, FINE / 4]).unwrap();
+        let expected = reference.tensor("doubt", &[ROWS / 16, FINE_COLUMNS / 4]).unwrap();
         for (i, expected) in expected.iter().enumerate() {
-            let [row, column] = [i / (FINE / 4) * 16, i % (FINE / 4) * 4 * COLUMNS_PER_DOUBT];
+            let [row, column] = [i / (FINE_COLUMNS / 4) * 16, i % (FINE_COLUMNS / 4) * 4 * COLUMNS_PER_DOUBT];
             let gap = (found[[row, column]] - expected).abs();
             assert!(
                 gap < 1e-4 && found[[row, column]] == found[[row, column + COLUMNS_PER_DOUBT - 1]],

@@ -3,11 +3,13 @@
 //! [`super::module`] is what trains and what this is tested against; this is what runs during a drag.
 
 use super::columns::ColumnTaps;
-use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, WIDE_COLUMNS};
+use super::config::{DECODER_CHANNELS, FOLD, INPUT_CHANNELS, WIDE_COLUMNS};
 use super::constants::{SPACING_AT, window_of};
 use super::doubt::DoubtHead;
 use super::features::LiveInput;
-use super::grid::{COARSE, COARSE_CHANNELS, COLUMNS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
+use super::grid::{
+    COARSE_CHANNELS, COARSE_COLUMNS, COLUMNS, CONSTANTS, FINE_CHANNELS, FINE_COLUMNS, ROW_CHANNELS, SCALARS,
+};
 use super::lobes::WindowLobes;
 use super::planes::{Plane, PlaneBlock, rectified};
 use super::reading::{CELLS, LiveLayers};
@@ -21,9 +23,8 @@ use crate::signal::simd::powers::{each, logarithm, power_of_ten};
 use rayon::prelude::*;
 use std::ops::Range;
 
-const FOLD: usize = FINE / COARSE;
 const _: () = assert!(FOLD == CELLS && COLUMNS_PER_FINE == CELLS, "layers that spread a cell do so over four");
-const COLUMNS_PER_FINE: usize = COLUMNS / FINE;
+const COLUMNS_PER_FINE: usize = COLUMNS / FINE_COLUMNS;
 
 /// What the network says about one scene, in decades above the samples' gain.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,7 +103,7 @@ impl LiveEngine {
             widen: layers.widened("widen.conv", c0, DECODER_CHANNELS)?,
             fine1: layers.conv("fine1.conv", [DECODER_CHANNELS + FINE_CHANNELS; 2], config.fine)?,
             fine2: layers.small("fine2", config.fine, 2 * COLUMNS_PER_FINE, 1)?,
-            row_sources: layers.small("row_sources", c0, WIDE_COLUMNS / COARSE, 1)?,
+            row_sources: layers.small("row_sources", c0, WIDE_COLUMNS / COARSE_COLUMNS, 1)?,
             lobes: WindowLobes::all(file, *rows)?,
             scalar1: layers.linear("scalar1", [2 * c3 + SCALARS + CONSTANTS, CONSTANTS], 64)?,
             scalar2: layers.linear("scalar2", [64, 0], 2)?,
@@ -135,9 +136,9 @@ impl LiveEngine {
         assert!(input.rows.len() == ROW_CHANNELS * rows, "an input of {} rows", input.rows.len() / ROW_CHANNELS);
         let scalars = input.scalars.map(|v| (v + 8.0) / 3.0);
         let LiveScratch { hidden, level, upward, .. } = s;
-        level[0].reset(rows, COARSE, self.stem.output());
+        level[0].reset(rows, COARSE_COLUMNS, self.stem.output());
         let read = |row: usize, line: &mut [f32]| read_input(input, &scalars, row, line);
-        self.stem.run([rows, COARSE], read, &mut level[0].data, |results, out| results.put(out));
+        self.stem.run([rows, COARSE_COLUMNS], read, &mut level[0].data, |results, out| results.put(out));
         for k in 0..4 {
             if k > 0 {
                 let (above, below) = level.split_at_mut(k);
@@ -162,20 +163,20 @@ impl LiveEngine {
         }
         let top = &mut level[0];
         top.rectify();
-        s.sources.reset(rows, COARSE, self.row_sources.output());
-        convolve(&self.row_sources, &top.data, COARSE, COARSE, &mut s.sources.data);
-        hidden.reset(rows, COARSE, self.widen.output());
+        s.sources.reset(rows, COARSE_COLUMNS, self.row_sources.output());
+        convolve(&self.row_sources, &top.data, COARSE_COLUMNS, COARSE_COLUMNS, &mut s.sources.data);
+        hidden.reset(rows, COARSE_COLUMNS, self.widen.output());
         let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&top.data[row * line.len()..][..line.len()]);
-        self.widen.run([rows, COARSE], read, &mut hidden.data, |results, out| results.put(out));
-        s.heads.reset(rows, FINE, self.fine2.output());
+        self.widen.run([rows, COARSE_COLUMNS], read, &mut hidden.data, |results, out| results.put(out));
+        s.heads.reset(rows, FINE_COLUMNS, self.fine2.output());
         let simd = Simd::chosen();
         let heads = |results: Results, out: &mut [f32]| {
             let sums = results.sums();
             sums.iter_mut().for_each(|v| *v = rectified(*v));
-            self.fine2.line(simd, sums, FINE, FINE, out);
+            self.fine2.line(simd, sums, FINE_COLUMNS, FINE_COLUMNS, out);
         };
         let read = |row: usize, line: &mut [f32]| read_fine(&input.fine, hidden, row, line);
-        self.fine1.run([rows, FINE], read, &mut s.heads.data, heads);
+        self.fine1.run([rows, FINE_COLUMNS], read, &mut s.heads.data, heads);
         let floor = input.scalars[0] + floor_shift;
         // Weights without kernels for this window were not trained for it.
         let kernels = self.lobes.get(window_of(&input.constants)).unwrap_or(&self.lobes[0]);
@@ -221,8 +222,8 @@ fn decode(
     let floor = 10f32.powf(floor);
     let read = |block: usize, sources: &mut [f32]| {
         for (row, out) in sources.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {
-            let cells =
-                heads.data[(row * FINE + block * PRODUCT_COLUMNS / COLUMNS_PER_FINE) * heads.c..].chunks_exact(heads.c);
+            let cells = heads.data[(row * FINE_COLUMNS + block * PRODUCT_COLUMNS / COLUMNS_PER_FINE) * heads.c..]
+                .chunks_exact(heads.c);
             spread_out(cells, COLUMNS_PER_FINE..2 * COLUMNS_PER_FINE, out);
         }
     };
@@ -233,8 +234,8 @@ fn decode(
         for (at, (line, wide)) in lines.chunks_exact_mut(COLUMNS).zip(wide.chunks_exact_mut(WIDE_COLUMNS)).enumerate() {
             let row = chunk * ROWS_AT_ONCE + at;
             fill_line(heads, lobes, row, line);
-            let cells = sources.data[row * COARSE * sources.c..].chunks_exact(sources.c);
-            spread_out(cells, 0..WIDE_COLUMNS / COARSE, wide);
+            let cells = sources.data[row * COARSE_COLUMNS * sources.c..].chunks_exact(sources.c);
+            spread_out(cells, 0..WIDE_COLUMNS / COARSE_COLUMNS, wide);
             for (w, [a, b, c, d, e, f, g, h]) in wide.iter_mut().zip(line.as_chunks::<COLUMNS_PER_SOURCE>().0) {
                 // Pair by pair, which a processor does side by side.
                 *w += (((a + b) + (c + d)) + ((e + f) + (g + h))) / COLUMNS_PER_SOURCE as f32;
@@ -275,7 +276,7 @@ fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>
 
 /// What the cells of a row show by themselves, and the side lobes in range.
 fn fill_line(heads: &Plane, lobes: &[f32], row: usize, line: &mut [f32]) {
-    spread_out(heads.data[row * FINE * heads.c..].chunks_exact(heads.c), 0..COLUMNS_PER_FINE, line);
+    spread_out(heads.data[row * FINE_COLUMNS * heads.c..].chunks_exact(heads.c), 0..COLUMNS_PER_FINE, line);
     for (block, line) in line.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {
         let lobes = &lobes[(block * heads.h + row) * PRODUCT_COLUMNS..][..PRODUCT_COLUMNS];
         line.iter_mut().zip(lobes).for_each(|(sum, lobe)| *sum += lobe);
@@ -286,12 +287,11 @@ fn decades_in(v: f32) -> f32 {
     ((v + 3.0) / 3.0).clamp(-4.0, 2.0)
 }
 
-/// The fine features of a row as the network takes them.
-fn fine_in(fine: &[f32], row: usize) -> [[f32; FINE]; FINE_CHANNELS] {
+fn fine_in(fine: &[f32], row: usize) -> [[f32; FINE_COLUMNS]; FINE_CHANNELS] {
     std::array::from_fn(|channel| {
-        let at = (channel * (fine.len() / FINE_CHANNELS / FINE) + row) * FINE;
-        let mut line = [0.0; FINE];
-        line.iter_mut().zip(&fine[at..at + FINE]).for_each(|(to, v)| *to = decades_in(*v));
+        let at = (channel * (fine.len() / FINE_CHANNELS / FINE_COLUMNS) + row) * FINE_COLUMNS;
+        let mut line = [0.0; FINE_COLUMNS];
+        line.iter_mut().zip(&fine[at..at + FINE_COLUMNS]).for_each(|(to, v)| *to = decades_in(*v));
         line
     })
 }
@@ -306,7 +306,7 @@ fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mu
     let rows = input.rows.len() / ROW_CHANNELS;
     let fine = fine_in(&input.fine, row);
     let coarse: [&[f32]; COARSE_CHANNELS] =
-        std::array::from_fn(|c| &input.coarse[(c * rows + row) * COARSE..][..COARSE]);
+        std::array::from_fn(|c| &input.coarse[(c * rows + row) * COARSE_COLUMNS..][..COARSE_COLUMNS]);
     let mut whole_row = [0.0; INPUT_CHANNELS - ROWS_AT];
     for (c, v) in whole_row[..ROW_CHANNELS].iter_mut().enumerate() {
         let of_row = input.rows[c * rows + row];
@@ -317,7 +317,7 @@ fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mu
     whole_row[CONSTANTS_AT - ROWS_AT..].copy_from_slice(&input.constants);
     whole_row[GRID_AT - ROWS_AT..][..2]
         .copy_from_slice(&[range / (rows / 2) as f32 - 1.0, (range + 4.0).log10() - 2.0]);
-    let half = (COARSE / 2) as f32;
+    let half = (COARSE_COLUMNS / 2) as f32;
     for (k, cell) in line.chunks_exact_mut(INPUT_CHANNELS).enumerate() {
         for (to, plane) in cell.chunks_exact_mut(FOLD).zip(&fine) {
             to.copy_from_slice(&plane[k * FOLD..(k + 1) * FOLD]);
@@ -334,7 +334,7 @@ fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mu
 /// A line of the fine convolution's input: the widened picture spread over four times the columns, beside the fine features.
 fn read_fine(fine: &[f32], widened: &Plane, row: usize, line: &mut [f32]) {
     let fine = fine_in(fine, row);
-    let cells = widened.data[row * COARSE * widened.c..]
+    let cells = widened.data[row * COARSE_COLUMNS * widened.c..]
         .chunks_exact(widened.c)
         .flat_map(|cell| cell.chunks_exact(DECODER_CHANNELS));
     for (k, (cell, from)) in line.chunks_exact_mut(DECODER_CHANNELS + FINE_CHANNELS).zip(cells).enumerate() {

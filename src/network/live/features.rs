@@ -14,7 +14,7 @@ use super::capon::Capon;
 use super::coarse::Coarse;
 use super::constants::{constants, in_thesis_convention};
 use super::floors::{measured_floor, rounding_floor};
-use super::grid::{CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
+use super::grid::{CONSTANTS, FINE_CHANNELS, FINE_COLUMNS, ROW_CHANNELS, SCALARS};
 use super::registration::Registration;
 use crate::maps::windowed_range_transform;
 use crate::radar::{End, Radar, hann};
@@ -25,7 +25,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Fewest samples of a chirp whose pictures can be registered.
-pub const LEAST_SAMPLES: usize = 8;
+pub const MIN_CHIRP_SAMPLES: usize = 8;
 
 /// The tensors of one scene, row-major.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,8 +55,8 @@ pub struct FeatureExtractor {
     constants: [f32; CONSTANTS],
     window: Vec<f64>,
     /// Fine grid: centre from either end, first from last, last from first.
-    fine_centre: [Registration<FINE>; 2],
-    fine_other: [Registration<FINE>; 2],
+    fine_centre: [Registration<FINE_COLUMNS>; 2],
+    fine_other: [Registration<FINE_COLUMNS>; 2],
     coarse: Coarse,
     capon: Capon,
 }
@@ -64,12 +64,12 @@ pub struct FeatureExtractor {
 impl FeatureExtractor {
     /// Tables for `radar`.
     /// # Errors
-    /// [`ReconstructError::Unusable`] for ends of a single element or fewer than [`LEAST_SAMPLES`] samples.
+    /// [`ReconstructError::Unusable`] for ends of a single element or fewer than [`MIN_CHIRP_SAMPLES`] samples.
     pub fn new(radar: &Radar) -> Result<Self, ReconstructError> {
-        if radar.end_elements < 2 || radar.samples < LEAST_SAMPLES {
+        if radar.end_elements < 2 || radar.samples < MIN_CHIRP_SAMPLES {
             let (elements, samples) = (radar.end_elements, radar.samples);
             let reason = format!(
-                "its input needs ends of 2 elements or more and {LEAST_SAMPLES} samples or more; this radar has {elements} and {samples}"
+                "its input needs ends of 2 elements or more and {MIN_CHIRP_SAMPLES} samples or more; this radar has {elements} and {samples}"
             );
             return Err(ReconstructError::Unusable { method: "live", reason });
         }
@@ -111,7 +111,7 @@ impl FeatureExtractor {
             .map(|e| windowed_range_transform(&self.radar, e.view(), &self.window).profiles.reversed_axes());
 
         let capon = profiles.each_ref().map(|p| self.capon.decades(p.view()));
-        let mut fine = vec![0.0; FINE_CHANNELS * self.radar.samples * FINE];
+        let mut fine = vec![0.0; FINE_CHANNELS * self.radar.samples * FINE_COLUMNS];
         self.fill_fine(&capon, &mut fine);
         Ok(LiveInput {
             fine,
@@ -124,11 +124,11 @@ impl FeatureExtractor {
     }
 
     fn fill_fine(&self, capon: &[Vec<f32>; 2], fine: &mut [f32]) {
-        let plane = self.radar.samples * FINE;
+        let plane = self.radar.samples * FINE_COLUMNS;
         let (agree, rest) = fine.split_at_mut(plane);
         let (either, rest) = rest.split_at_mut(plane);
         let (first, last) = rest.split_at_mut(plane);
-        let rows = |plane| <[f32]>::par_chunks_mut(plane, FINE);
+        let rows = |plane| <[f32]>::par_chunks_mut(plane, FINE_COLUMNS);
         rows(agree).zip(rows(either)).zip(rows(first).zip(rows(last))).enumerate().for_each(
             |(row, ((agree, either), (first, last)))| {
                 let [centre_first, centre_last] = [0, 1].map(|e| self.fine_centre[e].row(&capon[e], row));
@@ -139,7 +139,7 @@ impl FeatureExtractor {
                     .zip(both)
                     .for_each(|((agree, either), (a, b))| (*agree, *either) = (a.min(b), a.max(b)));
                 for (e, to) in [first, last].into_iter().enumerate() {
-                    let own = &capon[e][row * FINE..];
+                    let own = &capon[e][row * FINE_COLUMNS..];
                     let other = self.fine_other[e].row(&capon[1 - e], row);
                     to.iter_mut().zip(own).zip(other).for_each(|((to, own), other)| *to = own.min(other));
                 }
@@ -167,7 +167,7 @@ fn row_features(profiles: &[Array2<Complex64>; 2]) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::live::grid::COARSE;
+    use crate::network::live::grid::COARSE_COLUMNS;
     use crate::radar::Convention;
     use crate::scene::Reflector;
     use crate::signal::exact;
@@ -175,9 +175,9 @@ mod tests {
     /// Row of the strongest cell of a coarse picture.
     fn row(input: &LiveInput, channel: usize) -> f64 {
         let rows = input.rows.len() / ROW_CHANNELS;
-        let plane = &input.coarse[channel * rows * COARSE..][..rows * COARSE];
+        let plane = &input.coarse[channel * rows * COARSE_COLUMNS..][..rows * COARSE_COLUMNS];
         let strongest = plane.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(i, _)| i);
-        (strongest / COARSE) as f64
+        (strongest / COARSE_COLUMNS) as f64
     }
 
     #[test]
@@ -218,7 +218,10 @@ mod tests {
             let reflectors = [Reflector { x_metres: 0.5 * range, y_metres: 0.75f64.sqrt() * range, reflectivity: 1.0 }];
             let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
             let input = FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap();
-            assert_eq!((input.fine.len(), input.coarse.len()), (4 * samples * FINE, 10 * samples * COARSE));
+            assert_eq!(
+                (input.fine.len(), input.coarse.len()),
+                (4 * samples * FINE_COLUMNS, 10 * samples * COARSE_COLUMNS)
+            );
             assert!(input.fine.iter().chain(&input.coarse).chain(&input.rows).all(|v| v.is_finite()));
             for channel in [2, 3] {
                 let found = row(&input, channel);

@@ -1,14 +1,14 @@
-//! What minimal filtering makes of its inputs before the products, and of the products after them: four neighbouring outputs of three taps
-//! cost six products (F(4, 3) of Lavin and Gray 2016).
+//! The transforms of Winograd's minimal filtering F(4, 3) (Lavin and Gray 2016): four neighbouring outputs of a filter with three taps cost
+//! six products.
 
 use crate::network::kernels::vector::{LANES, Loop, Vector};
 
 /// Neighbouring outputs of one filter.
 pub(super) const OUTPUTS: usize = 4;
-/// Products that they cost, and inputs that they see.
+/// Products that they cost; they see as many inputs.
 pub(super) const PRODUCTS: usize = 6;
 
-/// What each product makes of a kernel's three taps.
+/// The kernel's transform: a row for each product, a column for each tap.
 pub(super) const OF_TAPS: [[f32; 3]; PRODUCTS] = [
     [1.0 / 4.0, 0.0, 0.0],
     [-1.0 / 6.0, -1.0 / 6.0, -1.0 / 6.0],
@@ -18,7 +18,7 @@ pub(super) const OF_TAPS: [[f32; 3]; PRODUCTS] = [
     [0.0, 0.0, 1.0],
 ];
 
-/// The product that alone, in each output, makes of a number that number.
+/// The product that enters each output with factor 1, so that a bias added there reaches all four.
 pub(super) const OF_BIAS: usize = 1;
 
 /// Groups of vectors that lie side by side, as many in what is read as in what is written.
@@ -48,7 +48,7 @@ impl Groups {
     }
 }
 
-/// Six neighbouring inputs to the factors of their products.
+/// The input's transform: six neighbouring inputs to the factors of the six products.
 pub(super) struct Spread<'a> {
     pub groups: Groups,
     pub from: [&'a [f32]; PRODUCTS],
@@ -84,7 +84,7 @@ impl Loop for Spread<'_> {
     }
 }
 
-/// Six products to the four outputs, the second of which lies `apart` from the first.
+/// The output's transform: six products to four outputs, each `apart` values from the one before.
 pub(super) struct Gather<'a> {
     pub groups: Groups,
     pub from: [&'a [f32]; PRODUCTS],

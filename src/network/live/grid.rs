@@ -5,9 +5,9 @@ pub const ROWS: usize = 512;
 /// Columns of the network's map for any radar; elements of those that the shipped network is for.
 pub const COLUMNS: usize = 1024;
 /// Columns of the fine features.
-pub const FINE: usize = 256;
+pub const FINE_COLUMNS: usize = 256;
 /// Columns of the coarse features.
-pub const COARSE: usize = 64;
+pub const COARSE_COLUMNS: usize = 64;
 /// Channels of the fine features.
 pub const FINE_CHANNELS: usize = 4;
 /// Channels of the coarse features.
@@ -20,7 +20,7 @@ pub const SCALARS: usize = 2;
 pub const CONSTANTS: usize = 6;
 
 pub(super) const ELEMENTS: usize = 12;
-pub(super) const LEAST_ROWS: usize = 32;
+pub(super) const MIN_ROWS: usize = 32;
 
 /// cos(theta) of column `k` of a grid of `columns`.
 pub(super) fn cosine(k: usize, columns: usize) -> f64 {

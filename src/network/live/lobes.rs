@@ -15,12 +15,12 @@ pub(super) struct WindowLobes {
 }
 
 impl WindowLobes {
-    /// Of kernels' decades over the distance in rows `[rows / 2 + 1]` and in wide columns `[128 / 2 + 1]`.
+    /// Both kernels are given in decades by distance: `[rows / 2 + 1]` in range, `[128 / 2 + 1]` in angle.
     fn new(column: &[f32], row: &[f32]) -> Self {
         WindowLobes { columns: RangeLobes::new(column), rows: in_blocks(&circulant(row, WIDE_COLUMNS), WIDE_COLUMNS) }
     }
 
-    /// Those of `file`, for so many rows: of the window of Hann, and of each other one where it has them.
+    /// The kernels of a weight file: Hann's first, then those of the other windows where the file has them.
     pub(super) fn all(file: &WeightFile, rows: usize) -> Result<Vec<Self>, WeightsError> {
         let lengths = [rows / 2 + 1, WIDE_COLUMNS / 2 + 1];
         let mut all = vec![WindowLobes::new(

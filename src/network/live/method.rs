@@ -25,7 +25,7 @@ const TRAINED_ON: &str = "for the radar of table 3.1: scenes drawn as the genera
     on from those, on one procedural world before radars drawn at random; for the cascade of 12 x 16 pairs, weights of the same world";
 
 /// Buffers kept for later passes; each takes some 30 MB.
-const MOST_IDLE: usize = 2;
+const MAX_IDLE_BUFFERS: usize = 2;
 
 /// The live network with its weights.
 #[derive(Debug)]
@@ -118,7 +118,7 @@ impl LiveMethod {
             turn_columns(radar, cells);
         }
         let mut idle = idle();
-        if idle.len() < MOST_IDLE {
+        if idle.len() < MAX_IDLE_BUFFERS {
             idle.push(scratch);
         }
         drop(idle);

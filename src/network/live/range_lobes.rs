@@ -1,7 +1,7 @@
-//! Side lobes in range: what the sources of every range row add to all others, for each column by itself.
+//! Side lobes in range: every column is convolved over the range rows with a learned kernel that wraps around.
 //!
-//! As a matrix product that is the dearest layer of the network. Most of it doesn't show: far from a weak source there is the floor, or a
-//! strong source's side lobe. So the product is taken apart into tiles, and those that don't show are left out.
+//! As a dense matrix product this would be the most expensive layer of the network. Most of its terms lie far below the floor or below the
+//! side lobes of a stronger source. So the matrix is cut into tiles, and a tile whose upper bound is below that level is skipped.
 
 use super::grid::COLUMNS;
 use super::reading::circulant;
@@ -12,34 +12,34 @@ use crate::signal::simd::{Kernel, LANES_F32, Lanes, Simd};
 use rayon::prelude::*;
 use std::cell::RefCell;
 
-/// Rows of sources, and rows that they add to, of a tile.
-const FROM: usize = 8;
-const TO: usize = 16;
+/// A tile of the kernel's matrix: source rows by output rows.
+const TILE_SOURCE_ROWS: usize = 8;
+const TILE_ROWS: usize = 16;
 
-const _: () = assert!(ROWS_STEP.is_multiple_of(FROM), "whole tiles of sources");
+const _: () = assert!(ROWS_STEP.is_multiple_of(TILE_SOURCE_ROWS), "whole tiles of sources");
 
-/// What all tiles together may add to a cell unseen, as a part of what the cell has at least.
-const ALL_UNSEEN: f32 = 0.0096;
+/// Upper bound of what all skipped tiles add to a cell, relative to a lower bound of the cell.
+const MAX_SKIPPED_PART: f32 = 0.0096;
 
-/// Words of a bit for each tile of sources.
-const WORDS: usize = MAX_ROWS / FROM / BITS;
+/// Words of a mask with a bit for each tile along the sources.
+const WORDS: usize = MAX_ROWS / TILE_SOURCE_ROWS / BITS;
 const BITS: usize = u64::BITS as usize;
 
-/// A learned kernel over the rows, which wraps around, and where it is how strong.
+/// The kernel as a circulant matrix over range rows, and its extremes in each tile.
 #[derive(Debug)]
 pub(super) struct RangeLobes {
     rows: usize,
     /// `[rows, rows]`
     kernel: Vec<f32>,
-    /// `[rows / TO, rows / FROM]`, the first rounded up: the kernel's least and greatest value in a tile.
-    reach: Vec<[f32; 2]>,
+    /// `[rows / TILE_ROWS, rows / TILE_SOURCE_ROWS]`, the first rounded up: the kernel's minimum and maximum in a tile.
+    extremes: Vec<[f32; 2]>,
 }
 
 #[derive(Default)]
 struct Kept {
     /// `[rows, BLOCK]`
     sources: Vec<f32>,
-    /// `[rows / FROM, BLOCK]`
+    /// `[rows / TILE_SOURCE_ROWS, BLOCK]`
     sums: Vec<f32>,
 }
 
@@ -48,26 +48,28 @@ thread_local! {
 }
 
 impl RangeLobes {
-    /// Takes the kernel's decades over the distance in rows, `[rows / 2 + 1]`.
+    /// The kernel is given in decades by the distance in rows, `[rows / 2 + 1]`.
     pub(super) fn new(decades: &[f32]) -> Self {
         let rows = 2 * (decades.len() - 1);
         let kernel = circulant(decades, rows);
         let of_tile = |tile: usize| {
-            let (to, from) = (tile / (rows / FROM) * TO, tile % (rows / FROM) * FROM);
-            let cells = (to..(to + TO).min(rows)).flat_map(|row| &kernel[row * rows + from..][..FROM]);
+            let (to, from) =
+                (tile / (rows / TILE_SOURCE_ROWS) * TILE_ROWS, tile % (rows / TILE_SOURCE_ROWS) * TILE_SOURCE_ROWS);
+            let cells =
+                (to..(to + TILE_ROWS).min(rows)).flat_map(|row| &kernel[row * rows + from..][..TILE_SOURCE_ROWS]);
             cells.fold([f32::INFINITY, 0.0], |[least, most]: [f32; 2], v| [least.min(*v), most.max(*v)])
         };
-        let reach = (0..rows.div_ceil(TO) * (rows / FROM)).map(of_tile).collect();
-        RangeLobes { rows, kernel, reach }
+        let extremes = (0..rows.div_ceil(TILE_ROWS) * (rows / TILE_SOURCE_ROWS)).map(of_tile).collect();
+        RangeLobes { rows, kernel, extremes }
     }
 
-    /// What a tile may add to a cell unseen, as a part of what the cell has at least: less than a hundredth for all tiles.
+    /// A tile that adds less than this part of a cell's lower bound is skipped: all of them together stay below 1 %.
     pub(super) fn unseen(&self) -> f32 {
-        ALL_UNSEEN / (self.rows / FROM) as f32
+        MAX_SKIPPED_PART / (self.rows / TILE_SOURCE_ROWS) as f32
     }
 
-    /// Side lobes `[1024 / BLOCK, rows, BLOCK]` of sources, of which `read` writes those of a block of columns, over a `floor`. Neither the
-    /// floor nor tiles that add no more than the part `unseen` of what there is at least are added. The answer is the part of all tiles that was.
+    /// Side lobes `[1024 / BLOCK, rows, BLOCK]` of the sources that `read` writes for a block of columns. Tiles that add less than the part
+    /// `unseen` of a cell's lower bound are skipped; `floor` counts in that bound and is not added. Returns the fraction of tiles computed.
     ///
     /// `read` must not use rayon: what a thread keeps is borrowed meanwhile.
     pub(super) fn add_up(
@@ -84,29 +86,29 @@ impl RangeLobes {
                 kept.sources.resize(rows * BLOCK, 0.0);
                 read(block, &mut kept.sources);
                 simd.run(Sums { sources: &kept.sources, sums: &mut kept.sums });
-                let parts = out.chunks_mut(TO * BLOCK).enumerate();
+                let parts = out.chunks_mut(TILE_ROWS * BLOCK).enumerate();
                 parts.map(|(to, out)| self.add_to(simd, floor, unseen, to, kept, out)).sum::<usize>()
             })
         };
         let tiles = out.par_chunks_mut(rows * BLOCK).enumerate().map(of_block).sum::<usize>();
-        tiles as f32 / (COLUMNS / BLOCK * self.reach.len()) as f32
+        tiles as f32 / (COLUMNS / BLOCK * self.extremes.len()) as f32
     }
 
-    /// What a block's sources add to the rows of a tile, [`TO`] or what is left, in how many tiles.
+    /// Adds a block's sources to the output rows of tile row `to`; returns how many tiles were computed.
     fn add_to(&self, simd: Simd, floor: f32, unseen: f32, to: usize, kept: &Kept, out: &mut [f32]) -> usize {
-        let (rows, tiles) = (self.rows, self.rows / FROM);
-        let reach = &self.reach[to * tiles..][..tiles];
-        let shows = simd.run(Shows { reach, sums: &kept.sums, floor, unseen });
+        let (rows, tiles) = (self.rows, self.rows / TILE_SOURCE_ROWS);
+        let extremes = &self.extremes[to * tiles..][..tiles];
+        let shows = simd.run(Shows { extremes, sums: &kept.sums, floor, unseen });
         let tiles = (0..tiles).filter(|tile| shows[tile / BITS] >> (tile % BITS) & 1 == 1);
-        let runs = tiles.map(|tile| tile * FROM..(tile + 1) * FROM);
-        product(simd, &self.kernel[to * TO * rows..][..out.len() / BLOCK * rows], &kept.sources, runs, out);
+        let runs = tiles.map(|tile| tile * TILE_SOURCE_ROWS..(tile + 1) * TILE_SOURCE_ROWS);
+        product(simd, &self.kernel[to * TILE_ROWS * rows..][..out.len() / BLOCK * rows], &kept.sources, runs, out);
         shows.iter().map(|word| word.count_ones() as usize).sum()
     }
 }
 
 type Vector = Lanes<f32, LANES_F32>;
 
-/// Sums of [`FROM`] rows of sources each.
+/// Sums of [`TILE_SOURCE_ROWS`] rows of sources each.
 struct Sums<'a> {
     sources: &'a [f32],
     sums: &'a mut Vec<f32>,
@@ -117,19 +119,19 @@ impl Kernel for Sums<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        self.sums.resize(self.sources.len() / FROM, 0.0);
-        for (rows, sums) in self.sources.chunks_exact(FROM * BLOCK).zip(self.sums.chunks_exact_mut(BLOCK)) {
+        self.sums.resize(self.sources.len() / TILE_SOURCE_ROWS, 0.0);
+        for (rows, sums) in self.sources.chunks_exact(TILE_SOURCE_ROWS * BLOCK).zip(self.sums.chunks_exact_mut(BLOCK)) {
             for at in (0..BLOCK).step_by(LANES) {
                 let row = |row: usize| Vector::load(&rows[row * BLOCK + at..]);
-                (1..FROM).fold(row(0), |sum, i| sum + row(i)).store(&mut sums[at..]);
+                (1..TILE_SOURCE_ROWS).fold(row(0), |sum, i| sum + row(i)).store(&mut sums[at..]);
             }
         }
     }
 }
 
-/// Which sources show in some rows: a bit for each tile.
+/// Mask of the tiles that must be computed for one row of tiles.
 struct Shows<'a> {
-    reach: &'a [[f32; 2]],
+    extremes: &'a [[f32; 2]],
     sums: &'a [f32],
     floor: f32,
     unseen: f32,
@@ -144,14 +146,14 @@ impl Kernel for Shows<'_> {
         for at in (0..BLOCK).step_by(LANES) {
             let sum = |tile: usize| Vector::load(&self.sums[tile * BLOCK + at..]);
             let mut least = Vector::splat(self.floor);
-            for (tile, &[of_least, _]) in self.reach.iter().enumerate() {
-                least = sum(tile).mul_add::<FMA>(Lanes::splat(of_least), least);
+            for (tile, &[minimum, _]) in self.extremes.iter().enumerate() {
+                least = sum(tile).mul_add::<FMA>(Lanes::splat(minimum), least);
             }
             least = least * Lanes::splat(self.unseen);
-            for (word, (shows, reach)) in shows.iter_mut().zip(self.reach.chunks(BITS)).enumerate() {
+            for (word, (shows, extremes)) in shows.iter_mut().zip(self.extremes.chunks(BITS)).enumerate() {
                 let mut bits = 0;
-                for (bit, &[_, of_most]) in reach.iter().enumerate() {
-                    let over = sum(word * BITS + bit).mul_add::<FMA>(Lanes::splat(of_most), -least);
+                for (bit, &[_, maximum]) in extremes.iter().enumerate() {
+                    let over = sum(word * BITS + bit).mul_add::<FMA>(Lanes::splat(maximum), -least);
                     bits |= u64::from(over.0.iter().any(|v| *v > 0.0)) << bit;
                 }
                 *shows |= bits;

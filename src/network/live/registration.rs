@@ -15,11 +15,11 @@ pub(super) struct Registration<const COLUMNS: usize> {
 struct Tap {
     /// The first of the four; the others are beside it, where angles wrap around, and below.
     cell: u32,
-    /// How far it is to the next row and to the next column, in parts of [`WHOLE`].
+    /// How far it is to the next row and to the next column, in parts of [`WHOLE_PARTS`].
     part: [u16; 2],
 }
 
-const WHOLE: f32 = u16::MAX as f32;
+const WHOLE_PARTS: f32 = u16::MAX as f32;
 
 impl<const COLUMNS: usize> Registration<COLUMNS> {
     /// For each cell of the polar grid around x = `from`, where it lies on the polar grid around x = `to`; metres. Columns beyond end-fire, where no
@@ -39,7 +39,7 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
             let there = if u == seen { there } else { seen };
             let (row, column) = ((distance / bin).min((rows - 1) as f64), there / scale * half + half);
             let (r0, c0) = ((row.floor() as usize).min(rows - 2), column.floor());
-            let part = [row - r0 as f64, column - c0].map(|part| (part as f32 * WHOLE).round() as u16);
+            let part = [row - r0 as f64, column - c0].map(|part| (part as f32 * WHOLE_PARTS).round() as u16);
             Tap { cell: (r0 * COLUMNS + c0.rem_euclid(COLUMNS as f64) as usize) as u32, part }
         };
         Registration { taps: (0..rows * COLUMNS).map(tap).collect() }
@@ -54,7 +54,7 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
         self.taps[row * COLUMNS..(row + 1) * COLUMNS].iter().map(|tap| {
             let first = tap.cell as usize;
             let beside = (first & !(COLUMNS - 1)) | ((first + 1) & (COLUMNS - 1));
-            let [down, right] = tap.part.map(|part| f32::from(part) * (1.0 / WHOLE));
+            let [down, right] = tap.part.map(|part| f32::from(part) * (1.0 / WHOLE_PARTS));
             let line = |below: usize| plane[first + below] * (1.0 - right) + plane[beside + below] * right;
             line(0) * (1.0 - down) + line(COLUMNS) * down
         })

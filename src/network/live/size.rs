@@ -2,7 +2,7 @@
 
 use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, LiveConfig, WIDE_COLUMNS};
 use super::constants::WINDOWS;
-use super::grid::{COARSE, COLUMNS, FINE, ROWS};
+use super::grid::{COARSE_COLUMNS, COLUMNS, FINE_COLUMNS, ROWS};
 use crate::network::domain::Domain;
 use crate::network::kernels::convolution::padded;
 use crate::network::weights::{WeightFile, WeightsError};
@@ -165,7 +165,8 @@ impl LiveSize {
         let kernels = WINDOWS as u64 * (rows * rows + (WIDE_COLUMNS * WIDE_COLUMNS) as u64);
         // Of a row: a level, what is convolved and what comes from below; heads and features; maps.
         let of_levels: u64 = channels.iter().enumerate().map(|(level, c)| 3 * (wide(*c) >> (2 * level))).sum();
-        let pictures = COARSE as u64 * (of_levels + 64) + FINE as u64 * 32 + 2 * COLUMNS as u64 + 3 * columns;
+        let pictures =
+            COARSE_COLUMNS as u64 * (of_levels + 64) + FINE_COLUMNS as u64 * 32 + 2 * COLUMNS as u64 + 3 * columns;
         4 * (levels + steps + heads + kernels + rows * pictures)
     }
 }
@@ -175,11 +176,9 @@ mod tests {
     use super::*;
     use crate::network::live::LiveMethod;
     use crate::network::live::engine::LiveScratch;
-    use crate::network::live::features::FeatureExtractor;
+    use crate::network::live::twin_tests::heard;
     use crate::radar::Convention;
     use crate::reconstruct::{Reconstructor, Request};
-    use crate::scene::Reflector;
-    use crate::signal::exact;
 
     fn of(entry: &str) -> Result<LiveSize, String> {
         let header = serde_json::json!({ "__metadata__": { SIZE_ENTRY: entry } }).to_string();
@@ -243,13 +242,7 @@ mod tests {
         let method = LiveMethod::new(WeightFile::parse("weights", WEIGHTS).unwrap()).unwrap();
         let shape = Radar { elements: 86, end_elements: 8, samples: 72, ..Radar::default() };
         let radar = shape.in_convention(Convention::Physical);
-        let points = reference.tensor("points", &[3, 2]).unwrap();
-        let reflectors: Vec<Reflector> = points
-            .chunks(2)
-            .map(|p| Reflector { x_metres: p[0].into(), y_metres: p[1].into(), reflectivity: 1.0 })
-            .collect();
-        let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
-        let input = FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap();
+        let (ends, input) = heard(&radar, &reference, 1.0);
         let mut scratch = LiveScratch::default();
         let found = method.engine().forward(&input, &mut scratch);
         let of_decades = gap(&found.map, &reference, "log");

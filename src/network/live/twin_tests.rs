@@ -3,11 +3,11 @@
 use super::LiveConfig;
 use super::engine::{LiveEngine, LiveScratch};
 use super::features::{FeatureExtractor, LiveInput};
-use super::grid::{COARSE, COLUMNS, CONSTANTS, FINE, ROWS};
+use super::grid::{COARSE_COLUMNS, COLUMNS, CONSTANTS, FINE_COLUMNS, ROWS};
 use crate::network::weights::WeightFile;
 use crate::radar::Radar;
 use crate::scene::Reflector;
-use crate::signal::exact;
+use crate::signal::{TwoEnds, exact};
 
 /// Written by `training/reference.py`: a tiny network, three reflectors, and what PyTorch makes of them.
 const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
@@ -17,15 +17,18 @@ fn tiny() -> LiveConfig {
     LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 }
 }
 
-fn input(reference: &WeightFile, loudness: f64) -> LiveInput {
-    let radar = Radar::default();
+/// What a radar hears of the three reflectors of a reference, and the network's input.
+pub(super) fn heard(radar: &Radar, reference: &WeightFile, reflectivity: f64) -> (TwoEnds, LiveInput) {
     let points = reference.tensor("points", &[3, 2]).unwrap();
-    let reflectors: Vec<Reflector> = points
-        .chunks(2)
-        .map(|p| Reflector { x_metres: p[0].into(), y_metres: p[1].into(), reflectivity: loudness })
-        .collect();
-    let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
-    FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap()
+    let of = |p: &[f32]| Reflector { x_metres: p[0].into(), y_metres: p[1].into(), reflectivity };
+    let reflectors: Vec<Reflector> = points.chunks(2).map(of).collect();
+    let ends = exact::beat_signal(radar, &reflectors).two_ends(radar);
+    let input = FeatureExtractor::new(radar).unwrap().extract(&ends).unwrap();
+    (ends, input)
+}
+
+fn input(reference: &WeightFile, reflectivity: f64) -> LiveInput {
+    heard(&Radar::default(), reference, reflectivity).1
 }
 
 /// Mean and largest distance of every `row`-th row and `column`-th column of `found` planes from a reference.
@@ -48,8 +51,8 @@ fn features_agree_with_the_twin() {
         let (mean, largest) = distance(values, &expected, rows, columns, row, column);
         assert!(mean < 1e-4 && largest < 5e-2, "{name}: mean {mean}, largest {largest}");
     };
-    check("fine", &found.fine, &[4, 16, 32], ROWS, FINE, 32, 8);
-    check("coarse", &found.coarse, &[10, 16, 16], ROWS, COARSE, 32, 4);
+    check("fine", &found.fine, &[4, 16, 32], ROWS, FINE_COLUMNS, 32, 8);
+    check("coarse", &found.coarse, &[10, 16, 16], ROWS, COARSE_COLUMNS, 32, 4);
     check("rows", &found.rows, &[6, 64], 1, ROWS, 1, 8);
     check("scalars", &found.scalars, &[2], 1, 2, 1, 1);
     assert_eq!(found.constants, [0.0; CONSTANTS]);

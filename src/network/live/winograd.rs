@@ -141,7 +141,6 @@ impl Band {
         }
     }
 
-    /// Gathers a strip's products, of which a line is `size`, in range.
     fn gather(&mut self, simd: Simd, size: usize, strip: usize) {
         let groups = Groups { many: 1, vectors: size / LANES, steps: [0; 2] };
         for (from, to) in self.products.iter().zip(&mut self.gathered) {

@@ -11,7 +11,7 @@ use crate::signal::simd::Simd;
 pub const CHANNELS: usize = 4;
 
 /// Outputs that a max-pool takes the largest of: one of each part of a [`Parted`] picture.
-const POOLED: usize = 4;
+const POOLED_OUTPUTS: usize = 4;
 
 #[derive(Debug)]
 pub(super) struct TowerLevel {
@@ -61,7 +61,7 @@ impl TowerLevel {
     fn pooled<'a>(&self, simd: Simd, from: &Parted, y: usize, buffer: &'a mut Vec<f32>) -> &'a [f32] {
         let width = from.w / 2;
         let size = width * self.kernel.output();
-        buffer.resize(POOLED * size, 0.0);
+        buffer.resize(POOLED_OUTPUTS * size, 0.0);
         for (part, out) in buffer.chunks_exact_mut(size).enumerate() {
             let seen = from.seen(2 * y + part / 2, part % 2, self.size);
             self.kernel.line(simd, seen, from.row_cells(), width, out);
@@ -81,7 +81,10 @@ impl Loop for Largest<'_> {
     #[inline(always)]
     unsafe fn run<V: Vector>(self) {
         let size = self.first.len();
-        assert!(size.is_multiple_of(LANES) && self.others.len() == (POOLED - 1) * size, "parts of another size");
+        assert!(
+            size.is_multiple_of(LANES) && self.others.len() == (POOLED_OUTPUTS - 1) * size,
+            "parts of another size"
+        );
         // SAFETY: a vector stays inside its part; the caller promises the features.
         unsafe {
             let zero = V::load([0.0; LANES].as_ptr());

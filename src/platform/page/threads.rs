@@ -33,7 +33,7 @@ extern "C" {
 }
 
 /// Most threads of one pool: each takes some megabytes.
-const MOST_IN_A_POOL: usize = 8;
+const MAX_POOL_THREADS: usize = 8;
 
 static HAS_THREADS: AtomicBool = AtomicBool::new(false);
 
@@ -167,7 +167,7 @@ pub fn enter_thread(work: usize) {
 }
 
 fn pool_threads() -> usize {
-    cores().clamp(1, MOST_IN_A_POOL)
+    cores().clamp(1, MAX_POOL_THREADS)
 }
 
 fn begin_pool_thread(name: &str, thread: rayon::ThreadBuilder) -> io::Result<()> {

@@ -1,6 +1,6 @@
 //! Antennas off the array's line, as on a bent bumper. An element's place along the line follows from x alone; y changes path lengths.
 
-use super::{Antennas, AntennasError, MOST_Y_METRES};
+use super::{Antennas, AntennasError, MAX_Y_METRES};
 use crate::radar::Radar;
 
 impl Antennas {
@@ -40,7 +40,7 @@ fn check_off_line(list: &'static str, places: &[f64], expected: usize) -> Result
     if places.len() != expected {
         return Err(AntennasError::Length { list, found: places.len(), expected });
     }
-    match places.iter().position(|y| y.is_nan() || y.abs() > MOST_Y_METRES) {
+    match places.iter().position(|y| y.is_nan() || y.abs() > MAX_Y_METRES) {
         Some(index) => Err(AntennasError::OffLine { list, index, found: places[index] }),
         None => Ok(()),
     }

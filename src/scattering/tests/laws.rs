@@ -40,17 +40,6 @@ fn swapping_transmitter_and_receiver_changes_nothing() {
 }
 
 #[test]
-fn antennas_at_one_place_have_the_monostatic_closed_forms() {
-    let radar = Radar::default();
-    let at = |object: Object| heard(&radar, &[object], &AntennaPlaces::at([0.0, 0.0]));
-    let glint = at(Object::Wall(Wall::new(0.0, 9.0, 200.0, 0.0)))[0];
-    assert!((glint.range_metres - 9.0).abs() < 1e-12 && (glint.amplitude - 100.0 / 27.0).norm() < 1e-12);
-    let post = at(Object::Post(Post::new(0.0, 9.0, 0.5)))[0];
-    let expected = 100.0 / 8.5f64.powi(2) * (0.5 * 8.5 / 9.0f64).sqrt();
-    assert!((post.range_metres - 8.5).abs() < 1e-12 && (post.amplitude.re - expected).abs() < 1e-9);
-}
-
-#[test]
 fn a_post_of_one_metre_is_a_point_from_afar() {
     let radar = Radar::default();
     let post = heard(&radar, &[Object::Post(Post::new(0.0, 1000.0, 1.0))], &AntennaPlaces::at([0.0, 0.0]))[0];
@@ -167,19 +156,6 @@ fn a_rough_wall_scatters_what_its_glint_loses() {
     let lost = smooth * (1.0 - roughness::coherent(&wave, 1e-3, 1.0).powi(2));
     let decibels = 10.0 * (mean / lost).log10();
     assert!(decibels.abs() < 1.5, "{decibels} dB of what the glint lost");
-}
-
-#[test]
-fn roughness_takes_from_a_glint_what_rayleighs_factor_says() {
-    let radar = Radar::default();
-    let glint = |roughness_millimetres| {
-        let wall = Wall { roughness_millimetres, ..Wall::new(0.0, 10.0, 4.0, 0.0) };
-        heard(&radar, &[Object::Wall(wall)], &AntennaPlaces::at([0.0, 0.0]))[0].amplitude.norm()
-    };
-    for (roughness, decibels) in [(0.5, -2.7), (1.0, -10.7), (2.0, -43.0)] {
-        let found = 20.0 * (glint(roughness) / glint(0.0)).log10();
-        assert!((found - decibels).abs() < 0.1, "{roughness} mm: {found}");
-    }
 }
 
 #[test]

@@ -61,7 +61,7 @@ fn object(entry: Spanned<DeValue<'_>>) -> Result<Object, (Option<Range<usize>>, 
 }
 
 /// Largest radar cross section that is read, and the smallest below 0, dBsm: reflectivities of 1e100.
-const MOST_DBSM: f64 = 2000.0;
+const MAX_DBSM: f64 = 2000.0;
 
 /// Takes `cross_section_dbsm` off the table of an object of this kind: another way to say its reflectivity.
 fn cross_section(table: &mut DeTable<'_>, kind: &str) -> Result<Option<f64>, (Option<Range<usize>>, String)> {
@@ -76,7 +76,7 @@ fn cross_section(table: &mut DeTable<'_>, kind: &str) -> Result<Option<f64>, (Op
         return Err((span, format!("{KEY} stands beside reflectivity; expected one of the two, they say the same")));
     }
     let dbsm = f64::deserialize(ValueDeserializer::from(value)).map_err(|e| (span.clone(), one_line(e.message())))?;
-    if dbsm.is_nan() || dbsm.abs() > MOST_DBSM {
+    if dbsm.is_nan() || dbsm.abs() > MAX_DBSM {
         return Err((
             span,
             format!("{KEY} is {dbsm}; expected -2000 to 2000 dBsm: 0 is 1 square metre, reflectivity 1"),

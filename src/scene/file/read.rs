@@ -150,7 +150,6 @@ fn object_spans(text: &str, index: usize) -> Spans {
     entries.and_then(|e| e.get(index)).map_or(Spans { whole: 0..0, fields: Vec::new() }, Spans::of)
 }
 
-/// Where the table of disturbances stands in a text that was read before.
 fn disturbances_span(text: &str) -> Range<usize> {
     table(text).ok().and_then(|d| d.get_ref().get("disturbances").map(Spanned::span)).unwrap_or(0..0)
 }
@@ -208,17 +207,6 @@ mod tests {
         let file = from_toml(text).unwrap();
         assert!((file.scene.objects[0].reflectivity() - 10.0).abs() < 1e-12);
         assert_eq!(from_toml(&to_toml(&file).unwrap()).unwrap(), file);
-    }
-
-    #[test]
-    fn a_link_budget_is_kept() {
-        let text = "[radar]\nchirp_seconds = 5e-5\n[radar.budget]\nantenna_gain_dbi = 13\n\
-                    half_power_width_degrees = 70\n";
-        let file = from_toml(text).unwrap();
-        let budget = file.radar.budget.unwrap();
-        assert_eq!((budget.antenna_gain_dbi, budget.half_power_width_degrees), (13.0, Some(70.0)));
-        let written = to_toml(&file).unwrap();
-        assert_eq!(from_toml(&written).unwrap(), file, "{written}");
     }
 
     #[test]

@@ -71,7 +71,6 @@ mod tests {
     use super::*;
     use crate::radar::Carrier;
     use crate::scene::{Block, GaussianCluster, Line, Point, Polygon, Post, Wall};
-    use proptest::prelude::*;
     use serde::de::IgnoredAny;
 
     fn scene() -> SceneFile {
@@ -149,14 +148,5 @@ mod tests {
             "[radar]\nelements = 7\nend_elements = 3\n[[object]]\nkind = \"point\"\nx_metres = 0\ny_metres = 0\n";
         assert!(from_toml(on_element).is_err());
         assert_eq!(from_toml_beside::<IgnoredAny>(on_element, "other").unwrap().0.scene.objects.len(), 1);
-    }
-
-    proptest! {
-        #[test]
-        fn positions_keep_every_bit(x in -1e12f64..1e12, y in 1e-3f64..1e12, reflectivity in -1e100f64..1e100) {
-            let objects = vec![Object::Point(Point { reflectivity, ..Point::new(x, y) })];
-            let file = SceneFile { scene: Scene { objects, ..Scene::default() }, radar: Radar::default() };
-            prop_assert_eq!(from_toml(&to_toml(&file).unwrap()).unwrap(), file);
-        }
     }
 }

@@ -67,7 +67,7 @@ const CROWD_POINTS: Range<f64> = 10.0..301.0;
 const NEAREST_METRES: f64 = 2.0;
 const MAX_RANGE_PART: f64 = 0.93;
 /// Least sine of the angle to the array's axis.
-const LEAST_SINE: f64 = 0.1;
+const MIN_AXIS_SINE: f64 = 0.1;
 /// Most that a step of a jittered wall is off, and most turn of a bent wall from its one end to the other.
 const MAX_JITTER: f64 = 0.4;
 const MAX_TURN_RADIANS: f64 = 1.2;
@@ -190,7 +190,7 @@ impl BeyondField {
 
     fn ring(&self, rng: &mut ChaCha8Rng) -> Vec<Point> {
         let range = rng.random_range(NEAREST_METRES..MAX_RANGE_PART * self.max_range_metres);
-        let most = (1.0 - LEAST_SINE * LEAST_SINE).sqrt();
+        let most = (1.0 - MIN_AXIS_SINE * MIN_AXIS_SINE).sqrt();
         let at = |rng: &mut ChaCha8Rng| {
             let range = range + self.bin_metres * rng.random_range(-0.5..0.5);
             let cos: f64 = rng.random_range(-most..most);
@@ -203,14 +203,14 @@ impl BeyondField {
 
     fn place(&self, rng: &mut ChaCha8Rng) -> Place {
         let range = rng.random_range(NEAREST_METRES..MAX_RANGE_PART * self.max_range_metres);
-        let margin = LEAST_SINE.asin();
+        let margin = MIN_AXIS_SINE.asin();
         let angle = rng.random_range(margin..PI - margin);
         [range * angle.cos(), range * angle.sin()]
     }
 
     fn holds(&self, [x, y]: Place) -> bool {
         let range = x.hypot(y);
-        (NEAREST_METRES..=MAX_RANGE_PART * self.max_range_metres).contains(&range) && y >= LEAST_SINE * range
+        (NEAREST_METRES..=MAX_RANGE_PART * self.max_range_metres).contains(&range) && y >= MIN_AXIS_SINE * range
     }
 }
 

@@ -11,7 +11,7 @@ const NEAREST_METRES: f64 = 2.0;
 const MAX_RANGE_PART: f64 = 0.95;
 const AXIS_MARGIN_DEGREES: f64 = 5.0;
 /// Points that two rows have at least.
-const LEAST_OF_FENCES: usize = 40;
+const MIN_FENCE_POINTS: usize = 40;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlacementField {
@@ -107,7 +107,7 @@ impl PlacementField {
             let mut places = row(left, rng);
             places.extend(row(left + width, rng));
             places.retain(|place| self.holds(*place));
-            if places.len() >= LEAST_OF_FENCES {
+            if places.len() >= MIN_FENCE_POINTS {
                 return places.into_iter().map(|[x, y]| Object::Point(Point::new(x, y))).collect();
             }
         }

@@ -6,7 +6,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp1, StandardNormal};
 use std::ops::Range;
 
-/// Largest dynamic range of a scene's points.
 pub(super) const MAX_DYNAMIC_DECIBELS: f64 = 60.0;
 
 pub(super) type GroundPlace = [f64; 2];

@@ -34,16 +34,3 @@ impl Kind {
         Ok(())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_kind_that_finds_no_room_is_named() {
-        let near = Radar { bandwidth_hz: 6e9, ..Radar::default() };
-        let told = Kind::Street.check_room(&near).unwrap_err().to_string();
-        assert_eq!(told, "scenes of street need a radar that sees 20 m far; this one sees 12.8 m");
-        assert_eq!(Kind::Street.check_room(&Radar::default()), Ok(()));
-    }
-}

@@ -8,7 +8,7 @@ use crate::app::widgets::theme::MARK_EDGE;
 use crate::radar::Decibels;
 use crate::scene::Reflector;
 use crate::theory::overlay::STREAK;
-use crate::theory::{Ellipse, MapPlace, Overlay, blob_cell, fold_period_cos};
+use crate::theory::{Ellipse, MapPlace, Overlay, blob_cell};
 use eframe::egui::{Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, vec2};
 
 /// What is drawn.
@@ -113,7 +113,7 @@ impl Theory<'_> {
         let Overlay { place, blob, streak, .. } = self.overlay;
         let bin_metres = radar.range_resolution_metres();
         let columns = blob.columns[0] + blob.columns[1];
-        let column_cos = fold_period_cos(radar) / radar.elements as f64;
+        let column_cos = radar.fold_period_cos() / radar.elements as f64;
         let mut lines = vec![
             (Color32::WHITE, format!("Theory of {}, as a point", self.name)),
             (BIN, format!("range bin c/2B {}", length(bin_metres))),
@@ -153,7 +153,7 @@ impl Theory<'_> {
         let ranges: Vec<String> = wrap_partners_metres.iter().map(|r| format!("{r:.1}")).collect();
         let told = |cos: &f64| format!("{}° (cos θ {})", signed(angle_degrees(*cos), 0), signed(*cos, 2));
         let folds: Vec<String> = fold_partners.iter().map(told).collect();
-        let period = fold_period_cos(frame.radar);
+        let period = frame.radar.fold_period_cos();
         let folds = match folds.is_empty() {
             true => format!("no grating lobe (every {period:.2} in cos θ)"),
             false => format!("grating lobes at {}, every {period:.2} in cos θ", folds.join(", ")),

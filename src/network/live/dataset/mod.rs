@@ -10,7 +10,6 @@
 //! The scenes of the splits come from streams that never meet ([`Purpose`]). Example `i` of a split is scene `i / kinds` of kind `i % kinds`: a longer
 //! dataset begins with the examples of a shorter one.
 
-mod half;
 mod manifest;
 mod shard;
 
@@ -18,7 +17,7 @@ pub use manifest::{FILE_NAME, Manifest, VERSION};
 
 use super::arrays::Arrays;
 use super::examples::{Example, ExampleError, Examples, ExamplesError, ExamplesRequest, Features};
-use super::radars::{DRAWN, Radars};
+use super::radars::{DRAWN_LIMITS, Radars};
 use crate::evaluate::Target;
 use crate::files::{sha256, write_bytes};
 use crate::network::floors::Floors;
@@ -73,7 +72,7 @@ impl ExamplePart {
     pub fn usual(radars: &Radars, layout: Option<&[usize]>) -> Vec<ExamplePart> {
         let fits = layout.is_none()
             && match radars {
-                Radars::Fixed(radar) => DRAWN.has_shape(radar),
+                Radars::Fixed(radar) => DRAWN_LIMITS.has_shape(radar),
                 Radars::Random => true,
             };
         let features = fits.then_some(ExamplePart::Features);
@@ -91,7 +90,6 @@ impl ExamplePart {
     }
 }
 
-/// As [`FromStr`] reads it.
 impl fmt::Display for ExamplePart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

@@ -1,11 +1,13 @@
 //! The arrays of some examples, as NumPy files.
 
-use super::half::half_bits;
 use super::{ArrayKind, DatasetPrecision};
 use crate::network::live::examples::{EndSamples, Example};
 use crate::network::live::features::LiveInput;
-use crate::network::live::grid::{COARSE, COARSE_CHANNELS, CONSTANTS, FINE, FINE_CHANNELS, ROW_CHANNELS, SCALARS};
+use crate::network::live::grid::{
+    COARSE_CHANNELS, COARSE_COLUMNS, CONSTANTS, FINE_CHANNELS, FINE_COLUMNS, ROW_CHANNELS, SCALARS,
+};
 use crate::radar::Radar;
+use half::f16;
 use num_complex::Complex64;
 
 impl ArrayKind {
@@ -43,8 +45,8 @@ impl ArrayKind {
         match self {
             ArrayKind::Ends => vec![2, radar.end_elements, radar.samples],
             ArrayKind::Layout(elements) => vec![elements, radar.samples],
-            ArrayKind::Fine => vec![FINE_CHANNELS, radar.samples, FINE],
-            ArrayKind::Coarse => vec![COARSE_CHANNELS, radar.samples, COARSE],
+            ArrayKind::Fine => vec![FINE_CHANNELS, radar.samples, FINE_COLUMNS],
+            ArrayKind::Coarse => vec![COARSE_CHANNELS, radar.samples, COARSE_COLUMNS],
             ArrayKind::Rows => vec![ROW_CHANNELS, radar.samples],
             ArrayKind::Scalars => vec![SCALARS],
             ArrayKind::Constants => vec![CONSTANTS],
@@ -105,7 +107,7 @@ fn put_feature(bytes: &mut Vec<u8>, feature: ArrayKind, input: &LiveInput, preci
 fn put<'a>(bytes: &mut Vec<u8>, values: impl IntoIterator<Item = &'a f32>, precision: DatasetPrecision) {
     match precision {
         DatasetPrecision::Single => values.into_iter().for_each(|v| bytes.extend(v.to_le_bytes())),
-        DatasetPrecision::Half => values.into_iter().for_each(|v| bytes.extend(half_bits(*v).to_le_bytes())),
+        DatasetPrecision::Half => values.into_iter().for_each(|v| bytes.extend(half_of(*v).to_le_bytes())),
     }
 }
 
@@ -122,6 +124,11 @@ fn header(dtype: &str, shape: &[usize]) -> Vec<u8> {
     bytes
 }
 
+/// The nearest half-precision number, ties to even; what is larger than any becomes the largest.
+fn half_of(value: f32) -> f16 {
+    f16::from_f32(value.clamp(f16::MIN.to_f32(), f16::MAX.to_f32()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,5 +142,12 @@ mod tests {
             file.resize(file.len() + 8 * shape.iter().product::<usize>(), 0);
             assert_eq!(npy::check(&file), Ok(()));
         }
+    }
+
+    #[test]
+    fn what_is_too_large_is_the_largest_half() {
+        let halves = [1e9, f32::INFINITY, -1e9, 0.1].map(half_of);
+        assert_eq!(halves.map(f16::to_bits), [0x7bff, 0x7bff, 0xfbff, 0x2e66]);
+        assert!(half_of(f32::NAN).is_nan());
     }
 }

@@ -36,21 +36,6 @@ fn an_example_is_the_generators_scene() {
 }
 
 #[test]
-fn elements_that_are_off_change_the_input_alone() {
-    let floors = Floors::Fixed(Floor::Thesis);
-    let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 20.0, position_millimetres: 0.1 };
-    let of = |arrays| {
-        let mixture = "2".parse().unwrap();
-        Examples::new(ExamplesRequest { mixture, seed: 1, floors, arrays, ..ExamplesRequest::default() }).unwrap()
-    };
-    let (off, ideal) = (of(Arrays { share: 1.0, tolerances }), of(Arrays::IDEAL));
-    let [off, ideal] = [off, ideal].map(|examples| examples.example(5, &Task::default()).unwrap());
-    assert_ne!(off.heard, ideal.heard);
-    let both = [&off, &ideal].map(|e| decades(e).iter().map(|v| f64::from(*v) + e.gain).collect::<Vec<_>>());
-    assert!(both[0].iter().zip(&both[1]).all(|(a, b)| (a - b).abs() < 1e-5));
-}
-
-#[test]
 fn the_world_makes_no_test_examples() {
     let of = |purpose| {
         let mixture = "world".parse().unwrap();
