@@ -2,7 +2,7 @@
 
 use super::axes::Reading;
 use super::line::{Line, USUAL_CARRIER_HZ};
-use crate::radar::{Antennas, SPEED_OF_LIGHT};
+use crate::radar::{Antennas, Radar, SPEED_OF_LIGHT};
 use crate::recording::AxisKind;
 use crate::recording::layout::{Candidate, Layout, Parts};
 use crate::recording::profile::RadarProfile;
@@ -119,7 +119,8 @@ fn radar(out: &mut String, said: Option<[f64; 3]>, samples: usize, about: &About
     put(out, "receiver_x_metres", &list(receiver_x_metres));
     let pairs = transmitter_x_metres.len() * receiver_x_metres.len();
     let elements = Antennas::new(transmitter_x_metres, receiver_x_metres).map_or(pairs, |a| a.pairs().len());
-    put(out, "end_elements", &(elements / 2).max(1).to_string());
+    let most = Radar { elements, ..Radar::default() }.most_end_elements();
+    put(out, "end_elements", &most.max(1).to_string());
 }
 
 fn capture(out: &mut String, best: &Candidate, about: &About<'_>) {
