@@ -14,6 +14,7 @@ pub(super) struct About<'a> {
     pub data: &'a Path,
     pub config: Option<&'a Path>,
     pub more: &'a [PathBuf],
+    pub chips: &'a [PathBuf],
     pub profile: Option<&'a RadarProfile>,
     pub line: &'a Line,
     pub takes_constant_out: bool,
@@ -129,9 +130,11 @@ fn capture(out: &mut String, best: &Candidate, about: &About<'_>) {
     if let Some(config) = about.config {
         put(out, "config", &quoted(&beside(config, about.data)));
     }
-    if !about.more.is_empty() {
-        let names: Vec<String> = about.more.iter().map(|path| quoted(&beside(path, about.data))).collect();
-        put(out, "more_files", &format!("[{}]", names.join(", ")));
+    for (key, paths) in [("more_files", about.more), ("chips", about.chips)] {
+        if !paths.is_empty() {
+            let names: Vec<String> = paths.iter().map(|path| quoted(&beside(path, about.data))).collect();
+            put(out, key, &format!("[{}]", names.join(", ")));
+        }
     }
     put(out, "words", &quoted(words.name()));
     put(out, "parts", &quoted(parts.name()));
