@@ -134,6 +134,14 @@ impl RadarProfile {
         Ok(profile)
     }
 
+    /// The transmitter of each chirp of a loop, after those that send together are told apart: of several at once the first.
+    pub fn senders(&self) -> Vec<usize> {
+        match (self.both_transmitters, self.chirp_transmitters.first()) {
+            (true, Some(mask)) => (0..32).filter(|bit| mask >> bit & 1 == 1).collect(),
+            _ => self.chirp_transmitters.iter().map(|mask| mask.trailing_zeros() as usize).collect(),
+        }
+    }
+
     /// The same of so many chips of a cascade that were all set up alike; a text that names more receivers than a chip has names them all.
     pub fn on_chips(mut self, chips: usize) -> RadarProfile {
         if chips > 1 && self.receivers <= CHIP_RECEIVERS {

@@ -155,7 +155,7 @@ fn one_height(senders: &[Sender]) -> (Vec<Sender>, Option<String>) {
 fn of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f64>)> {
     let [across, up] = &profile.element_places;
     let receivers = profile.receivers;
-    let bits: Vec<usize> = profile.chirp_transmitters.iter().map(|mask| mask.trailing_zeros() as usize).collect();
+    let bits = profile.senders();
     // The lines name every receiver of the chip, or those alone that are on.
     let last = bits.iter().max()?;
     let of_chip = |r: usize| profile.receiver_numbers.get(r).copied().unwrap_or(r);
