@@ -235,9 +235,9 @@ fn check_places(list: &'static str, places: &[f64]) -> Result<(), AntennasError>
 impl Radar {
     /// The same radar with these antennas. Elements and their spacing are those of the pairs; ends are at most half of the elements.
     pub fn with_antennas(self, antennas: Antennas) -> Self {
-        let elements = antennas.pairs.len();
-        let (element_spacing_metres, end_elements) = (antennas.spacing_metres(), self.end_elements.min(elements / 2));
-        Radar { elements, end_elements, element_spacing_metres, antennas: Some(antennas), ..self }
+        let (elements, element_spacing_metres) = (antennas.pairs.len(), antennas.spacing_metres());
+        let radar = Radar { elements, element_spacing_metres, antennas: Some(antennas), ..self };
+        Radar { end_elements: radar.end_elements.min(radar.most_end_elements()), ..radar }
     }
 
     /// The same radar, its elements at that distance from each other; antennas move with them.

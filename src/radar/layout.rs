@@ -62,7 +62,10 @@ impl Layout {
 
     /// Both ends of `radar`: what the sparse sensor keeps.
     pub fn two_ends(radar: &Radar) -> Self {
-        Layout::of_elements(radar, radar.end_range(End::First).chain(radar.end_range(End::Last)))
+        Layout::of_elements(
+            radar,
+            (0..radar.elements).filter(|n| *n < radar.end_elements || radar.end_range(End::Last).contains(n)),
+        )
     }
 
     /// `count` elements at random places of the half-wavelength grid, the outermost two always among them so that the aperture

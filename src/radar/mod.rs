@@ -194,7 +194,7 @@ impl Radar {
         for (field, value, min, max) in [
             ("samples", self.samples, 1, 65536),
             ("elements", self.elements, 2, 65536),
-            ("end_elements", self.end_elements, 1, self.elements / 2),
+            ("end_elements", self.end_elements, 1, self.most_end_elements()),
             ("chirps", self.chirps, 1, MAX_CHIRPS),
         ] {
             if !(min..=max).contains(&value) {
@@ -223,6 +223,12 @@ impl Radar {
             }
         }
         Ok(())
+    }
+
+    /// Most elements of an end: half of all. Of three elements the middle one may be in both ends, since the outer two alone fold
+    /// directions.
+    pub fn most_end_elements(&self) -> usize {
+        if self.elements == 3 { 2 } else { self.elements / 2 }
     }
 
     /// Carrier wavelength lambda = c / f in metres.

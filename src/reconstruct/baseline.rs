@@ -25,6 +25,10 @@ impl Reconstructor for Baseline {
         true
     }
 
+    fn fewest_end_elements(&self) -> usize {
+        2
+    }
+
     fn finds_reflectors(&self) -> bool {
         false
     }

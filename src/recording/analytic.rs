@@ -1,7 +1,20 @@
 //! Real samples as complex ones.
 
 use crate::signal::simd::Simd;
+use ndarray::{Array, ArrayView, Axis, Dimension};
 use num_complex::Complex64;
+
+/// [`analytic`] signals along the last axis of `samples`.
+pub(super) fn all_analytic<D: Dimension>(samples: ArrayView<'_, Complex64, D>, len: usize) -> Array<Complex64, D> {
+    let last = Axis(samples.ndim().saturating_sub(1));
+    let mut shape = samples.raw_dim();
+    shape[last.index()] = len;
+    let mut all = Array::zeros(shape);
+    for (row, mut found) in samples.lanes(last).into_iter().zip(all.lanes_mut(last)) {
+        found.iter_mut().zip(analytic(&row.to_vec(), len)).for_each(|(to, v)| *to = v);
+    }
+    all
+}
 
 /// The analytic signal of real samples, of `len` samples, half as many at least: the positive half of their spectrum, transformed back.
 pub(super) fn analytic(samples: &[Complex64], len: usize) -> Vec<Complex64> {

@@ -202,4 +202,57 @@ pub(crate) mod tests {
         assert!(std::fs::read(path).unwrap() == expected);
         assert!(summary.sentence().starts_with("5 frames of 137 packets"), "{}", summary.sentence());
     }
+
+    /// Memory of this process, MiB, where the system tells it.
+    fn resident_mib() -> f64 {
+        let told = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+        told.split(' ').nth(1).and_then(|pages| pages.parse::<f64>().ok()).map_or(0.0, |pages| pages / 256.0)
+    }
+
+    #[test]
+    #[ignore = "seconds of a card at its rate, on a machine that does nothing else"]
+    fn a_card_at_its_rate_drops_frames_in_bounded_memory() {
+        // 64 chirps of 12 pairs and 256 samples, ten times a second.
+        const LARGE_FRAME: usize = 64 * 12 * 256 * 4;
+        const FRAMES: usize = 50;
+        let mut card = Card::listen(0, LARGE_FRAME).unwrap();
+        card.silence = Some(Duration::from_secs(2));
+        let port = card.port().unwrap();
+        let replay = std::thread::spawn(move || {
+            let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+            let started = std::time::Instant::now();
+            for at in (0..FRAMES * LARGE_FRAME).step_by(DATA) {
+                let due = Duration::from_secs_f64(at as f64 / (10.0 * LARGE_FRAME as f64));
+                std::thread::sleep(due.saturating_sub(started.elapsed()));
+                let data = vec![7; DATA.min(FRAMES * LARGE_FRAME - at)];
+                let number = (at / DATA + 1) as u32;
+                let packet = [&number.to_le_bytes(), &(at as u64).to_le_bytes()[..6], &data].concat();
+                socket.send_to(&packet, (Ipv4Addr::LOCALHOST, port)).unwrap();
+            }
+        });
+        let (sender, waiting) = std::sync::mpsc::sync_channel::<CardFrame>(2);
+        let looks =
+            std::thread::spawn(move || waiting.iter().map(|_| std::thread::sleep(Duration::from_millis(350))).count());
+        let hand = |frame| sender.try_send(frame).map_or(Handed::Dropped, |()| Handed::Taken);
+        let (before, mut most, mut asked) = (resident_mib(), 0.0f64, 0);
+        let goes_on = |_: &CardSummary| {
+            asked += 1;
+            if asked % 1000 == 0 {
+                most = most.max(resident_mib() - before);
+            }
+            true
+        };
+        let summary = card.run(hand, goes_on).unwrap();
+        drop(sender);
+        replay.join().unwrap();
+        let looked = looks.join().unwrap() as u64;
+        println!("{}; {looked} looked at; {most:.0} MiB more at most", summary.sentence());
+        assert_eq!(looked + summary.dropped, summary.frames);
+        assert!(summary.dropped >= 25 && summary.frames + summary.packets.lost_frames >= FRAMES as u64 - 1);
+        // Three frames wait or are looked at, two are open, and one is on its way.
+        assert!(most < 8.0 * LARGE_FRAME as f64 / 1048576.0, "{most} MiB");
+        let lost = summary.packets.lost_bytes + summary.packets.lost_frames * LARGE_FRAME as u64;
+        let told = summary.packets.packets * DATA as u64 + lost;
+        assert!(told.abs_diff((FRAMES * LARGE_FRAME) as u64) < DATA as u64, "{told} bytes told");
+    }
 }

@@ -1,4 +1,4 @@
-//! Files that are read as one.
+//! Files that are read as one: those that go on from one to the next, and those of the chips of a cascade.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -43,13 +43,95 @@ impl Read for Chain {
 
 impl Seek for Chain {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let all: u64 = self.files.iter().map(|(_, bytes)| bytes).sum();
-        let place = match to {
-            SeekFrom::Start(at) => Some(at),
-            SeekFrom::End(by) => all.checked_add_signed(by),
-            SeekFrom::Current(by) => self.at.checked_add_signed(by),
-        };
-        self.at = place.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "a place before the first byte"))?;
+        self.at = place(to, self.at, self.files.iter().map(|(_, bytes)| bytes).sum())?;
         Ok(self.at)
+    }
+}
+
+/// Where `to` leads from `at` in so many bytes.
+fn place(to: SeekFrom, at: u64, bytes: u64) -> io::Result<u64> {
+    let place = match to {
+        SeekFrom::Start(at) => Some(at),
+        SeekFrom::End(by) => bytes.checked_add_signed(by),
+        SeekFrom::Current(by) => at.checked_add_signed(by),
+    };
+    place.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "a place before the first byte"))
+}
+
+/// Bytes of a sample of the four receivers of a chip, in pairs of 16-bit words.
+const CHIP_BYTES: u64 = 16;
+/// Most samples of a chip that are read at once.
+const MOST_SAMPLES: u64 = 4096;
+
+/// Files of the chips of a cascade, each four receivers sample by sample, as one file that has a sample of every receiver after the other.
+pub(super) struct Chips {
+    files: Vec<Box<dyn Source>>,
+    samples: u64,
+    at: u64,
+}
+
+impl Chips {
+    /// The files in the order of the receivers; what one has more than another is left out.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn new(mut files: Vec<Box<dyn Source>>) -> io::Result<Self> {
+        let sizes = files.iter_mut().map(|file| file.seek(SeekFrom::End(0))).collect::<io::Result<Vec<u64>>>()?;
+        Ok(Chips { files, samples: sizes.into_iter().min().unwrap_or(0) / CHIP_BYTES, at: 0 })
+    }
+
+    fn sample_bytes(&self) -> u64 {
+        CHIP_BYTES * self.files.len() as u64
+    }
+}
+
+impl Read for Chips {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let size = self.sample_bytes();
+        let wanted = (buffer.len() as u64).min((self.samples * size).saturating_sub(self.at));
+        if wanted == 0 {
+            return Ok(0);
+        }
+        let (first, within) = (self.at / size, self.at % size);
+        let count = (within + wanted).div_ceil(size).min(MOST_SAMPLES) as usize;
+        let mut all = vec![0; count * size as usize];
+        let mut of_chip = vec![0; count * CHIP_BYTES as usize];
+        for (chip, file) in self.files.iter_mut().enumerate() {
+            file.seek(SeekFrom::Start(first * CHIP_BYTES))?;
+            file.read_exact(&mut of_chip)?;
+            let samples = all.chunks_exact_mut(size as usize).zip(of_chip.chunks_exact(CHIP_BYTES as usize));
+            samples.for_each(|(to, from)| to[chip * from.len()..][..from.len()].copy_from_slice(from));
+        }
+        let read = &all[within as usize..];
+        let read = &read[..read.len().min(wanted as usize)];
+        buffer[..read.len()].copy_from_slice(read);
+        self.at += read.len() as u64;
+        Ok(read.len())
+    }
+}
+
+impl Seek for Chips {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.at = place(to, self.at, self.samples * self.sample_bytes())?;
+        Ok(self.at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Cursor;
+
+    #[test]
+    fn samples_of_chips_follow_one_another() {
+        let file =
+            |chip: u8| Box::new(Cursor::new((0..40).map(|n| 64 * chip + n).collect::<Vec<u8>>())) as Box<dyn Source>;
+        let mut chips = Chips::new(vec![file(0), file(1), file(2)]).unwrap();
+        // Two whole samples of each; the rest of 8 bytes is left out.
+        assert_eq!(chips.seek(SeekFrom::End(0)).unwrap(), 96);
+        let mut all = Vec::new();
+        let _at = chips.seek(SeekFrom::Start(10)).unwrap();
+        let read = chips.read_to_end(&mut all).unwrap();
+        assert_eq!((read, all[0], all[6], all[22], all[38]), (86, 10, 64, 128, 16));
     }
 }

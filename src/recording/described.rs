@@ -110,7 +110,7 @@ pub(super) fn parts(text: &str, path: &Path, open: Open<'_>) -> Result<Parts, Re
             let read = || -> Result<RadarProfile, Fault> {
                 Ok(RadarProfile::of_sub_frame(&config_text(open(config)?)?, capture.sub_frame)?)
             };
-            let mut profile = read().map_err(|fault| fault.of(&beside))?;
+            let mut profile = read().map_err(|fault| fault.of(&beside))?.on_chips(1 + capture.chips.len());
             // A layout that contradicts the .cfg follows the samples.
             profile.real = capture.parts.map_or(profile.real, |parts| parts == layout::Parts::Real);
             Some(profile)

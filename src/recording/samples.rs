@@ -2,7 +2,7 @@
 
 use super::axes::{Join, arrange, in_turn, loops, one_frame};
 use super::capture::{Meaning, strongest_of};
-use super::chain::{Chain, Source};
+use super::chain::{Chain, Chips, Source};
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
 use super::said_recording::{Covers, Table};
@@ -158,11 +158,16 @@ pub(super) fn count_frames(table: &Table, open: Open<'_>) -> Result<u64, Fault> 
 /// The file of a capture, with those that go on from it.
 pub(super) fn open_capture(table: &Table, open: Open<'_>, capture: &Capture) -> Result<Box<dyn Source>, Fault> {
     let first = open(&table.file)?;
-    if capture.more_files.is_empty() {
+    let (more, chips) = (&capture.more_files, &capture.chips);
+    if more.is_empty() && chips.is_empty() {
         return Ok(first);
     }
-    let more = capture.more_files.iter().map(|name| open(name)).collect::<io::Result<Vec<_>>>()?;
-    Ok(Box::new(Chain::new(std::iter::once(first).chain(more).collect())?))
+    if !(more.is_empty() || chips.is_empty()) {
+        return Err(Fault::key("recording.capture.chips", "stands beside more_files", "one of the two"));
+    }
+    let others = more.iter().chain(chips).map(|name| open(name)).collect::<io::Result<Vec<_>>>()?;
+    let files = std::iter::once(first).chain(others).collect();
+    Ok(if chips.is_empty() { Box::new(Chain::new(files)?) } else { Box::new(Chips::new(files)?) })
 }
 
 /// Turns of phase across the array of each pair at a cosine of 1, transmitter by transmitter.

@@ -99,7 +99,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         strip::show(ui, &mut radar, free.constants);
         places::show(ui, &mut radar, free.constants);
         budget::show(ui, table, &mut radar, input.selected.as_ref());
-        radar.end_elements = radar.end_elements.min(radar.elements / 2);
+        radar.end_elements = radar.end_elements.min(radar.most_end_elements());
         if radar != *input.radar {
             asked.push(RadarCommand::Set(Box::new(radar)).into());
         }

@@ -39,7 +39,8 @@ impl Arrays {
         };
         let mut array = tolerances.build(radar, rng.random());
         if !whole {
-            array.elements[radar.end_elements..radar.elements - radar.end_elements].fill(ElementError::default());
+            let between = array.elements.iter_mut().take(radar.elements - radar.end_elements).skip(radar.end_elements);
+            between.for_each(|element| *element = ElementError::default());
         }
         array
     }

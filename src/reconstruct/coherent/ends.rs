@@ -12,7 +12,7 @@ const PROFILE_ROWS_PER_BIN: usize = 16;
 /// Elements side by side.
 const W: usize = LANES_F64;
 
-/// Elements that heard something, those of the first end first; dead ones are missing samples.
+/// Elements that heard something, those of the first end first, one that is in both ends once; dead ones are missing samples.
 pub(super) struct Ends {
     /// Positions, metres.
     pub x_metres: Vec<f64>,
@@ -60,7 +60,8 @@ impl Ends {
         let mut hears = ends.hears().into_iter();
         for end in End::BOTH {
             for (element, channel) in radar.end_range(end).zip(ends.end(end).outer_iter()) {
-                if hears.next() == Some(true) {
+                let is_in_both = end == End::Last && element < radar.end_elements;
+                if hears.next() == Some(true) && !is_in_both {
                     x_metres.push(radar.element_x_metres(element));
                     pairs.push(radar.pair(element));
                     channels.push(channel);

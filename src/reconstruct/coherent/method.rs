@@ -53,7 +53,7 @@ impl Reconstructor for CoherentMethod {
     }
 
     fn fewest_end_elements(&self) -> usize {
-        2
+        1
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {

@@ -47,6 +47,11 @@ impl Reconstructor for MatchedFilter {
         true
     }
 
+    fn fewest_end_elements(&self) -> usize {
+        // The power that one element hears tells no direction.
+        if *self == MatchedFilter::Coherent { 1 } else { 2 }
+    }
+
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
         no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }

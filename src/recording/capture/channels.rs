@@ -24,11 +24,7 @@ impl Channels {
         let Some(profile) = profile else { return Channels::default() };
         let masks = &profile.chirp_transmitters;
         let both = profile.both_transmitters;
-        // Transmitters in the order of chirps, after those that send together are told apart.
-        let bits: Vec<usize> = match (both, masks.first()) {
-            (true, Some(mask)) => (0..32).filter(|bit| mask >> bit & 1 == 1).collect(),
-            _ => masks.iter().map(|mask| mask.trailing_zeros() as usize).collect(),
-        };
+        let bits = profile.senders();
         let together = if both { 0 } else { masks.iter().filter(|mask| mask.count_ones() > 1).count() };
         let (mut factors, mut unfitting) = (Vec::new(), None);
         if !profile.channel_factors.is_empty() && profile.channel_factors.iter().any(|f| *f != Complex64::ONE) {

@@ -4,7 +4,7 @@ use super::error::CaptureError;
 use super::plan::Plan;
 use super::quality::Quality;
 use super::table::Capture;
-use crate::recording::analytic::analytic;
+use crate::recording::analytic::all_analytic;
 use crate::recording::layout::Parts;
 use crate::recording::layout::stream::Stream;
 use ndarray::{Array3, Array4, Axis, s};
@@ -43,9 +43,9 @@ impl Frame {
             all.outer_iter_mut().for_each(|mut turn| turn -= &mean);
         }
         if layout.parts == Parts::Real {
-            all = all_analytic(&all, samples.div_ceil(2));
+            all = all_analytic(all.view(), samples.div_ceil(2));
         } else if quality.is_real() {
-            all = all_analytic(&all, samples);
+            all = all_analytic(all.view(), samples);
         }
         Ok(Frame { samples: all, quality })
     }
@@ -95,14 +95,4 @@ fn take_out_constant(all: &mut Array4<Complex64>) {
         let mean = row.sum() / row.len().max(1) as f64;
         row.iter_mut().for_each(|v| *v -= mean);
     }
-}
-
-/// The analytic signals of real samples, of `len` samples.
-fn all_analytic(all: &Array4<Complex64>, len: usize) -> Array4<Complex64> {
-    let (loops, chirps, receivers, _) = all.dim();
-    let mut out = Array4::zeros((loops, chirps, receivers, len));
-    for (row, mut found) in all.lanes(Axis(3)).into_iter().zip(out.lanes_mut(Axis(3))) {
-        found.iter_mut().zip(analytic(&row.to_vec(), len)).for_each(|(to, v)| *to = v);
-    }
-    out
 }

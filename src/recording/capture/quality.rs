@@ -64,9 +64,9 @@ impl Quality {
         self.zeros.get(n).copied().unwrap_or(false)
     }
 
-    /// Whether a constant part outweighs all else in complex samples.
+    /// Whether a constant part outweighs all else.
     pub fn tells_constant(&self) -> bool {
-        self.constant_db > CONSTANT_DB && self.complex && self.imaginary
+        self.constant_db > CONSTANT_DB
     }
 
     /// Whether every imaginary part is zero where samples are to be complex.
@@ -106,7 +106,8 @@ impl Quality {
             all.push(
                 "Samples are real: the positive half of their spectrum is taken (the analytic signal).".to_owned(),
             );
-        } else if self.tells_constant() && !is_out {
+        }
+        if self.tells_constant() && !is_out {
             all.push(format!(
                 "A constant part (leakage or offset) stands {:.0} dB over all else: recording.capture.constant = \"out\" takes it out.",
                 self.constant_db

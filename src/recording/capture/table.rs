@@ -14,6 +14,9 @@ pub struct Capture {
     /// Files that go on from the first, in order.
     #[serde(default)]
     pub more_files: Vec<String>,
+    /// Files of the other chips of a cascade, in the order of their receivers; each holds four receivers sample by sample, in pairs.
+    #[serde(default)]
+    pub chips: Vec<String>,
     /// 16 bits to a number.
     #[serde(default)]
     pub words: Words,

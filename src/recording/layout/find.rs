@@ -54,7 +54,7 @@ pub struct Found {
     pub candidates: Vec<Candidate>,
     /// Sentences on headers, packets and counts.
     pub notes: Vec<String>,
-    /// Whether samples and receivers were searched where much of the file is saturated.
+    /// Whether samples and receivers were searched where much of the file is saturated, or no rows are the same again.
     pub hides_counts: bool,
 }
 
@@ -95,7 +95,7 @@ pub enum LayoutError {
 pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfile>) -> Result<Found, LayoutError> {
     let marks = marks(stream)?;
     let mut notes = Vec::new();
-    let (ways, hides_counts) = match profile {
+    let (ways, mut hides_counts) = match profile {
         Some(p) => {
             let RadarProfile { samples, receivers, loops, .. } = *p;
             (vec![LikelyCounts::of(Counts { samples, receivers, chirps: p.chirp_transmitters.len(), loops })], false)
@@ -133,6 +133,10 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     }
     if best.flatness_db < FLAT_DB {
         return Err(LayoutError::NoEcho { tried: candidates.len() });
+    }
+    if ways.iter().any(|way| way.guessed && way.counts == best.counts) {
+        hides_counts = true;
+        notes.push(counts::GUESSED_NOTE.to_owned());
     }
     if profile.is_some() {
         let Candidate { layout, counts, .. } = best;

@@ -228,6 +228,27 @@ fn an_echo_that_hardly_breaks_between_rows_is_cut() {
 }
 
 #[test]
+fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
+    for (parts, chirps) in [(Parts::Pairs, 2), (Parts::Pairs, 3), (Parts::Real, 2)] {
+        let mut state = 7u32;
+        let mut noise = move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            40.0 * (f64::from(state >> 16) / 65536.0 - 0.5)
+        };
+        // Receivers half a wavelength apart, transmitters in turn, and a fifth of a turn from chirp to chirp.
+        let mut sample = |n: usize| {
+            let row = n / 120;
+            let turns = 13.3 * (n % 120) as f64 / 120.0 + 0.21 * (row % (4 * chirps)) as f64 + 0.2 * (row / 4) as f64;
+            Complex64::from_polar(900.0, TAU * turns) + Complex64::new(noise(), noise())
+        };
+        let rows: Vec<Vec<Complex64>> = (0..40).map(|_| (0..480 * chirps).map(&mut sample).collect()).collect();
+        let found = found(written(&layout(Words::Int16, parts, false, ReceiverOrder::OneAfterAnother), &rows), None);
+        let counts = found.best().counts;
+        assert_eq!((counts.samples, counts.receivers, counts.chirps), (120, 4, chirps), "{:#?}", found.sentences());
+    }
+}
+
+#[test]
 fn what_makes_no_echo_is_refused() {
     let mut state = 1u64;
     let mut byte = move || {

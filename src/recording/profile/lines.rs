@@ -85,8 +85,7 @@ fn line(number: usize, text: &str) -> Option<Line<'_>> {
     let text = ["%", "#", "//"].iter().fold(text, |rest, sign| rest.split(sign).next().unwrap_or(rest));
     // A prompt such as "mmwDemo:/>" ends with the last ">".
     let text = text.rsplit('>').next().unwrap_or(text);
-    let trimmed = |word: &'_ str| -> bool { !word.is_empty() };
-    let mut words = text.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '"')).filter(|w| trimmed(w));
+    let mut words = text.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '"')).filter(|w| !w.is_empty());
     let command = words.next().filter(|w| w.starts_with(|c: char| c.is_ascii_alphabetic()))?;
     let (mut values, mut bad) = (Vec::new(), None);
     for word in words {

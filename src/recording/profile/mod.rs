@@ -70,6 +70,9 @@ pub struct RadarProfile {
 /// Bytes of the header before each chirp, where `lvdsStreamCfg` asks for one.
 const CHIRP_HEADER_BYTES: usize = 64;
 
+/// Receivers of a chip.
+pub(super) const CHIP_RECEIVERS: usize = 4;
+
 /// A bias of more metres is none.
 const MOST_BIAS_METRES: f64 = 1000.0;
 
@@ -129,6 +132,25 @@ impl RadarProfile {
         profile.notes.extend(part.note.clone());
         profile.said_of_data(&commands)?;
         Ok(profile)
+    }
+
+    /// The transmitter of each chirp of a loop, after those that send together are told apart: of several at once the first.
+    pub fn senders(&self) -> Vec<usize> {
+        match (self.both_transmitters, self.chirp_transmitters.first()) {
+            (true, Some(mask)) => (0..32).filter(|bit| mask >> bit & 1 == 1).collect(),
+            _ => self.chirp_transmitters.iter().map(|mask| mask.trailing_zeros() as usize).collect(),
+        }
+    }
+
+    /// The same of so many chips of a cascade that were all set up alike; a text that names more receivers than a chip has names them all.
+    pub fn on_chips(mut self, chips: usize) -> RadarProfile {
+        if chips > 1 && self.receivers <= CHIP_RECEIVERS {
+            self.receivers *= chips;
+            self.receiver_numbers = (0..self.receivers).collect();
+            self.numbers_before *= chips;
+            self.frame_numbers *= chips;
+        }
+        self
     }
 
     /// What other commands say of the data.

@@ -64,6 +64,7 @@ pub(super) fn import(
             data,
             config: config.as_deref(),
             more: &[],
+            chips: &[],
             profile,
             line: &line,
             takes_constant_out: false,

@@ -47,12 +47,14 @@ fn ends(path: &Path, end: &str) -> bool {
 /// What the files of a cascade's chips are called by, in the order of TI's capture program.
 const CHIPS: [&str; 4] = ["master", "slave1", "slave2", "slave3"];
 
-/// Names of the files of the other chips of a cascade, where the capture is one chip's.
-pub(super) fn other_chips(data: &Path) -> Vec<String> {
+/// The files of the chips of a cascade in their order, and names of those that are not there, where the capture is one chip's.
+pub(super) fn chips(data: &Path) -> (Vec<PathBuf>, Vec<String>) {
     let name = data.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-    let Some(own) = CHIPS.into_iter().find(|chip| name.contains(chip)) else { return Vec::new() };
-    let others = CHIPS.into_iter().filter(|chip| *chip != own).map(|chip| name.replacen(own, chip, 1));
-    others.filter(|other| fs::exists(&data.with_file_name(other))).collect()
+    let Some(own) = CHIPS.into_iter().find(|chip| name.contains(chip)) else { return Default::default() };
+    let names = CHIPS.map(|chip| name.replacen(own, chip, 1));
+    let (found, lacking): (Vec<String>, Vec<String>) =
+        names.into_iter().partition(|name| fs::exists(&data.with_file_name(name)));
+    (found.into_iter().map(|name| data.with_file_name(name)).collect(), lacking)
 }
 
 /// Files that go on from the first, where its name ends with `_0`: `_1` and so on, as capture programs split at a gigabyte.

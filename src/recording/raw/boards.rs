@@ -45,26 +45,36 @@ pub const ALL: &[Board] = &[
         transmitters: WITH_HIGHER,
         receivers: FOUR,
     },
-    Board {
-        name: "cascade",
-        guide: "Imaging Radar Using Cascaded mmWave Sensor Reference Design (TIDEP-01012), TIDUEN5",
-        transmitters: &[
-            [0.0, 0.0],
-            [4.0, 0.0],
-            [8.0, 0.0],
-            [12.0, 0.0],
-            [16.0, 0.0],
-            [20.0, 0.0],
-            [24.0, 0.0],
-            [28.0, 0.0],
-            [32.0, 0.0],
-            [9.0, 1.0],
-            [10.0, 4.0],
-            [11.0, 6.0],
-        ],
-        receivers: &[0.0, 1.0, 2.0, 3.0, 11.0, 12.0, 13.0, 14.0, 46.0, 47.0, 48.0, 49.0, 50.0, 51.0, 52.0, 53.0],
-    },
+    CASCADE,
 ];
+
+/// Four chips as one radar, receivers from the left.
+const CASCADE: Board = Board {
+    name: "cascade",
+    guide: "Imaging Radar Using Cascaded mmWave Sensor Reference Design (TIDEP-01012), TIDUEN5",
+    transmitters: &[
+        [0.0, 0.0],
+        [4.0, 0.0],
+        [8.0, 0.0],
+        [12.0, 0.0],
+        [16.0, 0.0],
+        [20.0, 0.0],
+        [24.0, 0.0],
+        [28.0, 0.0],
+        [32.0, 0.0],
+        [9.0, 1.0],
+        [10.0, 4.0],
+        [11.0, 6.0],
+    ],
+    receivers: &[0.0, 1.0, 2.0, 3.0, 11.0, 12.0, 13.0, 14.0, 46.0, 47.0, 48.0, 49.0, 50.0, 51.0, 52.0, 53.0],
+};
+
+/// The cascade as its four chips count their receivers: master, slave1, slave2, slave3, as TI's programs for its captures have
+/// them.
+pub(super) const BY_CHIP: Board = Board {
+    receivers: &[11.0, 12.0, 13.0, 14.0, 50.0, 51.0, 52.0, 53.0, 46.0, 47.0, 48.0, 49.0, 0.0, 1.0, 2.0, 3.0],
+    ..CASCADE
+};
 
 /// The board called `name`, in any case of letters.
 pub fn by_name(name: &str) -> Option<&'static Board> {

@@ -3,13 +3,10 @@
 use super::boards::{self, Board};
 use crate::radar::SPEED_OF_LIGHT;
 use crate::recording::layout::Counts;
-use crate::recording::profile::RadarProfile;
+use crate::recording::profile::{CHIP_RECEIVERS, RadarProfile};
 
 /// Carrier where nothing says one, hertz.
 pub(super) const USUAL_CARRIER_HZ: f64 = 77e9;
-
-/// Receivers of a chip.
-const CHIP_RECEIVERS: usize = 4;
 
 /// A line of elements.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,9 +48,23 @@ pub(super) fn uniform(counts: Counts, carrier_hz: f64) -> Line {
     metres(&senders, &receivers, None, carrier_hz, vec![doubt])
 }
 
+/// The antennas of a board where no `.cfg` says which of them are on; `None` where it has too few.
+fn of_board(counts: Counts, board: &'static Board) -> Option<Line> {
+    let (places, receivers) = (board.transmitters.get(..counts.chirps)?, board.receivers.get(..counts.receivers)?);
+    let sender = |(chirp, [across, up]): (usize, &[f64; 2])| Sender { chirp, across: *across, up: *up };
+    let (senders, note) = one_height(&places.iter().enumerate().map(sender).collect::<Vec<_>>());
+    let doubt =
+        format!("The transmitters of the {} are taken to send one after another in the order of its list.", board.name);
+    let doubts = std::iter::once(doubt).chain(note).collect();
+    Some(Line { board: Some(board.name), ..metres(&senders, receivers, None, USUAL_CARRIER_HZ, doubts) })
+}
+
 /// The line of a capture: by the places that the `.cfg` says, by `board`, or by the board that the transmitters make likely.
 pub(super) fn line(counts: Counts, profile: Option<&RadarProfile>, board: Option<&'static Board>) -> Line {
-    let Some(profile) = profile else { return uniform(counts, USUAL_CARRIER_HZ) };
+    let Some(profile) = profile else {
+        let of_board = board.and_then(|board| of_board(counts, board));
+        return of_board.unwrap_or_else(|| uniform(counts, USUAL_CARRIER_HZ));
+    };
     let carrier_hz = profile.carrier_hz();
     if board.is_none()
         && let Some((senders, taken, receivers)) = of_geometry(profile)
@@ -144,7 +155,7 @@ fn one_height(senders: &[Sender]) -> (Vec<Sender>, Option<String>) {
 fn of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f64>)> {
     let [across, up] = &profile.element_places;
     let receivers = profile.receivers;
-    let bits: Vec<usize> = profile.chirp_transmitters.iter().map(|mask| mask.trailing_zeros() as usize).collect();
+    let bits = profile.senders();
     // The lines name every receiver of the chip, or those alone that are on.
     let last = bits.iter().max()?;
     let of_chip = |r: usize| profile.receiver_numbers.get(r).copied().unwrap_or(r);

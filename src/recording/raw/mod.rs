@@ -7,6 +7,7 @@
 //! | [`boards`] | places of antennas by a board's name |
 //! | `line` | the antennas of a `.cfg` that form one line |
 //! | `beside` | the `.cfg` beside a capture, and the files that go on from it |
+//! | `first_frame` | what the first frame tells: a constant part, the order of a cascade's chips |
 //! | `text` | the TOML |
 //! | `array` | arrays without a text |
 //! | `axes` | what the axes of an array count, by evidence |
@@ -16,6 +17,7 @@ mod array;
 mod axes;
 mod beside;
 pub mod boards;
+mod first_frame;
 mod imported;
 mod line;
 #[cfg(test)]
@@ -24,14 +26,15 @@ mod text;
 
 pub use imported::Imported;
 
-use super::capture::{Capture, Frame, Part, Plan, ReceiverOrder, Together, Turn};
-use super::chain::{Chain, Source};
+use super::capture::{Capture, Part, ReceiverOrder, Together, Turn};
+use super::chain::{Chain, Chips, Source};
 use super::described::{config_text, open_file};
 use super::layout::stream::Stream;
 use super::layout::{Candidate, Certainty, Found, Kind, find, said as said_of};
 use super::profile::RadarProfile;
 use super::{Fault, Offer, Origin, Recording, RecordingError};
 use boards::Board;
+use first_frame::FirstFrame;
 use std::io::{self, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
@@ -84,7 +87,12 @@ pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) ->
     let profile = read_config(config)?;
     let data = frame_path(config);
     let stream = Stream::plain(Cursor::new(bytes)).map_err(|e| Fault::from(e).of(&data))?;
-    described(stream, data, Vec::new(), Some(config.to_owned()), Some(&profile), board)
+    described(
+        stream,
+        Files { data, more: Vec::new(), chips: Vec::new(), config: Some(config.to_owned()) },
+        Some(&profile),
+        board,
+    )
 }
 
 /// Where the data of such a frame would stand; there is no such file.
@@ -109,39 +117,78 @@ fn capture_of(
     profile: Option<&RadarProfile>,
     board: Option<&'static Board>,
 ) -> Result<Imported, RecordingError> {
-    let more = beside::more_files(&data);
-    let source = open_all(&data, &more).map_err(|e| Fault::from(e).of(&data))?;
-    let stream = Stream::new(source).map_err(|e| Fault::from(e).of(&data))?;
-    described(stream, data, more, config, profile, board)
+    let (chips, _) = beside::chips(&data);
+    let files = match <[PathBuf; 4]>::try_from(chips) {
+        Ok([data, chips @ ..]) => Files { data, more: Vec::new(), chips: chips.to_vec(), config },
+        Err(_) => Files { more: beside::more_files(&data), data, chips: Vec::new(), config },
+    };
+    let stream = files.open().and_then(Stream::new).map_err(|e| Fault::from(e).of(&files.data))?;
+    let profile = profile.map(|profile| profile.clone().on_chips(1 + files.chips.len()));
+    described(stream, files, profile.as_ref(), board)
+}
+
+/// The files of a capture.
+struct Files {
+    data: PathBuf,
+    /// Files that go on from the first.
+    more: Vec<PathBuf>,
+    /// Files of the other chips of a cascade.
+    chips: Vec<PathBuf>,
+    config: Option<PathBuf>,
+}
+
+impl Files {
+    /// All of them as one.
+    fn open(&self) -> io::Result<Box<dyn Source>> {
+        let open = |path: &PathBuf| Ok::<_, io::Error>(Box::new(BufReader::new(open_file(path)?)) as Box<dyn Source>);
+        let paths = || std::iter::once(&self.data).chain(&self.more).chain(&self.chips);
+        let all = || paths().map(open).collect::<io::Result<Vec<_>>>();
+        Ok(match (self.more.is_empty(), self.chips.is_empty()) {
+            (true, true) => open(&self.data)?,
+            (_, false) => Box::new(Chips::new(all()?)?),
+            (false, true) => Box::new(Chain::new(all()?)?),
+        })
+    }
+
+    /// What is told of them.
+    fn told(&self) -> Option<String> {
+        let (_, lacking) = beside::chips(&self.data);
+        if !self.chips.is_empty() {
+            return Some("The files of the four chips of a cascade are read as one.".to_owned());
+        }
+        if !self.more.is_empty() {
+            return Some(format!("The capture goes on in {} more files, read as one.", self.more.len()));
+        }
+        (!lacking.is_empty()).then(|| {
+            format!(
+                "The file holds the receivers of one chip of a cascade. Beside it are missing {}: it is read alone.",
+                lacking.join(", ")
+            )
+        })
+    }
 }
 
 /// The layouts of a capture, and the texts that describe it.
 fn described<R: Read + io::Seek>(
     mut stream: Stream<R>,
-    data: PathBuf,
-    more: Vec<PathBuf>,
-    config: Option<PathBuf>,
+    files: Files,
     profile: Option<&RadarProfile>,
     board: Option<&'static Board>,
 ) -> Result<Imported, RecordingError> {
-    let found = find(&mut stream, profile).map_err(|e| Fault::from(e).of(&data))?;
+    let found = find(&mut stream, profile).map_err(|e| Fault::from(e).of(&files.data))?;
     let best = found.best();
+    let frame = FirstFrame::read(&mut stream, best, profile);
+    let is_cascade = !files.chips.is_empty() && board.is_none_or(|board| board.name == boards::BY_CHIP.name);
+    let board = if is_cascade { Some(frame.cascade()) } else { board };
     let line = line::line(best.counts, profile, board);
     if line.transmitter_x_metres.len() * line.receiver_x_metres.len() < 2 {
         let found = "has one transmitter and one receiver, which tell ranges and no directions";
-        return Err(Fault::key("the capture", found, "two elements or more").of(&data));
+        return Err(Fault::key("the capture", found, "two elements or more").of(&files.data));
     }
     let mut doubts = doubts_of(&found, profile);
     doubts.extend(line.doubts.iter().cloned());
-    doubts
-        .extend((!more.is_empty()).then(|| format!("The capture goes on in {} more files, read as one.", more.len())));
-    let others = beside::other_chips(&data);
-    doubts.extend((!others.is_empty()).then(|| {
-        let others = others.join(", ");
-        format!("The file holds the receivers of one chip of a cascade. Those of the others, in {others}, are not read with it.")
-    }));
-    let (constant, frames) = frame_of(&mut stream, best, profile);
-    doubts.extend(constant.map(|db| {
+    doubts.extend(files.told());
+    doubts.extend(frame.constant_db.map(|db| {
         format!(
             "A constant part (leakage or offset) stands {db:.0} dB over all else and is taken out: recording.capture.constant = \"keep\" keeps it."
         )
@@ -151,19 +198,21 @@ fn described<R: Read + io::Seek>(
     let offer = |candidate: &Candidate| {
         let line = line::line(candidate.counts, profile, board);
         let about = text::About {
-            data: &data,
-            config: config.as_deref(),
-            more: &more,
+            data: &files.data,
+            config: files.config.as_deref(),
+            more: &files.more,
+            chips: &files.chips,
             profile,
             line: &line,
-            takes_constant_out: constant.is_some(),
+            takes_constant_out: frame.constant_db.is_some(),
             sentences: &sentences,
         };
         let (described, power) = (candidate.described(), candidate.power.clone());
         Offer { described, log_odds: candidate.log_odds(), power, toml: text::text(candidate, &about) }
     };
     let offers = found.candidates.iter().take(OFFERED).map(offer).collect();
-    let board = line.board;
+    let (board, frames) = (line.board, frame.frames);
+    let Files { data, config, .. } = files;
     let origin = Origin { data, config, offers, taken: 0, sentences, doubts, board, frames, frame: 0 };
     Ok(Imported { origin, found: Some(found) })
 }
@@ -175,17 +224,6 @@ pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
         Ok(RadarProfile::parse(&config_text(file)?)?)
     };
     read().map_err(|fault| fault.of(path))
-}
-
-/// The files as one.
-fn open_all(data: &Path, more: &[PathBuf]) -> io::Result<Box<dyn Source>> {
-    let open = |path: &Path| Ok::<_, io::Error>(Box::new(BufReader::new(open_file(path)?)) as Box<dyn Source>);
-    if more.is_empty() {
-        return open(data);
-    }
-    let all =
-        std::iter::once(data).chain(more.iter().map(PathBuf::as_path)).map(open).collect::<io::Result<Vec<_>>>()?;
-    Ok(Box::new(Chain::new(all)?))
 }
 
 /// What is doubtful of the layout.
@@ -233,18 +271,6 @@ fn said(profile: &RadarProfile) -> Vec<String> {
     said
 }
 
-/// How far the constant part stands above all else in the first frame, decibels, where it does; and how many whole frames there are.
-fn frame_of<R: Read + io::Seek>(
-    stream: &mut Stream<R>,
-    best: &Candidate,
-    profile: Option<&RadarProfile>,
-) -> (Option<f64>, u64) {
-    let capture = capture(best, profile);
-    let Ok(plan) = Plan::new(&capture, profile, stream.bytes()) else { return (None, 0) };
-    let Ok(Frame { quality, .. }) = Frame::read(stream, &capture, &plan) else { return (None, plan.frames) };
-    (quality.tells_constant().then_some(quality.constant_db), plan.frames)
-}
-
 /// A candidate's layout as it would stand in a text.
 fn capture(best: &Candidate, profile: Option<&RadarProfile>) -> Capture {
     let Candidate { layout, counts, .. } = best;
@@ -253,6 +279,7 @@ fn capture(best: &Candidate, profile: Option<&RadarProfile>) -> Capture {
         config: None,
         sub_frame: None,
         more_files: Vec::new(),
+        chips: Vec::new(),
         words: layout.words,
         parts: Some(layout.parts),
         lanes: None,

@@ -73,14 +73,72 @@ fn parts_of_a_split_capture_are_read_as_one() {
     assert_eq!(recording.samples, open(&whole.path().join("w.bin"), None).unwrap().samples);
 }
 
+/// Files of the four chips of a cascade, receivers at `places` in half wavelengths: one chirp in each of 8 loops, an echo in range bin 11.4 at
+/// cos 0.3.
+fn chips(places: [f64; 16]) -> Vec<(String, Vec<u8>)> {
+    let sample = |receiver: usize, n: usize| {
+        let turns = TAU * (11.4 * n as f64 / 64.0) - TAU * 0.5 * 0.3 * places[receiver];
+        let noise = |of: usize| ((n * of + receiver) % 23) as f64 / 4.0;
+        [(900.0 * turns.cos() + noise(7)) as i16, (900.0 * turns.sin() + noise(13)) as i16]
+    };
+    let chirp = |chip: usize| (0..64).flat_map(move |n| (4 * chip..4 * chip + 4).flat_map(move |r| sample(r, n)));
+    let file = |chip: usize| (0..8).flat_map(|_| chirp(chip)).flat_map(i16::to_le_bytes).collect();
+    let names = ["master", "slave1", "slave2", "slave3"];
+    names.into_iter().enumerate().map(|(chip, name)| (format!("{name}_0000_data.bin"), file(chip))).collect()
+}
+
+/// One transmitter, four receivers of each chip, 64 samples, eight loops.
+fn cfg_of_chip() -> String {
+    CFG.replace("frameCfg 0 1 4", "frameCfg 0 0 8").replace("adcbufCfg -1 0 0 1 1", "adcbufCfg -1 0 0 0 1")
+}
+
 #[test]
-fn one_chip_of_a_cascade_is_told() {
+fn any_chip_of_a_cascade_opens_all_four() {
+    let by_chip = boards::BY_CHIP.receivers.try_into().unwrap();
+    let files = chips(by_chip);
+    let cfg = cfg_of_chip();
+    let mut all: Vec<(&str, &[u8])> = files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())).collect();
+    all.push(("c.cfg", cfg.as_bytes()));
+    let folder = folder(&all);
+    for name in ["master_0000_data.bin", "slave2_0000_data.bin"] {
+        let imported = import(&folder.path().join(name), None, None).unwrap();
+        let toml = imported.origin.toml();
+        assert!(
+            toml.contains("file = \"master_0000_data.bin\"") && toml.contains("chips = [\"slave1_0000_data.bin\""),
+            "{toml}"
+        );
+        let recording = imported.recording().unwrap();
+        // Places from 0 to 53, of which 16 hold a receiver.
+        assert_eq!((recording.radar.elements, recording.missing.len()), (54, 38));
+        assert!(recording.doubts.iter().any(|d| d.contains("four chips of a cascade")), "{:?}", recording.doubts);
+        fs::write(folder.path().join("r.toml"), toml).unwrap();
+        assert_eq!(super::super::file::load(&folder.path().join("r.toml")).unwrap().samples, recording.samples);
+    }
+}
+
+#[test]
+fn the_order_of_chips_is_the_sharper_one() {
+    let from_left = boards::by_name("cascade").unwrap().receivers;
+    for places in [from_left, boards::BY_CHIP.receivers] {
+        let files = chips(places.try_into().unwrap());
+        let cfg = cfg_of_chip();
+        let mut all: Vec<(&str, &[u8])> = files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())).collect();
+        all.push(("c.cfg", cfg.as_bytes()));
+        let folder = folder(&all);
+        let toml = import(&folder.path().join("master_0000_data.bin"), None, None).unwrap().origin.toml().to_owned();
+        let starts_left = toml.contains("receiver_x_metres = [0.0,");
+        assert_eq!(starts_left, places[0] == 0.0, "{toml}");
+    }
+}
+
+#[test]
+fn a_chip_without_the_others_is_told() {
     let bytes = frame();
     let folder =
         folder(&[("master_0000_data.bin", &bytes), ("slave2_0000_data.bin", &bytes), ("c.cfg", CFG.as_bytes())]);
     let told = |name: &str| open(&folder.path().join(name), None).unwrap().doubts.join(" ");
-    assert!(told("master_0000_data.bin").contains("in slave2_0000_data.bin, are not read"));
-    assert!(told("slave2_0000_data.bin").contains("in master_0000_data.bin, are not read"));
+    assert!(told("master_0000_data.bin").contains("missing slave1_0000_data.bin, slave3_0000_data.bin"));
+    assert!(told("slave2_0000_data.bin").contains("missing slave1_0000_data.bin, slave3_0000_data.bin"));
 }
 
 #[test]

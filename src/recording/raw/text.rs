@@ -2,7 +2,7 @@
 
 use super::axes::Reading;
 use super::line::{Line, USUAL_CARRIER_HZ};
-use crate::radar::{Antennas, SPEED_OF_LIGHT};
+use crate::radar::{Antennas, Radar, SPEED_OF_LIGHT};
 use crate::recording::AxisKind;
 use crate::recording::layout::{Candidate, Layout, Parts};
 use crate::recording::profile::RadarProfile;
@@ -14,6 +14,7 @@ pub(super) struct About<'a> {
     pub data: &'a Path,
     pub config: Option<&'a Path>,
     pub more: &'a [PathBuf],
+    pub chips: &'a [PathBuf],
     pub profile: Option<&'a RadarProfile>,
     pub line: &'a Line,
     pub takes_constant_out: bool,
@@ -119,7 +120,8 @@ fn radar(out: &mut String, said: Option<[f64; 3]>, samples: usize, about: &About
     put(out, "receiver_x_metres", &list(receiver_x_metres));
     let pairs = transmitter_x_metres.len() * receiver_x_metres.len();
     let elements = Antennas::new(transmitter_x_metres, receiver_x_metres).map_or(pairs, |a| a.pairs().len());
-    put(out, "end_elements", &(elements / 2).max(1).to_string());
+    let most = Radar { elements, ..Radar::default() }.most_end_elements();
+    put(out, "end_elements", &most.max(1).to_string());
 }
 
 fn capture(out: &mut String, best: &Candidate, about: &About<'_>) {
@@ -128,9 +130,11 @@ fn capture(out: &mut String, best: &Candidate, about: &About<'_>) {
     if let Some(config) = about.config {
         put(out, "config", &quoted(&beside(config, about.data)));
     }
-    if !about.more.is_empty() {
-        let names: Vec<String> = about.more.iter().map(|path| quoted(&beside(path, about.data))).collect();
-        put(out, "more_files", &format!("[{}]", names.join(", ")));
+    for (key, paths) in [("more_files", about.more), ("chips", about.chips)] {
+        if !paths.is_empty() {
+            let names: Vec<String> = paths.iter().map(|path| quoted(&beside(path, about.data))).collect();
+            put(out, key, &format!("[{}]", names.join(", ")));
+        }
     }
     put(out, "words", &quoted(words.name()));
     put(out, "parts", &quoted(parts.name()));
