@@ -1,7 +1,7 @@
 //! Other words that may be typed in the palette, and where menus have what is found.
 
 use super::command::{
-    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, Purpose, ViewCommand, WindowCommand,
+    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, Purpose, RadarCommand, ViewCommand, WindowCommand,
 };
 use super::panel::Panel;
 use crate::scene::presets;
@@ -35,6 +35,7 @@ pub fn synonyms(command: &Command) -> &'static str {
             _ => "",
         },
         Command::Window(command) => window_words(command),
+        Command::Radar(RadarCommand::Preset(_)) => "mimo virtual array",
         Command::AskFile(purpose) => file_words(*purpose),
         _ => "",
     }
