@@ -41,7 +41,7 @@ pub const ALL: &[Preset] = presets![
     "failure-live-missed",
     "failure-live-merged",
     "failure-live-ghost",
-    "failure-wrong-tooth",
+    "failure-live-wrong-tooth",
     "failure-hybrid-merged",
     "failure-thesis-missed",
     "failure-thesis-merged",
@@ -62,9 +62,14 @@ impl Preset {
         from_toml(self.toml)
     }
 
+    /// Name of the method that fails on it, as its notes explain.
+    pub fn failing_method(&self) -> Option<&'static str> {
+        self.id.strip_prefix("failure-")?.split('-').next()
+    }
+
     /// Whether a method fails on it, as its notes explain.
     pub fn is_failure(&self) -> bool {
-        self.id.starts_with("failure-")
+        self.failing_method().is_some()
     }
 
     /// The preset called `id`.

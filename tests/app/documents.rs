@@ -57,7 +57,7 @@ fn new_and_presets_keep_the_radar_unless_they_have_one() {
         let index = presets::ALL.iter().position(|preset| preset.id == id).unwrap();
         DocumentCommand::Preset(index)
     };
-    for (id, elements) in [("four-reflectors", 128), ("failure-wrong-tooth", Radar::default().elements)] {
+    for (id, elements) in [("four-reflectors", 128), ("failure-live-wrong-tooth", Radar::default().elements)] {
         s.ask(preset(id));
         assert_eq!(s.state().editor().radar().elements, elements, "{id}");
         undo(&mut s);

@@ -26,7 +26,7 @@ const EXPLAINED: [(&str, &str, &[Kind]); 9] = [
     ("failure-live-missed", "live", &[Missed]),
     ("failure-live-merged", "live", &[Merged]),
     ("failure-live-ghost", "live", &[Ghost]),
-    ("failure-wrong-tooth", "live", &[WrongTooth]),
+    ("failure-live-wrong-tooth", "live", &[WrongTooth]),
     ("failure-hybrid-merged", "hybrid", &[Merged]),
     ("failure-thesis-missed", "thesis", &[Missed]),
     ("failure-thesis-merged", "thesis", &[Missed, Merged, Ghost]),

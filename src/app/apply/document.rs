@@ -130,6 +130,9 @@ fn preset(state: &mut State, index: usize) {
         Ok(file) => {
             // A failure is one of its method before its radar.
             let keeps_radar = !preset.has_radar() && !preset.is_failure();
+            if let Some(name) = preset.failing_method() {
+                state.settings.method = name.to_owned();
+            }
             let radar = if keeps_radar { state.radar().clone() } else { file.radar.clone() };
             let document = Document::shipped(SceneFile { radar, ..file });
             state.failures.view.wanted = preset.is_failure().then(|| document.id());

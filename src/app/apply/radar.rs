@@ -21,6 +21,7 @@ pub fn apply(state: &mut State, command: RadarCommand) {
         RadarCommand::Preset(index) => {
             if let Some(preset) = presets::ALL.get(index) {
                 edit(state, "radar preset", None, |r| *r = preset.radar.clone());
+                state.scene_view.fit |= state.scene_view.fitted.is_some();
             }
         }
     }

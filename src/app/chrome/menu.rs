@@ -2,9 +2,10 @@
 
 use super::column::MAX_COLUMN_WIDTH_POINTS;
 use super::unsaved;
+use crate::app::state::menus::{EDIT, FILE, HELP, VIEW};
 use crate::app::state::{
-    Command, DocumentCommand, EditCommand, ExportCommand, HelpPage, MapKind, NewObject, Panel, Projection, Purpose,
-    Task, ViewCommand, WindowCommand,
+    Command, DocumentCommand, EditCommand, HelpPage, MapKind, NewObject, Panel, Projection, Task, ViewCommand,
+    WindowCommand,
 };
 use crate::app::widgets::entry::{button, entry, entry_called, ticked, tooltip};
 use crate::app::widgets::labelled::labelled;
@@ -12,7 +13,6 @@ use crate::app::widgets::number_field::NumberField;
 use crate::interact::Document;
 use crate::picture::ColourMap;
 use crate::platform;
-use crate::recording::card::USUAL_PORT;
 use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
@@ -164,7 +164,8 @@ fn entries(ui: &mut Ui, commands: impl IntoIterator<Item = Command>, asked: &mut
 fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let recent = input.recent;
     ui.set_min_width(220.0);
-    entries(ui, [Command::Document(DocumentCommand::New), Command::AskFile(Purpose::Open)], asked);
+    let [open, listen, save, export, end] = FILE;
+    entries(ui, open.iter().cloned(), asked);
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for path in recent {
@@ -177,51 +178,26 @@ fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         });
     });
     if !platform::IN_A_BROWSER {
-        entries(ui, [Command::AskFile(Purpose::Listen(USUAL_PORT))], asked);
+        entries(ui, listen.iter().cloned(), asked);
     }
     unsaved::show(ui, input.left, asked);
-    ui.separator();
-    entries(
-        ui,
-        [
-            Command::Document(DocumentCommand::Save),
-            Command::AskFile(Purpose::SaveScene),
-            Command::Export(ExportCommand::CopyShared),
-            Command::Export(ExportCommand::CopyLink),
-        ],
-        asked,
-    );
-    ui.separator();
-    entries(
-        ui,
-        [
-            Command::AskFile(Purpose::ExportPicture),
-            Command::AskFile(Purpose::ExportMaps),
-            Command::AskFile(Purpose::ExportMetrics),
-        ],
-        asked,
-    );
-    ui.separator();
-    entry(ui, WindowCommand::Quit, true, asked);
+    for group in [save, export, end] {
+        ui.separator();
+        entries(ui, group.iter().cloned(), asked);
+    }
 }
 
 fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.set_min_width(220.0);
-    entry(ui, EditCommand::Undo, input.can_undo, asked);
-    entry(ui, EditCommand::Redo, input.can_redo, asked);
+    let [back, rest] = EDIT;
+    for (command, is_enabled) in back.iter().zip([input.can_undo, input.can_redo]) {
+        entry(ui, command.clone(), is_enabled, asked);
+    }
     ui.separator();
-    for (command, enabled) in [
-        (Command::Edit(EditCommand::Cut), input.selected),
-        (Command::Edit(EditCommand::Copy), input.selected),
-        (Command::Edit(EditCommand::Paste), true),
-        (Command::Edit(EditCommand::Duplicate), input.selected),
-        (Command::Edit(EditCommand::Delete), input.selected),
-        (Command::Edit(EditCommand::SelectAll), true),
-        (Command::Edit(EditCommand::SelectNext), true),
-        (Command::Edit(EditCommand::SelectPrevious), true),
-        (Command::Window(WindowCommand::Escape), input.selected),
-    ] {
-        entry(ui, command, enabled, asked);
+    for command in rest {
+        use EditCommand::{Paste, SelectAll, SelectNext, SelectPrevious};
+        let is_free = matches!(command, Command::Edit(Paste | SelectAll | SelectNext | SelectPrevious));
+        entry(ui, command.clone(), is_free || input.selected, asked);
     }
 }
 
@@ -307,9 +283,6 @@ fn panels(ui: &mut Ui, panels: impl IntoIterator<Item = Panel>, input: &Input<'_
     }
 }
 
-/// Panels that the menu Help lists.
-const HELP: [Panel; 2] = [Panel::Guide, Panel::Lesson];
-
 /// Tools and what belongs to them; those for research in a menu of their own.
 fn tools(ui: &mut Ui, input: &Input<'_>, memory: &MenuMemory, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
@@ -352,28 +325,12 @@ fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         }
     });
     ui.menu_button("Overlays", |ui| items(ui, ViewCommand::OVERLAYS, input, asked));
-    item(ui, WindowCommand::ResetLayout.into(), input, asked);
-    ui.separator();
-    let of_maps = [
-        ViewCommand::ToggleProjection,
-        ViewCommand::ToggleUnits,
-        ViewCommand::ToggleOneScale,
-        ViewCommand::ToggleFineColumns,
-        ViewCommand::ToggleFieldsOfView,
-        ViewCommand::ResetMaps,
-        ViewCommand::NextMethod,
-    ];
-    items(ui, of_maps, input, asked);
-    ui.separator();
-    let of_window = [
-        WindowCommand::Present,
-        WindowCommand::ToggleTheme,
-        WindowCommand::ZoomIn,
-        WindowCommand::ZoomOut,
-        WindowCommand::ZoomReset,
-        WindowCommand::Palette,
-    ];
-    items(ui, of_window, input, asked);
+    let [layout, maps, window] = VIEW;
+    items(ui, layout.iter().cloned(), input, asked);
+    for group in [maps, window] {
+        ui.separator();
+        items(ui, group.iter().cloned(), input, asked);
+    }
 }
 
 #[cfg(test)]

@@ -98,12 +98,11 @@ fn matches(name: &str, text: &str) -> bool {
     text.to_lowercase().split_whitespace().all(|word| name.contains(word))
 }
 
-/// A lesson that comes with the program, and the words of its text.
+/// A lesson that comes with the program.
 struct Taught {
     index: usize,
     title: String,
     about: String,
-    words: String,
 }
 
 /// Every lesson that comes with the program, read once.
@@ -112,29 +111,27 @@ fn taught() -> &'static [Taught] {
     TAUGHT.get_or_init(|| {
         let read = |(index, file): (usize, &shipped::Shipped)| {
             let lesson = file.load().ok()?;
-            let words = lesson.steps.iter().map(|step| step.text.as_str()).collect::<Vec<_>>().join(" ");
-            Some(Taught { index, title: lesson.title, about: lesson.about, words })
+            Some(Taught { index, title: lesson.title, about: lesson.about })
         };
         shipped::ALL.iter().enumerate().filter_map(read).collect()
     })
 }
 
-/// What else may be typed for a command: the words of the file that it opens.
-fn words(command: &Command) -> &'static str {
-    match command {
-        Command::Document(DocumentCommand::Preset(index)) => presets::ALL.get(*index).map_or("", |preset| preset.toml),
+/// What else may be typed for a command: name and words of the file that it opens.
+fn words(command: &Command) -> [&'static str; 2] {
+    let file = match command {
+        Command::Document(DocumentCommand::Preset(index)) => presets::ALL.get(*index).map(|file| [file.id, file.toml]),
         Command::Document(DocumentCommand::Recording(index)) => {
-            recording::presets::ALL.get(*index).map_or("", |preset| preset.toml)
+            recording::presets::ALL.get(*index).map(|file| [file.id, file.toml])
         }
-        Command::Lesson(LessonCommand::Begin(index)) => {
-            taught().iter().find(|lesson| lesson.index == *index).map_or("", |lesson| &lesson.words)
-        }
-        _ => "",
-    }
+        Command::Lesson(LessonCommand::Begin(index)) => shipped::ALL.get(*index).map(|file| [file.id, file.toml]),
+        _ => None,
+    };
+    file.unwrap_or_default()
 }
 
 /// The commands that `text` finds by name, by another word for it, or by the menu it stands in: first those whose name it is, of these
-/// those that have it as it was typed, and of these the ones that were run last.
+/// those that have it as it was typed and as whole words, and of these the ones that were run last.
 fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<Found> {
     let commands = listed().iter().filter(|e| e.command != Command::Window(WindowCommand::Palette)).map(|e| Found {
         command: e.command.clone(),
@@ -158,13 +155,15 @@ fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<
         path: Panel::Lesson.title().to_owned(),
     });
     let any = |f: &Found| {
-        let all = [f.name.as_str(), synonyms(&f.command), f.path.as_str(), f.tooltip, words(&f.command)];
+        let [id, file] = words(&f.command);
+        let all = [f.name.as_str(), synonyms(&f.command), f.path.as_str(), f.tooltip, id, file];
         matches(&all.join(" "), text)
     };
     let mut found: Vec<Found> = commands.chain(methods).chain(lessons).filter(any).collect();
     let since = |name: &str| recent.iter().position(|r| r == name).unwrap_or(recent.len());
     let whole = |name: &str| name.to_lowercase().contains(text.trim().to_lowercase().as_str());
-    found.sort_by_key(|f| (!matches(&f.name, text), !whole(&f.name), since(&f.name)));
+    let word = |name: &str| text.split_whitespace().all(|word| name.split(' ').any(|of| of.eq_ignore_ascii_case(word)));
+    found.sort_by_key(|f| (!matches(&f.name, text), !whole(&f.name), !word(&f.name), since(&f.name)));
     found
 }
 
@@ -299,6 +298,7 @@ mod tests {
             ("range becomes a frequency", "Lesson: Range and bandwidth"),
             ("thesis compares with", "Method: baseline"),
             ("two reflections", "Recording: cascade 86"),
+            ("occlusion", "Lesson: A weak point behind a strong line"),
         ] {
             let found = find(&Context::default(), &input, text, &[]);
             let names: Vec<&String> = found.iter().map(|found| &found.name).collect();
@@ -315,6 +315,8 @@ mod tests {
         assert_eq!(found[0], "Undo");
         // And what has the words as they were typed before what has them anywhere: "Floor: thesis".
         assert!(names("the floor", &[])[0].starts_with("Lesson: The floor"));
+        // And what has them as whole words before what begins so: "Cartesian".
+        assert!(names("car", &[])[0].split(' ').any(|word| word == "car"), "{:?}", names("car", &[]));
         let mut memory = PaletteMemory::remembering(vec!["Redo".to_owned()]);
         memory.remember("Undo".to_owned());
         memory.remember("Redo".to_owned());

@@ -44,7 +44,7 @@ fn text(kind: MapKind, radar: &Radar, method: &str) -> String {
 pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
     let scene = state.editor.scene();
     if state.shows_captions() {
-        return Some(hint(scene, state.editor.document().recording().is_some()));
+        return Some(hint(scene, state.radar(), state.editor.document().recording().is_some()));
     }
     let is_told = state.tells_first_drag && state.lesson.is_none() && state.editor.dragged().is_none();
     let places_metres = is_told.then(|| post_and_wall(scene)).flatten()?;
@@ -77,7 +77,7 @@ fn told([first, last, target]: [bool; 3]) -> &'static str {
     }
 }
 
-fn hint(scene: &Scene, is_recorded: bool) -> Hint {
+fn hint(scene: &Scene, radar: &Radar, is_recorded: bool) -> Hint {
     let plain = |text: &str| Hint { text: text.to_owned(), way: Vec::new() };
     if is_recorded {
         return plain("Double-click to lay a reflector over the recording");
@@ -85,7 +85,8 @@ fn hint(scene: &Scene, is_recorded: bool) -> Hint {
     if scene.objects.is_empty() {
         return plain("Double-click to add a reflector");
     }
-    match post_and_wall(scene).flatten().filter(|_| scene.objects == STREET.objects) {
+    let is_street = scene.objects == STREET.objects && *radar == Radar::default();
+    match post_and_wall(scene).flatten().filter(|_| is_street) {
         Some(ends) => Hint { text: "Drag the post along its ring, to the wall".to_owned(), way: along_the_ring(ends) },
         None => plain("Drag a reflector: every map follows"),
     }
@@ -134,13 +135,13 @@ mod tests {
     #[test]
     fn the_first_scene_asks_to_drag_the_post_along_its_ring() {
         let street = presets::default_scene().scene;
-        let Hint { text, way } = hint(&street, false);
+        let Hint { text, way } = hint(&street, &Radar::default(), false);
         assert_eq!(text, "Drag the post along its ring, to the wall");
         let ranges: Vec<f64> = way.iter().map(|at| at.x_metres.hypot(at.y_metres)).collect();
         assert!(ranges.iter().all(|range| (range - ranges[0]).abs() < 1e-9), "{ranges:?}");
         let [.., end] = way[..] else { panic!("an arrow") };
         assert!((end.x_metres - 9.0).abs() < 0.1, "the arrow ends at {end:?}, not at the wall");
-        assert_eq!(hint(&Scene::default(), false).text, "Double-click to add a reflector");
+        assert_eq!(hint(&Scene::default(), &Radar::default(), false).text, "Double-click to add a reflector");
     }
 
     #[test]
@@ -148,7 +149,9 @@ mod tests {
         let mut other = presets::default_scene().scene;
         other.objects.retain(|object| matches!(object, Object::Line(_) | Object::Point(_)));
         let plain = Hint { text: "Drag a reflector: every map follows".to_owned(), way: Vec::new() };
-        assert_eq!(hint(&other, false), plain);
+        assert_eq!(hint(&other, &Radar::default(), false), plain);
+        let (street, few) = (presets::default_scene().scene, Radar { elements: 64, ..Radar::default() });
+        assert_eq!(hint(&street, &few, false), plain, "the wall is not where the array of 1024 has it");
     }
 
     #[test]

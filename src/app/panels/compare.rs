@@ -197,7 +197,6 @@ fn method(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::state::Projection;
     use crate::app::widgets::seen;
     use crate::interact::Selection;
     use crate::radar::Radar;
@@ -219,13 +218,14 @@ mod tests {
     fn panel(layout: Layout) -> Harness<'static, Held> {
         let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
         let (radar, scene, selection) = (Radar::default(), Scene::default(), Selection::default());
+        let look = crate::view::View::default();
         let (mut view, mut memory) = (MapView::default(), map::HandMemory::default());
         let draw = move |ui: &mut Ui, held: &mut Held| {
             let titled = |kind: MapKind| {
                 let refused = held.refused && kind == MapKind::Second;
                 let error = refused.then_some(map::Problem { reason: "needs more samples", instead: None });
                 let texture = (!refused).then(TextureId::default);
-                let map = map::Input::bare(kind, &radar, Projection::RangeAngle, &scene, &selection);
+                let map = map::Input::bare(kind, &radar, &look, &scene, &selection);
                 Titled { title: kind.title().to_owned(), map: map::Input { texture, error, ..map } }
             };
             let input = Input {

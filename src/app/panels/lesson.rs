@@ -105,7 +105,8 @@ fn pinned_question(ui: &mut Ui, run: &LessonRun, memory: &mut LessonMemory, aske
         let scroll = ScrollArea::vertical().max_height(most).min_scrolled_height(most).auto_shrink([false, true]);
         scroll.show(ui, |ui| {
             ui.label(large(ui, &question.ask).strong());
-            answer(ui, question, memory, asked);
+            // In rows, for the text's sake.
+            ui.horizontal_wrapped(|ui| answer(ui, question, memory, asked));
         });
     });
 }
@@ -125,9 +126,14 @@ fn step(
     asked: &mut Vec<Command>,
 ) {
     let Some(step) = run.current() else { return };
-    ui.heading(&run.lesson.title);
-    ui.weak(format!("Step {} of {}", run.step + 1, run.lesson.steps.len()));
-    ui.add_space(4.0);
+    let place = format!("Step {} of {}", run.step + 1, run.lesson.steps.len());
+    if is_pinned {
+        ui.weak(format!("{} · {place}", run.lesson.title));
+    } else {
+        ui.heading(&run.lesson.title);
+        ui.weak(place);
+        ui.add_space(4.0);
+    }
     ui.label(inline(ui, &step.text, LARGE_TEXT_RATIO));
     ui.add_space(8.0);
     if let Some(question) = step.predict.as_ref().filter(|_| !is_pinned) {

@@ -1,10 +1,9 @@
-//! Other words that may be typed in the palette, and where menus have what is found.
+//! Other words that may be typed in the palette.
 
 use super::command::{
-    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, Purpose, ViewCommand, WindowCommand,
+    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, Purpose, RadarCommand, ViewCommand, WindowCommand,
 };
 use super::panel::Panel;
-use crate::scene::presets;
 
 /// Words for a command that its name doesn't hold.
 pub fn synonyms(command: &Command) -> &'static str {
@@ -35,6 +34,7 @@ pub fn synonyms(command: &Command) -> &'static str {
             _ => "",
         },
         Command::Window(command) => window_words(command),
+        Command::Radar(RadarCommand::Preset(_)) => "mimo virtual array",
         Command::AskFile(purpose) => file_words(*purpose),
         _ => "",
     }
@@ -103,91 +103,5 @@ fn window_words(command: &WindowCommand) -> &'static str {
         WindowCommand::TogglePanel(Panel::Bounds) => "cramer rao ambiguity crlb resolution",
         WindowCommand::TogglePanel(_) => "window open close",
         _ => "",
-    }
-}
-
-/// Menus that lead to a command, from the bar on; nothing for one that only buttons, keys and the palette have.
-pub fn menu_path(command: &Command) -> &'static [&'static str] {
-    match command {
-        Command::Document(command) => match command {
-            DocumentCommand::New | DocumentCommand::Save => &["File"],
-            DocumentCommand::Preset(index) if presets::ALL.get(*index).is_some_and(presets::Preset::is_failure) => {
-                &["Tools", "Failures explained"]
-            }
-            DocumentCommand::Preset(_) => &["Scene", "Presets"],
-            DocumentCommand::Recording(_) => &["Scene", "Recordings"],
-            DocumentCommand::RandomScene(_) => &["Scene", "Random scene"],
-            _ => &[],
-        },
-        Command::Edit(command) => edit_menus(command),
-        Command::Export(ExportCommand::CopyShared | ExportCommand::CopyLink)
-        | Command::AskFile(
-            Purpose::Open
-            | Purpose::Listen(_)
-            | Purpose::SaveScene
-            | Purpose::ExportPicture
-            | Purpose::ExportMaps
-            | Purpose::ExportMetrics,
-        ) => &["File"],
-        Command::View(command) => view_menus(command),
-        Command::Window(command) => window_menus(command),
-        _ => &[],
-    }
-}
-
-fn view_menus(command: &ViewCommand) -> &'static [&'static str] {
-    match command {
-        ViewCommand::FitScene => &["Scene"],
-        ViewCommand::Colours(_) => &["View", "Colours"],
-        ViewCommand::ToggleProjection
-        | ViewCommand::ToggleUnits
-        | ViewCommand::ToggleOneScale
-        | ViewCommand::ToggleFineColumns
-        | ViewCommand::ResetMaps
-        | ViewCommand::ToggleFieldsOfView
-        | ViewCommand::NextMethod => &["View"],
-        overlay if ViewCommand::OVERLAYS.contains(overlay) => &["View", "Overlays"],
-        ViewCommand::Flip | ViewCommand::ToggleDeveloper => &["Tools"],
-        _ => &[],
-    }
-}
-
-fn window_menus(command: &WindowCommand) -> &'static [&'static str] {
-    match command {
-        WindowCommand::ArrangeFor(_) => &["View", "Arrangement"],
-        WindowCommand::TogglePanel(Panel::Guide | Panel::Lesson)
-        | WindowCommand::Help(_)
-        | WindowCommand::ToggleCaptions => &["Help"],
-        // A tile of several views stands in the menu by a name of its own.
-        WindowCommand::TogglePanel(panel) if panel.title() != panel.tile_title() => &[],
-        WindowCommand::TogglePanel(panel) if panel.is_tool() => &["Tools"],
-        WindowCommand::TogglePanel(_) => &["View", "Panels"],
-        WindowCommand::Escape => &["Edit"],
-        WindowCommand::Quit => &["File"],
-        WindowCommand::Present
-        | WindowCommand::ToggleTheme
-        | WindowCommand::ZoomIn
-        | WindowCommand::ZoomOut
-        | WindowCommand::ZoomReset
-        | WindowCommand::ResetLayout
-        | WindowCommand::Palette => &["View"],
-        _ => &[],
-    }
-}
-
-fn edit_menus(command: &EditCommand) -> &'static [&'static str] {
-    match command {
-        EditCommand::Undo
-        | EditCommand::Redo
-        | EditCommand::Cut
-        | EditCommand::Copy
-        | EditCommand::Paste
-        | EditCommand::Duplicate
-        | EditCommand::Delete
-        | EditCommand::SelectAll
-        | EditCommand::SelectNext
-        | EditCommand::SelectPrevious => &["Edit"],
-        EditCommand::Add(..) => &["Scene"],
-        _ => &[],
     }
 }

@@ -126,7 +126,7 @@ pub fn lesson(name: &'static str) -> Tree<Panel> {
     let [in0, in1, target] =
         [MapKind::Input0, MapKind::Input1, MapKind::Target].map(|kind| tabs(&mut tiles, &[Panel::Map(kind)]));
     let output = tabs(&mut tiles, &[MapKind::Output, MapKind::TargetAbove].map(Panel::Map));
-    let left = column(&mut tiles, vec![lesson, scene], &[0.56, 0.44]);
+    let left = column(&mut tiles, vec![lesson, scene], &[0.6, 0.4]);
     let others = row(&mut tiles, vec![in0, in1, output], &[1.0, 1.0, 1.0]);
     let right = column(&mut tiles, vec![target, others], &[1.5, 1.0]);
     let root = row(&mut tiles, vec![left, right], &[1.0, 1.75]);

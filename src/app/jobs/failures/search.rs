@@ -102,9 +102,9 @@ impl Search {
         self.job.progress()
     }
 
-    /// How it ended, if not well.
+    /// How it ended, if not well and if it was not forgotten since.
     pub fn note(&self) -> Option<&str> {
-        self.job.note()
+        self.subject.as_ref().and(self.job.note())
     }
 
     /// What was looked for, and by which method, if anything was.

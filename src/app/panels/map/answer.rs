@@ -53,13 +53,13 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, places: &Places) {
     label(painter, guess, guess_is_above, "your guess");
     label(painter, truth, !guess_is_above, "truth");
     let middle = guess + (truth - guess) / 2.0;
-    // Beside the line, where it is long enough not to stand over its ends: above a line across, to the right of one that rises.
+    // On the side of the line where neither of its ends is; above the marks and their names where the line is level.
     if apart > 5.0 * REACH {
-        let is_across = (truth.x - guess.x).abs() > (truth.y - guess.y).abs();
-        let (off, align) = if is_across {
-            (vec2(0.0, -2.0 * FREE), Align2::CENTER_BOTTOM)
-        } else {
-            (vec2(2.0 * FREE, 0.0), Align2::LEFT_CENTER)
+        let along = if truth.x < guess.x { guess - truth } else { truth - guess };
+        let (off, align) = match along.y {
+            level if level.abs() < 2.0 * REACH => (vec2(0.0, -2.5 * REACH), Align2::CENTER_BOTTOM),
+            down if down > 0.0 => (vec2(FREE, -FREE), Align2::LEFT_BOTTOM),
+            _ => (vec2(FREE, FREE), Align2::LEFT_TOP),
         };
         axes::text_on_patch(painter, middle + off, align, distance);
     }
@@ -92,8 +92,8 @@ mod tests {
             truth: Cell { bin: 266.0, column: 512.0 },
             distance: "1.2 m and 12 columns off".to_owned(),
         };
-        for column in [500.0, 512.0, 200.0] {
-            let places = places(column);
+        for (column, bin) in [(500.0, 250.0), (512.0, 250.0), (200.0, 250.0), (750.0, 100.0), (650.0, 400.0)] {
+            let places = Places { guess: Cell { bin, column }, ..places(column) };
             let drawn = Harness::builder().with_size(rect.size()).build_ui(|ui| draw(ui.painter(), frame, &places));
             let truth = frame.cell(theory::MapPlace { bin: 266.0, column: 512.0 });
             for text in seen::texts(drawn.output()) {

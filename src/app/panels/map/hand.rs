@@ -99,7 +99,8 @@ mod tests {
         let draw = move |ui: &mut Ui, desk: &mut Desk| {
             let radar = Radar::default();
             let (scene, selection) = (desk.editor.scene().clone(), desk.editor.selection().clone());
-            let input = Input::bare(kind, &radar, projection, &scene, &selection);
+            let look = crate::view::View { projection, ..Default::default() };
+            let input = Input::bare(kind, &radar, &look, &scene, &selection);
             for command in show(ui, input, &mut desk.view, &mut desk.memory) {
                 match command.clone() {
                     Command::Edit(EditCommand::Grab(blob)) => desk.editor.grab(blob),

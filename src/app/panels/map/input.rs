@@ -6,10 +6,8 @@ use super::frame::{Cells, Marks};
 use super::hatch::ToldApart;
 use super::kinds::Kinds;
 use super::theory::Theory;
-use crate::app::state::{Cursor, DifferenceView, Directions, MapKind, MapView, Projection, Units};
+use crate::app::state::{Cursor, MapKind, MapView, Projection, View};
 use crate::interact::Selection;
-use crate::maps::cfar::Cfar;
-use crate::picture::ColourMap;
 use crate::radar::Radar;
 use crate::scene::Scene;
 use eframe::egui::TextureId;
@@ -24,18 +22,10 @@ pub struct Input<'a> {
     pub scene: &'a Scene,
     /// What of it is selected.
     pub selection: &'a Selection,
-    /// Over which coordinates.
-    pub projection: Projection,
+    /// How maps are looked at.
+    pub look: &'a View,
     /// The visible part of maps over the other coordinates.
     pub other_view: MapView,
-    /// Colours of Lambda.
-    pub colours: ColourMap,
-    /// What the colour bar counts.
-    pub units: Units,
-    /// What the axis of directions counts.
-    pub directions: Directions,
-    /// How a difference is drawn.
-    pub difference: DifferenceView,
     /// Its picture, if there is one.
     pub texture: Option<TextureId>,
     /// Over which coordinates that picture is: for a moment after they change, the ones of before.
@@ -56,8 +46,6 @@ pub struct Input<'a> {
     pub kinds: Option<Kinds<'a>>,
     /// What its cells are, where they are hits, misses and false alarms.
     pub told_apart: Option<ToldApart<'a>>,
-    /// The detector whose window is drawn around the pointer's cell.
-    pub cfar: Option<Cfar>,
     /// What the formulas say of a reflector, if that is drawn over it.
     pub theory: Option<Theory<'a>>,
     /// Where the pointer is, in whichever panel.
@@ -66,8 +54,6 @@ pub struct Input<'a> {
     pub note: Option<String>,
     /// What it shows, in a line over it, at a first start.
     pub line: Option<String>,
-    /// What is drawn over maps: the menu ticks it.
-    pub shown: Shown,
     /// Why there is no picture.
     pub error: Option<Problem<'a>>,
     /// Hides the picture: a prediction is asked for.
@@ -76,17 +62,4 @@ pub struct Input<'a> {
     pub axes: bool,
     /// The place that was guessed in a lesson, and the true one.
     pub places: Option<Places>,
-}
-
-/// What is drawn over maps.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Shown {
-    /// True reflectors.
-    pub reflectors: bool,
-    /// Those that the method found.
-    pub found: bool,
-    /// What the formulas say of the selected one.
-    pub theory: bool,
-    /// What became of every object.
-    pub kinds: bool,
 }

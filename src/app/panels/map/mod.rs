@@ -26,14 +26,13 @@ pub use caption::{Caption, caption};
 pub use frame::Cells;
 pub use hand::HandMemory;
 pub use hatch::ToldApart;
-pub use input::{Input, Shown};
+pub use input::Input;
 pub use kinds::Kinds;
 pub use theory::Theory;
 pub use told::{MapMemory, MapPanel, caption_of, cells, is_updating, map_input, marks_of, verdict};
 
 use crate::app::state::{Command, LessonCommand, MapKind, MapView, Projection, ViewCommand};
 use crate::app::widgets::axes;
-use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::nudge::nudge;
 use crate::app::widgets::theme::{CAPTION, CAPTION_INK, Inks};
 use crate::maps::{Aperture, RangeAngleMap, beam_columns};
@@ -56,24 +55,24 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     let area = ui.available_rect_before_wrap();
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
     let is_told = !input.kind.is_above() && input.veil.is_none() && is_wide(area);
-    let bar = is_told.then(|| bar_of(&input));
+    let bar = is_told.then(|| scale::bar(&input));
     let legend = legend_of(ui, &input, area);
     // Kept in every map, also where nothing is marked: frames beside each other stay aligned.
-    let above = if input.shown.kinds { legend::reserved(area.height()) } else { 0.0 };
-    let rect = rect_of(area, input.projection, above);
+    let above = if input.look.show_kinds { legend::reserved(area.height()) } else { 0.0 };
+    let rect = rect_of(area, input.look.projection, above);
     let response = ui.interact(rect, ui.scope_id().with(("map", input.kind)), Sense::click_and_drag());
     let label = format!("{} map", input.kind.title());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
     describe(ui, &input, response.id);
     let centre_x_metres = centre_x_metres(input.kind, input.radar);
-    let frame = Frame::of(rect, *view, input.radar, input.projection, centre_x_metres);
+    let frame = Frame::of(rect, *view, input.radar, input.look.projection, centre_x_metres);
     let is_bare = input.veil.is_none();
     let holds = is_bare && hand::work(ui, input.kind, input.scene, frame, &response, memory, &mut asked);
     navigate(ui, rect, &response, view, !holds, input.selection.is_empty());
     if response.has_focus() && !input.selection.is_empty() {
         asked.extend(nudge(ui.ctx(), input.radar.range_resolution_metres()));
     }
-    let morph = morph::morph(ui, area, input.projection, input.other_view, above);
+    let morph = morph::morph(ui, area, input.look.projection, input.other_view, above);
     // What the pointer does means the place where everything comes to rest.
     let frame = Frame { view: *view, ..frame };
     point(&input, frame, &response, &mut asked);
@@ -86,7 +85,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
         let free = bar.as_ref().map_or(0.0, |bar| bar.overhang(&painter, rect.width()));
         let mut appearing = painter.clone();
         appearing.multiply_opacity(rest);
-        draw_axes(ui, &appearing, frame, input.directions, (free, line_of(&input).is_some()));
+        draw_axes(ui, &appearing, frame, input.look.directions, (free, line_of(&input).is_some()));
     }
     legend.draw(ui, &painter, frame.shown());
     draw_over(&inner, frame, &input, &response, is_drawn);
@@ -95,7 +94,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     }
     response.context_menu(|ui| menu(ui, &input, &mut asked));
     if is_bare {
-        morph::button(ui, rect, input.kind, input.projection, &mut asked);
+        morph::button(ui, rect, input.kind, input.look.projection, &mut asked);
     }
     asked
 }
@@ -137,8 +136,8 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
     if let Some(cursor) = &input.cursor {
         let told = input.veil.is_none();
         let cells = input.cells.as_ref();
-        overlay::cursor(inner, frame, cursor, cells.filter(|_| told), input.units);
-        if let Some(cfar) = input.cfar.as_ref().filter(|_| told && at_rest) {
+        overlay::cursor(inner, frame, cursor, cells.filter(|_| told), input.look.units);
+        if let Some(cfar) = input.look.cfar.as_ref().filter(|_| told && at_rest && input.kind.is_above()) {
             window::draw(inner, frame, cursor, cells, cfar);
         }
     }
@@ -202,7 +201,7 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
                 overlay::line(inner, frame, map, ui.visuals().strong_text_color());
                 return true;
             }
-            match frame.morph.is_none() && input.pictured == input.projection {
+            match frame.morph.is_none() && input.pictured == input.look.projection {
                 true => _ = inner.image(texture, rect, uv, tint),
                 false => morph::picture(inner, frame, texture, input.pictured, tint),
             }
@@ -218,7 +217,7 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
 /// Tells where the pointer is; a click predicts where that is asked for.
 fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: &mut Vec<Command>) {
     let Some(pos) = response.hover_pos() else { return };
-    let Some(cursor) = cursor_at(input.radar, input.projection, frame.view.at(frame.rect, pos)) else { return };
+    let Some(cursor) = cursor_at(input.radar, input.look.projection, frame.view.at(frame.rect, pos)) else { return };
     if input.veil.is_some_and(|v| v.is_clicked) && response.clicked() {
         let cell = crate::lesson::Cell { bin: cursor.bin, column: cursor.column };
         asked.push(LessonCommand::Predict(crate::lesson::Guess::Place(cell)).into());
@@ -228,7 +227,7 @@ fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: 
 
 /// The map of one range bin, where it is drawn as a line over directions.
 fn line_of<'a>(input: &'a Input<'_>) -> Option<&'a RangeAngleMap> {
-    let is_flat = input.projection == Projection::RangeAngle && input.pictured == input.projection;
+    let is_flat = input.look.projection == Projection::RangeAngle && input.pictured == input.look.projection;
     let is_lambda = !input.kind.is_above() && input.kind != MapKind::Doubt;
     let cells = input.cells.as_ref().filter(|cells| cells.minus.is_none());
     cells.filter(|_| input.radar.samples == 1 && is_flat && is_lambda).map(|cells| cells.map)
@@ -236,7 +235,7 @@ fn line_of<'a>(input: &'a Input<'_>) -> Option<&'a RangeAngleMap> {
 
 /// The elements whose beam is drawn over a map of few of them.
 fn aperture(input: &Input<'_>) -> Option<Aperture> {
-    if input.radar.elements >= FEW_COLUMNS || input.projection != Projection::RangeAngle {
+    if input.radar.elements >= FEW_COLUMNS || input.look.projection != Projection::RangeAngle {
         return None;
     }
     match input.kind {
@@ -254,12 +253,6 @@ fn centre_x_metres(kind: MapKind, radar: &Radar) -> f64 {
         MapKind::Input1 => radar.end_centre_metres(End::Last),
         _ => 0.0,
     }
-}
-
-fn bar_of(input: &Input<'_>) -> Bar {
-    let Input { kind, colours, units, difference, end, .. } = *input;
-    let lambda = input.cells.as_ref().and_then(|cells| cells.scale);
-    scale::Scale { kind, colours, units, lambda, difference, end }.bar()
 }
 
 #[cfg(test)]

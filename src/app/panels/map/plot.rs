@@ -77,6 +77,9 @@ fn direction_titles(radar: &Radar) -> &'static [&'static str] {
     ]
 }
 
+/// With wider columns, in cos(theta), the edges of a map are not taken for its outermost directions.
+const MAX_COLUMN_OF_SLACK_COS: f64 = 0.05;
+
 /// Degrees between marks, the finest first.
 const DEGREES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0];
 
@@ -129,7 +132,8 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, directions: Direc
             let title = axes::fitting(painter, rect.width() - 2.0 * free, titles);
             // A column stands for the direction in its middle: the ends of a whole map are half a column away from a round number.
             let column = cos(1.0 / radar.elements as f32) - cos(0.0);
-            let slack = if view.high.x - view.low.x == 1.0 { 0.51 * column } else { 0.0 };
+            let is_near = view.high.x - view.low.x == 1.0 && column.abs() < MAX_COLUMN_OF_SLACK_COS;
+            let slack = if is_near { 0.51 * column } else { 0.0 };
             let (low, high) = (cos(view.low.x), cos(view.high.x));
             let x = match directions {
                 Directions::Cosine => Axis::new(low, high, title).with_slack(slack),

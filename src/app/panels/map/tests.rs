@@ -5,7 +5,7 @@ impl<'a> Input<'a> {
     pub fn bare(
         kind: MapKind,
         radar: &'a Radar,
-        projection: Projection,
+        look: &'a View,
         scene: &'a Scene,
         selection: &'a Selection,
     ) -> Input<'a> {
@@ -14,14 +14,10 @@ impl<'a> Input<'a> {
             radar,
             scene,
             selection,
-            projection,
+            look,
             other_view: MapView::default(),
-            colours: ColourMap::Grey,
-            units: Units::Lambda,
-            directions: Directions::Cosine,
-            difference: DifferenceView::default(),
             texture: None,
-            pictured: projection,
+            pictured: look.projection,
             end: 1.0,
             sentence: None,
             stale: false,
@@ -30,12 +26,10 @@ impl<'a> Input<'a> {
             marks: Marks { objects: &[], found: &[] },
             kinds: None,
             told_apart: None,
-            cfar: None,
             theory: None,
             cursor: None,
             note: None,
             line: None,
-            shown: Shown::default(),
             error: None,
             veil: None,
             axes: true,
@@ -46,11 +40,10 @@ impl<'a> Input<'a> {
 
 use super::frame::Marks;
 use super::*;
-use crate::app::state::{Cursor, DifferenceView, Directions, Projection, Units};
+use crate::app::state::{Cursor, Projection, Units, View};
 use crate::app::widgets::seen;
 use crate::interact::Selection;
 use crate::maps::{LambdaScale, RangeAngleMap};
-use crate::picture::ColourMap;
 use crate::radar::Carrier;
 use crate::scene::Scene;
 use eframe::egui::Shape;
@@ -62,11 +55,13 @@ use std::sync::LazyLock;
 
 static NOTHING: LazyLock<(Scene, Selection)> = LazyLock::new(Default::default);
 
+static LOOK: LazyLock<View> = LazyLock::new(View::default);
+
 static NO_CELLS: LazyLock<RangeAngleMap> = LazyLock::new(|| RangeAngleMap { lambda: Array2::zeros((1, 1)) });
 
 fn input<'a>(radar: &'a Radar, error: Option<Problem<'a>>) -> Input<'a> {
     let (scene, selection) = &*NOTHING;
-    Input { error, ..Input::bare(MapKind::Output, radar, Projection::RangeAngle, scene, selection) }
+    Input { error, ..Input::bare(MapKind::Output, radar, &LOOK, scene, selection) }
 }
 
 fn draw(ui: &mut Ui, error: Option<Problem<'_>>, asked: &mut Vec<Command>) {
@@ -126,7 +121,8 @@ fn every_label_of_a_map_is_inside_its_panel() {
                 let scale = Some(LambdaScale { peak: 3.0, floor: -12.5 });
                 let cells = Some(Cells { map: &lambda, minus: None, scale });
                 let texture = Some(TextureId::default());
-                let input = Input { kind, units, cells, texture, end: 0.05, ..input(&radar, None) };
+                let look = View { units, ..View::default() };
+                let input = Input { kind, look: &look, cells, texture, end: 0.05, ..input(&radar, None) };
                 _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
             });
             seen::assert_readable(map.output());
@@ -153,7 +149,9 @@ fn every_map_has_the_same_margins() {
                 let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9] });
                 let told_apart = told_apart.filter(|_| kind == MapKind::OutputAbove);
                 let texture = Some(TextureId::default());
-                let input = Input { kind, units, projection, texture, told_apart, ..input(&radar, None) };
+                let look = View { units, projection, ..View::default() };
+                let (look, pictured) = (&look, Projection::RangeAngle);
+                let input = Input { kind, look, pictured, texture, told_apart, ..input(&radar, None) };
                 _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
             });
             seen::assert_readable(map.output());
@@ -176,8 +174,8 @@ fn maps_beside_each_other_stay_aligned_while_objects_are_marked() {
         let (radar, fates) = (Radar::default(), kinds::tests::fates());
         let map = Harness::builder().with_size([500.0, 300.0]).build_ui(move |ui| {
             let kinds = Some(Kinds { fates: &fates, current: true }).filter(|_| kind == MapKind::Output);
-            let shown = Shown { kinds: true, ..Shown::default() };
-            let input = Input { kind, kinds, shown, texture: Some(TextureId::default()), ..input(&radar, None) };
+            let (texture, look) = (Some(TextureId::default()), View { show_kinds: true, ..View::default() });
+            let input = Input { kind, kinds, look: &look, texture, ..input(&radar, None) };
             _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
         });
         map.get_by_label(&format!("{} map", kind.title())).rect()
@@ -230,8 +228,8 @@ fn judged(size: [f32; 2]) -> Harness<'static> {
         let kinds = Some(Kinds { fates: &fates, current: true });
         let texture = Some(TextureId::default());
         let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9] });
-        let shown = Shown { kinds: true, ..Shown::default() };
-        let input = Input { kinds, texture, told_apart, shown, kind: MapKind::OutputAbove, ..input(&radar, None) };
+        let (kind, look) = (MapKind::OutputAbove, View { show_kinds: true, ..View::default() });
+        let input = Input { kinds, texture, told_apart, look: &look, kind, ..input(&radar, None) };
         _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
     });
     map.step();

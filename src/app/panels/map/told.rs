@@ -2,7 +2,7 @@
 
 use super::frame::{Cells, Marked, Marks};
 use super::{
-    Caption, EARLIER_SCENE, HandMemory, Input, Kinds, Places, Problem, Shown, Theory, ToldApart, Veil, caption, show,
+    Caption, EARLIER_SCENE, HandMemory, Input, Kinds, Places, Problem, Theory, ToldApart, Veil, caption, show,
 };
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, TheoryResult, fates_of};
@@ -93,7 +93,7 @@ pub fn map_input<'a>(
     texture: Option<TextureId>,
     kind: MapKind,
 ) -> Input<'a> {
-    let (settings, pipeline) = (&state.settings, &jobs.pipeline);
+    let (settings, pipeline) = (&state.settings.view, &jobs.pipeline);
     let picture = pipeline.maps.result().and_then(|r| r.pictures.get(&kind));
     let found = if kind.slot() == Some(MethodSlot::First) { pipeline.shown_found(state) } else { &[] };
     let of_formulas = jobs
@@ -107,12 +107,8 @@ pub fn map_input<'a>(
         radar: state.editor.radar(),
         scene: state.scene(),
         selection: state.editor.selection(),
-        projection: settings.projection,
+        look: settings,
         other_view: state.map_views.seen(settings.projection.other()),
-        colours: settings.colours,
-        units: settings.units,
-        directions: settings.directions,
-        difference: settings.difference,
         texture,
         pictured: picture.map_or(settings.projection, |p| p.projection),
         end: picture.map_or(1.0, |p| p.end),
@@ -123,17 +119,10 @@ pub fn map_input<'a>(
         marks: Marks { objects, found },
         kinds: kinds(state, jobs, kind),
         told_apart: kind.slot().filter(|_| kind.is_above()).and_then(|slot| told_apart(state, jobs, slot)),
-        cfar: settings.cfar.filter(|_| kind.is_above()),
         theory: of_formulas.and_then(|r| theory(r, kind)),
         cursor: state.shown_cursor(),
         note: note(state, kind),
         line: captions::of_map(state, kind),
-        shown: Shown {
-            reflectors: settings.show_reflectors,
-            found: settings.show_found,
-            theory: settings.show_theory,
-            kinds: settings.show_kinds,
-        },
         error: error(state, jobs, kind),
         veil: veil(state, kind),
         axes: state.shows_axes(),
