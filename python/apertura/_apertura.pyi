@@ -319,6 +319,7 @@ class Method:
         ends: npt.ArrayLike,
         radar: Radar | None = None,
         *,
+        layout: Sequence[int] | None = None,
         floor: str = "thesis",
         normalisation: str = "min-max",
         snapshot_range_metres: float | None = None,

@@ -12,7 +12,8 @@ def layout(name: str, radar: Radar | None = None) -> list[int]:
 
     Args:
         name: "two-ends"; "nested=AxB", A neighbours and B elements A + 1 apart (Pal and Vaidyanathan 2010); "coprime=MxN", N elements M apart and 2 M
-            elements N apart (Vaidyanathan and Pal 2011); "random=N" or "random=N:SEED", N elements with the outermost two among them.
+            elements N apart (Vaidyanathan and Pal 2011); "thinned=K", every K-th element; "random=N" or "random=N:SEED", N elements with the
+            outermost two among them.
         radar: The radar; that of table 3.1 where none is given.
 
     Raises:
@@ -25,7 +26,7 @@ def layout(name: str, radar: Radar | None = None) -> list[int]:
     except ValueError:
         found = None
     if found is None:
-        raise ValueError(f'layout is "{name}"; expected two-ends, nested=AxB, coprime=MxN, random=N or random=N:SEED, with whole numbers from 1')
+        raise ValueError(f'layout is "{name}"; expected two-ends, nested=AxB, coprime=MxN, thinned=K, random=N or random=N:SEED, with whole numbers from 1')
     if found[-1] >= radar.elements:
         raise ValueError(f'layout "{name}" reaches to element {found[-1]}; the radar has elements 0 to {radar.elements - 1}')
     return found
@@ -41,6 +42,8 @@ def _places(kind: str, numbers: str, radar: Radar) -> list[int] | None:
             return None
         inner = np.random.default_rng(int(seed or 0)).choice(np.arange(1, radar.elements - 1), int(count) - 2, replace=False)
         return sorted([0, radar.elements - 1, *map(int, inner)])
+    if kind == "thinned":
+        return [*range(0, radar.elements, int(numbers))] if int(numbers) > 0 else None
     if kind not in ("nested", "coprime"):
         return None
     a, b = (int(number) for number in numbers.split("x"))

@@ -1,6 +1,6 @@
 //! NumPy arrays in and out.
 
-use crate::errors::value;
+use crate::errors::{argument, value};
 use apertura::radar::Radar;
 use apertura::scene::Reflector;
 use apertura::signal::TwoEnds;
@@ -81,6 +81,15 @@ pub fn both_ends(ends: &TwoEnds) -> ndarray::Array3<Complex64> {
     both.index_axis_mut(Axis(0), 0).assign(&ends.first);
     both.index_axis_mut(Axis(0), 1).assign(&ends.last);
     both
+}
+
+/// Numbers of elements, where any are given.
+pub fn layout_of(any: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<usize>>> {
+    let Some(any) = any else { return Ok(None) };
+    any.extract().map(Some).or_else(|_| {
+        let message = format!("layout is {}; expected numbers of elements, as apertura.layout gives them", any.repr()?);
+        Err(argument(any.py(), message))
+    })
 }
 
 /// Reflectors as rows of x, y (metres) and reflectivity.

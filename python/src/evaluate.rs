@@ -1,5 +1,6 @@
 //! Methods over many scenes.
 
+use crate::arrays::layout_of;
 use crate::errors::{argument, named, system, value, whole};
 use crate::methods::{caused, methods_of};
 use crate::objects;
@@ -39,7 +40,8 @@ use std::sync::Arc;
 ///     target: The map that outputs are held against: "measured" (what the whole array heard), "ideal" (of the array as it should be, without noise)
 ///         or "calibrated" (as it should be, over the noise).
 ///     layout: Numbers of the elements that methods hear in place of the two ends (`layout`). Functions then get `heard`, complex128
-///         `[elements of the layout, samples]`, and "matched-filter" makes maps of it; the other methods hear two ends and refuse.
+///         `[elements of the layout, samples]`; "matched-filter", "iaa", "sbl", "omp" and "fista" make maps of it. The other methods hear two ends
+///         and refuse.
 ///     on_row: Called with each row as it is found.
 ///     progress: Called with the part that is done, 0 to 1.
 ///     cfar: A detector as `cfar` takes it, which is tried on every output beside the threshold; rows say it in `cfar_detection`,
@@ -77,7 +79,7 @@ pub fn evaluate<'py>(
     radar: Option<&Radar>,
     elements: Option<&Bound<'py, PyAny>>,
     target: &str,
-    layout: Option<Vec<usize>>,
+    layout: Option<&Bound<'py, PyAny>>,
     on_row: Option<&Bound<'py, PyAny>>,
     progress: Progress<'_, 'py>,
     path: Option<PathBuf>,
@@ -102,7 +104,7 @@ pub fn evaluate<'py>(
         cfar: cfar.map(named).transpose()?,
         elements: elements.map_or(Ok(Elements::OfScenes), elements_of)?,
         target: named(target)?,
-        layout,
+        layout: layout_of(layout)?,
         ..Campaign::default()
     };
     let sets = sets_of(scenes, radar, purpose)?;

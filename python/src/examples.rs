@@ -84,8 +84,9 @@ impl Examples {
         radar: Option<&Bound<'_, PyAny>>,
         targets: Option<Vec<String>>,
         features: Option<bool>,
-        layout: Option<Vec<usize>>,
+        layout: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let layout = arrays::layout_of(layout)?;
         let fields = PyDict::new(py);
         fields.set_item("mixture", mixture)?;
         fields.set_item("seed", seed)?;
@@ -276,7 +277,7 @@ pub fn dataset(
     thermal: Option<(f64, f64, f64)>,
     elements: Option<(f64, f64, f64, f64)>,
     radar: Option<&Bound<'_, PyAny>>,
-    layout: Option<Vec<usize>>,
+    layout: Option<&Bound<'_, PyAny>>,
     dtype: &str,
     arrays: Option<Vec<String>>,
     shard: i128,
@@ -285,7 +286,7 @@ pub fn dataset(
     let kinds: PyResult<Vec<Kind>> =
         sets.iter().map(|set| Kind::for_training(&set_name(set)?).map_err(value)).collect();
     let kinds = kinds?;
-    let radars = radars_of(radar)?;
+    let (radars, layout) = (radars_of(radar)?, arrays::layout_of(layout)?);
     let parts: Result<Vec<ExamplePart>, _> = match arrays {
         None => Ok(ExamplePart::usual(&radars, layout.as_deref())),
         Some(names) => names.iter().map(|name| name.parse()).collect(),

@@ -4,7 +4,7 @@ use crate::arrays::{both_ends, numbers, owned};
 use crate::errors::value;
 use crate::radar::Radar;
 use apertura::maps::{LogMap, RangeAngleMap};
-use apertura::reconstruct::{About, Family, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
+use apertura::reconstruct::{About, Family, Hears, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use apertura::signal::TwoEnds;
 use ndarray::Array2;
 use pyo3::prelude::*;
@@ -43,7 +43,7 @@ impl Function {
         let Said { name, description, told, eta, answers, weights } = *said;
         if !is_name(name) {
             return Err(value(format!(
-                "name is \"{name}\"; expected 1 to {MAX_NAME} letters, digits, \"-\", \"_\" or \".\""
+                "name is \"{name}\"; expected 1 to {MAX_NAME} letters, digits, \"-\", \"_\" or \".\", which Method.of_function(function, name=...) gives it"
             )));
         }
         if apertura::methods::by_name(name).is_ok() {
@@ -133,8 +133,8 @@ impl Reconstructor for Function {
         Family::Own
     }
 
-    fn hears_layouts(&self) -> bool {
-        true
+    fn hears(&self) -> Hears {
+        Hears::Layouts
     }
 
     fn weights(&self, _radar: &apertura::radar::Radar) -> Option<Weights> {

@@ -1,6 +1,6 @@
 //! Reconstruction methods.
 
-use crate::arrays::ends;
+use crate::arrays::{ends, layout_of, numbers};
 use crate::errors::{argument, named, system, value};
 use crate::function::{Function, Said, is_name};
 use crate::radar::{Radar, or_default};
@@ -8,7 +8,9 @@ use crate::reconstruction::Reconstruction;
 use crate::work::{self, Progress};
 use apertura::external::{self, CommandLine};
 use apertura::maps::Normalisation;
-use apertura::reconstruct::{NoisePrior, Reconstructor, Request};
+use apertura::reconstruct::{LayoutSamples, NoisePrior, Reconstructor, Request};
+use apertura::signal::TwoEnds;
+use ndarray::Array2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -250,11 +252,12 @@ impl Method {
         self.inner.check_array(&or_default(radar)).err().map(|error| error.to_string())
     }
 
-    /// Estimates the whole array's map from the samples of the two ends.
+    /// Estimates the whole array's map from the samples of the two ends, or of a layout.
     ///
     /// Args:
-    ///     ends: Complex numbers `[2, end_elements, samples]`, of any gain; they are copied.
+    ///     ends: Complex numbers `[2, end_elements, samples]`, or `[elements of the layout, samples]`, of any gain; they are copied.
     ///     radar: The radar that sampled them; that of table 3.1 where none is given.
+    ///     layout: Numbers of the elements that were heard in place of the two ends (`layout`), for methods that hear any, as `evaluate` says.
     ///     floor: What lies beneath them: "thesis", "exact", "thermal", "snr=DB", "dbm=LEVEL", "white" or "white=SIGMA". SIGMA is the root mean
     ///         square of the noise in a sample; the level of any other white noise the method measures.
     ///     normalisation: How the map is normalised: "min-max" or "db=RANGE".
@@ -263,13 +266,14 @@ impl Method {
     ///
     /// Raises:
     ///     ValueError: The shape is not the radar's, a sample is not finite, a name is unknown, or the method can't work on these samples.
-    #[pyo3(signature = (ends, radar=None, *, floor="thesis", normalisation="min-max", snapshot_range_metres=None, progress=None))]
+    #[pyo3(signature = (ends, radar=None, *, layout=None, floor="thesis", normalisation="min-max", snapshot_range_metres=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn reconstruct(
         &self,
         py: Python<'_>,
         ends: &Bound<'_, PyAny>,
         radar: Option<&Radar>,
+        layout: Option<&Bound<'_, PyAny>>,
         floor: &str,
         normalisation: &str,
         snapshot_range_metres: Option<f64>,
@@ -277,11 +281,19 @@ impl Method {
     ) -> PyResult<Reconstruction> {
         let (noise, normalisation): (NoisePrior, Normalisation) = (named(floor)?, named(normalisation)?);
         let radar = or_default(radar);
-        let ends = self::ends(ends, &radar)?;
+        let (ends, heard) = match layout_of(layout)? {
+            None => (self::ends(ends, &radar)?, None),
+            Some(layout) => {
+                let samples = numbers(ends, "ends", &format!("[{}, {}]", layout.len(), radar.samples))?;
+                let silence = || Array2::zeros((radar.end_elements, radar.samples));
+                let heard = Arc::new(LayoutSamples { layout, samples });
+                (TwoEnds { first: silence(), last: silence() }, Some(heard))
+            }
+        };
         let method = &self.inner;
         let answer = work::run(py, progress, |task| {
-            let request =
-                Request { noise, normalisation, snapshot_range_metres, task: task.clone(), ..Request::default() };
+            let task = task.clone();
+            let request = Request { noise, normalisation, snapshot_range_metres, heard, task, ..Request::default() };
             method.reconstruct(&radar, &ends, &request)
         })?
         .map_err(|error| caused(py, value(error), std::slice::from_ref(method)))?;

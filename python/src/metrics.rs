@@ -73,8 +73,8 @@ pub fn metrics<'py>(
     eta: f32,
     has_echoes: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
-    if !eta.is_finite() {
-        return Err(value(format!("eta is {eta}; expected a finite number")));
+    if !(0.0..=1.0).contains(&eta) {
+        return Err(value(format!("eta is {eta}; expected 0 to 1")));
     }
     let [target, output] = both(target, output)?;
     let found = Metrics::of_echoes(has_echoes, &target, &output, eta);

@@ -146,16 +146,28 @@ def test_a_layout_is_heard_by_functions_and_the_matched_filter():
     assert rows[1]["squared_error"] == pytest.approx(((target - 0.16) ** 2).sum(), rel=1e-5)
     every = ap.evaluate(["matched-filter"], ["2"], count=1, radar=CHIP, layout=list(range(86)))
     assert every[0]["squared_error"] < rows[0]["squared_error"]
-    with pytest.raises(ValueError, match="capon.*it hears the two ends of an array; of other layouts matched-filter makes maps"):
+    with pytest.raises(ValueError, match="capon.*it hears the two ends of an array; of other layouts matched-filter, iaa, sbl, omp and fista make maps"):
         ap.evaluate(["capon"], ["2"], count=1, radar=CHIP, layout=nested)
     with pytest.raises(ValueError, match="element 86; the radar has elements 0 to 85"):
         ap.evaluate([lengths], ["2"], count=1, radar=CHIP, layout=[0, 86])
+
+
+@pytest.mark.parametrize("name", ["iaa", "sbl", "omp"])
+def test_model_based_methods_hear_a_layout(name):
+    nested = ap.layout("nested=8x8", CHIP)
+    maps = ap.Scene.random("2", radar=CHIP).simulate()
+    of = lambda method: ap.metrics(maps.target, *(lambda found: (found.map, found.eta))(ap.method(method).reconstruct(maps.samples[nested], CHIP, layout=nested)))
+    found, filtered = of(name), of("matched-filter")
+    assert found.detection > 0.9 and found.squared_error < 0.5 * filtered.squared_error
+    rows = ap.evaluate([name], ["2"], count=1, radar=CHIP, layout=nested)
+    assert rows[0]["squared_error"] == pytest.approx(found.squared_error, rel=1e-6)
 
 
 def test_layouts_have_names():
     assert ap.layout("two-ends", CHIP) == [*range(8), *range(78, 86)]
     assert ap.layout("coprime=3x5", CHIP) == sorted({0, 3, 6, 9, 12, 5, 10, 15, 20, 25})
     assert ap.layout("random=24:3", CHIP) == ap.layout("random=24:3", CHIP) and len(ap.layout("random=24", CHIP)) == 24
+    assert ap.layout("thinned=40", CHIP) == [0, 40, 80]
     for name, words in (("magic", "expected two-ends, nested=AxB"), ("nested=4", "expected two-ends"), ("nested=40x40", "reaches to element"), ("random=1", "expected two-ends")):
         with pytest.raises(ValueError, match=words):
             ap.layout(name, CHIP)

@@ -6,6 +6,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Deviation of one element from its nominal gain, phase and place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -67,18 +68,29 @@ impl Tolerances {
         }
     }
 
-    /// An array built with these tolerances; the same seed builds the same, and one of twice the tolerances is twice as far off.
+    /// An array built with these tolerances; the same seed builds the same, and one of twice the tolerances is twice as far off. Of pairs of antennas
+    /// the antennas are off: two pairs share what their common antenna is off by, and each pair has the standard deviations that are asked for.
     pub fn build(&self, radar: &Radar, seed: u64) -> BuiltArray {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let mut off = || -> f64 { StandardNormal.sample(&mut rng) };
-        let element = |_| ElementError {
-            gain: Decibels(off() * self.gain.0),
-            phase_degrees: off() * self.phase_degrees,
-            position_millimetres: off() * self.position_millimetres,
-            forward_millimetres: 0.0,
-            dead: false,
+        let mut drawn = |count: usize| -> Vec<[f64; 3]> {
+            (0..count).map(|_| [(); 3].map(|()| StandardNormal.sample(&mut rng))).collect()
         };
-        BuiltArray { elements: (0..radar.elements).map(element).collect() }
+        let element = |[gain, phase, position]: [f64; 3]| ElementError {
+            gain: Decibels(gain * self.gain.0),
+            phase_degrees: phase * self.phase_degrees,
+            position_millimetres: position * self.position_millimetres,
+            ..ElementError::default()
+        };
+        let Some(antennas) = &radar.antennas else {
+            return BuiltArray { elements: drawn(radar.elements).into_iter().map(element).collect() };
+        };
+        let (transmitters, receivers) =
+            (drawn(antennas.transmitter_x_metres().len()), drawn(antennas.receiver_x_metres().len()));
+        let of_pair = |pair: &Option<[usize; 2]>| {
+            let both = pair.map(|[t, r]| std::array::from_fn(|i| transmitters[t][i] + receivers[r][i]));
+            both.map_or_else(ElementError::default, |sum: [f64; 3]| element(sum.map(|v| v * FRAC_1_SQRT_2)))
+        };
+        BuiltArray { elements: antennas.pairs().iter().map(of_pair).collect() }
     }
 }
 
@@ -311,6 +323,26 @@ mod tests {
         }
         let twice = Tolerances { phase_degrees: 20.0, ..tolerances }.build(&radar, 7);
         assert_eq!(twice.elements[3].phase_degrees, 2.0 * array.elements[3].phase_degrees);
+    }
+
+    #[test]
+    fn pairs_share_the_errors_of_their_antennas() {
+        let radar = Radar::default().of_pairs(3, 4).unwrap();
+        let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.1 };
+        let array = tolerances.build(&radar, 7);
+        array.validate(&radar).unwrap();
+        let of = |transmitter: usize, receiver: usize| {
+            let pairs = radar.antennas.as_ref().unwrap().pairs();
+            let element = pairs.iter().position(|pair| *pair == Some([transmitter, receiver])).unwrap();
+            array.elements[element].phase_degrees
+        };
+        for (t, r) in [(1, 1), (2, 3)] {
+            let gap = (of(t, r) - of(t, 0)) - (of(0, r) - of(0, 0));
+            assert!(gap.abs() < 1e-9, "receiver {r} is off alike beside transmitter {t}: {gap}");
+        }
+        let squares = |seed| tolerances.build(&radar, seed).elements.iter().map(|e| e.gain.0.powi(2)).sum::<f64>();
+        let mean = (0..400).map(squares).sum::<f64>() / (400.0 * 12.0);
+        assert!((mean - 1.0).abs() < 0.12, "the variance of a pair: {mean}");
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::prior::NoisePrior;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
+use crate::signal::TwoEnds;
 use crate::task::Task;
 use ndarray::Array2;
 use num_complex::Complex64;
@@ -23,7 +24,7 @@ pub struct Request {
     /// Whether a method with a memory ([`Reconstructor::following`](super::Reconstructor::following)) may start from its last answer,
     /// as while something is dragged.
     pub may_follow: bool,
-    /// What another layout than the two ends heard, for methods that hear any ([`Reconstructor::hears_layouts`](super::Reconstructor::hears_layouts)).
+    /// What another layout than the two ends heard, for methods that hear it ([`Reconstructor::hears`](super::Reconstructor::hears)).
     pub heard: Option<Arc<LayoutSamples>>,
     /// Progress to report to, and the flag to stop at.
     pub task: Task,
@@ -34,8 +35,25 @@ pub struct Request {
 pub struct LayoutSamples {
     /// Their numbers.
     pub layout: Vec<usize>,
-    /// `[elements of the layout, samples]`, of the same gain as those of the two ends.
+    /// `[elements of the layout, samples]`.
     pub samples: Array2<Complex64>,
+}
+
+impl LayoutSamples {
+    /// The radar whose ends are the halves of the array, and their samples: zeros where an element is not heard. Of an odd number of elements the middle
+    /// one belongs to both halves, and is heard in the first.
+    pub(super) fn as_halves(&self, radar: &Radar) -> (Radar, TwoEnds) {
+        let half = radar.elements.div_ceil(2);
+        let silence = || Array2::zeros((half, radar.samples));
+        let mut ends = TwoEnds { first: silence(), last: silence() };
+        for (&element, samples) in self.layout.iter().zip(self.samples.outer_iter()) {
+            match element.checked_sub(half) {
+                None => ends.first.row_mut(element).assign(&samples),
+                Some(_) => ends.last.row_mut(element - (radar.elements - half)).assign(&samples),
+            }
+        }
+        (Radar { end_elements: half, ..radar.clone() }, ends)
+    }
 }
 
 impl Default for Request {

@@ -6,9 +6,9 @@ use super::family::Family;
 use super::hearing::ends_noise_variance;
 use super::significance::tested;
 use super::trained::TrainedNoise;
-use crate::radar::{End, Radar};
+use crate::radar::{End, Radar, check_layout};
 use crate::signal::TwoEnds;
-use ndarray::Array3;
+use ndarray::{Array2, Array3};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -37,6 +37,17 @@ pub struct Weights {
     pub optimiser: String,
 }
 
+/// How a method makes maps of what other elements than the two ends heard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hears {
+    /// It hears the two ends alone.
+    Ends,
+    /// It takes elements that heard nothing for missing ones: the ends are the halves of the array, silent but for the elements of the layout.
+    Halves,
+    /// It reads [`Request::heard`].
+    Layouts,
+}
+
 /// Anything that turns the samples of the two ends into a map of the whole array.
 ///
 /// A method implements [`Reconstructor::about`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
@@ -62,9 +73,16 @@ pub trait Reconstructor: Send + Sync {
         !matches!(self.family(), Family::Network | Family::Classical)
     }
 
-    /// Whether the method makes maps of the samples of any elements ([`Request::heard`]).
-    fn hears_layouts(&self) -> bool {
-        false
+    /// How the method makes maps of what other elements than the two ends heard ([`Request::heard`]).
+    fn hears(&self) -> Hears {
+        Hears::Ends
+    }
+
+    /// [`Reconstructor::check_array`] where the ends are the `halves` of an array of which so many elements are heard.
+    /// # Errors
+    /// [`ReconstructError::Unusable`] says what is in the way.
+    fn check_halves(&self, halves: &Radar, _heard: usize) -> Result<(), ReconstructError> {
+        self.check_array(halves)
     }
 
     /// Whether what it finds on an array of few elements, whose columns are wide, stands where the echoes are.
@@ -103,9 +121,9 @@ pub trait Reconstructor: Send + Sync {
 
     /// Estimates the whole array's map from `ends`: checks them, scales them for [`Reconstructor::estimate`], takes the scale
     /// off what was found, and raises the answer's threshold to where noise does not reach (`significance`). Silence is answered
-    /// with [`Reconstruction::silence`].
+    /// with [`Reconstruction::silence`]. Where the request has the samples of a layout, those are answered and `ends` are not read.
     /// # Errors
-    /// [`ReconstructError`], on a radar the method can't work on, on samples of the wrong shape or not finite, when cancelled, or
+    /// [`ReconstructError`], on a radar or a layout the method can't work on, on samples of the wrong shape or not finite, when cancelled, or
     /// as the method says.
     fn reconstruct(
         &self,
@@ -114,30 +132,13 @@ pub trait Reconstructor: Send + Sync {
         request: &Request,
     ) -> Result<Reconstruction, ReconstructError> {
         request.task.check()?;
+        if let Some(heard) = &request.heard {
+            return reconstruct_layout(self, radar, heard, request);
+        }
         check_ends(radar, ends)?;
         self.check_array(radar)?;
-        if request.heard.is_some() && !self.hears_layouts() {
-            let reason = "it hears the two ends of an array; of other layouts matched-filter makes maps, and programs of your own";
-            return Err(self.unusable(reason.to_owned()));
-        }
         self.check_hearing(ends)?;
-        let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
-        let heard = request.heard.as_ref().map(|heard| {
-            Arc::new(LayoutSamples { layout: heard.layout.clone(), samples: heard.samples.mapv(|v| v * gain) })
-        });
-        let request = &Request { noise: request.noise.scaled(gain), heard, ..request.clone() };
-        // From within, a parallel step is handed to an idle thread; from without, its caller would sleep through each one.
-        let found = rayon::scope(|_| self.estimate(radar, &ends, request))?;
-        // What was cancelled while it was drawn is no answer.
-        request.task.check()?;
-        let noise_variance = ends_noise_variance(radar, &ends, request.noise);
-        let mut found = tested(radar, &ends, noise_variance, self.eta(), found);
-        found.reflectors.iter_mut().for_each(|r| r.reflectivity /= gain);
-        let range = request.snapshot_range_metres.filter(|_| radar.samples == 1);
-        Ok(match range {
-            Some(range_metres) => found.moved_to(range_metres),
-            None => found,
-        })
+        answer(self, radar, (radar, ends), request)
     }
 
     /// The same method with a memory, where that makes it faster on samples that change a little at a time: asked with
@@ -155,8 +156,7 @@ pub trait Reconstructor: Send + Sync {
     /// # Errors
     /// [`ReconstructError::Unusable`] names the deaf end.
     fn check_hearing(&self, ends: &TwoEnds) -> Result<(), ReconstructError> {
-        let is_silent = End::BOTH.map(|end| ends.end(end).iter().all(|v| *v == Complex64::default()));
-        match is_silent {
+        match End::BOTH.map(|end| is_silent(ends.end(end))) {
             [false, false] | [true, true] => Ok(()),
             [is_first, _] => {
                 let end = if is_first { "first" } else { "last" };
@@ -216,6 +216,75 @@ pub trait Reconstructor: Send + Sync {
     }
 }
 
+/// The answer of `method` to the samples of a layout.
+fn reconstruct_layout<M: Reconstructor + ?Sized>(
+    method: &M,
+    radar: &Radar,
+    heard: &LayoutSamples,
+    request: &Request,
+) -> Result<Reconstruction, ReconstructError> {
+    check_layout(&heard.layout, radar.elements).map_err(|reason| method.unusable(reason))?;
+    let (found, expected) = (heard.samples.shape(), [heard.layout.len(), radar.samples]);
+    if found != expected {
+        let (what, found) = ("samples of the layout", found.to_vec());
+        return Err(ReconstructError::Shape { what, found, expected: expected.to_vec() });
+    }
+    let (halves, ends) = heard.as_halves(radar);
+    check_ends(&halves, &ends)?;
+    match method.hears() {
+        Hears::Layouts => {
+            method.check_array(radar)?;
+            answer(method, radar, (&halves, &ends), request)
+        }
+        Hears::Halves => {
+            method.check_halves(&halves, heard.layout.len())?;
+            let (first, last) = (is_silent(&ends.first), is_silent(&ends.last));
+            if first != last {
+                let half = if first { "first" } else { "last" };
+                let reason = format!(
+                    "it joins the halves of the array, and no element of the {half} half heard anything; matched-filter takes any layout"
+                );
+                return Err(method.unusable(reason));
+            }
+            answer(method, &halves, (&halves, &ends), &Request { heard: None, ..request.clone() })
+        }
+        Hears::Ends => {
+            let others = "matched-filter, iaa, sbl, omp and fista make maps, and programs of your own";
+            Err(method.unusable(format!("it hears the two ends of an array; of other layouts {others}")))
+        }
+    }
+}
+
+/// What `method` makes of samples that were checked, with a threshold that knows the noise of `ends`, those of a radar that hears as much as `radar`.
+fn answer<M: Reconstructor + ?Sized>(
+    method: &M,
+    radar: &Radar,
+    (hearing, ends): (&Radar, &TwoEnds),
+    request: &Request,
+) -> Result<Reconstruction, ReconstructError> {
+    let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
+    let heard = request.heard.as_ref().map(|heard| {
+        Arc::new(LayoutSamples { layout: heard.layout.clone(), samples: heard.samples.mapv(|v| v * gain) })
+    });
+    let request = &Request { noise: request.noise.scaled(gain), heard, ..request.clone() };
+    // From within, a parallel step is handed to an idle thread; from without, its caller would sleep through each one.
+    let found = rayon::scope(|_| method.estimate(radar, &ends, request))?;
+    // What was cancelled while it was drawn is no answer.
+    request.task.check()?;
+    let noise_variance = ends_noise_variance(hearing, &ends, request.noise);
+    let mut found = tested(hearing, &ends, noise_variance, method.eta(), found);
+    found.reflectors.iter_mut().for_each(|r| r.reflectivity /= gain);
+    let range = request.snapshot_range_metres.filter(|_| radar.samples == 1);
+    Ok(match range {
+        Some(range_metres) => found.moved_to(range_metres),
+        None => found,
+    })
+}
+
+fn is_silent(samples: &Array2<Complex64>) -> bool {
+    samples.iter().all(|v| *v == Complex64::default())
+}
+
 /// Checks that both ends have the radar's shape and hold finite samples only.
 /// # Errors
 /// [`ReconstructError::Shape`] or [`ReconstructError::NotFinite`].
@@ -248,7 +317,13 @@ pub(crate) fn unit_gain(ends: &TwoEnds) -> Option<(TwoEnds, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Reflector;
+    use crate::maps::focus::map_of;
+    use crate::maps::{Aperture, Normalisation};
+    use crate::radar::BuiltArray;
+    use crate::reconstruct::{Baseline, Fista, IAA, Omp, SBL};
+    use crate::scene::{Reflector, Scene};
+    use crate::signal::{BeatSignal, Floor, simulate};
+    use ndarray::{Axis, Zip};
 
     /// Answers one reflector as strong as the strongest sample.
     struct Echo;
@@ -286,5 +361,51 @@ mod tests {
         assert_eq!(error.unwrap_err().to_string(), "echo: too many samples");
         request.task.cancel();
         assert_eq!(Echo.reconstruct(&radar, &ends, &request), Err(ReconstructError::Cancelled));
+    }
+
+    /// What `method` makes of a point that the elements of `layout` heard: squared error, and P_D at its threshold.
+    fn of_layout(method: &dyn Reconstructor, radar: &Radar, layout: &[usize]) -> Result<(f64, f64), ReconstructError> {
+        let scene = Scene::of_points([(2.0, 6.0), (-3.0, 4.0)]);
+        let signal = simulate(radar, &scene, Floor::Thesis, 0).unwrap();
+        let heard = LayoutSamples { layout: layout.to_vec(), samples: signal.samples.select(Axis(0), layout) };
+        let request = Request { heard: Some(Arc::new(heard)), ..Request::default() };
+        let found = method.reconstruct(radar, &BeatSignal::silence(radar).two_ends(radar), &request)?;
+        let target = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full).log_magnitude();
+        let target = target.normalise(Normalisation::MinMax).lambda;
+        let squares =
+            Zip::from(&target).and(&found.lambda.lambda).fold(0.0, |sum, t, o| sum + f64::from(t - o).powi(2));
+        let eta = method.eta_of(&found);
+        let bright = target.iter().zip(&found.lambda.lambda).filter(|(t, _)| **t > 0.9);
+        let (seen, all) = bright.fold((0u32, 0u32), |(seen, all), (_, o)| (seen + u32::from(*o > eta), all + 1));
+        Ok((squares, f64::from(seen) / f64::from(all)))
+    }
+
+    #[test]
+    fn methods_that_bear_gaps_hear_any_layout() {
+        for elements in [64, 65] {
+            let radar = Radar { elements, end_elements: 12, samples: 128, ..Radar::default() };
+            // 65 elements have one in their middle.
+            let nested = [0, 1, 2, 3, 4, 5, 6, 13, 20, 27, 32, 34, 41, 48, 55];
+            let random = [0, 1, 3, 5, 11, 15, 17, 28, 34, 40, 44, 49, 57, 63];
+            for method in [&IAA as &dyn Reconstructor, &SBL, &Omp::default(), &Fista::default()] {
+                for layout in [&nested[..], &random] {
+                    let (error, detection) = of_layout(method, &radar, layout).unwrap();
+                    assert!(error < 300.0 && detection > 0.95, "{}, {elements}: {error}, {detection}", method.name());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn layouts_that_a_method_cannot_hear_are_refused() {
+        let radar = Radar { elements: 64, end_elements: 12, samples: 128, ..Radar::default() };
+        let told =
+            |method: &dyn Reconstructor, layout: &[usize]| of_layout(method, &radar, layout).unwrap_err().to_string();
+        assert!(told(&Baseline, &[0, 63]).contains("it hears the two ends of an array"));
+        assert!(told(&IAA, &[0, 1, 5]).contains("no element of the last half heard anything"));
+        let wide = Radar { elements: 256, ..radar.clone() };
+        let every: Vec<usize> = (0..128).map(|n| 2 * n).collect();
+        let told = of_layout(&IAA, &wide, &every).unwrap_err().to_string();
+        assert!(told.contains("at most 96 elements, and 128 are heard"), "{told}");
     }
 }

@@ -35,6 +35,9 @@ const THESIS_SHARE: f64 = 0.25;
 const FILLED_SHARE: f64 = 0.5;
 const HANN_SHARE: f64 = 0.5;
 const PATTERN_SHARE: f64 = 0.2;
+/// Part of them whose migration is even between none and the most; the bandwidth of the others is even on a logarithmic scale, of which 4 % migrate over
+/// more than 40 range bins.
+const EVEN_MIGRATION_SHARE: f64 = 0.5;
 
 impl Default for Radars {
     fn default() -> Self {
@@ -107,10 +110,17 @@ fn drawn(rng: &mut ChaCha8Rng) -> Radar {
             half_power_width_degrees: Some(rng.random_range(least..most)),
             ..LinkBudget::default()
         });
-        let filled = Radar { carrier_hz, bandwidth_hz, window, budget, ..Radar::default() }.in_convention(convention);
-        let element_spacing_metres = spacing * filled.element_spacing_metres;
-        let radar = Radar { element_spacing_metres, ..filled };
-        if migration_bins(&radar) <= DRAWN_LIMITS.max_migration_bins {
+        let radar_of = |bandwidth_hz: f64| {
+            let filled =
+                Radar { carrier_hz, bandwidth_hz, window, budget, ..Radar::default() }.in_convention(convention);
+            Radar { element_spacing_metres: spacing * filled.element_spacing_metres, ..filled }
+        };
+        let mut radar = radar_of(bandwidth_hz);
+        if rng.random::<f64>() < EVEN_MIGRATION_SHARE {
+            let bins = rng.random_range(0.0..DRAWN_LIMITS.max_migration_bins);
+            radar = radar_of(bins / migration_bins(&radar) * bandwidth_hz);
+        }
+        if Domain::Limits(DRAWN_LIMITS).holds(&radar) {
             return radar;
         }
     }
@@ -140,7 +150,7 @@ mod tests {
             ("less than 200 MHz", share(&|r| r.bandwidth_hz < 2e8)),
             ("more than 3 GHz", share(&|r| r.bandwidth_hz > 3e9)),
             ("the physical convention", share(&|r| r.convention() == Convention::Physical)),
-            ("a migration of 40 bins", share(&|r| migration_bins(r) > 40.0)),
+            ("a migration of more than 48 bins", share(&|r| migration_bins(r) > 48.0)),
             ("a pattern", share(&|r| r.pattern().is_some())),
             ("a rectangular window", share(&|r| r.window == WindowFunction::Rectangular)),
             ("wide spacing", share(&|r| r.element_spacing_metres > 1.15 * r.filled_spacing_metres())),

@@ -12,14 +12,14 @@ use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::Hearing;
-use crate::reconstruct::reconstructor::{About, Reconstructor};
+use crate::reconstruct::reconstructor::{About, Hears, Reconstructor};
 use crate::reconstruct::seen::no_plane_waves;
 use crate::signal::TwoEnds;
 use crate::task::Task;
 use rayon::prelude::*;
 
-/// Most elements of an end: a model's work grows with the cube of their number.
-const MOST_END_ELEMENTS: usize = 48;
+/// Most elements that are heard: a model's work grows with the cube of their number.
+const MOST_HEARD_ELEMENTS: usize = 96;
 
 /// Looks at what the reflectors found so far leave of the samples.
 const LOOKS: usize = 4;
@@ -56,20 +56,16 @@ impl Reconstructor for CoherentMethod {
         1
     }
 
+    fn hears(&self) -> Hears {
+        Hears::Halves
+    }
+
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        if radar.end_elements > MOST_END_ELEMENTS {
-            return Err(self.unusable(format!(
-                "each end has {} elements; its models take at most {MOST_END_ELEMENTS}. matched-filter takes any number",
-                radar.end_elements
-            )));
-        }
-        let bins = radar.bin_of_range(radar.aperture_metres());
-        if radar.samples > 1 && bins > MOST_SECTORS {
-            return Err(self.unusable(format!(
-                "the array is {bins:.0} range bins long; a sector of directions for each bin is taken up to {MOST_SECTORS}"
-            )));
-        }
-        no_plane_waves(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
+        self.check_size(radar, radar.end_elements.saturating_mul(2))
+    }
+
+    fn check_halves(&self, halves: &Radar, heard: usize) -> Result<(), ReconstructError> {
+        self.check_size(halves, heard)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -83,6 +79,47 @@ impl Reconstructor for CoherentMethod {
             explained(radar, ends, task, look)?
         };
         Ok(of_echoes(radar, ends, &found, hearing.ends_noise_variance(radar, ends), request))
+    }
+}
+
+impl CoherentMethod {
+    /// Whether its models can be made of `heard` elements of `radar`'s ends.
+    fn check_size(&self, radar: &Radar, heard: usize) -> Result<(), ReconstructError> {
+        if heard > MOST_HEARD_ELEMENTS {
+            return Err(self.unusable(format!(
+                "its models take at most {MOST_HEARD_ELEMENTS} elements, and {heard} are heard; matched-filter takes any number"
+            )));
+        }
+        let bins = radar.bin_of_range(radar.aperture_metres());
+        if radar.samples > 1 && bins > MOST_SECTORS {
+            return Err(self.unusable(format!(
+                "the array is {bins:.0} range bins long; a sector of directions for each bin is taken up to {MOST_SECTORS}"
+            )));
+        }
+        no_plane_waves(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
+    }
+
+    /// What stands out of the samples of both ends, the strongest first.
+    fn peaks(
+        &self,
+        radar: &Radar,
+        ends: &TwoEnds,
+        hearing: &Hearing,
+        task: &Task,
+    ) -> Result<Vec<Peak>, ReconstructError> {
+        let heard = Ends::new(radar, ends);
+        let sectors = Sectors::new(radar, &heard);
+        // The window's mean weight squared over its mean square, for each sample.
+        let noise_power = hearing.ends_noise_variance(radar, ends) * 1.5 / radar.samples as f64;
+        let places = places(radar, &heard, &sectors, noise_power, task)?;
+        let found: Vec<Vec<Peak>> = places
+            .par_iter()
+            .map(|place| {
+                let powers = Model::new(radar, &heard, &sectors, place, noise_power).powers(&self.update, task)?;
+                Ok(peaks(&sectors, place, &powers, self.least_part))
+            })
+            .collect::<Result<_, ReconstructError>>()?;
+        Ok(apart(radar, found.concat(), sectors.fringe_cos))
     }
 }
 
@@ -127,29 +164,4 @@ fn looked<'a>(
         }
     }
     Ok(settled)
-}
-
-impl CoherentMethod {
-    /// What stands out of the samples of both ends, the strongest first.
-    fn peaks(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        hearing: &Hearing,
-        task: &Task,
-    ) -> Result<Vec<Peak>, ReconstructError> {
-        let heard = Ends::new(radar, ends);
-        let sectors = Sectors::new(radar, &heard);
-        // The window's mean weight squared over its mean square, for each sample.
-        let noise_power = hearing.ends_noise_variance(radar, ends) * 1.5 / radar.samples as f64;
-        let places = places(radar, &heard, &sectors, noise_power, task)?;
-        let found: Vec<Vec<Peak>> = places
-            .par_iter()
-            .map(|place| {
-                let powers = Model::new(radar, &heard, &sectors, place, noise_power).powers(&self.update, task)?;
-                Ok(peaks(&sectors, place, &powers, self.least_part))
-            })
-            .collect::<Result<_, ReconstructError>>()?;
-        Ok(apart(radar, found.concat(), sectors.fringe_cos))
-    }
 }

@@ -8,7 +8,7 @@ use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::ends_noise_variance;
-use crate::reconstruct::reconstructor::{About, Reconstructor};
+use crate::reconstruct::reconstructor::{About, Hears, Reconstructor};
 use crate::reconstruct::significance::decades_above_cells;
 use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::{Array2, Zip};
@@ -238,6 +238,10 @@ impl Reconstructor for Fista {
                 these leave unexplained; its penalty was chosen on scenes like the tables', the noise it measures itself",
             eta: 0.847, // by examples/choose_eta.rs
         }
+    }
+
+    fn hears(&self) -> Hears {
+        Hears::Halves
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {

@@ -8,7 +8,7 @@ use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::power::{focused_gain, of_power};
-use crate::reconstruct::reconstructor::{About, Reconstructor};
+use crate::reconstruct::reconstructor::{About, Hears, Reconstructor};
 use crate::signal::TwoEnds;
 use ndarray::Zip;
 
@@ -56,8 +56,8 @@ impl Reconstructor for MatchedFilter {
         no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
-    fn hears_layouts(&self) -> bool {
-        *self == MatchedFilter::Coherent
+    fn hears(&self) -> Hears {
+        if *self == MatchedFilter::Coherent { Hears::Layouts } else { Hears::Ends }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

@@ -9,7 +9,7 @@ use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
 use crate::reconstruct::hearing::ends_noise_variance;
-use crate::reconstruct::reconstructor::{About, Reconstructor};
+use crate::reconstruct::reconstructor::{About, Hears, Reconstructor};
 use crate::reconstruct::significance::decades_above_cells;
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Zip, s};
@@ -59,7 +59,8 @@ impl Omp {
         request: &Request,
     ) -> Result<Vec<Gained>, ReconstructError> {
         let samples = ends.flat();
-        let noise = noise_variance * samples.len() as f64 * 1.1;
+        let heard = ends.hears().into_iter().filter(|hears| *hears).count() * radar.samples;
+        let noise = noise_variance * heard as f64 * 1.1;
         let all = energy(&samples);
         let enough = noise.max(all * ROUNDING_ENERGY);
         let mut cells = GridCells::heard_by(radar, ends);
@@ -146,6 +147,10 @@ impl Reconstructor for Omp {
             told: "that a scene holds single reflectors, 64 at most; it measures the noise itself",
             eta: 0.819, // by examples/choose_eta.rs
         }
+    }
+
+    fn hears(&self) -> Hears {
+        Hears::Halves
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
