@@ -1,15 +1,13 @@
-//! How well methods do on validation scenes of every kind, and what each part of the search is good for.
+//! How well methods do on validation scenes of every kind.
 //!
-//! `cargo run --release --example search_figures -- --method nomp,hybrid,live --set clusters,walls --count 6`; `--snr-db 40` lays noise
-//! beneath the samples. `--without NAME` (any number of times; `--without all` for every part) runs the search of `nomp` with and
-//! without that part on the same scenes; `NAME+NAME` leaves out several at once. `--hybrid` does so with `hybrid`.
+//! `cargo run --release --example search_figures -- --method nomp,hybrid,live --set clusters,walls --count 6`; `--snr-db 40` lays noise beneath the
+//! samples.
 
 use apertura::evaluate::Roc;
 use apertura::evaluate::trial::Trial;
 use apertura::methods;
 use apertura::radar::{Decibels, Radar};
-use apertura::reconstruct::search::{Nomp, Settings, Without, parts, without};
-use apertura::reconstruct::{Hybrid, Reconstructor, Request};
+use apertura::reconstruct::{Reconstructor, Request};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::scene::{Reflector, Scene};
 use apertura::signal::Floor;
@@ -28,12 +26,6 @@ struct Args {
     /// Methods, separated by commas
     #[arg(long, value_delimiter = ',', default_value = "nomp,hybrid,live")]
     method: Vec<String>,
-    /// A rung, source or rule of the search: `nomp` is run with and without it, in place of the methods; `all` for each
-    #[arg(long)]
-    without: Vec<String>,
-    /// Parts are left out of `hybrid`, in place of `nomp`
-    #[arg(long, requires = "without")]
-    hybrid: bool,
     /// Kinds of scenes, separated by commas
     #[arg(long, value_delimiter = ',', default_value = "1,2,3")]
     set: Vec<Kind>,
@@ -79,37 +71,14 @@ struct Column {
     detections: Vec<f64>,
 }
 
-/// The methods, or the search as a whole and without each part that is named.
+/// The methods that are named.
 fn columns(args: &Args) -> Result<Vec<Column>, Box<dyn Error>> {
-    let column = |name: String, method| Column {
-        name,
-        method,
-        squared_errors: Vec::new(),
-        milliseconds: Vec::new(),
-        detections: Vec::new(),
+    let column = |name: &String| {
+        let method = methods::by_name(name)?;
+        let (squared_errors, milliseconds, detections) = (Vec::new(), Vec::new(), Vec::new());
+        Ok(Column { name: name.clone(), method, squared_errors, milliseconds, detections })
     };
-    if args.without.is_empty() {
-        return args.method.iter().map(|name| Ok(column(name.clone(), methods::by_name(name)?))).collect();
-    }
-    let names = if args.without.iter().any(|name| name == "all") { parts() } else { args.without.clone() };
-    let fallback = methods::by_name("live");
-    let searching = |without: Without| -> Result<Arc<dyn Reconstructor>, Box<dyn Error>> {
-        let settings = Settings { without, ..Settings::default() };
-        Ok(match args.hybrid {
-            true => Arc::new(Hybrid::new(fallback.clone()?).with_settings(settings)),
-            false => Arc::new(Nomp::with_settings(settings)),
-        })
-    };
-    let mut found = vec![column("whole".into(), searching(Without::default())?)];
-    for name in names {
-        let mut left_out = Without::default();
-        for part in name.split('+') {
-            let known = || format!("no part is called {part}; there are {}", parts().join(", "));
-            left_out = left_out.and(without(part).ok_or_else(known)?);
-        }
-        found.push(column(format!("-{name}"), searching(left_out)?));
-    }
-    Ok(found)
+    args.method.iter().map(column).collect()
 }
 
 fn mean(values: &[f64]) -> f64 {

@@ -2,10 +2,9 @@
 
 use super::grow::{Grower, tried};
 use super::on_wall::is_on;
-use super::propose::edges::Edges;
-use super::propose::strides::Strides;
+use super::propose::edges::edges;
+use super::propose::strides::strides;
 use super::trace::decades;
-use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, Fit, Profile, Spectra, rows_of};
@@ -70,10 +69,10 @@ impl Grower<'_> {
         });
         let all = self.unexplained(&flat, fit).with_points(points);
         self.bench.work.spend(LOOK_A_POINT * points.len());
-        let rows = self.proposed(Part::Strides, &Strides, &all);
+        let rows = strides(&all);
         // Looks from one point alone take longest.
         self.borne_out(&left, &rows).or_else(|| {
-            let from_edges = if all.is_long() { self.proposed(Part::Edges, &Edges, &all) } else { Vec::new() };
+            let from_edges = if all.is_long() { edges(&all) } else { Vec::new() };
             self.borne_out(&left, &from_edges)
         })
     }

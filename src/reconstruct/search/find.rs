@@ -59,7 +59,7 @@ fn find_with(
     let answer = search.ordered(followed.map_or_else(|| climbed(&search), Ok)?)?;
     request.task.check()?;
     request.task.set_progress(1.0);
-    let found = finish(radar, &bench, &samples, answer, request, settings, scale)?;
+    let found = finish(radar, &bench, &samples, answer, request, scale)?;
     let left_by_search = measure.unwrap_or(found.left_by_search);
     Ok(Found { left_by_search, trace: trace.into_attempts(), ..found })
 }

@@ -1,8 +1,6 @@
 //! From a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
-use super::settings::Settings;
 use super::state::Answer;
-use super::without::Part;
 use crate::radar::{End, Radar};
 use crate::reconstruct::attempt::Attempt;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, Workbench, rows_of};
@@ -106,20 +104,18 @@ pub(super) fn finish(
     samples: &Samples,
     answer: Answer,
     request: &Request,
-    settings: &Settings,
     scale: f64,
 ) -> Result<Found, ReconstructError> {
     let Answer { fit, is_sure: complete } = answer;
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     let hearing = bench.hearing;
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
-    let flat_bench = (complete && reflectors <= MAX_UNWINDOWED_REFLECTORS && !settings.lacks(Part::Unwindowed))
+    let flat_bench = (complete && reflectors <= MAX_UNWINDOWED_REFLECTORS)
         .then(|| Workbench::new(radar, &vec![1.0; radar.samples], &request.task, UNWINDOWED_WORK))
         .map(|flat| flat.hearing(&samples.flat(&bench.sensor)).over(hearing));
     let bench = flat_bench.as_ref().unwrap_or(bench);
     let apart = if flat_bench.is_some() { bench.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
-    let is_tied = complete && !settings.lacks(Part::Tied);
-    let best = if is_tied { tied(bench, samples, apart, request.noise.is_white(), settings) } else { apart };
+    let best = if complete { tied(bench, samples, apart, request.noise.is_white()) } else { apart };
     let best = match request.noise.is_white() {
         true => quieted(radar, bench, samples, merged(radar, bench, samples, best)),
         false => best,
@@ -208,13 +204,13 @@ pub fn are_loud(radar: &Radar, bench: &Workbench, fit: &Fit) -> Vec<bool> {
 }
 
 /// `fit` with one gain an object for both ends, on the right tooth of the comb, where it has few reflectors and the ends agree on them.
-fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool, settings: &Settings) -> Fit {
+fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     if reflectors > MAX_TIED_REFLECTORS {
         return fit;
     }
     let mut tied = bench.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
-    if in_noise && tied.atoms.len() <= MAX_COMBED_ATOMS && !settings.lacks(Part::Teeth) {
+    if in_noise && tied.atoms.len() <= MAX_COMBED_ATOMS {
         tied = combed(bench, samples, tied);
     }
     // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.

@@ -2,10 +2,9 @@
 
 use super::propose::end_beams::beam_noise_power;
 use super::propose::peaks::Detector;
-use super::propose::source::{Propose, Unexplained};
+use super::propose::unexplained::Unexplained;
 use super::settings::Settings;
 use super::trace::{Trace, decades};
-use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
@@ -107,11 +106,6 @@ impl Grower<'_> {
         Unexplained::new(self.radar, flat, self.bench.hearing, fit, self.task)
     }
 
-    /// What a source proposes; nothing where an ablation leaves it out.
-    pub fn proposed(&self, part: Part, source: &dyn Propose, left: &Unexplained) -> Vec<Atom> {
-        if self.settings.lacks(part) { Vec::new() } else { source.propose(left) }
-    }
-
     /// Amplitude of what rounding to f64 makes of a reflector's place, if its samples are 1: many reflectors of one wall are each off
     /// by that.
     pub fn rounding_amplitude(&self) -> f64 {
@@ -151,7 +145,7 @@ impl Grower<'_> {
             tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = points.len(), "grown");
             let (done, cost) = look_back;
             if self.bench.work.done() > done + LOOK_BACK {
-                if fit.cost() > WORTH_GOING_ON * cost && !self.settings.lacks(Part::LookBack) {
+                if fit.cost() > WORTH_GOING_ON * cost {
                     // Too dense to be told apart: what more there is to gain is small and dear.
                     self.bench.work.give_up();
                 }
@@ -180,9 +174,7 @@ impl Grower<'_> {
         // The strongest is taken as it is; of the others those that both ends believe in.
         let mut strongest = true;
         placed.retain(|(atom, gains)| {
-            let is_kept = std::mem::take(&mut strongest)
-                || self.settings.lacks(Part::PointsAgree)
-                || ends_agree(gains, MOST_UNLIKE);
+            let is_kept = std::mem::take(&mut strongest) || ends_agree(gains, MOST_UNLIKE);
             if !is_kept {
                 self.refuse(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
             }
@@ -207,10 +199,6 @@ impl Grower<'_> {
         let is_near = x_metres.hypot(y_metres) <= wrap;
         let alone =
             |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ROUGHLY);
-        if self.settings.lacks(Part::Wraps) {
-            let own = alone(own);
-            return (own.atoms[0], own.gains[0]);
-        }
         let (own, other) = rayon::join(|| alone(own), || alone(wrapped([x_metres, y_metres], wrap)));
         // The nearer one unless the other is clearly better.
         let (near, far) = if is_near { (own, other) } else { (other, own) };
@@ -261,11 +249,7 @@ impl Grower<'_> {
     fn ridge(&self, fit: &Fit, base: &Samples, rows: &Rows) -> f64 {
         let of = |samples: &Samples| Profile::new(self.radar, &samples.flat(&self.bench.sensor)).at(rows);
         let (left, all) = rayon::join(|| of(&fit.residual), || of(base));
-        if all > 0.0 && !self.settings.lacks(Part::Price) {
-            self.settings.gain_price * (left / all).min(1.0)
-        } else {
-            0.0
-        }
+        if all > 0.0 { self.settings.gain_price * (left / all).min(1.0) } else { 0.0 }
     }
 
     /// For every atom whether more is left in its rows than noise, and than the side lobes of what is left in others.

@@ -8,7 +8,6 @@
 
 use super::rungs::MOST_AGAIN;
 use super::state::{Answer, Search, State};
-use super::without::Without;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 
@@ -73,18 +72,6 @@ const POINTS_AGAIN: Rung = Rung {
     climb: |search, state| search.climb_points(state),
 };
 
-/// Without the rung, source or rule of this name: a rung's has hyphens between its words.
-pub fn without(name: &str) -> Option<Without> {
-    let rung = LADDER.iter().position(|rung| rung.name.replace(' ', "-") == name);
-    rung.map(Without::rung).or_else(|| Without::part(name))
-}
-
-/// Every name that [`without`] knows, rungs first.
-pub fn parts() -> Vec<String> {
-    let rungs = LADDER.iter().map(|rung| rung.name.replace(' ', "-"));
-    rungs.chain(Without::parts().map(str::to_owned)).collect()
-}
-
 /// The answer of the whole ladder to samples of which nothing is known.
 ///
 /// # Errors
@@ -99,10 +86,6 @@ pub(super) fn climbed(search: &Search) -> Result<Answer, ReconstructError> {
 /// [`ReconstructError::Cancelled`].
 pub(super) fn climbed_from(search: &Search, rungs: &[Rung], mut state: State) -> Result<Answer, ReconstructError> {
     for rung in rungs {
-        let number = LADDER.iter().position(|other| other.name == rung.name);
-        if number.is_some_and(|number| search.settings.without.lacks_rung(number)) {
-            continue;
-        }
         search.trace.enter(rung.name);
         if (rung.is_due)(&state) {
             let (before, attempts) = (state.fit.atoms.clone(), search.trace.count());

@@ -22,7 +22,6 @@
 //! | `prune` | atoms that the rest can do without |
 //! | `relax` | how many echoes a group of neighbours holds, where there is noise |
 //! | `settings` | bounds on time and memory |
-//! | `without` | parts that an ablation leaves out |
 //! | `follow` | the answer from the last one, where little changed |
 //! | `finish` | one gain for both ends, reflectivities |
 //! | `explained` | which cells of the picture are explained |
@@ -56,18 +55,16 @@ mod trace_tests;
 mod tracking_tests;
 mod wall_ends;
 mod walls;
-mod without;
 
 pub use super::fit::Atom;
 pub use draw::Expected;
 pub use find::{find, find_from};
 pub use finish::Found;
 pub(super) use grow::Grower;
-pub use ladder::{LADDER, Rung, parts, without};
+pub use ladder::{LADDER, Rung};
 pub(super) use propose::peaks::Detector;
 pub use settings::Settings;
 pub use trace::{FOLLOWING, MOST_ATTEMPTS, ORDERING};
-pub use without::Without;
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;

@@ -3,7 +3,6 @@
 use super::finish::are_loud;
 use super::grow::{Grower, tried};
 use super::trace::decades;
-use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, distance_bins, rows_of};
@@ -27,7 +26,7 @@ impl Grower<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn pruned(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..if self.settings.lacks(Part::Prune) { 0 } else { MOST_ROUNDS } {
+        for _ in 0..MOST_ROUNDS {
             self.task.check()?;
             if self.bench.work.is_spent() {
                 break;

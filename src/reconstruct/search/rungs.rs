@@ -5,7 +5,6 @@ use super::on_wall::is_on;
 use super::propose::pairs::Pairs;
 use super::state::{Answer, Search, State};
 use super::trace::decades;
-use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 use crate::reconstruct::fit::{Atom, Fit, Gains, Tie};
@@ -76,7 +75,6 @@ impl Search<'_> {
             let sure = pairs.points.iter().filter(|point| point.is_sure());
             let more: Vec<Atom> =
                 sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();
-            let more = if self.settings.lacks(Part::PointsWithLines) { Vec::new() } else { more };
             if fit.atoms.len() + more.len() == before {
                 if fit.cost() != cost {
                     pairs = self.pairs(&fit);

@@ -1,6 +1,5 @@
 //! What bounds a search.
 
-use super::without::{Part, Without};
 use crate::radar::Radar;
 
 /// Bounds on time and memory, and what counts as found.
@@ -17,27 +16,11 @@ pub struct Settings {
     pub gain_price: f64,
     /// Work granted to the search: about ten microseconds a unit, counted and not timed.
     pub most_work: usize,
-    /// Parts that are left out, to see what they are good for.
-    pub without: Without,
-}
-
-impl Settings {
-    /// Whether a part of the search is left out.
-    pub fn lacks(&self, part: Part) -> bool {
-        self.without.lacks(part)
-    }
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings {
-            most_atoms: 150,
-            least_prominence: 14.0,
-            rounds: 6,
-            gain_price: 0.3,
-            most_work: 40_000,
-            without: Without::default(),
-        }
+        Settings { most_atoms: 150, least_prominence: 14.0, rounds: 6, gain_price: 0.3, most_work: 40_000 }
     }
 }
 

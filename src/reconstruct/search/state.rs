@@ -5,7 +5,6 @@ use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
 use super::trace::{ORDERING, Trace, decades};
-use super::without::Part;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
 use crate::reconstruct::fit::{Atom, Fit, Samples, Tie, Workbench};
@@ -105,7 +104,7 @@ impl Search<'_> {
 
     /// `fit` brought to its end where all is there and not yet quite in its place: a map shows even what little is left.
     pub fn nearly_there(&self, fit: Fit) -> Result<Fit, ReconstructError> {
-        if !self.is_nearly_all(&fit) || self.settings.lacks(Part::NearlyThere) {
+        if !self.is_nearly_all(&fit) {
             return Ok(fit);
         }
         self.bench.work.grant(self.settings.most_work / 4);
@@ -168,7 +167,7 @@ impl Search<'_> {
         }
         atoms.truncate(self.settings.most_atoms);
         let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
-        for _ in 0..if self.settings.lacks(Part::PairsAgree) { 0 } else { MOST_DOUBTS } {
+        for _ in 0..MOST_DOUBTS {
             let (kept, unlike): (Vec<_>, Vec<_>) =
                 fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MOST_UNLIKE));
             if unlike.is_empty() {
@@ -186,7 +185,6 @@ impl Search<'_> {
             return Ok(known);
         }
         let grower = self.grower();
-        let polished = polished && !self.settings.lacks(Part::PolishPairs);
         if !polished || self.is_explained(&fit) { grower.pruned(fit) } else { grower.pruned(grower.polished(fit, 1)?) }
     }
 

@@ -1,7 +1,6 @@
 //! Walls, one after another: each is looked for in what the others leave, and all are followed to their ends again.
 
 use super::grow::{Grower, ROUGHLY};
-use super::without::Part;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Samples, Tie};
 
@@ -44,7 +43,7 @@ impl Grower<'_> {
 
     /// Every wall followed to its ends once more, now that the others are known, and all moved together; by turns, as long as it helps.
     fn with_settled_ends(&self, samples: &Samples, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..if self.settings.lacks(Part::SettledEnds) { 0 } else { MOST_TURNS } {
+        for _ in 0..MOST_TURNS {
             self.task.check()?;
             let before = fit.cost();
             fit = self.bench.refine(samples, fit.atoms, fit.gains, Tie::PerEnd, ROUGHLY);

@@ -4,8 +4,8 @@
 //! over the first few reflectors, and the best are followed as rows over two points are.
 
 use super::phased::{Heard, PhasedBeams, Presence, Row};
-use super::source::{Propose, Unexplained};
 use super::strides::{FIRST, MOST_STEP_METRES, Start, Stride, best_of_each, pitches_metres, summits};
+use super::unexplained::Unexplained;
 use crate::reconstruct::fit::{Atom, Fit};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
@@ -53,15 +53,11 @@ const LEAST_FROM_EDGE: usize = 24;
 /// Directions this near to each other, radians, are one.
 const ONE_DIRECTION: f64 = 0.005;
 
-/// Lines from one point alone.
-pub struct Edges;
-
-impl Propose for Edges {
-    fn propose(&self, left: &Unexplained) -> Vec<Atom> {
-        let points = left.points_within_range(MOST_EDGES);
-        let rows = rows_from_edges(left.beams(), &points, &directions(left.found), left.task);
-        rows.into_iter().map(|row| row.atom).filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
-    }
+/// Lines from one point alone that may be among what is left, the most promising first.
+pub fn edges(left: &Unexplained) -> Vec<Atom> {
+    let points = left.points_within_range(MOST_EDGES);
+    let rows = rows_from_edges(left.beams(), &points, &directions(left.found), left.task);
+    rows.into_iter().map(|row| row.atom).filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
 }
 
 /// Rows that begin at one of `points` (x, y; metres) and lead in about one of the directions (radians from the array's axis), best

@@ -2,7 +2,7 @@
 //!
 //! | file | what it is |
 //! |---|---|
-//! | `source` | what every source of candidates is, and what it looks at |
+//! | `unexplained` | what is left of the samples, as sources look at it |
 //! | `view` | at which range and in which direction an end sees a place |
 //! | `end_beams` | each end's plain beams |
 //! | `registered` | both ends' beams laid over each other |
@@ -21,7 +21,7 @@ pub mod peaks;
 pub mod phased;
 mod registered;
 pub mod runs;
-pub mod source;
 pub mod strides;
 mod tones;
+pub mod unexplained;
 pub mod view;

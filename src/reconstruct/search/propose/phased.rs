@@ -114,6 +114,11 @@ impl PhasedBeams {
         Presence { part: a.part.min(b.part), even_power: a.even_power.min(b.even_power) }
     }
 
+    /// Range from which on ranges repeat.
+    pub fn max_range_metres(&self) -> f64 {
+        self.bins as f64 / self.bins_per_metre
+    }
+
     /// Length of a range bin.
     pub fn bin_metres(&self) -> f64 {
         self.bins_per_metre.recip()

@@ -5,7 +5,7 @@
 //! wrong ones go along.
 
 use super::phased::{AddedUp, Heard, PhasedBeams, Row, added_up};
-use super::source::{Propose, Unexplained};
+use super::unexplained::Unexplained;
 use crate::reconstruct::fit::{Atom, damped_step};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
@@ -54,6 +54,9 @@ const MOVES: usize = 4;
 /// A move that adds less than this part of the power is the last.
 const LEAST_ADDED: f64 = 0.002;
 
+/// Rows that reach farther than this many maximum ranges ran away.
+const MAX_RANGES: f64 = 2.5;
+
 /// A row that adds up to less than this part of the most it did has passed its end.
 const PASSED: f64 = 0.4;
 
@@ -66,13 +69,9 @@ pub struct Stride {
     pub weight: f64,
 }
 
-/// Lines over two neighbouring points.
-pub struct Strides;
-
-impl Propose for Strides {
-    fn propose(&self, left: &Unexplained) -> Vec<Atom> {
-        rows_over_pairs(left.beams(), left.points_metres, left.task).into_iter().map(|row| row.atom).collect()
-    }
+/// Lines over two neighbouring points that may be among what is left, the most promising first.
+pub fn strides(left: &Unexplained) -> Vec<Atom> {
+    rows_over_pairs(left.beams(), left.points_metres, left.task).into_iter().map(|row| row.atom).collect()
 }
 
 /// Rows from one of `points` (x, y; metres) over another, best first; one for each first point at most.
@@ -282,7 +281,7 @@ struct Slope {
     hessian: [[f64; 4]; 4],
 }
 
-/// `row` moved so that the echoes of its first `count` reflectors add up to most; `None` where it crosses the array's axis.
+/// `row` moved so that the echoes of its first `count` reflectors add up to most; `None` where it leaves what is heard.
 fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbed> {
     let mut slope = slope(beams, &row, count)?;
     let mut damping = 1e-2;
@@ -309,9 +308,13 @@ fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbed> {
     Some(Climbed { row, added: slope.added, all: slope.all })
 }
 
-/// Gauss-Newton equations of the phases against that of their sum, weighted by how much each adds to it.
+/// Gauss-Newton equations of the phases against that of their sum, weighted by how much each adds to it; `None` where the row leaves what is heard.
 fn slope(beams: &PhasedBeams, row: &Row, count: usize) -> Option<Slope> {
-    if row.place_metres((count - 1) as f64)[1] <= 0.0 || row.first_metres[1] <= 0.0 {
+    let is_heard = |i: f64| {
+        let [x, y] = row.place_metres(i);
+        y > 0.0 && x.hypot(y) < MAX_RANGES * beams.max_range_metres()
+    };
+    if !is_heard(0.0) || !is_heard((count - 1) as f64) {
         return None;
     }
     let mut heard = vec![Heard::default(); count];
@@ -364,5 +367,23 @@ impl Kernel for SlopeOf<'_> {
             }
         }
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::Radar;
+    use num_complex::Complex64;
+
+    #[test]
+    fn rows_that_ran_away_are_not_followed() {
+        let radar = Radar::default();
+        let beams = PhasedBeams::new(&radar, &vec![Complex64::ONE; 2 * radar.end_elements * radar.samples]);
+        let follow = |step_metres| climbed(&beams, Row { first_metres: [1.0, 5.0], step_metres }, FIRST);
+        assert!(follow([0.0, 0.1]).is_some());
+        for step_metres in [[0.0, 1e300], [1e30, 0.0], [f64::NAN, 0.1], [f64::INFINITY, 0.0], [0.0, -1.0]] {
+            assert!(follow(step_metres).is_none(), "{step_metres:?}");
+        }
     }
 }

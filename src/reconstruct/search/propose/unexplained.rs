@@ -1,9 +1,9 @@
-//! What every source of candidates is, and what all of them look at.
+//! What is left of the samples, as sources of candidates look at it.
 
 use super::phased::PhasedBeams;
 use super::runs::{LONG_RUN_BINS, longest_run_bins};
 use crate::radar::Radar;
-use crate::reconstruct::fit::{Atom, Fit};
+use crate::reconstruct::fit::Fit;
 use crate::reconstruct::hearing::Hearing;
 use crate::task::Task;
 use num_complex::Complex64;
@@ -53,10 +53,4 @@ impl<'a> Unexplained<'a> {
         let within = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
         self.points_metres.iter().filter(within).take(most).copied().collect()
     }
-}
-
-/// A source of candidates.
-pub trait Propose {
-    /// Objects that may be among what is left, the most promising first.
-    fn propose(&self, left: &Unexplained) -> Vec<Atom>;
 }
