@@ -12,12 +12,12 @@ use rand_chacha::ChaCha8Rng;
 pub enum Radars {
     /// The same for all.
     Fixed(Box<Radar>),
-    /// One drawn for each scene within [`DRAWN_LIMITS`].
+    /// One drawn for each scene within [`DRAWN`].
     Random,
 }
 
 /// Radars that the live network can be trained for.
-pub const DRAWN_LIMITS: RadarLimits = RadarLimits {
+pub const DRAWN: RadarLimits = RadarLimits {
     elements: COLUMNS,
     end_elements: ELEMENTS,
     samples: ROWS,
@@ -61,7 +61,7 @@ impl Radars {
     pub fn domain(&self) -> Domain {
         match self {
             Radars::Fixed(radar) => Domain::Radar(radar.clone()),
-            Radars::Random => Domain::Limits(DRAWN_LIMITS),
+            Radars::Random => Domain::Limits(DRAWN),
         }
     }
 
@@ -83,8 +83,8 @@ impl Radars {
         match self {
             Radars::Fixed(radar) => radar.max_range_metres(),
             Radars::Random => {
-                let [_, bandwidth_hz] = DRAWN_LIMITS.bandwidth_hz;
-                Radar { bandwidth_hz, samples: DRAWN_LIMITS.samples, ..Radar::default() }.max_range_metres()
+                let [_, bandwidth_hz] = DRAWN.bandwidth_hz;
+                Radar { bandwidth_hz, samples: DRAWN.samples, ..Radar::default() }.max_range_metres()
             }
         }
     }
@@ -92,17 +92,17 @@ impl Radars {
 
 fn drawn(rng: &mut ChaCha8Rng) -> Radar {
     loop {
-        let carrier_hz = log_uniform(DRAWN_LIMITS.carrier_hz, rng);
-        let [least, most] = DRAWN_LIMITS.bandwidth_hz;
-        let bandwidth_hz = log_uniform([least, most.min(DRAWN_LIMITS.max_relative_bandwidth * carrier_hz)], rng);
+        let carrier_hz = log_uniform(DRAWN.carrier_hz, rng);
+        let [least, most] = DRAWN.bandwidth_hz;
+        let bandwidth_hz = log_uniform([least, most.min(DRAWN.max_relative_bandwidth * carrier_hz)], rng);
         let convention = Convention::ALL[rng.random_range(0..2)];
-        let [least, most] = DRAWN_LIMITS.relative_spacing;
+        let [least, most] = DRAWN.relative_spacing;
         let spacing = if rng.random::<f64>() < FILLED_SHARE { 1.0 } else { rng.random_range(least..most) };
         let window = match rng.random::<f64>() < HANN_SHARE {
             true => WindowFunction::Hann,
             false => WindowFunction::ALL[rng.random_range(1..WindowFunction::ALL.len())],
         };
-        let [least, most] = DRAWN_LIMITS.half_power_width_degrees;
+        let [least, most] = DRAWN.half_power_width_degrees;
         let budget = (rng.random::<f64>() < PATTERN_SHARE).then(|| LinkBudget {
             half_power_width_degrees: Some(rng.random_range(least..most)),
             ..LinkBudget::default()
@@ -110,7 +110,7 @@ fn drawn(rng: &mut ChaCha8Rng) -> Radar {
         let filled = Radar { carrier_hz, bandwidth_hz, window, budget, ..Radar::default() }.in_convention(convention);
         let element_spacing_metres = spacing * filled.element_spacing_metres;
         let radar = Radar { element_spacing_metres, ..filled };
-        if migration_bins(&radar) <= DRAWN_LIMITS.max_migration_bins {
+        if migration_bins(&radar) <= DRAWN.max_migration_bins {
             return radar;
         }
     }
@@ -130,7 +130,7 @@ mod tests {
         let radars: Vec<Radar> = (0..2000).map(|i| Radars::Random.of(3, Purpose::Training, i)).collect();
         for radar in &radars {
             radar.validate().unwrap();
-            assert!(Domain::Limits(DRAWN_LIMITS).holds(radar), "{radar:?}");
+            assert!(Domain::Limits(DRAWN).holds(radar), "{radar:?}");
         }
         let share = |is: &dyn Fn(&Radar) -> bool| radars.iter().filter(|r| is(r)).count() as f64 / radars.len() as f64;
         assert!((0.2..0.3).contains(&share(&|r| *r == Radar::default())));
@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn what_lies_outside_of_limits_is_named() {
-        let drawn = Domain::Limits(DRAWN_LIMITS);
+        let drawn = Domain::Limits(DRAWN);
         let of = |carrier_hz: f64, bandwidth_hz: f64, convention| {
             Radar { carrier_hz, bandwidth_hz, ..Radar::default() }.in_convention(convention)
         };
