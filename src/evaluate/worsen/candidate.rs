@@ -7,21 +7,22 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
 
+/// Candidates between two changes of the step.
 pub(super) const BATCH: u32 = 8;
-/// Part of the candidates that is drawn anywhere within reach.
+/// Part of the candidates that are drawn anywhere within reach, not around the worst scene so far.
 const ANYWHERE_PART: f64 = 1.0 / 3.0;
-/// First steps, as a part of the reach.
+/// Initial scale of steps, as a part of the reach.
 pub(super) const FIRST_STEP_PART: f64 = 0.25;
-/// Smallest steps, as a part of the reach.
+/// Scale of steps, as a part of the reach, below which the search begins anew with the initial one.
 pub(super) const MIN_STEP_PART: f64 = 1e-3;
 /// Echoes of an object change by at most this, dB of amplitude, either way.
 const MAX_GAIN_CHANGE_DB: f64 = 6.0;
 /// Bodies turn by at most this much, either way, degrees.
 const MAX_TURN_DEGREES: f64 = 45.0;
-/// A repair has reached its whole reach after half of so many tries, however many are left.
+/// A repair's reach grows with the tries, to all of it after half of so many or half of all, whichever is fewer.
 const GROWTH_STEPS: u32 = 256;
-/// How often other noise is drawn.
-const OTHER_NOISE: f64 = 0.25;
+/// Part of the candidates that get another noise seed.
+const OTHER_NOISE_PART: f64 = 0.25;
 
 pub(super) struct WorseningState {
     /// Scale of steps, as a part of the reach.
@@ -70,7 +71,7 @@ impl WorseningSearch {
                 object.set_reflectivity(now.abs().clamp(low, high).copysign(at_home));
             }
         }
-        if rng.random::<f64>() < OTHER_NOISE {
+        if rng.random::<f64>() < OTHER_NOISE_PART {
             scene.noise_seed = rng.random::<u64>() >> 11;
         }
         scene

@@ -14,19 +14,20 @@ use std::f64::consts::PI;
 pub(super) struct Coarse {
     rows: usize,
     centre: [Registration<COARSE_COLUMNS>; 2],
-    /// `[rows, 64]`: what makes the phase of a reflector's cells one and the same, see [`even_phases`].
+    /// `[rows, 64]`: factors that give all cells of one reflector the same phase, see [`even_phases`].
     even: Vec<Complex64>,
     /// `[elements, 64]`: windowed steering vectors.
     beams: Array2<Complex64>,
 }
 
+/// One end's map of 64 beams.
 #[derive(Debug)]
-struct Seen {
+struct BeamMap {
     /// `[rows, 64]` log10 amplitude.
     magnitude: Vec<f32>,
     /// `[rows, 64]` of amplitude 1.
     phase: Vec<Complex32>,
-    /// `[rows, 64]` with even phases, the strongest 1.
+    /// `[rows, 64]` times [`Coarse::even`]'s factors, the strongest of amplitude 1.
     even: Vec<Complex32>,
 }
 
@@ -36,24 +37,26 @@ impl Coarse {
         Coarse { rows: radar.samples, centre, even: even_phases(radar), beams: beams(radar) }
     }
 
+    /// `[COARSE_CHANNELS, rows, 64]`: both ends' magnitudes, the same on the centre's grid, cosines and sines of each end's phase step from
+    /// row to row, and those of the phase between the ends.
     pub(super) fn features(&self, profiles: &[Array2<Complex64>; 2]) -> Vec<f32> {
         let [first, last] = profiles;
-        let (first, last) = rayon::join(|| self.seen(first), || self.seen(last));
+        let (first, last) = rayon::join(|| self.beam_map(first), || self.beam_map(last));
         let both = [first, last];
         let plane = self.rows * COARSE_COLUMNS;
         let mut coarse = vec![0.0; COARSE_CHANNELS * plane];
         let (magnitudes, rest) = coarse.split_at_mut(2 * plane);
         let (registered, rest) = rest.split_at_mut(2 * plane);
         let (steps, between) = rest.split_at_mut(4 * plane);
-        for (e, seen) in both.iter().enumerate() {
+        for (e, map) in both.iter().enumerate() {
             let part = e * plane..(e + 1) * plane;
-            magnitudes[part.clone()].copy_from_slice(&seen.magnitude);
+            magnitudes[part.clone()].copy_from_slice(&map.magnitude);
             rows_of(&mut registered[part]).for_each(|(row, to)| {
-                to.iter_mut().zip(self.centre[e].row(&seen.magnitude, row)).for_each(|(to, v)| *to = v);
+                to.iter_mut().zip(self.centre[e].row(&map.magnitude, row)).for_each(|(to, v)| *to = v);
             });
             let (cosines, sines) = steps[2 * e * plane..2 * (e + 1) * plane].split_at_mut(plane);
             rows_of(cosines).zip(rows_of(sines)).for_each(|((row, cosines), (_, sines))| {
-                let of = |row: usize| &seen.phase[row * COARSE_COLUMNS..(row + 1) * COARSE_COLUMNS];
+                let of = |row: usize| &map.phase[row * COARSE_COLUMNS..(row + 1) * COARSE_COLUMNS];
                 let before = of((row + self.rows - 1) % self.rows);
                 let steps = of(row).iter().zip(before).map(|(here, before)| here * before.conj());
                 cosines
@@ -67,19 +70,19 @@ impl Coarse {
         coarse
     }
 
-    fn seen(&self, profiles: &Array2<Complex64>) -> Seen {
+    fn beam_map(&self, profiles: &Array2<Complex64>) -> BeamMap {
         let beams = profiles.dot(&self.beams).into_raw_vec_and_offset().0;
-        let strongest = beams.iter().map(|v| v.norm_sqr()).fold(1e-300, f64::max).sqrt().recip();
+        let per_strongest = beams.iter().map(|v| v.norm_sqr()).fold(1e-300, f64::max).sqrt().recip();
         let plane = self.rows * COARSE_COLUMNS;
         let zeros = || vec![Complex32::default(); plane];
-        let mut seen = Seen { magnitude: vec![0.0; plane], phase: zeros(), even: zeros() };
-        Simd::chosen().run(Look { beams: &beams, even: &self.even, strongest, seen: &mut seen });
-        seen
+        let mut map = BeamMap { magnitude: vec![0.0; plane], phase: zeros(), even: zeros() };
+        Simd::chosen().run(SplitBeams { beams: &beams, even: &self.even, per_strongest, map: &mut map });
+        map
     }
 
     /// Cosine and sine of twice the phase between the two ends' maps, both registered on the centre's grid: one colour for every
     /// cell of a reflector, another for the next reflector. Twice, because side lobes change their sign.
-    fn fill_phase_between(&self, both: &[Seen; 2], planes: &mut [f32]) {
+    fn fill_phase_between(&self, both: &[BeamMap; 2], planes: &mut [f32]) {
         let (cosines, sines) = planes.split_at_mut(self.rows * COARSE_COLUMNS);
         rows_of(cosines).zip(rows_of(sines)).for_each(|((row, cosines), (_, sines))| {
             let [first, last] = [0, 1].map(|e| self.centre[e].row(&both[e].even, row));
@@ -98,35 +101,37 @@ fn rows_of(plane: &mut [f32]) -> impl IndexedParallelIterator<Item = (usize, &mu
     plane.par_chunks_mut(COARSE_COLUMNS).with_min_len(MIN_ROWS).enumerate()
 }
 
-struct Look<'a> {
+/// Splits beams into the magnitudes and phases of a [`BeamMap`].
+struct SplitBeams<'a> {
     beams: &'a [Complex64],
     even: &'a [Complex64],
-    strongest: f64,
-    seen: &'a mut Seen,
+    /// One over the strongest amplitude.
+    per_strongest: f64,
+    map: &'a mut BeamMap,
 }
 
-impl Kernel for Look<'_> {
+impl Kernel for SplitBeams<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let narrow = |v: Complex64| Complex32::new(v.re as f32, v.im as f32);
-        let Seen { magnitude, phase, even } = self.seen;
+        let BeamMap { magnitude, phase, even } = self.map;
         let cells = self.beams.iter().zip(self.even);
         for (((v, factor), magnitude), (phase, even)) in cells.zip(magnitude).zip(phase.iter_mut().zip(even)) {
             let power = v.norm_sqr();
             *magnitude = 0.5 * logarithm((power as f32).max(MIN_POWER));
             *phase = narrow(v * (power.sqrt() + 1e-300).recip());
-            *even = narrow(v * factor * self.strongest);
+            *even = narrow(v * factor * self.per_strongest);
         }
     }
 }
 
-/// Less than any sample's rounding leaves, and more than the least f32.
+/// Below the power of any sample's rounding, above the smallest f32.
 const MIN_POWER: f32 = 1e-36;
 
-/// `[rows, 64]` factors that take out of a map's phase what changes from cell to cell within one reflector's blob: the phases of mid-chirp and of
-/// (half an element off) the end's middle; the half lets the angle axis close, the phase at cos(theta) = -1 and 1 being the same.
+/// `[rows, 64]` factors that refer a map's phases to mid-chirp and to the end's middle, so that the phase is constant over one reflector's
+/// blob. The middle is half an element off, which makes the phase the same at cos(theta) = -1 and 1, where the columns wrap around.
 fn even_phases(radar: &Radar) -> Vec<Complex64> {
     let (rows, elements) = (radar.samples, radar.end_elements);
     let row = |r: usize| PI * (rows - 1) as f64 / rows as f64 * r as f64;

@@ -9,7 +9,7 @@ use syn::visit::{self, Visit};
 use syn::{Attribute, Ident, Visibility};
 
 /// Constants of one of these words alone lack the noun and its unit.
-const BARE_NAMES: [&str; 45] = [
+const BARE_NAMES: [&str; 44] = [
     "AFTER",
     "ALIKE",
     "ALIVE",
@@ -20,7 +20,6 @@ const BARE_NAMES: [&str; 45] = [
     "BEFOREHAND",
     "COARSE",
     "DEEPEST",
-    "DRAWN",
     "EACH",
     "EVERY",
     "FAR",
