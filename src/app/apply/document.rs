@@ -16,7 +16,6 @@ use crate::scene::presets;
 use crate::signal::Floor;
 use std::path::{Path, PathBuf};
 
-/// Does such a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) {
     match command {
         DocumentCommand::New => {

@@ -4,7 +4,6 @@ use crate::app::jobs::{Jobs, RunTimePlan, ThresholdPlan, tell};
 use crate::app::state::{MethodSlot, Panel, State, WorkCommand};
 use std::path::PathBuf;
 
-/// Does such a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
     match command {
         WorkCommand::CancelMethod => jobs.pipeline.method_mut(MethodSlot::First).cancel(),

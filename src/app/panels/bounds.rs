@@ -40,7 +40,6 @@ pub struct BoundsMemory {
     texture: Texture,
 }
 
-/// Draws [`Panel::Bounds`](crate::app::state::Panel::Bounds).
 pub struct BoundsPanel;
 
 impl Content for BoundsPanel {
@@ -64,7 +63,6 @@ impl Content for BoundsPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut BoundsMemory) -> Vec<Command> {
     if !input.has_subject {
         ui.centered_and_justified(|ui| ui.weak("Place a reflector ahead of the array to see its bounds."));

@@ -40,9 +40,7 @@ const SPECTRUM_DB: f64 = 100.0;
 
 /// What is drawn.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
-    /// The scene.
     pub scene: &'a Scene,
     /// Which element.
     pub settings: ChirpSettings,
@@ -52,7 +50,6 @@ pub struct Input<'a> {
     pub result: Option<Result<&'a ChirpResult, &'a str>>,
 }
 
-/// Draws [`Panel::Chirp`](crate::app::state::Panel::Chirp).
 pub struct ChirpPanel;
 
 impl Content for ChirpPanel {
@@ -77,7 +74,6 @@ impl Content for ChirpPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {

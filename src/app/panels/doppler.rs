@@ -32,7 +32,6 @@ const MOST_INTERVAL_MICROSECONDS: f64 = 1e5;
 
 /// What is drawn.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
     /// The scene at the time that is looked at.
     pub scene: &'a Scene,
@@ -62,7 +61,6 @@ pub struct DopplerMemory {
     texture: Texture,
 }
 
-/// Draws [`Panel::RangeDoppler`](crate::app::state::Panel::RangeDoppler).
 pub struct DopplerPanel;
 
 impl Content for DopplerPanel {
@@ -93,7 +91,6 @@ impl Content for DopplerPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         chirps(ui, &input, asked);

@@ -38,7 +38,6 @@ pub struct Input<'a> {
 /// Scenes of each set that the button tries.
 const SCENES_A_SET: u32 = 10;
 
-/// Draws [`Panel::Evaluation`](crate::app::state::Panel::Evaluation).
 pub struct EvaluationPanel;
 
 impl Content for EvaluationPanel {
@@ -61,7 +60,6 @@ impl Content for EvaluationPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     scrolled_both(ui, |ui, asked| {
         buttons(ui, &input, asked);

@@ -24,7 +24,6 @@ const HEAD: f32 = 12.0;
 
 /// What is drawn.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
     /// What is chosen.
     pub settings: PhasorSettings,
@@ -44,7 +43,6 @@ pub struct PhasorsMemory {
     is_playing: bool,
 }
 
-/// Draws [`Panel::Phasors`](crate::app::state::Panel::Phasors).
 pub struct PhasorsPanel;
 
 impl Content for PhasorsPanel {
@@ -69,7 +67,6 @@ impl Content for PhasorsPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut PhasorsMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         let mut settings = input.settings;

@@ -46,7 +46,6 @@ impl Default for CardMemory {
     }
 }
 
-/// Draws [`Panel::Recording`](crate::app::state::Panel::Recording).
 pub struct RecordingPanel;
 
 impl Content for RecordingPanel {
@@ -61,7 +60,6 @@ impl Content for RecordingPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CardMemory) -> Vec<Command> {
     scrolled(ui, |ui, asked| {
         if let Some(of_card) = input.card {

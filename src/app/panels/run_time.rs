@@ -47,7 +47,6 @@ impl Default for RunTimeMemory {
     }
 }
 
-/// Draws [`Panel::RunTime`](crate::app::state::Panel::RunTime).
 pub struct RunTimePanel;
 
 impl Content for RunTimePanel {
@@ -67,7 +66,6 @@ impl Content for RunTimePanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         ui.horizontal_wrapped(|ui| {

@@ -23,7 +23,6 @@ pub struct Input<'a> {
     pub note: Option<&'a str>,
 }
 
-/// Draws [`Panel::Training`](crate::app::state::Panel::Training).
 pub struct TrainingPanel;
 
 impl Content for TrainingPanel {
@@ -36,7 +35,6 @@ impl Content for TrainingPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     padded(ui, |ui, asked| {
         button(ui, "Open training log…", Purpose::OpenLog, true, asked);

@@ -27,7 +27,6 @@ impl Default for OpenedMemory {
     }
 }
 
-/// Draws it.
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut Vec<Command>) {
     if let Some(live) = &input.on_screen {
         figures(ui, live);
