@@ -1,8 +1,6 @@
 //! What stands in the menus of the bar, in groups: drawn as they are listed, and named by the palette beside what it finds.
 
-use super::command::{
-    Command, DocumentCommand, EditCommand, ExportCommand, Purpose, ViewCommand, WindowCommand,
-};
+use super::command::{Command, DocumentCommand, EditCommand, ExportCommand, Purpose, ViewCommand, WindowCommand};
 use super::panel::Panel;
 use crate::recording::card::USUAL_PORT;
 use crate::scene::presets;

@@ -1,7 +1,8 @@
 //! Other words that may be typed in the palette.
 
 use super::command::{
-    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, Purpose, RadarCommand, ViewCommand, WindowCommand,
+    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, Purpose, RadarCommand, ViewCommand,
+    WindowCommand,
 };
 use super::panel::Panel;
 

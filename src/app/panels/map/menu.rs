@@ -14,7 +14,12 @@ pub fn menu(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         ticked(ui, name, command.clone(), on, asked);
     };
     ui.menu_button("Overlays", |ui| {
-        for (command, on) in ViewCommand::OVERLAYS.into_iter().zip([look.show_reflectors, look.show_found, look.show_theory, look.show_kinds]) {
+        for (command, on) in ViewCommand::OVERLAYS.into_iter().zip([
+            look.show_reflectors,
+            look.show_found,
+            look.show_theory,
+            look.show_kinds,
+        ]) {
             tick(ui, command, on);
         }
     });
