@@ -9,6 +9,7 @@ use crate::app::state::{ChirpSettings, Command, State};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::theme::Inks;
 use crate::radar::{Carrier, Radar};
 use crate::scene::Scene;
@@ -75,13 +76,11 @@ impl Content for ChirpPanel {
 }
 
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         let height = ui.available_height();
         let scroll = egui::ScrollArea::vertical().auto_shrink(false);
-        scroll.show(ui, |ui| contents(ui, &input, height, &mut asked));
-    });
-    asked
+        scroll.show(ui, |ui| contents(ui, &input, height, asked));
+    })
 }
 
 /// What is drawn in a panel of a height, points: in a low one the charts are scrolled to.
