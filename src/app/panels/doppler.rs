@@ -11,7 +11,7 @@ use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::entry::{press, tick};
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::{computed, padded};
+use crate::app::widgets::padded::{computed, padded, warning};
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
 use crate::maps::Normalisation;
@@ -206,8 +206,8 @@ fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         });
     } else if !input.scene.is_moving() {
         ui.weak("Nothing moves: everything stands at 0 m/s. The Inspector sets velocities.");
-    } else if let Some(sentence) = folded(input.radar, input.scene) {
-        ui.colored_label(ui.visuals().warn_fg_color, sentence);
+    } else {
+        warning(ui, folded(input.radar, input.scene).as_deref());
     }
 }
 

@@ -7,7 +7,7 @@ use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::entry::button;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::padded::padded;
+use crate::app::widgets::padded::{padded, warning};
 use crate::app::widgets::theme;
 use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
@@ -38,9 +38,7 @@ impl Content for TrainingPanel {
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     padded(ui, |ui, asked| {
         button(ui, "Open training log…", Purpose::OpenLog, true, asked);
-        if let Some(note) = input.note {
-            ui.colored_label(ui.visuals().warn_fg_color, note);
-        }
+        warning(ui, input.note);
         match input.log.filter(|l| !l.loss.is_empty()) {
             Some(log) => curves(ui, log),
             None => _ = ui.weak(waiting(&input)),

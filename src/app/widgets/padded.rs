@@ -18,6 +18,13 @@ pub fn scrolled_both(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command
     scrolled_by(ScrollArea::both(), ui, content)
 }
 
+/// What is to be known, in the colour of warnings; nothing where there is no such thing.
+pub fn warning(ui: &mut Ui, said: Option<&str>) {
+    if let Some(said) = said {
+        ui.colored_label(ui.visuals().warn_fg_color, said);
+    }
+}
+
 /// What was computed for a panel; where there is nothing, it says why, or that it is under way.
 pub fn computed<'a, T>(ui: &mut Ui, value: Option<Result<&'a T, &str>>) -> Option<&'a T> {
     match value {
