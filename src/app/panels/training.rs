@@ -1,8 +1,8 @@
 //! A training watched: its loss.
 
-use crate::app::content::{Content, Cx, Nothing};
-use crate::app::jobs::Log;
-use crate::app::state::{Command, Purpose};
+use crate::app::content::{Content, Cx};
+use crate::app::jobs::{Jobs, LOG_INTERVAL, Log, LogQuery, Watched};
+use crate::app::state::{Command, Purpose, State};
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::entry::button;
@@ -26,12 +26,20 @@ pub struct Input<'a> {
 pub struct TrainingPanel;
 
 impl Content for TrainingPanel {
-    type Asks = Nothing;
+    type Asks = LogQuery;
     type Remembers = ();
+    const MARKS_AGE: bool = true;
+
+    fn asks(_: &State, jobs: &Jobs) -> Option<LogQuery> {
+        jobs.training.as_ref().map(Watched::query)
+    }
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let job = &cx.jobs.training;
-        show(ui, Input { path: job.path(), log: job.log(), note: job.note() })
+        let path = cx.jobs.training.as_ref().map(|watched| watched.path.as_path());
+        if path.is_some() {
+            ui.ctx().request_repaint_after(LOG_INTERVAL);
+        }
+        show(ui, Input { path, log: cx.value.and_then(Result::ok), note: cx.value.and_then(Result::err) })
     }
 }
 
