@@ -142,7 +142,9 @@ mod tests {
     #[test]
     fn a_log_that_is_missing_is_told() {
         let query = Watched::of(PathBuf::from("/there/is/no/log.csv")).query();
-        let Err(Failure::Because(why)) = query.compute(&mut (), &Task::default()) else { panic!("there is no such file") };
+        let Err(Failure::Because(why)) = query.compute(&mut (), &Task::default()) else {
+            panic!("there is no such file")
+        };
         assert!(why.contains("log.csv"), "{why}");
     }
 }
