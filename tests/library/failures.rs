@@ -46,7 +46,9 @@ fn every_failure_that_ships_is_explained() {
 #[test]
 fn methods_fail_on_shipped_scenes_as_their_notes_say() {
     for (id, name, expected) in EXPLAINED {
-        let scene = Preset::by_id(id).unwrap().load().unwrap().scene;
+        let preset = Preset::by_id(id).unwrap();
+        assert_eq!(preset.failing_method(), Some(name), "{id} opens with its method");
+        let scene = preset.load().unwrap().scene;
         let trial = Trial::new(&Radar::default(), &scene, Floor::Thesis, Normalisation::MinMax).unwrap();
         let method = methods::by_name(name).unwrap();
         let answer = trial.ask(method.as_ref(), &Request::default()).unwrap();

@@ -16,7 +16,6 @@ use crate::scene::presets;
 use crate::signal::Floor;
 use std::path::{Path, PathBuf};
 
-/// Does such a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) {
     match command {
         DocumentCommand::New => {
@@ -130,14 +129,18 @@ fn preset(state: &mut State, index: usize) {
         Ok(file) => {
             // A failure is one of its method before its radar.
             let keeps_radar = !preset.has_radar() && !preset.is_failure();
-            if let Some(name) = preset.failing_method() {
-                state.settings.method = name.to_owned();
-            }
+            let before = state.setup();
+            preset.failing_method().into_iter().for_each(|name| state.settings.method = name.to_owned());
             let radar = if keeps_radar { state.radar().clone() } else { file.radar.clone() };
             let document = Document::shipped(SceneFile { radar, ..file });
             state.failures.view.wanted = preset.is_failure().then(|| document.id());
             state.set_document("preset", document);
             use_a_method_that_can(state);
+            if preset.is_failure() {
+                // The method comes back with the scene.
+                let after = state.setup();
+                state.guided.push(before, after);
+            }
         }
         Err(error) => state.notices.error(format!("Preset {}: {error}", preset.id)),
     }

@@ -9,7 +9,6 @@ use crate::scene::Scene;
 use crate::scene::file::SceneFile;
 use std::sync::Arc;
 
-/// Does such a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: LessonCommand) {
     match command {
         LessonCommand::Begin(index) => begin_shipped(state, index),

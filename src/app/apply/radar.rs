@@ -4,7 +4,6 @@ use crate::app::state::{RadarCommand, State};
 use crate::radar::{BuiltArray, Radar, presets};
 use crate::scene::Disturbances;
 
-/// Does such a command.
 pub fn apply(state: &mut State, command: RadarCommand) {
     match command {
         RadarCommand::SetCarrier(carrier) => edit(state, "carrier", None, |r| r.carrier = carrier),

@@ -9,7 +9,6 @@ use crate::evaluate::worsen::Aim;
 use crate::platform::fs;
 use std::path::Path;
 
-/// Does such a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
     match command {
         RowsCommand::Try(choice) => match plan(state, jobs, &choice) {

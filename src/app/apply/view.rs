@@ -5,7 +5,6 @@ use crate::app::jobs::Jobs;
 use crate::app::state::{MapViews, Panel, PinnedCut, State, ViewCommand};
 use crate::maps::cfar::Cfar;
 
-/// Does such a command.
 pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
     let settings = &mut state.settings;
     match command {

@@ -1,10 +1,9 @@
 //! Commands that start long work, or stop it.
 
-use crate::app::jobs::{Jobs, RunTimePlan, ThresholdPlan, tell};
+use crate::app::jobs::{Jobs, RunTimePlan, ThresholdPlan, Watched, tell};
 use crate::app::state::{MethodSlot, Panel, State, WorkCommand};
 use std::path::PathBuf;
 
-/// Does such a command.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
     match command {
         WorkCommand::CancelMethod => jobs.pipeline.method_mut(MethodSlot::First).cancel(),
@@ -30,6 +29,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
 
 /// Watches the log of a training.
 pub fn watch(state: &mut State, jobs: &mut Jobs, log: PathBuf) {
-    jobs.training.follow(log);
+    jobs.training = Some(Watched::of(log));
     state.arrangement.set_open(Panel::Training, true);
 }

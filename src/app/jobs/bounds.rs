@@ -17,7 +17,6 @@ use std::sync::Arc;
 /// What is looked at.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundsRequest {
-    /// The radar.
     pub radar: Radar,
     /// Which elements listen.
     pub elements: Elements,
@@ -25,7 +24,6 @@ pub struct BoundsRequest {
     pub seed: u64,
     /// What the reflector is called.
     pub name: String,
-    /// The reflector.
     pub reflector: Reflector,
     /// Signal-to-noise ratio of a sample.
     pub snr: Decibels,

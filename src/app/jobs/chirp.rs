@@ -25,7 +25,6 @@ impl ChirpQuery {
 
 /// What one element hears in a chirp.
 pub struct ChirpResult {
-    /// The element.
     pub element: usize,
     /// The samples of the beat.
     pub samples: Vec<Complex64>,

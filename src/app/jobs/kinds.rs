@@ -45,7 +45,6 @@ pub struct Verdict {
 /// What became of everything in one output.
 #[derive(Debug, Clone)]
 pub struct Fates {
-    /// The scene.
     pub scene: Shared<Scene>,
     /// What is right and what is not.
     pub failures: Failures,

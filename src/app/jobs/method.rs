@@ -66,7 +66,6 @@ pub struct MethodRequest {
     pub basis: Basis,
     /// What it aims for; `None` where a recording has the two ends alone.
     pub target: Option<Shared<RangeAngleMap>>,
-    /// The method.
     pub method: Shared<dyn Reconstructor>,
     /// Whether what was found is to be listed.
     pub listed: bool,

@@ -69,7 +69,7 @@ pub use several::{SeveralMaps, Small};
 use theory::TheoryRequest;
 pub use theory::TheoryResult;
 pub use thresholds::ThresholdPlan;
-pub use training::{Log, Training};
+pub use training::{LOG_INTERVAL, Log, LogQuery, Watched};
 
 use crate::app::state::{Command, DocumentCommand, Panel, Purpose, RowsCommand, State, ViewCommand};
 use crate::interact::Autosave;
@@ -92,8 +92,8 @@ pub struct Jobs {
     pub failures: Failures,
     /// Run time against error.
     pub run_time: RowJob<RunTimePlan>,
-    /// A training that is watched.
-    pub training: Training,
+    /// The log of a training that is followed, if one is.
+    pub training: Option<Watched>,
     /// One map for several values.
     pub several: SeveralMaps,
     /// What became of every object in the outputs.
@@ -127,7 +127,7 @@ impl Jobs {
             thresholds: RowJob::start(wake.clone()),
             failures: Failures::start(folder, ctx),
             run_time: RowJob::start(wake.clone()),
-            training: Training::start(wake.clone()),
+            training: None,
             several: SeveralMaps::start(wake.clone()),
             kinds: Derived::start(wake.clone()),
             theory: Derived::start(wake),
@@ -153,7 +153,6 @@ impl Jobs {
         errors.extend(self.thresholds.poll());
         errors.extend(self.run_time.poll());
         self.pipeline.record_times(&mut state.method_times);
-        errors.extend(self.training.poll());
         errors.extend(self.several.poll());
         errors.extend(self.lessons.poll(state));
         let mut chosen = self.chosen(state);
@@ -193,11 +192,6 @@ impl Jobs {
         }
         self.kinds.ask(KindsQuery::of(state, &self.pipeline));
         self.theory.ask(TheoryRequest::of(state));
-        if draws(Panel::Training)
-            && let Some(later) = self.training.look()
-        {
-            self.wake.request_repaint_after(later);
-        }
         if let Some(later) = self.pipeline.maps.rests_in() {
             self.wake.request_repaint_after(later);
         }

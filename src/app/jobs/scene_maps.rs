@@ -117,7 +117,6 @@ pub struct Truth {
     pub source: Source,
     /// What all of its elements see.
     pub target: Shared<RangeAngleMap>,
-    /// Its scale.
     pub scale: LambdaScale,
 }
 

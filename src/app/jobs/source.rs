@@ -12,7 +12,6 @@ use crate::signal::{self, BeatSignal, Floor};
 /// What the samples depend on: two that are equal have the same samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
-    /// The radar.
     pub radar: Radar,
     /// What stands before it, or is laid over the recording.
     pub scene: Shared<Scene>,

@@ -13,11 +13,9 @@ use crate::theory::{Ellipse, Overlay};
 /// What is looked at.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TheoryRequest {
-    /// The radar.
     pub radar: Radar,
     /// What the reflector is called.
     pub name: String,
-    /// The reflector.
     pub reflector: Reflector,
     /// Which elements listen for the bound.
     pub elements: Elements,

@@ -1,9 +1,10 @@
 //! A training that is watched: its log, which grows.
 
+use super::derived::{Failure, Query};
 use crate::files::read_bounded;
 use crate::platform::Instant;
-use crate::task::{Reply, Task, Worker};
-use std::path::{Path, PathBuf};
+use crate::task::Task;
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Time between two looks at the log.
@@ -69,71 +70,44 @@ impl Log {
 /// Longer than the log of any training that ends in a lifetime.
 const MAX_LOG_BYTES: u64 = 256 << 20;
 
-fn read_log(path: &Path) -> std::io::Result<String> {
-    String::from_utf8(read_bounded(path, MAX_LOG_BYTES)?).map_err(std::io::Error::other)
+/// A log that is followed.
+pub struct Watched {
+    /// Where it is.
+    pub path: PathBuf,
+    since: Instant,
 }
 
-/// What is watched.
-pub struct Training {
-    worker: Worker<PathBuf, Result<Log, String>>,
-    path: Option<PathBuf>,
-    looked: Option<Instant>,
-    log: Option<Log>,
-    note: Option<String>,
+impl Watched {
+    /// Follows a log from now on.
+    pub fn of(path: PathBuf) -> Watched {
+        Watched { path, since: Instant::now() }
+    }
+
+    /// What it says now.
+    pub fn query(&self) -> LogQuery {
+        LogQuery { path: self.path.clone(), look: self.since.elapsed().as_secs() / LOG_INTERVAL.as_secs() }
+    }
 }
 
-impl Training {
-    /// Starts the thread that reads logs, which waits; `wake` is called from it.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Training {
-        let read = |_: &mut (), path: PathBuf, _: &Task| {
-            let text = read_log(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-            Log::parse(&text).map_err(|e| format!("{}: {e}", path.display()))
-        };
-        let worker = Worker::spawn("training log", || (), read, wake);
-        Training { worker, path: None, looked: None, log: None, note: None }
-    }
+/// A log at one look of many.
+#[derive(Clone, PartialEq)]
+pub struct LogQuery {
+    path: PathBuf,
+    look: u64,
+}
 
-    /// The log that is followed.
-    pub fn path(&self) -> Option<&Path> {
-        self.path.as_deref()
-    }
+impl Query for LogQuery {
+    type Value = Log;
+    type State = ();
+    const THREAD: &'static str = "training log";
+    const WHAT: &'static str = "Reading the log";
+    const ADVICE: &'static str = "Open it again.";
 
-    /// The latest log.
-    pub fn log(&self) -> Option<&Log> {
-        self.log.as_ref()
-    }
-
-    /// What is wrong with it.
-    pub fn note(&self) -> Option<&str> {
-        self.note.as_deref()
-    }
-
-    /// Follows a log.
-    pub fn follow(&mut self, path: PathBuf) {
-        (self.path, self.log, self.note, self.looked) = (Some(path), None, None, None);
-    }
-
-    /// Looks at the log again once a while; called while the panel is visible. Returns when to call again.
-    pub fn look(&mut self) -> Option<Duration> {
-        let due = self.looked.is_none_or(|t| t.elapsed() >= LOG_INTERVAL);
-        if let Some(path) = self.path.clone().filter(|_| due && !self.worker.is_busy()) {
-            self.looked = Some(Instant::now());
-            self.worker.request(path);
-        }
-        self.path.as_ref().map(|_| LOG_INTERVAL)
-    }
-
-    /// Takes in what was read. Returns a message for the user.
-    pub fn poll(&mut self) -> Option<String> {
-        let mut message = None;
-        for reply in self.worker.replies() {
-            match reply {
-                Reply::Done { result: Ok(log), .. } => self.log = Some(log),
-                Reply::Done { result: Err(error), .. } => self.note = Some(error),
-                Reply::Panicked { message: said, .. } => message = Some(format!("Reading the log failed: {said}")),
-            }
-        }
-        message
+    fn compute(&self, (): &mut (), _: &Task) -> Result<Log, Failure> {
+        let told = |error: String| format!("{}: {error}", self.path.display());
+        let text = read_bounded(&self.path, MAX_LOG_BYTES).map_err(|e| told(e.to_string()))?;
+        let text = String::from_utf8(text).map_err(|e| told(e.to_string()))?;
+        Ok(Log::parse(&text).map_err(told)?)
     }
 }
 
@@ -167,12 +141,10 @@ mod tests {
 
     #[test]
     fn a_log_that_is_missing_is_told() {
-        let (wake, woken) = std::sync::mpsc::channel();
-        let mut training = Training::start(move || wake.send(()).unwrap());
-        training.follow(PathBuf::from("/there/is/no/log.csv"));
-        training.look();
-        woken.recv_timeout(Duration::from_secs(20)).unwrap();
-        training.poll();
-        assert!(training.note().unwrap().contains("log.csv"));
+        let query = Watched::of(PathBuf::from("/there/is/no/log.csv")).query();
+        let Err(Failure::Because(why)) = query.compute(&mut (), &Task::default()) else {
+            panic!("there is no such file")
+        };
+        assert!(why.contains("log.csv"), "{why}");
     }
 }

@@ -12,7 +12,7 @@ use crate::app::widgets::direction::direction;
 use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::significant;
-use crate::app::widgets::padded::padded;
+use crate::app::widgets::padded::{computed, padded};
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
 use crate::bounds::PositionBound;
@@ -40,7 +40,6 @@ pub struct BoundsMemory {
     texture: Texture,
 }
 
-/// Draws [`Panel::Bounds`](crate::app::state::Panel::Bounds).
 pub struct BoundsPanel;
 
 impl Content for BoundsPanel {
@@ -64,7 +63,6 @@ impl Content for BoundsPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut BoundsMemory) -> Vec<Command> {
     if !input.has_subject {
         ui.centered_and_justified(|ui| ui.weak("Place a reflector ahead of the array to see its bounds."));
@@ -76,17 +74,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut BoundsMemory) -> Vec<Com
         if settings != input.settings {
             asked.push(ViewCommand::SetBounds(settings).into());
         }
-        let result = match input.result {
-            Some(Ok(result)) => result,
-            Some(Err(error)) => {
-                ui.colored_label(ui.visuals().error_fg_color, error);
-                return;
-            }
-            None => {
-                ui.weak("computing…");
-                return;
-            }
-        };
+        let Some(result) = computed(ui, input.result) else { return };
         let texture = memory.texture.of(ui.ctx(), "ambiguity", &result.image, TextureOptions::LINEAR);
         strip(ui, &result.request.radar, &result.layout);
         let size = ui.available_size();

@@ -9,6 +9,7 @@ use crate::app::state::{ChirpSettings, Command, State};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::padded::padded;
 use crate::app::widgets::theme::Inks;
 use crate::radar::{Carrier, Radar};
 use crate::scene::Scene;
@@ -40,9 +41,7 @@ const SPECTRUM_DB: f64 = 100.0;
 
 /// What is drawn.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
-    /// The scene.
     pub scene: &'a Scene,
     /// Which element.
     pub settings: ChirpSettings,
@@ -52,7 +51,6 @@ pub struct Input<'a> {
     pub result: Option<Result<&'a ChirpResult, &'a str>>,
 }
 
-/// Draws [`Panel::Chirp`](crate::app::state::Panel::Chirp).
 pub struct ChirpPanel;
 
 impl Content for ChirpPanel {
@@ -77,15 +75,12 @@ impl Content for ChirpPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    let mut asked = Vec::new();
-    egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    padded(ui, |ui, asked| {
         let height = ui.available_height();
         let scroll = egui::ScrollArea::vertical().auto_shrink(false);
-        scroll.show(ui, |ui| contents(ui, &input, height, &mut asked));
-    });
-    asked
+        scroll.show(ui, |ui| contents(ui, &input, height, asked));
+    })
 }
 
 /// What is drawn in a panel of a height, points: in a low one the charts are scrolled to.

@@ -16,7 +16,6 @@ use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 pub struct Titled<'a> {
     /// Whose it is, and how good.
     pub title: String,
-    /// The map.
     pub map: map::Input<'a>,
 }
 
@@ -24,7 +23,6 @@ pub struct Titled<'a> {
 pub struct Input<'a> {
     /// What was chosen.
     pub compare: &'a Compare,
-    /// Every method.
     pub methods: Offered<'a>,
     /// Names of the first and of the second.
     pub chosen: [&'static str; 2],
@@ -37,7 +35,6 @@ pub struct Input<'a> {
 /// Height of what stands above a map, points.
 const TITLE: f32 = 18.0;
 
-/// Draws [`Panel::Compare`](crate::app::state::Panel::Compare).
 pub struct ComparePanel;
 
 impl Content for ComparePanel {
@@ -101,7 +98,6 @@ fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map::HandMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         choices(ui, &input, asked);

@@ -43,7 +43,6 @@ pub struct Input<'a> {
     pub methods: Offered<'a>,
     /// The method in use.
     pub method: Option<&'a dyn Reconstructor>,
-    /// Its eta.
     pub eta: f32,
     /// What the target's Lambda spans, decibels, where that is known.
     pub range_db: Option<f64>,
@@ -74,7 +73,6 @@ pub struct Run<'a> {
     pub search: Search<'a>,
 }
 
-/// Draws [`Panel::Controls`](crate::app::state::Panel::Controls).
 pub struct ControlsPanel;
 
 impl Content for ControlsPanel {
@@ -111,7 +109,6 @@ impl Content for ControlsPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut FalseAlarmsMemory) -> Vec<Command> {
     let settings = input.settings;
     scrolled(ui, |ui, asked| {

@@ -12,13 +12,11 @@ use eframe::egui::{Grid, Ui};
 pub struct Input<'a> {
     /// What disturbs the scene.
     pub disturbances: &'a Disturbances,
-    /// The radar.
     pub radar: &'a Radar,
     /// Whether a recording stands in the place of the scene: nothing is added to what was measured.
     pub is_recorded: bool,
 }
 
-/// Draws [`Panel::Disturbances`](crate::app::state::Panel::Disturbances).
 pub struct DisturbancesPanel;
 
 impl Content for DisturbancesPanel {
@@ -32,7 +30,6 @@ impl Content for DisturbancesPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     scrolled(ui, |ui, asked| {
         if input.is_recorded {

@@ -1,16 +1,17 @@
 //! The range-Doppler map: range against radial velocity, the radar's chirps, and the timeline on which the scene plays.
 
+use super::recording::frame_slider;
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::DopplerResult;
 use crate::app::jobs::{DopplerQuery, Jobs};
-use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand, Way};
+use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
 use crate::app::widgets::axes::{self, Axis};
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::colour_bar::Bar;
 use crate::app::widgets::entry::{press, tick};
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::padded;
+use crate::app::widgets::padded::{computed, padded, warning};
 use crate::app::widgets::textures::{Texture, colour_table};
 use crate::app::widgets::theme;
 use crate::maps::Normalisation;
@@ -32,7 +33,6 @@ const MOST_INTERVAL_MICROSECONDS: f64 = 1e5;
 
 /// What is drawn.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
     /// The scene at the time that is looked at.
     pub scene: &'a Scene,
@@ -62,7 +62,6 @@ pub struct DopplerMemory {
     texture: Texture,
 }
 
-/// Draws [`Panel::RangeDoppler`](crate::app::state::Panel::RangeDoppler).
 pub struct DopplerPanel;
 
 impl Content for DopplerPanel {
@@ -93,7 +92,6 @@ impl Content for DopplerPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         chirps(ui, &input, asked);
@@ -106,9 +104,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Co
         match input.result {
             _ if !input.is_recorded && input.radar.chirps < 2 => {}
             None if input.is_recorded => {}
-            None => _ = ui.weak("computing…"),
-            Some(Err(error)) => _ = ui.colored_label(ui.visuals().error_fg_color, error),
-            Some(Ok(result)) => {
+            value => {
+                let Some(result) = computed(ui, value) else { return };
                 let texture = memory.texture.of(ui.ctx(), "range-Doppler", &result.image, TextureOptions::NEAREST);
                 map(ui, &input, result, texture);
             }
@@ -155,14 +152,7 @@ fn follows(radar: &Radar) -> String {
 fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.add_enabled_ui(input.scene.is_moving(), |ui| {
         ui.horizontal_wrapped(|ui| {
-            let label = if input.is_playing { "Pause" } else { "Play" };
-            press(
-                ui,
-                label,
-                "Let every object move by its velocity; all maps follow",
-                || ViewCommand::TogglePlay,
-                asked,
-            );
+            play(ui, input.is_playing, "Let every object move by its velocity; all maps follow", asked);
             let mut seconds = input.seconds;
             let slider = Slider::new(&mut seconds, 0.0..=TIMELINE_SECONDS).fixed_decimals(2).suffix(" s");
             let tooltip = "Time at which the scene is looked at; its file has time 0";
@@ -177,23 +167,16 @@ fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 }
 
 /// Plays the frames of a recording and goes to one.
-fn frames_played(ui: &mut Ui, input: &Input<'_>, [frame, count]: [u64; 2], asked: &mut Vec<Command>) {
+fn frames_played(ui: &mut Ui, input: &Input<'_>, frames: [u64; 2], asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        let label = if input.is_playing { "Pause" } else { "Play" };
-        press(
-            ui,
-            label,
-            "Show one frame after another; all maps and methods follow",
-            || ViewCommand::TogglePlay,
-            asked,
-        );
-        let mut chosen = frame;
-        let slider = Slider::new(&mut chosen, 0..=count - 1);
-        let tooltip = "Which frame of the file all maps show";
-        if labelled(ui, format!("Frame of {count}"), tooltip, slider).changed() && chosen != frame {
-            asked.push(DocumentCommand::ReadAnotherWay(Way::Frame(chosen)).into());
-        }
+        play(ui, input.is_playing, "Show one frame after another; all maps and methods follow", asked);
+        asked.extend(frame_slider(ui, frames).map(|way| DocumentCommand::ReadAnotherWay(way).into()));
     });
+}
+
+/// Lets time go on, or stops it.
+fn play(ui: &mut Ui, is_playing: bool, tip: &str, asked: &mut Vec<Command>) {
+    press(ui, if is_playing { "Pause" } else { "Play" }, tip, || ViewCommand::TogglePlay, asked);
 }
 
 /// Why there is no map, or what to know of it.
@@ -223,8 +206,8 @@ fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         });
     } else if !input.scene.is_moving() {
         ui.weak("Nothing moves: everything stands at 0 m/s. The Inspector sets velocities.");
-    } else if let Some(sentence) = folded(input.radar, input.scene) {
-        ui.colored_label(ui.visuals().warn_fg_color, sentence);
+    } else {
+        warning(ui, folded(input.radar, input.scene).as_deref());
     }
 }
 

@@ -18,9 +18,7 @@ use std::sync::Arc;
 
 /// What is shown.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
-    /// Its elements.
     pub elements: &'a BuiltArray,
     /// What the selected reflector tells of them; `None` where none is selected.
     pub calibration: Option<Result<&'a Calibrated, &'a str>>,
@@ -42,7 +40,6 @@ impl Default for ElementsMemory {
     }
 }
 
-/// Draws [`Panel::Elements`](crate::app::state::Panel::Elements).
 pub struct ElementsPanel;
 
 impl Content for ElementsPanel {
@@ -63,7 +60,6 @@ impl Content for ElementsPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ElementsMemory) -> Vec<Command> {
     memory.chosen = memory.chosen.min(input.radar.elements - 1);
     scrolled(ui, |ui, asked| {

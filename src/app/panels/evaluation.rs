@@ -3,8 +3,8 @@
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{EvaluationRow, Memo, evaluated};
 use crate::app::state::{Command, ExportCommand, FailureChoice, RowsCommand};
-use crate::app::widgets::padded::scrolled_both;
-use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
+use crate::app::widgets::padded::{scrolled_both, warning};
+use crate::app::widgets::progress::{bar, start_or_cancel};
 use crate::evaluate::eta_text;
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
 use crate::radar::{Radar, counted};
@@ -38,7 +38,6 @@ pub struct Input<'a> {
 /// Scenes of each set that the button tries.
 const SCENES_A_SET: u32 = 10;
 
-/// Draws [`Panel::Evaluation`](crate::app::state::Panel::Evaluation).
 pub struct EvaluationPanel;
 
 impl Content for EvaluationPanel {
@@ -61,16 +60,11 @@ impl Content for EvaluationPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     scrolled_both(ui, |ui, asked| {
         buttons(ui, &input, asked);
-        if let Some(note) = input.note {
-            ui.colored_label(ui.visuals().warn_fg_color, note);
-        }
-        if let Some(other) = unlike_the_thesis(input.radar) {
-            ui.colored_label(ui.visuals().warn_fg_color, other);
-        }
+        warning(ui, input.note);
+        warning(ui, unlike_the_thesis(input.radar).as_deref());
         ui.separator();
         if input.rows.is_empty() {
             ui.weak("Tables 4.1 to 4.3 of the thesis for the methods that were tried on sets 1 to 3. Rows tries any method on any number of scenes.");
@@ -97,14 +91,11 @@ fn buttons(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             "Try the method in use on ten scenes of each set, in the background",
             "Stop after this map; the rows that are finished stay",
         ];
-        match (start_or_cancel(ui, "Evaluate", input.progress.is_some(), input.method.is_some(), tips), input.method) {
-            (Some(Pressed::Start), Some(method)) => {
-                let (methods, kinds) = (vec![method], Kind::TEST_SETS.to_vec());
-                let choice = FailureChoice { methods, kinds, own: false, count: SCENES_A_SET, seed: 0 };
-                asked.push(RowsCommand::Try(choice).into());
-            }
-            (Some(Pressed::Cancel), _) => asked.push(RowsCommand::CancelTrying.into()),
-            _ => {}
+        let (button, is_ready) = (("Evaluate", RowsCommand::CancelTrying), input.method.is_some());
+        if start_or_cancel(ui, button, input.progress.is_some(), is_ready, tips, asked) {
+            let (methods, kinds) = (input.method.into_iter().collect(), Kind::TEST_SETS.to_vec());
+            let choice = FailureChoice { methods, kinds, own: false, count: SCENES_A_SET, seed: 0 };
+            asked.push(RowsCommand::Try(choice).into());
         }
         if !input.rows.is_empty()
             && ui.button("Copy as CSV").on_hover_text("Copy the tables to the clipboard").clicked()

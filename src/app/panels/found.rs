@@ -43,7 +43,6 @@ pub struct Input<'a> {
     pub has_ranges: bool,
 }
 
-/// Draws [`Panel::Found`](crate::app::state::Panel::Found).
 pub struct FoundPanel;
 
 impl Content for FoundPanel {
@@ -71,7 +70,6 @@ impl Content for FoundPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     padded(ui, |ui, asked| {
         if let Some(method) = input.draws_only {

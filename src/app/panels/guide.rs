@@ -185,7 +185,6 @@ pub struct GuideMemory {
     open: usize,
 }
 
-/// Draws [`Panel::Guide`](crate::app::state::Panel::Guide).
 pub struct GuidePanel;
 
 impl Content for GuidePanel {

@@ -21,7 +21,6 @@ use number::number;
 pub struct Input<'a> {
     /// The scene, and what of it is selected.
     pub editor: &'a Editor,
-    /// The radar.
     pub radar: &'a Radar,
     /// In which numbers places are told.
     pub coordinates: Coordinates,
@@ -29,7 +28,6 @@ pub struct Input<'a> {
     pub metres_per_point: f64,
 }
 
-/// Draws [`Panel::Inspector`](crate::app::state::Panel::Inspector).
 pub struct InspectorPanel;
 
 impl Content for InspectorPanel {
@@ -44,7 +42,6 @@ impl Content for InspectorPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     scrolled(ui, |ui, asked| match input.editor.selection().is_empty() {
         true => nothing(ui, input.editor.scene(), asked),

@@ -31,7 +31,6 @@ pub struct Input<'a> {
     pub presenting: bool,
 }
 
-/// Draws [`Panel::Lesson`](crate::app::state::Panel::Lesson).
 pub struct LessonPanel;
 
 impl Content for LessonPanel {
@@ -51,7 +50,6 @@ impl Content for LessonPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut LessonMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     if input.presenting {

@@ -13,7 +13,6 @@ use eframe::egui::{
 
 /// What is listed.
 pub struct Input<'a> {
-    /// The scene.
     pub scene: &'a Scene,
     /// What of it is selected.
     pub selection: &'a Selection,
@@ -32,7 +31,6 @@ pub struct ObjectsMemory {
 
 const ROW_HEIGHT: f32 = 20.0;
 
-/// Draws [`Panel::Objects`](crate::app::state::Panel::Objects).
 pub struct ObjectsPanel;
 
 impl Content for ObjectsPanel {
@@ -46,7 +44,6 @@ impl Content for ObjectsPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ObjectsMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     if input.scene.objects.is_empty() {

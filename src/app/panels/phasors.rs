@@ -8,11 +8,12 @@ use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::direction::direction;
 use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::padded::padded;
+use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::padded::{computed, padded};
 use crate::app::widgets::theme::{self, Inks};
 use crate::radar::{End, Radar};
 use crate::theory::Phasors;
-use eframe::egui::{self, Color32, Sense, Slider, Stroke, Ui, emath::Rot2, vec2};
+use eframe::egui::{self, Color32, Sense, Slider, Stroke, Ui, emath::Rot2};
 use egui_plot::LineStyle;
 use num_complex::Complex64;
 
@@ -24,7 +25,6 @@ const HEAD: f32 = 12.0;
 
 /// What is drawn.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
     /// What is chosen.
     pub settings: PhasorSettings,
@@ -44,7 +44,6 @@ pub struct PhasorsMemory {
     is_playing: bool,
 }
 
-/// Draws [`Panel::Phasors`](crate::app::state::Panel::Phasors).
 pub struct PhasorsPanel;
 
 impl Content for PhasorsPanel {
@@ -69,7 +68,6 @@ impl Content for PhasorsPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut PhasorsMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         let mut settings = input.settings;
@@ -77,15 +75,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut PhasorsMemory) -> Vec<Co
         if settings != input.settings {
             asked.push(ViewCommand::SetPhasors(settings).into());
         }
-        match input.result {
-            None => _ = ui.weak("computing…"),
-            Some(Err(error)) => _ = ui.colored_label(ui.visuals().error_fg_color, error),
-            Some(Ok(result)) => {
-                play(ui, result, memory);
-                said(ui, input.radar, result);
-                chart(ui, input.radar, result, memory.part.unwrap_or(1.0));
-            }
-        }
+        let Some(result) = computed(ui, input.result) else { return };
+        play(ui, result, memory);
+        said(ui, input.radar, result);
+        chart(ui, input.radar, result, memory.part.unwrap_or(1.0));
     })
 }
 
@@ -163,6 +156,10 @@ fn whole_length(chain: &Phasors) -> f64 {
 
 /// The chains in the complex plane, both axes to one scale.
 fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
+    let entry =
+        |(_, kind): (&Phasors, Kind)| Entry { sign: Sign::Line, colour: kind.colour(ui), name: kind.name().to_owned() };
+    let entries: Vec<Entry> = drawn(result).map(entry).collect();
+    legend::row(ui, &entries);
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
     let unit = whole_length(&result.measured);
@@ -190,7 +187,6 @@ fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
     if let Some(end) = chains.first().and_then(|(chain, _)| chain.get(count)) {
         arrow(&drawn, *end);
     }
-    legend(ui, &drawn, &chains);
 }
 
 /// Axes that hold every corner.
@@ -268,17 +264,6 @@ fn arrow(drawn: &Drawn, end: [f64; 2]) {
     for (width, colour) in [(4.0, theme::MARK_EDGE), (1.8, theme::MARK)] {
         let ends = [from, to + Rot2::from_angle(0.4) * back, to + Rot2::from_angle(-0.4) * back];
         ends.into_iter().for_each(|end| _ = drawn.painter().line_segment([end, to], Stroke::new(width, colour)));
-    }
-}
-
-fn legend(ui: &Ui, drawn: &Drawn, chains: &[(Vec<[f64; 2]>, Kind)]) {
-    let mut at = drawn.rect.left_top() + vec2(8.0, 6.0);
-    for (_, kind) in chains {
-        let painter = drawn.painter();
-        painter.line_segment([at + vec2(0.0, 7.0), at + vec2(14.0, 7.0)], Stroke::new(2.0, kind.colour(ui)));
-        let font = egui::FontId::proportional(12.0);
-        painter.text(at + vec2(20.0, 0.0), egui::Align2::LEFT_TOP, kind.name(), font, ui.visuals().text_color());
-        at.y += 16.0;
     }
 }
 

@@ -18,7 +18,6 @@ use table::{GAP, Table, number};
 
 /// What is shown.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
     /// What was recorded with it, where something was: then its constants are what they were.
     pub measured: Option<Measured>,
@@ -49,7 +48,6 @@ struct Free {
     ends: bool,
 }
 
-/// Draws [`Panel::Radar`](crate::app::state::Panel::Radar).
 pub struct RadarPanel;
 
 impl Content for RadarPanel {
@@ -71,7 +69,6 @@ impl Content for RadarPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     scrolled_both(ui, |ui, asked| {
         match input.measured {

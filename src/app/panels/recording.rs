@@ -46,7 +46,6 @@ impl Default for CardMemory {
     }
 }
 
-/// Draws [`Panel::Recording`](crate::app::state::Panel::Recording).
 pub struct RecordingPanel;
 
 impl Content for RecordingPanel {
@@ -61,7 +60,6 @@ impl Content for RecordingPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CardMemory) -> Vec<Command> {
     scrolled(ui, |ui, asked| {
         if let Some(of_card) = input.card {
@@ -176,17 +174,17 @@ fn profile(ui: &mut Ui, number: usize, offer: &Offer, is_taken: bool) -> egui::R
 }
 
 fn frames(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
-    if origin.frames < 2 {
-        return;
+    if origin.frames > 1 {
+        ui.horizontal_wrapped(|ui| asked.extend(frame_slider(ui, [origin.frame, origin.frames])));
     }
-    ui.horizontal_wrapped(|ui| {
-        let mut frame = origin.frame;
-        let slider = Slider::new(&mut frame, 0..=origin.frames - 1);
-        let tooltip = "Which frame of the file the maps show";
-        if labelled(ui, format!("Frame of {}", origin.frames), tooltip, slider).changed() && frame != origin.frame {
-            asked.push(Way::Frame(frame));
-        }
-    });
+}
+
+/// A slider over the frames of a file; the frame that was chosen.
+pub fn frame_slider(ui: &mut Ui, [frame, count]: [u64; 2]) -> Option<Way> {
+    let mut chosen = frame;
+    let slider = Slider::new(&mut chosen, 0..=count - 1);
+    labelled(ui, format!("Frame of {count}"), "Which frame of the file all maps show", slider);
+    (chosen != frame).then_some(Way::Frame(chosen))
 }
 
 fn board(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {

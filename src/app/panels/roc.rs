@@ -37,7 +37,6 @@ pub struct Input<'a> {
     pub refusal: Option<&'a str>,
 }
 
-/// Draws [`Panel::Roc`](crate::app::state::Panel::Roc).
 pub struct RocPanel;
 
 impl Content for RocPanel {
@@ -60,7 +59,6 @@ impl Content for RocPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let Some(roc) = input.points else {
         ui.centered_and_justified(|ui| ui.weak(input.refusal.unwrap_or("No ROC: the target has no cell above 0.9.")));

@@ -6,8 +6,8 @@ use crate::app::widgets::axes::{Axis, Tick};
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::labelled::choice;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::padded::padded;
-use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
+use crate::app::widgets::padded::{padded, warning};
+use crate::app::widgets::progress::{bar, start_or_cancel};
 use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
 use crate::radar::Radar;
 use crate::signal::{Algorithm, Precision};
@@ -47,7 +47,6 @@ impl Default for RunTimeMemory {
     }
 }
 
-/// Draws [`Panel::RunTime`](crate::app::state::Panel::RunTime).
 pub struct RunTimePanel;
 
 impl Content for RunTimePanel {
@@ -67,20 +66,16 @@ impl Content for RunTimePanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         ui.horizontal_wrapped(|ui| {
             let tip = "Time how long three maps take, and how wrong they are, by algorithm and precision; leave the \
                        machine alone meanwhile";
             let tips = [tip, "Stop after this measurement; what was measured stays"];
-            match start_or_cancel(ui, "Measure", input.progress.is_some(), true, tips) {
-                Some(Pressed::Start) => {
-                    memory.reflectors = None;
-                    asked.push(WorkCommand::Measure { thorough: memory.thorough }.into());
-                }
-                Some(Pressed::Cancel) => asked.push(WorkCommand::CancelMeasurement.into()),
-                None => {}
+            let button = ("Measure", WorkCommand::CancelMeasurement);
+            if start_or_cancel(ui, button, input.progress.is_some(), true, tips, asked) {
+                memory.reflectors = None;
+                asked.push(WorkCommand::Measure { thorough: memory.thorough }.into());
             }
             let thorough = egui::Checkbox::new(&mut memory.thorough, "thorough");
             ui.add_enabled(input.progress.is_none(), thorough)
@@ -91,9 +86,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Co
         });
         let Radar { elements, samples, window, .. } = input.radar;
         ui.weak(format!("{elements} elements, {samples} samples, window {}", window.name()));
-        if let Some(note) = input.note {
-            ui.colored_label(ui.visuals().warn_fg_color, note);
-        }
+        warning(ui, input.note);
         if !input.rows.is_empty() {
             filter(ui, input.rows, memory);
             plot(ui, &input, memory);

@@ -19,9 +19,7 @@ pub struct Input<'a> {
     pub several: &'a Several,
     /// The radar before the scene.
     pub radar: &'a Radar,
-    /// Every method.
     pub methods: Offered<'a>,
-    /// The maps.
     pub maps: &'a [Small],
 }
 
@@ -34,7 +32,6 @@ pub struct SeveralMemory {
 /// Height of a map's name.
 const NAME: f32 = 18.0;
 
-/// Draws [`Panel::Several`](crate::app::state::Panel::Several).
 pub struct SeveralPanel;
 
 impl Content for SeveralPanel {

@@ -27,7 +27,6 @@ pub struct Update<'a> {
     pub outdated: bool,
 }
 
-/// Draws [`Panel::Timing`](crate::app::state::Panel::Timing).
 pub struct TimingPanel;
 
 impl Content for TimingPanel {
@@ -47,7 +46,6 @@ impl Content for TimingPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let Some(update) = input.update else {
         ui.weak("No update yet.");

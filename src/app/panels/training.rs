@@ -1,13 +1,13 @@
 //! A training watched: its loss.
 
-use crate::app::content::{Content, Cx, Nothing};
-use crate::app::jobs::Log;
-use crate::app::state::{Command, Purpose};
+use crate::app::content::{Content, Cx};
+use crate::app::jobs::{Jobs, LOG_INTERVAL, Log, LogQuery, Watched};
+use crate::app::state::{Command, Purpose, State};
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::Chart;
 use crate::app::widgets::entry::button;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::padded::padded;
+use crate::app::widgets::padded::{padded, warning};
 use crate::app::widgets::theme;
 use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
@@ -23,26 +23,30 @@ pub struct Input<'a> {
     pub note: Option<&'a str>,
 }
 
-/// Draws [`Panel::Training`](crate::app::state::Panel::Training).
 pub struct TrainingPanel;
 
 impl Content for TrainingPanel {
-    type Asks = Nothing;
+    type Asks = LogQuery;
     type Remembers = ();
+    const MARKS_AGE: bool = true;
+
+    fn asks(_: &State, jobs: &Jobs) -> Option<LogQuery> {
+        jobs.training.as_ref().map(Watched::query)
+    }
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let job = &cx.jobs.training;
-        show(ui, Input { path: job.path(), log: job.log(), note: job.note() })
+        let path = cx.jobs.training.as_ref().map(|watched| watched.path.as_path());
+        if path.is_some() {
+            ui.ctx().request_repaint_after(LOG_INTERVAL);
+        }
+        show(ui, Input { path, log: cx.value.and_then(Result::ok), note: cx.value.and_then(Result::err) })
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     padded(ui, |ui, asked| {
         button(ui, "Open training log…", Purpose::OpenLog, true, asked);
-        if let Some(note) = input.note {
-            ui.colored_label(ui.visuals().warn_fg_color, note);
-        }
+        warning(ui, input.note);
         match input.log.filter(|l| !l.loss.is_empty()) {
             Some(log) => curves(ui, log),
             None => _ = ui.weak(waiting(&input)),

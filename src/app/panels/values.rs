@@ -37,7 +37,6 @@ pub struct Row<'a> {
 
 /// What is listed.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
     /// Where: under the pointer, or where it was last.
     pub cursor: Cursor,
@@ -45,7 +44,6 @@ pub struct Input<'a> {
     pub rows: &'a [Row<'a>],
 }
 
-/// Draws [`Panel::Values`](crate::app::state::Panel::Values).
 pub struct ValuesPanel;
 
 impl Content for ValuesPanel {
@@ -68,7 +66,6 @@ impl Content for ValuesPanel {
     }
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     padded(ui, |ui, _| {
         let Some((bin, column)) = input.cursor.cell(input.radar) else {

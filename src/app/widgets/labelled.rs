@@ -47,7 +47,6 @@ pub fn choice_told<T: PartialEq>(
 /// How a number is called, shown and edited.
 #[derive(Clone, Copy)]
 pub struct Quantity {
-    /// Its name.
     pub name: &'static str,
     /// What it is.
     pub tooltip: &'static str,

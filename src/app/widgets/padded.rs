@@ -18,6 +18,23 @@ pub fn scrolled_both(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command
     scrolled_by(ScrollArea::both(), ui, content)
 }
 
+/// What is to be known, in the colour of warnings; nothing where there is no such thing.
+pub fn warning(ui: &mut Ui, said: Option<&str>) {
+    if let Some(said) = said {
+        ui.colored_label(ui.visuals().warn_fg_color, said);
+    }
+}
+
+/// What was computed for a panel; where there is nothing, it says why, or that it is under way.
+pub fn computed<'a, T>(ui: &mut Ui, value: Option<Result<&'a T, &str>>) -> Option<&'a T> {
+    match value {
+        None => _ = ui.weak("computing…"),
+        Some(Err(error)) => _ = ui.colored_label(ui.visuals().error_fg_color, error),
+        Some(Ok(value)) => return Some(value),
+    }
+    None
+}
+
 fn scrolled_by(area: ScrollArea, ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
     let scrolled =
         |ui: &mut Ui, asked: &mut Vec<Command>| _ = area.auto_shrink(false).show(ui, |ui| content(ui, asked));

@@ -1,32 +1,29 @@
 //! Long work: a bar that shows how far it is, beside the button that stops it.
 
+use crate::app::state::Command;
 use eframe::egui::{Button, ProgressBar, Ui, vec2};
 
 /// What is shown at the most: a bar that stands says that the work goes on.
 const MAX_PART: f32 = 0.99;
 
-/// What was pressed of a button that starts work, and that stops it while it runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pressed {
-    /// Start.
-    Start,
-    /// Stop.
-    Cancel,
-}
-
 /// Least width of a button that changes its name: what stands beside it doesn't move.
 const BUTTON: f32 = 64.0;
 
-/// A button that starts work and, in the same place, stops it while it `runs`. `tips` say what each does.
-pub fn start_or_cancel(ui: &mut Ui, start: &str, runs: bool, is_ready: bool, tips: [&str; 2]) -> Option<Pressed> {
-    let (name, tip, pressed, enabled) = match runs {
-        true => ("Cancel", tips[1], Pressed::Cancel, true),
-        false => (start, tips[0], Pressed::Start, is_ready),
-    };
+/// A button that starts work and, in the same place, asks to `cancel` it while it `runs`. `tips` say what each does. Whether work is to start.
+pub fn start_or_cancel(
+    ui: &mut Ui,
+    (start, cancel): (&str, impl Into<Command>),
+    runs: bool,
+    is_ready: bool,
+    tips: [&str; 2],
+    asked: &mut Vec<Command>,
+) -> bool {
+    let (name, tip) = if runs { ("Cancel", tips[1]) } else { (start, tips[0]) };
     let size = vec2(BUTTON, ui.spacing().interact_size.y);
-    let button = ui.add_enabled(enabled, Button::new(name).min_size(size));
-    let button = button.on_hover_text(tip).on_disabled_hover_text(tip);
-    button.clicked().then_some(pressed)
+    let button = ui.add_enabled(runs || is_ready, Button::new(name).min_size(size));
+    let is_pressed = button.on_hover_text(tip).on_disabled_hover_text(tip).clicked();
+    asked.extend((is_pressed && runs).then(|| cancel.into()));
+    is_pressed && !runs
 }
 
 /// The bar alone.
@@ -52,6 +49,7 @@ pub fn progress(ui: &mut Ui, part: f32, width: f32, cancel_tooltip: &str) -> boo
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::RowsCommand;
     use crate::app::widgets::seen;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -60,9 +58,9 @@ mod tests {
     fn nothing_moves_when_work_begins() {
         let draw = |ui: &mut Ui, runs: &mut bool| {
             ui.horizontal(|ui| {
-                if let Some(pressed) = start_or_cancel(ui, "Try", *runs, true, ["try", "stop"]) {
-                    *runs = pressed == Pressed::Start;
-                }
+                let (button, mut asked) = (("Try", RowsCommand::CancelTrying), Vec::new());
+                *runs |= start_or_cancel(ui, button, *runs, true, ["try", "stop"], &mut asked);
+                *runs &= asked.is_empty();
                 _ = ui.button("Save…");
             });
         };

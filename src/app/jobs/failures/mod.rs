@@ -39,9 +39,7 @@ const FILE: &str = "failures.csv";
 pub struct FailuresPlan {
     /// Radar, floor, scenes.
     pub campaign: Campaign,
-    /// The sets.
     pub sets: Vec<SceneSet>,
-    /// The methods.
     pub methods: Vec<Arc<dyn Reconstructor>>,
 }
 

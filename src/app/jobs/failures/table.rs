@@ -33,7 +33,6 @@ pub struct RowTable {
 }
 
 impl RowTable {
-    /// Every row.
     pub fn rows(&self) -> &Arc<Vec<Row>> {
         &self.rows
     }

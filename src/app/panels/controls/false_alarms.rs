@@ -4,7 +4,7 @@ use crate::app::state::{Command, ThresholdChoice, WorkCommand};
 use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
+use crate::app::widgets::progress::{bar, start_or_cancel};
 use crate::app::widgets::setting_row::{rarely, row, row_of};
 use crate::evaluate::threshold::ThresholdSearch;
 use crate::radar::counted;
@@ -110,12 +110,9 @@ fn start(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &FalseAlarmsMem
          the rate (conformal risk control). {KEEP}"
     );
     let tips = [problem.as_deref().unwrap_or(&tip), "Stop the search; η stays as it is"];
-    match start_or_cancel(ui, "Find η", search.progress.is_some(), problem.is_none(), tips) {
-        Some(Pressed::Start) => {
-            asked.push(WorkCommand::FindThreshold(memory.choice()).into());
-        }
-        Some(Pressed::Cancel) => asked.push(WorkCommand::CancelThreshold.into()),
-        None => {}
+    let button = ("Find η", WorkCommand::CancelThreshold);
+    if start_or_cancel(ui, button, search.progress.is_some(), problem.is_none(), tips, asked) {
+        asked.push(WorkCommand::FindThreshold(memory.choice()).into());
     }
     if let Some(part) = search.progress {
         bar(ui, part, 100.0);

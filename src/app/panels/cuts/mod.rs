@@ -25,7 +25,6 @@ use trace::{Cut, Trace};
 
 /// What is cut, and where.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
     /// Where the cuts cross.
     pub cursor: Cursor,
@@ -69,7 +68,6 @@ struct View {
     markers: Markers,
 }
 
-/// Draws [`Panel::Cuts`](crate::app::state::Panel::Cuts).
 pub struct CutsPanel;
 
 impl Content for CutsPanel {

@@ -19,7 +19,6 @@ impl Cut {
     /// Both.
     pub const ALL: [Cut; 2] = [Cut::Angle, Cut::Range];
 
-    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Cut::Angle => "Angle cut",

@@ -6,7 +6,8 @@ use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::method_menu::method_menu;
 use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::progress::{Pressed, bar, start_or_cancel};
+use crate::app::widgets::padded::warning;
+use crate::app::widgets::progress::{bar, start_or_cancel};
 use crate::evaluate::campaign::Unfit;
 use crate::radar::counted;
 use crate::scene::generate::Kind;
@@ -44,9 +45,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &
             bar(ui, part, 140.0);
         }
     });
-    if let Some(note) = input.note {
-        ui.colored_label(ui.visuals().warn_fg_color, note);
-    }
+    warning(ui, input.note);
     unfit(ui, input.unfit);
 }
 
@@ -82,11 +81,7 @@ fn start(ui: &mut Ui, input: &Input<'_>, memory: &ChoicesMemory, asked: &mut Vec
     let tip = "Try the methods on the scenes, in the background, with the floor, normalisation and radar in use. Rows made with \
                the same stay; those made with others make room";
     let tips = [if ready { tip } else { "Choose a method and scenes first" }, "Stop after this map; the rows stay"];
-    let pressed = start_or_cancel(ui, "Try", input.progress.is_some(), ready, tips);
-    if pressed == Some(Pressed::Cancel) {
-        asked.push(RowsCommand::CancelTrying.into());
-    }
-    if pressed == Some(Pressed::Start) {
+    if start_or_cancel(ui, ("Try", RowsCommand::CancelTrying), input.progress.is_some(), ready, tips, asked) {
         let choice = FailureChoice {
             methods: memory.methods.iter().copied().collect(),
             kinds: memory.kinds.iter().copied().collect(),

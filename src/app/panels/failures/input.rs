@@ -40,7 +40,6 @@ pub struct Input<'a> {
 
 /// A row whose scene is on screen.
 pub struct Live<'a> {
-    /// The row.
     pub row: &'a Row,
     /// How it is now, if that is of the method's latest output.
     pub now: Option<Now>,

@@ -46,7 +46,6 @@ impl FailuresMemory {
     }
 }
 
-/// Draws [`Panel::Failures`](crate::app::state::Panel::Failures).
 pub struct FailuresPanel;
 
 impl Content for FailuresPanel {
@@ -99,7 +98,6 @@ fn live<'a>(state: &'a State, jobs: &Jobs) -> Option<Live<'a>> {
     Some(Live { row: &opened.row, now })
 }
 
-/// Draws the panel.
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     Frame::NONE.inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {

@@ -6,6 +6,7 @@ use crate::app::widgets::entry::press;
 use crate::app::widgets::labelled::{choice, labelled};
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::numbers::percent;
+use crate::app::widgets::padded::warning;
 use crate::app::widgets::progress::progress;
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
@@ -27,7 +28,6 @@ impl Default for OpenedMemory {
     }
 }
 
-/// Draws it.
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut Vec<Command>) {
     if let Some(live) = &input.on_screen {
         figures(ui, live);
@@ -113,9 +113,7 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut OpenedMemory, asked
     if let Some(summary) = &searched.summary {
         ui.label(summary);
     }
-    if let Some(note) = searched.note {
-        ui.colored_label(ui.visuals().warn_fg_color, note);
-    }
+    warning(ui, searched.note);
     if searched.progress.is_none() && searched.has_found {
         press(
             ui,

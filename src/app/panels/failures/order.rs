@@ -13,7 +13,6 @@ const ORDER_INTERVAL: Duration = Duration::from_millis(250);
 /// By which column rows are sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sort {
-    /// The column.
     pub column: Column,
     /// The largest first.
     pub descending: bool,

@@ -79,7 +79,6 @@ const TITLE: f32 = 34.0;
 /// Size of a small map on screen.
 const MAP: Vec2 = vec2(72.0, 36.0);
 
-/// Draws it.
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut TableMemory) -> Answer {
     let mut answer = Answer::default();
     // Not by its place: what is told of an opened row comes before it, and the focus must stay.

@@ -12,6 +12,9 @@ use std::sync::OnceLock;
 /// Width of a bar that shows how far a lesson was taken, points.
 const BAR: f32 = 120.0;
 
+/// Room for "0 of 5 steps", points.
+const MIN_BAR: f32 = 84.0;
+
 /// The shipped lessons, read once.
 fn shipped() -> &'static [(&'static Shipped, Lesson)] {
     static READ: OnceLock<Vec<(&'static Shipped, Lesson)>> = OnceLock::new();
@@ -73,7 +76,7 @@ fn start_over(ui: &mut Ui, progress: &Progress, asked: &mut Vec<Command>) {
 fn listed(ui: &mut Ui, lesson: &Lesson, done: usize) -> bool {
     ui.separator();
     let (steps, room) = (lesson.steps.len(), ui.available_width());
-    let bar = BAR.min(0.4 * room);
+    let bar = BAR.min(0.3 * room).max(MIN_BAR);
     let clicked = ui.horizontal(|ui| {
         let title = RichText::new(&lesson.title).strong();
         let height = ui.spacing().interact_size.y;

@@ -16,7 +16,6 @@ pub struct Frame<'a> {
     pub rect: Rect,
     /// The visible part.
     pub view: MapView,
-    /// The radar.
     pub radar: &'a Radar,
     /// Over which coordinates.
     pub projection: Projection,

@@ -16,7 +16,6 @@ use eframe::egui::TextureId;
 pub struct Input<'a> {
     /// Which map.
     pub kind: MapKind,
-    /// The radar.
     pub radar: &'a Radar,
     /// The scene: what can be grabbed by its blobs.
     pub scene: &'a Scene,

@@ -35,7 +35,7 @@ pub fn bar(input: &Input<'_>) -> Bar {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::panels::map::Cells;
+    use crate::app::panels::map::frame::Cells;
     use crate::app::state::{DifferenceView, View};
     use crate::interact::Selection;
     use crate::maps::{LambdaScale, RangeAngleMap};

@@ -18,7 +18,6 @@ pub struct Theory<'a> {
     pub name: &'a str,
     /// What the formulas say of the reflector on this map.
     pub overlay: &'a Overlay,
-    /// The reflector.
     pub reflector: Reflector,
     /// How well its place can be known, where that is to be drawn.
     pub ellipse: Option<Ellipse>,
@@ -47,7 +46,6 @@ const ELLIPSE: f32 = 9.0;
 const ROOM: Vec2 = vec2(250.0, 130.0);
 
 impl Theory<'_> {
-    /// Draws it.
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>) {
         let Overlay { blob, streak, teeth, .. } = self.overlay;
         let at = |bin: f64, column: f64| {

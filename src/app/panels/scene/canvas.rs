@@ -27,7 +27,6 @@ pub struct Canvas<'a> {
     pub rect: Rect,
     /// The visible part.
     pub view: SceneView,
-    /// The radar.
     pub radar: &'a Radar,
     /// How far the radar is drawn to see.
     pub extent_metres: f64,

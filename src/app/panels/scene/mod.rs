@@ -25,7 +25,6 @@ pub use told::ScenePanel;
 
 /// What the canvas shows beside the scene.
 pub struct Input<'a> {
-    /// The radar.
     pub radar: &'a Radar,
     /// Range of what a single sample a chirp heard, metres: it tells none itself.
     pub snapshot_range_metres: Option<f64>,

@@ -6,7 +6,6 @@ use crate::app::panels::captions;
 use crate::app::state::{Command, MapKind};
 use eframe::egui::Ui;
 
-/// Draws [`Panel::Scene`](crate::app::state::Panel::Scene).
 pub struct ScenePanel;
 
 impl Content for ScenePanel {
