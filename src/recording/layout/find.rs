@@ -143,7 +143,7 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
         let job = Job { counts: *counts, only: None, header_bytes, packets, known };
         let numbers = counts.samples * counts.receivers;
         let chirps = job.chirps(stream, layout.chirp_bytes(counts.samples, counts.receivers), numbers)?;
-        notes.extend(counts::doubted(layout, *counts, &chirps.concat()));
+        notes.extend(counts::doubted(layout, *counts, &chirps.concat(), bytes));
     }
     if packets {
         let lost = match stream.lost_packets() {
