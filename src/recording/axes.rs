@@ -44,14 +44,20 @@ impl fmt::Display for AxisKind {
     }
 }
 
-/// Which of several chirps are looked at.
+/// Which of several chirps or loops are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(untagged, expecting = "expected a chirp's number from 0, \"mean\" or \"strongest\"")]
+#[serde(untagged, expecting = "expected a number from 0, \"mean\" or \"strongest\"")]
 pub enum Chirp {
     /// One, from 0.
     Number(usize),
     /// A way to join them all.
     Joined(Join),
+}
+
+impl Default for Chirp {
+    fn default() -> Self {
+        Chirp::Number(0)
+    }
 }
 
 /// How chirps are joined.

@@ -145,15 +145,17 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
         let chirps = job.chirps(stream, layout.chirp_bytes(counts.samples, counts.receivers), numbers)?;
         notes.extend(counts::doubted(layout, *counts, &chirps.concat(), bytes));
     }
-    if packets {
-        let lost = match stream.lost_packets() {
-            0 => "none is lost".to_owned(),
-            1 => "one is lost and read as zeros".to_owned(),
-            lost => format!("{lost} are lost and read as zeros"),
-        };
-        notes.push(format!("The file holds network packets with headers of 10 bytes: {lost}."));
-    }
+    notes.extend(packets.then(|| told_of_packets(stream.lost_packets())));
     Ok(Found { candidates, notes, hides_counts })
+}
+
+fn told_of_packets(lost: u64) -> String {
+    let lost = match lost {
+        0 => "none is lost".to_owned(),
+        1 => "one is lost and read as zeros".to_owned(),
+        lost => format!("{lost} are lost and read as zeros"),
+    };
+    format!("The file holds network packets with headers of 10 bytes: {lost}.")
 }
 
 /// The layouts of one way: those of its unmixed counts where receivers don't stand sample by sample.

@@ -3,7 +3,7 @@
 use super::axes::{Reading, readings};
 use super::boards::Board;
 use super::imported::Imported;
-use super::line::{Line, USUAL_CARRIER_HZ, line, uniform};
+use super::line::{Line, line, uniform};
 use super::text::{self, About};
 use crate::recording::described::open_file;
 use crate::recording::layout::{Certainty, Counts};
@@ -147,11 +147,10 @@ fn line_of(
     let chirps = in_turn.unwrap_or(reading.len(AxisKind::Transmitter, shape));
     let loops = reading.len(AxisKind::Chirp, shape) / in_turn.unwrap_or(1);
     let counts = Counts { samples: reading.len(AxisKind::Sample, shape), receivers, chirps, loops };
+    let fits = |p: &&RadarProfile| receivers == p.receivers && chirps == p.chirp_transmitters.len();
     match profile {
-        Some(profile) if receivers == profile.receivers && chirps == profile.chirp_transmitters.len() => {
-            line(counts, Some(profile), board)
-        }
-        _ => uniform(counts, profile.map_or(USUAL_CARRIER_HZ, RadarProfile::carrier_hz)),
+        Some(profile) if !fits(&profile) => uniform(counts, profile.carrier_hz()),
+        profile => line(counts, profile, board),
     }
 }
 

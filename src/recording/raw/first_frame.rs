@@ -1,9 +1,7 @@
 //! What the first frame of a capture tells beside its layout.
 
 use super::boards::{self, Board};
-use super::capture;
-use crate::recording::capture::{Frame, Plan};
-use crate::recording::layout::Candidate;
+use crate::recording::capture::{Capture, Frame, Plan};
 use crate::recording::layout::stream::Stream;
 use crate::recording::profile::RadarProfile;
 use ndarray::{Array2, Axis};
@@ -14,7 +12,7 @@ use std::io::{Read, Seek};
 /// Directions in which a beam is looked for: half of the beam of 54 half wavelengths apart.
 const DIRECTIONS: i32 = 128;
 /// The receivers of a cascade stand from left to right in the file where a beam of them is so many times stronger than by chips.
-const MORE: f64 = 1.2;
+const MORE_BEAM: f64 = 1.2;
 
 /// What the first frame tells.
 #[derive(Default)]
@@ -28,15 +26,14 @@ pub(super) struct FirstFrame {
 }
 
 impl FirstFrame {
-    /// Reads it by the candidate's layout; what can't be read tells nothing.
+    /// Reads it as `capture` says; what can't be read tells nothing.
     pub fn read<R: Read + Seek>(
         stream: &mut Stream<R>,
-        best: &Candidate,
+        capture: &Capture,
         profile: Option<&RadarProfile>,
     ) -> FirstFrame {
-        let capture = capture(best, profile);
-        let Ok(plan) = Plan::new(&capture, profile, stream.bytes()) else { return FirstFrame::default() };
-        let Ok(Frame { samples, quality }) = Frame::read(stream, &capture, &plan) else {
+        let Ok(plan) = Plan::new(capture, profile, stream.bytes()) else { return FirstFrame::default() };
+        let Ok(Frame { samples, quality }) = Frame::read(stream, capture, &plan) else {
             return FirstFrame { frames: plan.frames, ..FirstFrame::default() };
         };
         let constant_db = quality.tells_constant().then_some(quality.constant_db);
@@ -48,7 +45,7 @@ impl FirstFrame {
     pub fn cascade(&self) -> &'static Board {
         let by_chip = &boards::BY_CHIP;
         match boards::by_name(by_chip.name) {
-            Some(from_left) if self.beam(from_left) > MORE * self.beam(by_chip) => from_left,
+            Some(from_left) if self.beam(from_left) > MORE_BEAM * self.beam(by_chip) => from_left,
             _ => by_chip,
         }
     }
