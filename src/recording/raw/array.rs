@@ -87,31 +87,23 @@ pub(super) fn import(
 fn largest(data: &Path) -> Result<(Option<String>, Numbers), Fault> {
     let open = || open_file(data).map(BufReader::new);
     let ending = data.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let most = |all: Vec<(String, Vec<usize>)>| {
-        let count = |shape: &[usize]| shape.iter().fold(1usize, |n, len| n.saturating_mul(*len));
-        let largest = all.into_iter().max_by_key(|(_, shape)| count(shape));
-        largest
-            .map(|(key, _)| key)
-            .ok_or_else(|| Fault::key("the file", "holds no array of numbers", "one with samples"))
+    let all = match ending.as_str() {
+        "npy" => return Ok((None, numpy::read_npy(open()?)?)),
+        "npz" => numpy::shapes(open()?)?,
+        "mat" => hdf5::mat_shapes(open()?)?,
+        _ => hdf5::h5_shapes(open()?)?,
     };
-    match ending.as_str() {
-        "npy" => Ok((None, numpy::read_npy(open()?)?)),
-        "npz" => {
-            let key = most(numpy::shapes(open()?)?)?;
-            let numbers = numpy::read_npz(open()?, &key)?;
-            Ok((Some(key), numbers))
-        }
-        "mat" => {
-            let key = most(hdf5::mat_shapes(open()?)?)?;
-            let numbers = hdf5::read_mat(open()?, &key)?;
-            Ok((Some(key), numbers))
-        }
-        _ => {
-            let key = most(hdf5::h5_shapes(open()?)?)?;
-            let numbers = hdf5::read_h5(open()?, &key)?;
-            Ok((Some(key), numbers))
-        }
-    }
+    let count = |shape: &[usize]| shape.iter().fold(1usize, |n, len| n.saturating_mul(*len));
+    let (key, _) = all
+        .into_iter()
+        .max_by_key(|(_, shape)| count(shape))
+        .ok_or_else(|| Fault::key("the file", "holds no array of numbers", "one with samples"))?;
+    let numbers = match ending.as_str() {
+        "npz" => numpy::read_npz(open()?, &key)?,
+        "mat" => hdf5::read_mat(open()?, &key)?,
+        _ => hdf5::read_h5(open()?, &key)?,
+    };
+    Ok((Some(key), numbers))
 }
 
 /// Arrays of an `.npz` that is a scene, or what the program itself wrote.
