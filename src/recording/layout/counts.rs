@@ -80,14 +80,12 @@ pub(super) struct LikelyCounts {
     pub counts: Counts,
     /// Whether receivers and chirps are a guess.
     pub guessed: bool,
-    /// Those of the same rows where receivers don't stand sample by sample after all.
-    pub unmixed: Option<Counts>,
 }
 
 impl LikelyCounts {
     /// Counts that are known.
     pub fn of(counts: Counts) -> LikelyCounts {
-        LikelyCounts { parts: None, counts, guessed: false, unmixed: None }
+        LikelyCounts { parts: None, counts, guessed: false }
     }
 }
 
@@ -122,12 +120,9 @@ pub(super) fn search<R: Read + Seek>(
     let (mut ways, mut is_clipped) = (Vec::new(), false);
     for (_, layout, numbers) in all.into_iter().filter(|(level, ..)| *level < sharpest + PLAUSIBLE) {
         for cut in cuts(layout, &numbers, stream.bytes(), marked) {
-            let counted = |cut: &Cut| counted(cut, &numbers, stream.bytes(), marks, marked);
-            let unmixed = Cut { samples: cut.samples * cut.mixed, mixed: 1, ..cut };
-            let unmixed = (cut.mixed > 1).then(|| counted(&unmixed).0);
             is_clipped |= clipped(&numbers);
-            let (counts, guessed) = counted(&cut);
-            ways.push(LikelyCounts { parts: Some(layout.parts), counts, guessed, unmixed });
+            let (counts, guessed) = counted(&cut, &numbers, stream.bytes(), marks, marked);
+            ways.push(LikelyCounts { parts: Some(layout.parts), counts, guessed });
         }
     }
     Ok((ways, is_clipped))
