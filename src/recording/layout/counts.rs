@@ -54,7 +54,7 @@ const DOUBTED: f64 = 50.0;
 const UNFILLED: f64 = -3.0;
 const USUAL_LENGTH: f64 = 2.0;
 /// Rows are the same again where they turn so much alike, as a part of those that do most, and are so much alike, as a part of the most alike; and at
-/// least so much. Of 335 captures the period was right in 295; by the likeness alone in 244.
+/// least so much. Of 335 captures made at random the period was right in 295, by the likeness alone in 244.
 const STEADY: f64 = 0.999;
 const REPEATS: f64 = 0.5;
 const LEAST_ALIKE: f64 = 0.3;
@@ -62,8 +62,9 @@ const LEAST_ALIKE: f64 = 0.3;
 const MOST_LOOPS: usize = 64;
 
 /// What is told where no text says counts.
-pub(super) const NOTE: &str = "No .cfg says samples and receivers: they are those that make the sharpest spectrum and repeat. Carrier, slope \
-    and rate are not known: a bin of range is shown as one metre, and directions are those of elements half a wavelength apart.";
+pub(super) const NOTE: &str = "No .cfg says samples and receivers: they are those that make the sharpest spectrum and repeat, which is right \
+    for four captures of five. Carrier, slope and rate are not known: a bin of range is shown as one metre, and directions \
+    are those of elements half a wavelength apart.";
 
 /// What is told beside it where rows don't repeat.
 pub(super) const GUESSED_NOTE: &str =
