@@ -35,7 +35,7 @@ def layout(name: str, radar: Radar | None = None) -> list[int]:
 def _places(kind: str, numbers: str, radar: Radar) -> list[int] | None:
     """The elements; None where the name is none."""
     if kind == "two-ends" and not numbers:
-        return [*range(radar.end_elements), *range(radar.elements - radar.end_elements, radar.elements)]
+        return [*range(radar.end_elements), *range(max(radar.end_elements, radar.elements - radar.end_elements), radar.elements)]
     if kind == "random":
         count, _, seed = numbers.partition(":")
         if not 2 <= int(count) <= radar.elements:

@@ -44,14 +44,20 @@ impl fmt::Display for AxisKind {
     }
 }
 
-/// Which of several chirps are looked at.
+/// Which of several chirps or loops are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(untagged, expecting = "expected a chirp's number from 0, \"mean\" or \"strongest\"")]
+#[serde(untagged, expecting = "expected a number from 0, \"mean\" or \"strongest\"")]
 pub enum Chirp {
     /// One, from 0.
     Number(usize),
     /// A way to join them all.
     Joined(Join),
+}
+
+impl Default for Chirp {
+    fn default() -> Self {
+        Chirp::Number(0)
+    }
 }
 
 /// How chirps are joined.
@@ -178,16 +184,11 @@ pub(super) fn loops(numbers: Numbers, kinds: &[AxisKind]) -> Result<Array4<Compl
     let values = complex(numbers, &mut kinds)?;
     let place = |kind| kinds.iter().position(|k| *k == kind);
     let len = |kind| place(kind).map_or(1, |p| values.shape()[p]);
-    let order: Vec<usize> =
-        [AxisKind::Chirp, AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Element, AxisKind::Sample]
-            .into_iter()
-            .filter_map(place)
-            .collect();
     let receivers = len(AxisKind::Receiver) * len(AxisKind::Element);
     let of_a_loop = len(AxisKind::Transmitter) * receivers * len(AxisKind::Sample);
     let held = (MOST_JOINED / of_a_loop.max(1)).clamp(1, len(AxisKind::Chirp).max(1));
     let shape = (len(AxisKind::Chirp).min(held), len(AxisKind::Transmitter), receivers, len(AxisKind::Sample));
-    let sorted = values.view().permuted_axes(IxDyn(&order));
+    let sorted = values.view().permuted_axes(order(&kinds));
     let numbers = sorted.iter().copied().take(shape.0 * of_a_loop).collect();
     Array4::from_shape_vec(shape, numbers).map_err(|e| AxesError::Kinds(e.to_string()))
 }
@@ -206,18 +207,19 @@ pub(super) fn arrange(
     check(&kinds, numbers.shape())?;
     let values = complex(numbers, &mut kinds)?;
     let values = one_chirp(values, &mut kinds, chirp)?;
-    let place = |kind| kinds.iter().position(|k| *k == kind);
-    let len = |place: Option<usize>| place.map_or(1, |p| values.shape()[p]);
-    let order: Vec<usize> = [AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Element, AxisKind::Sample]
-        .into_iter()
-        .filter_map(place)
-        .collect();
-    let samples = len(place(AxisKind::Sample));
+    let samples = kinds.iter().position(|k| *k == AxisKind::Sample).map_or(1, |place| values.shape()[place]);
     let elements = values.len().checked_div(samples).unwrap_or(0);
-    let sorted = values.permuted_axes(IxDyn(&order));
+    let sorted = values.permuted_axes(order(&kinds));
     // The same numbers in the same order: the shape can't fail to fit.
     Array2::from_shape_vec((elements, samples), sorted.iter().copied().collect())
         .map_err(|e| AxesError::Kinds(e.to_string()))
+}
+
+/// The places of the axes from loops to samples.
+fn order(kinds: &[AxisKind]) -> IxDyn {
+    let all = [AxisKind::Chirp, AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Element, AxisKind::Sample];
+    let places: Vec<usize> = all.iter().filter_map(|kind| kinds.iter().position(|k| k == kind)).collect();
+    IxDyn(&places)
 }
 
 fn check(kinds: &[AxisKind], shape: &[usize]) -> Result<(), AxesError> {

@@ -62,7 +62,7 @@ pub use profile::lines::text_of as config_text;
 pub use profile::{ProfileError, RadarProfile};
 pub use signs::FORMAT;
 
-use crate::radar::{End, Radar};
+use crate::radar::Radar;
 use crate::signal::{BeatSignal, TwoEnds};
 use std::sync::Arc;
 
@@ -139,11 +139,5 @@ impl Recording {
             doubts: Vec::new(),
             origin: None,
         }
-    }
-
-    /// How many elements of the two ends measured something.
-    pub fn heard_end_elements(&self) -> usize {
-        let missing = |n: &usize| self.missing.contains(n);
-        End::BOTH.into_iter().flat_map(|end| self.radar.end_range(end)).filter(|n| !missing(n)).count()
     }
 }

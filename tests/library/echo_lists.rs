@@ -58,7 +58,7 @@ fn two_to_five_elements_are_answered_or_refused() {
             match method.reconstruct(&radar, &ends, &Request::default()) {
                 Ok(answer) => {
                     answers += 1;
-                    assert_eq!(answer.lambda.lambda.dim(), (32, elements), "{}", method.name());
+                    assert_eq!(answer.lambda.lambda.dim(), (64, elements), "{}", method.name());
                     assert!(answer.lambda.lambda.iter().all(|v| (0.0..=1.0).contains(v)), "{}", method.name());
                 }
                 Err(error) => {

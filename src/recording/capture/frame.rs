@@ -3,7 +3,7 @@
 use super::error::CaptureError;
 use super::plan::Plan;
 use super::quality::Quality;
-use super::table::Capture;
+use super::table::{Capture, Part};
 use crate::recording::analytic::all_analytic;
 use crate::recording::layout::Parts;
 use crate::recording::layout::stream::Stream;
@@ -35,10 +35,10 @@ impl Frame {
             all.slice_mut(s![n / chirps, n % chirps, .., ..]).assign(&layout.decode(&bytes, samples, receivers));
         }
         quality.look_at_samples(&all);
-        if Plan::is_out(capture.constant) {
+        if capture.constant == Part::Out {
             take_out_constant(&mut all);
         }
-        if Plan::is_out(capture.static_clutter) && loops > 1 {
+        if capture.static_clutter == Part::Out && loops > 1 {
             let mean = mean_over_loops(&all);
             all.outer_iter_mut().for_each(|mut turn| turn -= &mean);
         }

@@ -25,8 +25,9 @@ pub use super::layout::ReceiverOrder;
 pub use error::CaptureError;
 pub(super) use frame::Frame;
 pub(super) use plan::Plan;
-pub use table::{Capture, Part, Together, Turn};
+pub use table::{Capture, Part};
 
+use super::axes::{Chirp, Join};
 use super::layout::stream::Stream;
 use super::profile::RadarProfile;
 use channels::Channels;
@@ -76,11 +77,11 @@ impl Capture {
         let channels = Channels::of(meaning.profile, &plan);
         notes.extend(channels.notes());
         let rows = match self.turn {
-            Turn::Number(turn) => {
+            Chirp::Number(turn) => {
                 channels.of_loop(&frame.samples.index_axis(ndarray::Axis(0), turn.min(frame.loops() - 1)))
             }
-            Turn::All(Together::Mean) => channels.of_loop(&frame.mean().view()),
-            Turn::All(Together::Strongest) => {
+            Chirp::Joined(Join::Mean) => channels.of_loop(&frame.mean().view()),
+            Chirp::Joined(Join::Strongest) => {
                 let (rows, note) = doppler::strongest(&frame, &channels, &chosen, meaning.turns);
                 notes.extend(note);
                 rows

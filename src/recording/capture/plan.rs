@@ -1,7 +1,8 @@
 //! What stands where in a capture: counts, sizes, and how many frames there are.
 
 use super::error::CaptureError;
-use super::table::{Capture, Part, Turn};
+use super::table::Capture;
+use crate::recording::axes::Chirp;
 use crate::recording::layout::{Layout, Parts};
 use crate::recording::numbers::bounded_count;
 use crate::recording::profile::RadarProfile;
@@ -61,7 +62,7 @@ impl Plan {
         };
         plan.take_frame(capture, bytes, [loop_bytes, frame_bytes, before])?;
         plan.note_size(bytes, frame_bytes, profile.map_or(0, |p| p.frames));
-        if let Turn::Number(asked) = capture.turn
+        if let Chirp::Number(asked) = capture.turn
             && asked >= plan.loops
         {
             return Err(CaptureError::NoLoop { asked, loops: plan.loops.max(1) });
@@ -132,11 +133,6 @@ impl Plan {
         }
         let expected = "some of the receivers that are on, by place from 0, each once";
         Err(CaptureError::Count { key: "receivers_taken", found: format!("is {taken:?}"), expected })
-    }
-
-    /// Whether a part is taken out.
-    pub fn is_out(part: Part) -> bool {
-        part == Part::Out
     }
 }
 

@@ -1,5 +1,6 @@
 //! The table `[recording.capture]`.
 
+use crate::recording::axes::Chirp;
 use crate::recording::layout::{Parts, ReceiverOrder, Words};
 use serde::Deserialize;
 
@@ -47,41 +48,15 @@ pub struct Capture {
     /// Which frame, from 0.
     #[serde(default)]
     pub frame: usize,
-    /// Which loop of the frame, or what all of them make.
+    /// Which loop of the frame, or how all of them are joined.
     #[serde(default, rename = "loop")]
-    pub turn: Turn,
+    pub turn: Chirp,
     /// The mean of each chirp's samples: leakage and offset.
     #[serde(default)]
     pub constant: Part,
     /// The mean of all loops: what stands still.
     #[serde(default)]
     pub static_clutter: Part,
-}
-
-/// Which of a frame's loops are looked at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(untagged, expecting = "expected a loop's number from 0, \"mean\" or \"strongest\"")]
-pub enum Turn {
-    /// One, from 0.
-    Number(usize),
-    /// All of them.
-    All(Together),
-}
-
-impl Default for Turn {
-    fn default() -> Self {
-        Turn::Number(0)
-    }
-}
-
-/// What all loops of a frame make.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Together {
-    /// Their mean: what moves fades.
-    Mean,
-    /// Of each range bin the strongest Doppler cell, chirps in time division compensated for its velocity.
-    Strongest,
 }
 
 /// Whether a part of the samples stays.

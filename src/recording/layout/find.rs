@@ -112,7 +112,7 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     let mut candidates = Vec::new();
     let mut none = None;
     for way in &ways {
-        match of_way(stream, way, &Job { counts: way.counts, only: way.parts, header_bytes, packets, known }) {
+        match (Job { counts: way.counts, only: way.parts, header_bytes, packets, known }).candidates(stream) {
             Ok(of_way) => candidates.extend(of_way),
             Err(LayoutError::Io(error)) => return Err(error.into()),
             Err(error) => none = Some(error),
@@ -143,31 +143,19 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
         let job = Job { counts: *counts, only: None, header_bytes, packets, known };
         let numbers = counts.samples * counts.receivers;
         let chirps = job.chirps(stream, layout.chirp_bytes(counts.samples, counts.receivers), numbers)?;
-        notes.extend(counts::doubted(layout, *counts, &chirps.concat()));
+        notes.extend(counts::doubted(layout, *counts, &chirps.concat(), bytes));
     }
-    if packets {
-        let lost = match stream.lost_packets() {
-            0 => "none is lost".to_owned(),
-            1 => "one is lost and read as zeros".to_owned(),
-            lost => format!("{lost} are lost and read as zeros"),
-        };
-        notes.push(format!("The file holds network packets with headers of 10 bytes: {lost}."));
-    }
+    notes.extend(packets.then(|| told_of_packets(stream.lost_packets())));
     Ok(Found { candidates, notes, hides_counts })
 }
 
-/// The layouts of one way: those of its unmixed counts where receivers don't stand sample by sample.
-fn of_way<R: Read + Seek>(
-    stream: &mut Stream<R>,
-    way: &LikelyCounts,
-    job: &Job<'_>,
-) -> Result<Vec<Candidate>, LayoutError> {
-    let mixed = job.candidates(stream);
-    let is_mixed = mixed.as_ref().is_ok_and(|all| all[0].layout.receivers == ReceiverOrder::Interleaved);
-    match way.unmixed.filter(|_| !is_mixed) {
-        Some(counts) => Job { counts, ..*job }.candidates(stream),
-        None => mixed,
-    }
+fn told_of_packets(lost: u64) -> String {
+    let lost = match lost {
+        0 => "none is lost".to_owned(),
+        1 => "one is lost and read as zeros".to_owned(),
+        lost => format!("{lost} are lost and read as zeros"),
+    };
+    format!("The file holds network packets with headers of 10 bytes: {lost}.")
 }
 
 /// Bytes of the headers before chirps.

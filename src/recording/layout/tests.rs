@@ -170,11 +170,13 @@ fn samples_with_receivers_are_found_without_a_cfg() {
 fn a_cfg_of_another_capture_is_doubted() {
     let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
     let bytes = written(&right, &(0..5).flat_map(|_| chirps()).collect::<Vec<_>>());
-    for (samples, is_doubted) in [(96, false), (128, true), (250, true)] {
+    for (samples, is_doubted) in [(96, false), (48, true), (128, true), (250, true)] {
         let more = format!("profileCfg 0 77 10 6 60 0 0 50 1 {samples} 4000 0 0 30\n");
         let notes = found(bytes.clone(), Some(&profile(&more))).notes;
         assert_eq!(notes.iter().any(|n| n.contains("but they do so every 96")), is_doubted, "{samples}: {notes:?}");
     }
+    let notes = found(bytes, Some(&profile("channelCfg 127 1 0\n"))).notes;
+    assert!(notes.iter().any(|n| n.contains("a loop has 7 rows") && n.contains("again after 3")), "{notes:?}");
 }
 
 #[test]

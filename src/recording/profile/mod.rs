@@ -160,8 +160,10 @@ impl RadarProfile {
             self.real = adc.count(1, "the format", 3)? == 0;
         }
         if let Some(buffer) = &commands.buffer {
-            self.q_first = buffer.may_count(2, 1).map(|v| v == 1);
-            self.interleaved = buffer.may_count(3, 1).map(|v| v == 0);
+            // The first SDKs had no sub-frames to name.
+            let first = usize::from(buffer.values.len() != 4);
+            self.q_first = buffer.may_count(first + 1, 1).map(|v| v == 1);
+            self.interleaved = buffer.may_count(first + 2, 1).map(|v| v == 0);
         }
         self.headers = commands.stream.as_ref().is_some_and(|s| s.may_count(1, 1) == Some(1));
         self.both_transmitters = commands.both.iter().any(|b| b.may_count(1, 1) == Some(1))

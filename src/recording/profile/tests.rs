@@ -107,6 +107,8 @@ fn what_is_said_of_the_data_is_read() {
     let more = "adcbufCfg -1 0 1 0 1\nlvdsStreamCfg -1 1 1 1\ncompRangeBiasAndRxChanPhase 0.05 1 0 -1 0 0 1\n";
     let profile = with("sensorStart", more);
     assert_eq!((profile.q_first, profile.interleaved, profile.headers), (Some(true), Some(true), true));
+    let of_old_sdk = with("sensorStart", "adcbufCfg 0 0 1 1");
+    assert_eq!((of_old_sdk.q_first, of_old_sdk.interleaved), (Some(false), Some(false)));
     assert_eq!(profile.range_bias_metres, 0.05);
     assert_eq!(profile.channel_factors, [Complex64::ONE, -Complex64::ONE, Complex64::I]);
     let real = with("adcCfg 2 1", "adcCfg 2 0");

@@ -3,7 +3,7 @@
 use super::axes::{Reading, readings};
 use super::boards::Board;
 use super::imported::Imported;
-use super::line::{Line, USUAL_CARRIER_HZ, line, uniform};
+use super::line::{Line, line, uniform};
 use super::text::{self, About};
 use crate::recording::described::open_file;
 use crate::recording::layout::{Certainty, Counts};
@@ -87,31 +87,23 @@ pub(super) fn import(
 fn largest(data: &Path) -> Result<(Option<String>, Numbers), Fault> {
     let open = || open_file(data).map(BufReader::new);
     let ending = data.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let most = |all: Vec<(String, Vec<usize>)>| {
-        let count = |shape: &[usize]| shape.iter().fold(1usize, |n, len| n.saturating_mul(*len));
-        let largest = all.into_iter().max_by_key(|(_, shape)| count(shape));
-        largest
-            .map(|(key, _)| key)
-            .ok_or_else(|| Fault::key("the file", "holds no array of numbers", "one with samples"))
+    let all = match ending.as_str() {
+        "npy" => return Ok((None, numpy::read_npy(open()?)?)),
+        "npz" => numpy::shapes(open()?)?,
+        "mat" => hdf5::mat_shapes(open()?)?,
+        _ => hdf5::h5_shapes(open()?)?,
     };
-    match ending.as_str() {
-        "npy" => Ok((None, numpy::read_npy(open()?)?)),
-        "npz" => {
-            let key = most(numpy::shapes(open()?)?)?;
-            let numbers = numpy::read_npz(open()?, &key)?;
-            Ok((Some(key), numbers))
-        }
-        "mat" => {
-            let key = most(hdf5::mat_shapes(open()?)?)?;
-            let numbers = hdf5::read_mat(open()?, &key)?;
-            Ok((Some(key), numbers))
-        }
-        _ => {
-            let key = most(hdf5::h5_shapes(open()?)?)?;
-            let numbers = hdf5::read_h5(open()?, &key)?;
-            Ok((Some(key), numbers))
-        }
-    }
+    let count = |shape: &[usize]| shape.iter().fold(1usize, |n, len| n.saturating_mul(*len));
+    let (key, _) = all
+        .into_iter()
+        .max_by_key(|(_, shape)| count(shape))
+        .ok_or_else(|| Fault::key("the file", "holds no array of numbers", "one with samples"))?;
+    let numbers = match ending.as_str() {
+        "npz" => numpy::read_npz(open()?, &key)?,
+        "mat" => hdf5::read_mat(open()?, &key)?,
+        _ => hdf5::read_h5(open()?, &key)?,
+    };
+    Ok((Some(key), numbers))
 }
 
 /// Arrays of an `.npz` that is a scene, or what the program itself wrote.
@@ -147,11 +139,10 @@ fn line_of(
     let chirps = in_turn.unwrap_or(reading.len(AxisKind::Transmitter, shape));
     let loops = reading.len(AxisKind::Chirp, shape) / in_turn.unwrap_or(1);
     let counts = Counts { samples: reading.len(AxisKind::Sample, shape), receivers, chirps, loops };
+    let fits = |p: &&RadarProfile| receivers == p.receivers && chirps == p.chirp_transmitters.len();
     match profile {
-        Some(profile) if receivers == profile.receivers && chirps == profile.chirp_transmitters.len() => {
-            line(counts, Some(profile), board)
-        }
-        _ => uniform(counts, profile.map_or(USUAL_CARRIER_HZ, RadarProfile::carrier_hz)),
+        Some(profile) if !fits(&profile) => uniform(counts, profile.carrier_hz()),
+        profile => line(counts, profile, board),
     }
 }
 

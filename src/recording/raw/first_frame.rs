@@ -1,20 +1,20 @@
 //! What the first frame of a capture tells beside its layout.
 
 use super::boards::{self, Board};
-use super::capture;
-use crate::recording::capture::{Frame, Plan};
-use crate::recording::layout::Candidate;
+use crate::recording::capture::{Capture, Frame, Plan};
 use crate::recording::layout::stream::Stream;
 use crate::recording::profile::RadarProfile;
-use ndarray::{Array2, Axis};
+use ndarray::{Array1, Array2, ArrayView1, Axis};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 use std::io::{Read, Seek};
 
 /// Directions in which a beam is looked for: half of the beam of 54 half wavelengths apart.
 const DIRECTIONS: i32 = 128;
-/// The receivers of a cascade stand from left to right in the file where a beam of them is so many times stronger than by chips.
-const MORE: f64 = 1.2;
+/// The receivers of a cascade stand from left to right in the file where one beam of them holds such a part of all power, and so many times
+/// more than where they stand by chips: chips that are not calibrated make no such beam in any order.
+const WHOLE_BEAM: f64 = 0.9;
+const MORE_BEAM: f64 = 1.03;
 
 /// What the first frame tells.
 #[derive(Default)]
@@ -28,15 +28,14 @@ pub(super) struct FirstFrame {
 }
 
 impl FirstFrame {
-    /// Reads it by the candidate's layout; what can't be read tells nothing.
+    /// Reads it as `capture` says; what can't be read tells nothing.
     pub fn read<R: Read + Seek>(
         stream: &mut Stream<R>,
-        best: &Candidate,
+        capture: &Capture,
         profile: Option<&RadarProfile>,
     ) -> FirstFrame {
-        let capture = capture(best, profile);
-        let Ok(plan) = Plan::new(&capture, profile, stream.bytes()) else { return FirstFrame::default() };
-        let Ok(Frame { samples, quality }) = Frame::read(stream, &capture, &plan) else {
+        let Ok(plan) = Plan::new(capture, profile, stream.bytes()) else { return FirstFrame::default() };
+        let Ok(Frame { samples, quality }) = Frame::read(stream, capture, &plan) else {
             return FirstFrame { frames: plan.frames, ..FirstFrame::default() };
         };
         let constant_db = quality.tells_constant().then_some(quality.constant_db);
@@ -47,24 +46,25 @@ impl FirstFrame {
     /// The cascade whose receivers stand in the order of the file: as its chips count them, or from the left.
     pub fn cascade(&self) -> &'static Board {
         let by_chip = &boards::BY_CHIP;
-        match boards::by_name(by_chip.name) {
-            Some(from_left) if self.beam(from_left) > MORE * self.beam(by_chip) => from_left,
-            _ => by_chip,
-        }
+        let Some(from_left) = boards::by_name(by_chip.name) else { return by_chip };
+        let beam = self.beam(from_left);
+        if beam > WHOLE_BEAM && beam > MORE_BEAM * self.beam(by_chip) { from_left } else { by_chip }
     }
 
-    /// Power of the strongest beam of receivers that stand as on the board.
+    /// Part of the power, without what is constant, that the strongest beam of receivers that stand as on the board holds.
     fn beam(&self, board: &Board) -> f64 {
-        let mean = |row: ndarray::ArrayView1<'_, Complex64>| row.sum() / row.len().max(1) as f64;
+        let mean = |row: ArrayView1<'_, Complex64>| row.sum() / row.len().max(1) as f64;
         let centred: Vec<_> = self.chirp.outer_iter().map(|row| row.mapv(|v| v - mean(row))).collect();
-        let power = |step: i32| {
+        let power = |row: &Array1<Complex64>| row.iter().map(Complex64::norm_sqr).sum::<f64>();
+        let all = centred.iter().map(power).sum::<f64>() * centred.len() as f64;
+        let towards = |step: i32| {
             let cosine = f64::from(step) / f64::from(DIRECTIONS);
-            let mut sum = ndarray::Array1::zeros(self.chirp.ncols());
+            let mut sum = Array1::zeros(self.chirp.ncols());
             for (row, place) in centred.iter().zip(board.receivers) {
                 sum.scaled_add(Complex64::from_polar(1.0, PI * place * cosine), row);
             }
-            sum.iter().map(Complex64::norm_sqr).sum::<f64>()
+            power(&sum)
         };
-        (-DIRECTIONS..=DIRECTIONS).map(power).fold(0.0, f64::max)
+        (-DIRECTIONS..=DIRECTIONS).map(towards).fold(0.0, f64::max) / all.max(f64::MIN_POSITIVE)
     }
 }

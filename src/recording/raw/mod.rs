@@ -26,7 +26,8 @@ mod text;
 
 pub use imported::Imported;
 
-use super::capture::{Capture, Part, ReceiverOrder, Together, Turn};
+use super::axes::{Chirp, Join};
+use super::capture::{Capture, Part, ReceiverOrder};
 use super::chain::{Chain, Chips, Source};
 use super::described::{config_text, open_file};
 use super::layout::stream::Stream;
@@ -177,7 +178,7 @@ fn described<R: Read + io::Seek>(
 ) -> Result<Imported, RecordingError> {
     let found = find(&mut stream, profile).map_err(|e| Fault::from(e).of(&files.data))?;
     let best = found.best();
-    let frame = FirstFrame::read(&mut stream, best, profile);
+    let frame = FirstFrame::read(&mut stream, &capture(best, profile), profile);
     let is_cascade = !files.chips.is_empty() && board.is_none_or(|board| board.name == boards::BY_CHIP.name);
     let board = if is_cascade { Some(frame.cascade()) } else { board };
     let line = line::line(best.counts, profile, board);
@@ -293,7 +294,7 @@ fn capture(best: &Candidate, profile: Option<&RadarProfile>) -> Capture {
         chirps: None,
         receivers_taken: None,
         frame: 0,
-        turn: Turn::All(Together::Strongest),
+        turn: Chirp::Joined(Join::Strongest),
         constant: Part::Keep,
         static_clutter: Part::Keep,
     }

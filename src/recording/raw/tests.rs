@@ -183,6 +183,14 @@ fn places_across_alone_stand_at_one_height() {
 }
 
 #[test]
+fn transmitters_that_send_together_have_places_of_their_own() {
+    let both = CFG.replace(" 0 0 0 0 1\n", " 0 0 0 0 3\n").replace(" 0 0 0 0 4\n", " 0 0 0 0 3\n");
+    let more = "bpmCfg -1 1 0 1\nantGeometry0 0 1 2 3 4 5 6 7\n";
+    let folder = folder(&[("a.bin", &frame()), ("a.cfg", format!("{both}{more}").as_bytes())]);
+    assert_eq!(open(&folder.path().join("a.bin"), None).unwrap().radar.elements, 8);
+}
+
+#[test]
 fn what_is_no_capture_is_told() {
     let folder = folder(&[
         ("a.cfg", CFG.as_bytes()),
