@@ -128,6 +128,14 @@ def finite(losses, run, args):
     return mean
 
 
+def folder_of(args):
+    """Makes the run's folder; where that can't be, the program ends with a line."""
+    try:
+        os.makedirs(args.out, exist_ok=True)
+    except OSError as error:
+        raise SystemExit(f"--out {args.out}: {error.strerror}") from None
+
+
 def refuse_graph_without_gpu(args, device):
     if args.graph and device.type != "cuda":
         raise SystemExit("--graph records the step on a GPU, and PyTorch sees none; leave --graph away")

@@ -29,6 +29,12 @@ def refuse_untrained(args, maps):
 def checked(parser, arguments):
     """Parsed arguments; those that make no sense together end the program with a message."""
     args = parser.parse_args(arguments)
+    for name, least in (("batch", 1), ("threads", 1), ("loaders", 0), ("validation", 0), ("minutes", 0), ("cool", 0), ("lr", 0), ("pool", 0), ("log_every", 1), ("filters", 1)):
+        value = getattr(args, name, least)
+        if not least <= value < float("inf"):
+            parser.error(f"--{name.replace('_', '-')} is {value}; expected {least} or more")
+    if args.out and os.path.exists(args.out) and not os.path.isdir(args.out):
+        parser.error(f"--out {args.out} is a file; expected a folder, new or of a run")
     if not args.out and not getattr(args, "judge", None):
         parser.error("--out DIR is missing: the folder of the run, new or to go on with")
     for name in ("init", "judge"):
@@ -40,8 +46,6 @@ def checked(parser, arguments):
             parser.error(f"--{name} is for one process; leave torchrun away, or --{name}")
     if args.pool and (args.pool < args.batch or args.uses <= 0):
         parser.error(f"--pool {args.pool} --uses {args.uses}: expected at least --batch ({args.batch}) scenes, and uses above 0")
-    if args.log_every < 1:
-        parser.error(f"--log-every is {args.log_every}; expected 1 or more")
     if args.export and not args.init and not os.path.exists(os.path.join(args.out, "checkpoint.pt")):
         refuse_untrained(args, 0)
     return args
@@ -89,7 +93,4 @@ def thesis(arguments=None):
     ap.add_argument("--first-scene", type=int, default=0, help="with --init of weights: number of the first training scene, so that none is seen twice")
     ap.add_argument("--validation", type=int, default=8, help="validation scenes a set")
     common(ap)
-    args = checked(ap, arguments)
-    if args.filters < 1:
-        ap.error(f"--filters is {args.filters}; expected 1 or more")
-    return args
+    return checked(ap, arguments)

@@ -38,7 +38,7 @@ import torch
 
 import apertura as ap
 import provenance
-from common import (LEARNED, TARGET, Clock, cooled, export, figures, fill, finite, follow, light, loaded, refuse_graph_without_gpu, save, tensors_of,
+from common import (LEARNED, TARGET, Clock, cooled, export, figures, fill, finite, folder_of, follow, light, loaded, refuse_graph_without_gpu, save, tensors_of,
                     unit, validation_scenes)
 from graph import Replayed
 from apertura.live import DOUBT, WINDOWS, WINDOWS_AT, Doubt, Doubting, Live, expected_error, normalise, parted, size_of, widened, widened_cells
@@ -352,7 +352,7 @@ def main(args):
             report["covered"] = coverage(model, doubt, sets)
         print(json.dumps(report))
         return
-    os.makedirs(args.out, exist_ok=True)
+    folder_of(args)
     run = Run(args, team)
     options.refuse_untrained(args, run.maps)
     if args.export:

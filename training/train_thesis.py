@@ -41,7 +41,7 @@ import torch
 
 import apertura as ap
 import provenance
-from common import (LEARNED, TARGET, Clock, cooled, export, figures, fill, finite, follow, loaded, refuse_graph_without_gpu, save, stacked, tensors_of,
+from common import (LEARNED, TARGET, Clock, cooled, export, figures, fill, finite, folder_of, follow, loaded, refuse_graph_without_gpu, save, stacked, tensors_of,
                     unit, validation_scenes)
 from graph import Replayed
 from muon import Muon
@@ -279,7 +279,7 @@ def train(run, args, team):
 def main(args):
     torch.manual_seed(args.experiment)
     team = Team(args.threads)
-    os.makedirs(args.out, exist_ok=True)
+    folder_of(args)
     run = Run(args, team)
     options.refuse_untrained(args, run.maps)
     if args.export:
