@@ -96,7 +96,7 @@ impl Kind {
         if name.trim() == WORLD {
             return Ok(Kind::World);
         }
-        match name.parse().map_err(|error: String| format!("{error}, or {WORLD}"))? {
+        match name.parse::<Kind>().map_err(|error| format!("{error}, or {WORLD}"))? {
             Kind::Beyond(kind) => Err(format!("{} makes scenes for tests alone; expected another kind", kind.name())),
             kind => Ok(kind),
         }
