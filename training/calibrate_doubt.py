@@ -18,11 +18,11 @@ import os
 import numpy as np
 import torch
 from safetensors import safe_open
-from safetensors.torch import load_file, save_file
+from safetensors.torch import save_file
 
 import apertura as ap
 from apertura.live import CELL_DECADES, DOUBT, SCENE_DECADES, SIZE, WINDOWS, Doubt, Live, normalise, parted, trained_radar, widened, widened_cells
-from common import LEARNED, TARGET
+from common import LEARNED, TARGET, fill, tensors_of
 from train_live import COVERED, INPUTS, KINDS, OFF, RADARS, error_of, has_room
 
 #: Cells of a scene that the fit sees, drawn at random.
@@ -116,7 +116,7 @@ def main():
     parser.add_argument("--scenes", type=int, default=32, help="validation scenes of each kind")
     parser.add_argument("--judge", action="store_true", help="print the coverage on the scenes of seed 1, and stop")
     args = parser.parse_args()
-    tensors = load_file(args.file)
+    tensors = tensors_of(args.file)
     with safe_open(args.file, "pt") as file:
         meta = file.metadata()
     network, of_doubt = parted(tensors)
@@ -125,7 +125,7 @@ def main():
     domain = json.loads(meta.get("domain", "{}"))
     live = Live(**json.loads(meta.get(SIZE, "{}")))
     doubt = Doubt(live.stem.conv.out_channels)
-    live.load_state_dict(widened(network))
+    fill(live, widened(network), args.file)
     doubt.load_state_dict(of_doubt, strict=False)
     if not args.judge:
         weights, constant = fitted(seen(live, doubt, 0, args.scenes, domain))

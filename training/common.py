@@ -87,8 +87,9 @@ def loaded(path, device, keys, what):
     """A checkpoint of ours that holds these keys; anything else ends the program with a line."""
     try:
         state = torch.load(path, weights_only=True, map_location=device)
-    except Exception as error:  # the reader's own message says what is wrong with the file
-        raise SystemExit(f"{path} is no checkpoint that can be read: {' '.join(str(error).split())[:200]}") from None
+    except Exception as error:  # the first sentence of the reader's message says what is wrong with the file
+        what = " ".join(str(error).split()).split(". ")[0][:200]
+        raise SystemExit(f"{path} is no checkpoint that can be read: {what}; expected a file that a run wrote") from None
     missing = [key for key in keys if not isinstance(state, dict) or key not in state]
     if missing:
         raise SystemExit(f"{path} is no checkpoint of {what}: it has no \"{missing[0]}\"")
@@ -104,12 +105,49 @@ def tensors_of(path):
         raise SystemExit(f"{path} is no weight file that can be read: {error}; expected safetensors") from None
 
 
-def fill(module, tensors, path):
-    """Loads tensors into a module; those of another network end the program with a line."""
+def fill(module, tensors, path, counted=True):
+    """Loads tensors into a module; those of another network end the program with a line. Weight files don't hold how many batches were `counted`."""
+    if not counted:
+        tensors = {name: t for name, t in module.state_dict().items() if name.endswith("num_batches_tracked")} | tensors
     try:
         module.load_state_dict(tensors)
     except (RuntimeError, KeyError) as error:
         raise SystemExit(f"{path} holds weights of another network: {' '.join(str(error).split())[:300]}") from None
+
+
+def cooled(args, seconds):
+    """What is left of the learning rate this long after the start: it falls to zero over the last `--cool` minutes."""
+    return min(1.0, max(0.0, args.minutes - seconds / 60) / args.cool) if args.cool else 1.0
+
+
+def finite(losses, run, args):
+    """The mean of the last losses; 0 of none. One that is not finite ends the program."""
+    mean = torch.stack(losses).mean().item() if losses else 0.0
+    if not mean < float("inf"):
+        raise SystemExit(f"loss is {mean} at step {run.step}; the last good checkpoint is in {args.out}")
+    return mean
+
+
+def folder_of(args):
+    """Makes the run's folder; where that can't be, the program ends with a line."""
+    try:
+        os.makedirs(args.out, exist_ok=True)
+    except OSError as error:
+        raise SystemExit(f"--out {args.out}: {error.strerror}") from None
+
+
+def refuse_graph_without_gpu(args, device):
+    if args.graph and device.type != "cuda":
+        raise SystemExit("--graph records the step on a GPU, and PyTorch sees none; leave --graph away")
+
+
+@torch.no_grad()
+def follow(average, model, part):
+    """Moves the parameters of `average` this part of the way to the model's."""
+    averages = list(average.parameters())
+    gaps = torch._foreach_sub(list(model.parameters()), averages)
+    torch._foreach_mul_(gaps, part)
+    torch._foreach_add_(averages, gaps)
 
 
 def light(state):

@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 import torch
-from safetensors.torch import load_file
 
+from common import fill, tensors_of
 from apertura.live import COARSE_CHANNELS, CONSTANTS, FINE, GRID, ROWS, Live, parted, widened
 
 SHIPPED = Path(__file__).resolve().parent.parent / "assets" / "weights" / "live.safetensors"
@@ -16,7 +16,7 @@ SHIPPED = Path(__file__).resolve().parent.parent / "assets" / "weights" / "live.
 def live(weights=SHIPPED):
     """The live network with the weights of a file, without its doubt."""
     model = Live()
-    model.load_state_dict(widened(parted(load_file(weights))[0]))
+    fill(model, widened(parted(tensors_of(weights))[0]), weights)
     return model.eval()
 
 
@@ -39,4 +39,6 @@ def main(path, weights=SHIPPED):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) not in (2, 3):
+        raise SystemExit(__doc__)
     main(*sys.argv[1:])

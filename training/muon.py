@@ -38,5 +38,6 @@ class Muon(torch.optim.Optimizer):
                 state["mean"].lerp_(p.grad, 1 - group["momentum"])
                 ahead = p.grad.lerp(state["mean"], group["momentum"]).flatten(1)
                 change = orthogonal(ahead).reshape(p.shape)
+                # The rate may be a tensor, which a recorded step reads from the GPU.
                 p.mul_(1 - group["lr"] * group["weight_decay"])
-                p.add_(change, alpha=-0.2 * group["lr"] * max(ahead.shape) ** 0.5)
+                p.sub_(change * (0.2 * max(ahead.shape) ** 0.5 * group["lr"]))

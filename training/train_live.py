@@ -38,7 +38,8 @@ import torch
 
 import apertura as ap
 import provenance
-from common import LEARNED, TARGET, Clock, export, figures, fill, light, loaded, save, tensors_of, unit, validation_scenes
+from common import (LEARNED, TARGET, Clock, cooled, export, figures, fill, finite, folder_of, follow, light, loaded, refuse_graph_without_gpu, save, tensors_of,
+                    unit, validation_scenes)
 from graph import Replayed
 from apertura.live import DOUBT, WINDOWS, WINDOWS_AT, Doubt, Doubting, Live, expected_error, normalise, parted, size_of, widened, widened_cells
 from pool import Pool
@@ -185,8 +186,7 @@ class Run:
         self.doubt = Doubt(self.model.stem.conv.out_channels).to(team.device)
         # A recorded step reads the rates from the GPU.
         self.recorded = args.graph
-        if args.graph and team.device.type != "cuda":
-            raise SystemExit("--graph records the step on a GPU, and PyTorch sees none; leave --graph away")
+        refuse_graph_without_gpu(args, team.device)
         self.rate, self.lerp = (torch.tensor(float(v), device=team.device) for v in (args.lr, 0.0))
         kept = {"lr": self.rate if self.recorded else args.lr, "capturable": self.recorded}
         self.optimizer = torch.optim.AdamW([*self.model.parameters(), *self.doubt.parameters()], weight_decay=1e-4, betas=(0.9, 0.99), **kept)
@@ -240,11 +240,7 @@ class Run:
         torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)
         torch.nn.utils.clip_grad_norm_(self.doubt.parameters(), 1.0)
         self.optimizer.step()
-        with torch.no_grad():
-            averages = list(self.average.parameters())
-            gaps = torch._foreach_sub(list(self.model.parameters()), averages)
-            torch._foreach_mul_(gaps, self.lerp)
-            torch._foreach_add_(averages, gaps)
+        follow(self.average, self.model, self.lerp)
 
     def save(self):
         save(self.path, {"model": self.model.state_dict(), "doubt": self.doubt.state_dict(), "average": self.average.state_dict(),
@@ -275,19 +271,6 @@ def scenes_of(args, first, team):
         wanted = has_window(args.windows.split(",")) if args.windows else None
         return Pool(training_scenes(args), first, args.batch, team.device, args.pool, args.uses, first, wanted)
     return batches(training_scenes(args), first, args.batch, team, args.loaders)
-
-
-def cooled(args, seconds):
-    """What is left of the learning rate this long after the start: it falls to zero over the last `--cool` minutes."""
-    return min(1.0, max(0.0, args.minutes - seconds / 60) / args.cool) if args.cool else 1.0
-
-
-def finite(losses, run, args):
-    """The mean of the last losses; 0 of none. One that is not finite ends the program."""
-    mean = torch.stack(losses).mean().item() if losses else 0.0
-    if not mean < float("inf"):
-        raise SystemExit(f"loss is {mean} at step {run.step}; the last good checkpoint is in {args.out}")
-    return mean
 
 
 def step_of(run, args, team):
@@ -369,7 +352,7 @@ def main(args):
             report["covered"] = coverage(model, doubt, sets)
         print(json.dumps(report))
         return
-    os.makedirs(args.out, exist_ok=True)
+    folder_of(args)
     run = Run(args, team)
     options.refuse_untrained(args, run.maps)
     if args.export:

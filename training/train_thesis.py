@@ -1,11 +1,13 @@
-"""Trains the thesis' encoder-decoder at the width that two cores can train: the PyTorch twin of
-`apertura train experiment-1-small` and `experiment-2-small`, several times as fast on a CPU.
+"""Trains the thesis' encoder-decoder, at the width that two cores can train or at the thesis' own (`--filters 64`): the PyTorch twin of
+`apertura train experiment-2-small` and `experiment-2`, several times as fast on a CPU.
 
     python3 train_thesis.py --experiment 1 --out DIR --minutes 60    # start, or go on from DIR/checkpoint.pt
     torchrun --nproc-per-node 2 --max-restarts 3 \\
         train_thesis.py --experiment 1 --out DIR --minutes 60        # the same in two processes, whose gradients are averaged
     python3 train_thesis.py --experiment 1 --out DIR --init FILE     # start from a weight file (.safetensors) with its record, or from another run's
                                                                      # checkpoint (.pt), its scenes included too, with a new optimizer
+    python3 train_thesis.py --experiment 2 --out DIR --filters 64 --minutes 10 --cool 4 --validation 0 --muon --bf16 --graph --batch 16 --lr 2e-3 \\
+        --pool 6000 --uses 8 --log-every 20 --threads 4              # on a GPU that there is for twelve minutes; the same again goes on
     python3 train_thesis.py --experiment 1 --out DIR --validation 24 \\
         --export ../assets/weights/thesis-1.safetensors              # write the averaged weights and their figures, and stop
 
@@ -13,10 +15,11 @@ Needs torch, numpy, safetensors and apertura (`pip install ../python`), which ma
 
 * AdamW in place of SGD: with it 12 minutes gave what SGD at the thesis' 0.1 gave after 42. With `--muon` the kernels follow Muon instead,
   whose loss is 5 % lower after 250 steps on the same maps. With `--bf16` a step takes half the time where the processor has bfloat16.
-* The learning rate rises over 100 steps and then falls with the square root of the steps of this run, so that a run needs no end; a moving
-  average of the weights is what is validated and written.
-* Every scene is new, where the thesis goes over 800 or 8000 scenes a hundred times. Each process simulates one a step.
-* Until `--whole-from` a batch holds 8 crops of 128 range rows from the newest 64 scenes, later 2 whole maps: crops see no wrap in range.
+* The learning rate rises over 100 steps and then falls with the square root of the steps of this run, so that a run needs no end; with `--cool M` it
+  falls to zero over the last M minutes. A moving average of the weights is what is validated and written.
+* Every scene is new, where the thesis goes over 800 or 8000 scenes a hundred times. Each process simulates one a step; with `--pool` they are made
+  beside the steps, and each is drawn `--uses` times.
+* Until `--whole-from` a batch holds 8 crops of 128 range rows from the newest 64 scenes, later `--batch` whole maps: crops see no wrap in range.
 * The last batch norm starts at 0.45 +- 0.15, about where the targets lie. From PyTorch's 0 +- 1 half of the cells start below zero,
   where the ReLU behind it lets no gradient through, and 240 steps did not bring them back.
 * The exported statistics of the batch norms are those of 32 whole training maps.
@@ -38,13 +41,15 @@ import torch
 
 import apertura as ap
 import provenance
-from common import LEARNED, TARGET, Clock, export, figures, loaded, save, stacked, tensors_of, unit, validation_scenes
+from common import (LEARNED, TARGET, Clock, cooled, export, figures, fill, finite, folder_of, follow, loaded, refuse_graph_without_gpu, save, stacked, tensors_of,
+                    unit, validation_scenes)
+from graph import Replayed
 from muon import Muon
+from pool import Pool
 from team import Log, Team
 from thesis import Thesis
 
-FILTERS = 16
-CROPS, WHOLE = 8, 2
+CROPS = 8
 ROWS, CROP = 512, 128
 BUFFER = 64
 WARM_UP = 100
@@ -55,31 +60,23 @@ MIXTURE = {1: "points", 2: "mixed"}
 
 
 def training_scenes(experiment):
+    """Examples of the networks' input `mag_phase` [4, 512, 1024] and of Lambda, `truth` [512, 1024]."""
     mixture = ",".join(f"{MIXTURE[experiment]}-{objects}=1" for objects in range(1, 5))
-    return ap.torch.Scenes(mixture, experiment, length=1 << 32, network="thesis", targets=[TARGET])
-
-
-def entry(example):
-    """Input [4, 512, 1024] and target [512, 1024]."""
-    return example["mag_phase"], unit(example[LEARNED][None])[0]
+    pair = lambda example: {"mag_phase": example["mag_phase"], "truth": unit(example[LEARNED][None])[0]}
+    return ap.torch.Scenes(mixture, experiment, length=1 << 32, network="thesis", targets=[TARGET], transform=pair)
 
 
 def crop(entry, rng):
     top = int(rng.integers(ROWS - CROP + 1))
-    return tuple(t[..., top : top + CROP, :] for t in entry)
+    return {name: t[..., top : top + CROP, :] for name, t in entry.items()}
 
 
-def fresh():
-    model = Thesis(FILTERS)
+def fresh(filters):
+    model = Thesis(filters)
     last = model.up.upconv[-1][1]
     torch.nn.init.constant_(last.weight, 0.15)
     torch.nn.init.constant_(last.bias, 0.45)
     return model.to(memory_format=torch.channels_last)
-
-
-def batch_of(entries):
-    inputs, targets = (torch.stack(t) for t in zip(*entries))
-    return inputs.contiguous(memory_format=torch.channels_last), targets
 
 
 def loss_of(experiment, output, target):
@@ -87,19 +84,19 @@ def loss_of(experiment, output, target):
     return square.mean() if experiment == 1 else square.sum() / target.abs().sum()
 
 
-def estimate_with(model):
+def estimate_with(model, device="cpu"):
     """For `common.figures`. The output is Lambda as it stands; for a threshold the thesis stretches it to [0, 1]."""
     def estimate(batch):
-        target = unit(batch[LEARNED])
+        target = unit(batch[LEARNED].to(device))
         model.eval()
-        output = model(batch["mag_phase"].contiguous(memory_format=torch.channels_last))[:, 0]
+        output = model(batch["mag_phase"].to(device).contiguous(memory_format=torch.channels_last))[:, 0]
         model.train()
         return output.clamp(0, 1), target, unit(output)
     return estimate
 
 
 @torch.no_grad()
-def settle(model, experiment):
+def settle(model, experiment, device):
     """Takes the statistics of every batch norm from whole maps of training scenes in place of a moving average over crops."""
     norms = [m for m in model.modules() if isinstance(m, torch.nn.BatchNorm2d)]
     for norm in norms:
@@ -108,7 +105,7 @@ def settle(model, experiment):
     model.train()
     scenes = training_scenes(experiment)
     for first in range(0, 32, 4):
-        model(stacked(scenes.__getitems__(range(first, first + 4)))["mag_phase"])
+        model(stacked(scenes.__getitems__(range(first, first + 4)))["mag_phase"].to(device))
 
 
 def state_of(path):
@@ -119,36 +116,47 @@ def state_of(path):
     return loaded(path, "cpu", ("model",), "train_thesis.py")
 
 
-def optimizers(model, lr, muon):
-    """AdamW for all parameters, or Muon for the kernels and AdamW for the rest."""
-    adam = lambda parameters: torch.optim.AdamW(parameters, lr=lr, weight_decay=1e-4, betas=(0.9, 0.99))
+def optimizers(model, muon, **kept):
+    """AdamW for all parameters, or Muon for the kernels and AdamW for the rest. `kept` are the rate, and what a recorded step needs."""
+    adam = lambda parameters: torch.optim.AdamW(parameters, weight_decay=1e-4, betas=(0.9, 0.99), **kept)
     if not muon:
         return [adam(model.parameters())]
-    return [Muon([p for p in model.parameters() if p.ndim == 4], lr), adam([p for p in model.parameters() if p.ndim != 4])]
+    return [Muon([p for p in model.parameters() if p.ndim == 4], kept["lr"]), adam([p for p in model.parameters() if p.ndim != 4])]
 
 
 class Run:
     """Weights, their average, optimizers and record, as a checkpoint holds them."""
 
     def __init__(self, args, team):
-        self.path = os.path.join(args.out, "checkpoint.pt")
-        self.model, self.average = fresh().to(team.device), fresh().to(team.device)
+        self.path, self.filters = os.path.join(args.out, "checkpoint.pt"), args.filters
+        self.model, self.average = (fresh(args.filters).to(team.device) for _ in range(2))
         self.step, self.maps, self.scenes, self.parts, initial, state = 0, 0.0, 0, [], None, None
+        # A recorded step reads the rates from the GPU.
+        self.recorded = args.graph
+        refuse_graph_without_gpu(args, team.device)
+        self.rate, self.lerp = (torch.tensor(float(v), device=team.device) for v in (args.lr, 0.0))
+        kept = {"lr": self.rate if self.recorded else args.lr, "capturable": self.recorded}
         if os.path.exists(self.path):
             state = loaded(self.path, team.device, ("model", "average", "optimizers", "step"), "train_thesis.py")
+            if state.get("filters", 16) != self.filters:
+                raise SystemExit(f"{self.path} is of a network of {state.get('filters', 16)} filters; --filters asks for {self.filters}")
             # A run goes on with the optimizers that it has.
-            self.optimizers = optimizers(self.model, args.lr, muon=len(state["optimizers"]) > 1)
-            self.average.load_state_dict(state["average"])
+            self.optimizers = optimizers(self.model, len(state["optimizers"]) > 1, **kept)
+            fill(self.average, state["average"], self.path)
             for optimizer, saved in zip(self.optimizers, state["optimizers"], strict=True):
+                for group in saved["param_groups"]:
+                    group.update({name: value for name, value in kept.items() if name in group})  # where the steps are counted follows from this
                 optimizer.load_state_dict(saved)
+                for group in optimizer.param_groups:
+                    group.update({name: value for name, value in kept.items() if name in group})  # loading copies
             self.step = state["step"]
         else:
-            self.optimizers = optimizers(self.model, args.lr, args.muon)
+            self.optimizers = optimizers(self.model, args.muon, **kept)
             if args.init:
                 initial, state = args.init, state_of(args.init)
-                self.average.load_state_dict(state.get("average", state["model"]), strict=False)
+                fill(self.average, state.get("average", state["model"]), initial, counted=False)
         if state:
-            self.model.load_state_dict(state["model"], strict=False)
+            fill(self.model, state["model"], initial or self.path, counted=False)
             self.maps, self.scenes = state.get("maps", 0.0), state.get("scenes", args.first_scene)
             self.parts = json.loads(state.get("parts", "[]"))
         self.part = provenance.Part(initial, self.maps, "Muon" if len(self.optimizers) > 1 else "AdamW")
@@ -156,50 +164,80 @@ class Run:
     def records(self):
         return [*self.parts, self.part.now(self.maps)]
 
-    def rate(self, lr):
-        return lr * min((self.step + 1) / WARM_UP, (1 + self.step / 1000) ** -0.5)
-
-    def advance(self, rate):
-        """One step down the gradient that was computed."""
-        for optimizer in self.optimizers:
-            for group in optimizer.param_groups:
-                group["lr"] = rate
-            optimizer.step()
-        self.follow()
+    def prepare(self, rate):
+        """Sets the learning rate of the next step, and how far the average moves."""
+        self.rate.fill_(rate)
+        self.lerp.fill_(1 - min(0.999, (1 + self.step) / (10 + self.step)))
         self.step += 1
+        if not self.recorded:
+            for group in (group for optimizer in self.optimizers for group in optimizer.param_groups):
+                group["lr"] = rate
 
     @torch.no_grad()
-    def follow(self):
-        """Moves the average towards the weights, and its batch norms' statistics to theirs."""
-        decay = min(0.999, (1 + self.step) / (10 + self.step))
-        for a, p in zip(self.average.parameters(), self.model.parameters()):
-            a.lerp_(p, 1 - decay)
+    def advance(self):
+        """One step down the gradient that was computed; the average follows, and its batch norms' statistics are the model's."""
+        for optimizer in self.optimizers:
+            optimizer.step()
+        follow(self.average, self.model, self.lerp)
         for a, p in zip(self.average.buffers(), self.model.buffers()):
             a.copy_(p)
 
     def save(self):
         save(self.path, {"model": self.model.state_dict(), "average": self.average.state_dict(), "optimizers": [o.state_dict() for o in self.optimizers],
-                         "step": self.step, "maps": self.maps, "scenes": self.scenes, "parts": json.dumps(self.records())})
+                         "filters": self.filters, "step": self.step, "maps": self.maps, "scenes": self.scenes, "parts": json.dumps(self.records())})
 
 
 class Buffer:
-    """This process' newest scenes, and batches of them."""
+    """This process' newest scenes, and an endless iterator of batches of them."""
 
     def __init__(self, run, args, team):
-        self.scenes, self.args, self.team, self.entries = training_scenes(args.experiment), args, team, []
-        self.next = run.scenes
+        self.data, self.run, self.args, self.team, self.entries = training_scenes(args.experiment), run, args, team, []
+        #: Number of the next scene.
+        self.drawn = run.scenes
 
-    def batch(self, run):
-        """Inputs, targets and how many maps they are."""
+    def __next__(self):
         for _ in range(1 if self.entries else CROPS):
-            self.entries.append(entry(self.scenes[self.next + self.team.rank]))
-            self.next += self.team.size
+            self.entries.append(self.data[self.drawn + self.team.rank])
+            self.drawn += self.team.size
         self.entries = self.entries[-BUFFER:]
-        pick = np.random.default_rng([self.args.experiment, self.next, self.team.rank])
-        whole = run.step >= self.args.whole_from
-        chosen = [self.entries[pick.integers(len(self.entries))] for _ in range(WHOLE if whole else CROPS)]
-        inputs, target = batch_of(chosen if whole else [crop(e, pick) for e in chosen])
-        return inputs.to(self.team.device), target.to(self.team.device), WHOLE if whole else CROPS * CROP / ROWS
+        pick = np.random.default_rng([self.args.experiment, self.drawn, self.team.rank])
+        is_whole = self.run.step >= self.args.whole_from
+        chosen = [self.entries[pick.integers(len(self.entries))] for _ in range(self.args.batch if is_whole else CROPS)]
+        return stacked(chosen if is_whole else [crop(entry, pick) for entry in chosen])
+
+    def close(self):
+        """Nothing runs beside it."""
+
+
+def scenes_of(run, args, team):
+    """Batches of training scenes, from the first that the run has not drawn on."""
+    if args.pool:
+        return Pool(training_scenes(args.experiment), run.scenes, args.batch, team.device, args.pool, args.uses, run.scenes)
+    return Buffer(run, args, team)
+
+
+def step_of(run, args, team):
+    """One step of training as a function of a batch; it returns the loss."""
+    model = team.share(run.model)
+
+    def step(batch):
+        with torch.autocast(team.device.type, torch.bfloat16, enabled=args.bf16, cache_enabled=not run.recorded):
+            output = model(batch["mag_phase"].contiguous(memory_format=torch.channels_last))[:, 0]
+        loss = loss_of(args.experiment, output.float(), batch["truth"])
+        run.model.zero_grad(set_to_none=True)
+        loss.backward()
+        run.advance()
+        return loss.detach()
+
+    return Replayed(step) if run.recorded else step
+
+
+def validate(run, sets, log, args, team):
+    report = figures(estimate_with(run.average, team.device), sets)
+    line = json.dumps({"step": run.step, "maps": run.maps, "loss": log.smoothed, **report})
+    with open(os.path.join(args.out, "validation.jsonl"), "a") as f:
+        f.write(line + "\n")
+    team.say(line)
 
 
 def train(run, args, team):
@@ -207,53 +245,49 @@ def train(run, args, team):
     sets = validation_scenes(args.experiment, args.validation, network="thesis") if team.is_first and args.validation else None
     clock = Clock()
     log = Log(args.out, run.step) if team.is_first else None
-    model, buffer = team.share(run.model), Buffer(run, args, team)
-    saved, validated = 0.0, float("-inf")
+    step, scenes = step_of(run, args, team), scenes_of(run, args, team)
+    saved, validated, losses = 0.0, float("-inf"), []
     while True:
         seconds = team.agreed(clock.seconds())
         done = run.step >= args.steps if args.steps is not None else seconds > 60 * args.minutes
         if team.is_first and (done or seconds - saved >= 60 * args.save_every):
+            finite(losses, run, args)
             run.save()
             saved = seconds
         if sets and (done or seconds - validated > 60 * args.validate_every):
             with clock.stopped():
-                report = figures(estimate_with(run.average.cpu()), sets)
-            run.average.to(team.device)
-            line = json.dumps({"step": run.step, "maps": run.maps, "loss": log.smoothed, **report})
-            with open(os.path.join(args.out, "validation.jsonl"), "a") as f:
-                f.write(line + "\n")
-            team.say(line)
+                validate(run, sets, log, args, team)
             validated = seconds
         if done:
+            scenes.close()
             return
-        inputs, target, maps = buffer.batch(run)
-        with torch.autocast(team.device.type, torch.bfloat16, enabled=args.bf16):
-            output = model(inputs)[:, 0]
-        loss = loss_of(args.experiment, output.float(), target)
-        run.model.zero_grad(set_to_none=True)
-        loss.backward()
-        mean = team.mean(loss.item())
-        if not mean < float("inf"):
-            raise SystemExit(f"loss is {mean} at step {run.step}; the last good checkpoint is in {args.out}")
-        rate = run.rate(args.lr)
-        run.advance(rate)
-        run.scenes = buffer.next
-        run.maps += maps * team.size
-        if log:
-            log.line(run.step, run.maps, clock.seconds(), rate, mean)
+        batch = {name: t.to(team.device) for name, t in next(scenes).items()}
+        rate = args.lr * min((run.step + 1) / WARM_UP, (1 + run.step / 1000) ** -0.5) * cooled(args, seconds)
+        run.prepare(rate)
+        losses.append(step(batch))
+        run.scenes = scenes.drawn
+        # A crop is a part of a map.
+        maps, rows, _ = batch["truth"].shape
+        run.maps += maps * rows / ROWS * team.size
+        if len(losses) == args.log_every:
+            mean = team.mean(finite(losses, run, args))
+            losses.clear()
+            if log:
+                log.line(run.step, run.maps, clock.seconds(), rate, mean)
 
 
 def main(args):
     torch.manual_seed(args.experiment)
     team = Team(args.threads)
-    os.makedirs(args.out, exist_ok=True)
+    folder_of(args)
     run = Run(args, team)
     options.refuse_untrained(args, run.maps)
     if args.export:
         sets = validation_scenes(args.experiment, args.validation, network="thesis")
-        settle(run.average, args.experiment)
-        report = figures(estimate_with(run.average), sets)
-        meta = {"network": "thesis", "recipe": f"experiment-{args.experiment}-small", "trainer": "training/train_thesis.py (PyTorch)",
+        settle(run.average, args.experiment, team.device)
+        report = figures(estimate_with(run.average, team.device), sets)
+        small = "" if args.filters == 64 else "-small"
+        meta = {"network": "thesis", "recipe": f"experiment-{args.experiment}{small}", "trainer": "training/train_thesis.py (PyTorch)",
                 "seed": str(args.experiment), "steps": str(run.step), **provenance.metadata(run.parts)}
         export({k: v for k, v in run.average.state_dict().items() if not k.endswith("num_batches_tracked")},
                args.export, meta, report, args.validation)

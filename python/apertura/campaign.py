@@ -19,6 +19,7 @@ from typing import Any, Callable, Iterator, Sequence
 
 from . import _apertura
 from ._journal import Journal, Key, sorted_rows, write_table
+from .layouts import layout
 
 #: Scenes of a task: each task asks every method once more than it has rows, untimed.
 SCENES_A_TASK = 16
@@ -48,6 +49,8 @@ class Run:
     elements: tuple[float, float, float] | None = None
     #: What outputs are held against: "measured", "ideal" or "calibrated".
     target: str = "measured"
+    #: Numbers of the elements that methods hear in place of the two ends.
+    layout: tuple[int, ...] | None = None
 
     def keys(self) -> Iterator[Key]:
         """Every row, in the order of the table."""
@@ -57,7 +60,7 @@ class Run:
         """For the first line of a journal."""
         version = _apertura.__version__
         fields = {name: list(value) if isinstance(value, tuple) else value for name, value in vars(self).items()}
-        usual = {"radar": None, "elements": None, "target": "measured"}
+        usual = {"radar": None, "elements": None, "target": "measured", "layout": None}
         # Journals of earlier editions have none of these.
         fields = {name: value for name, value in fields.items() if name not in usual or value != usual[name]}
         if self.radar is not None:
@@ -80,6 +83,7 @@ class Run:
             radar=self.radar,
             elements=self.elements,
             target=self.target,
+            layout=self.layout,
             only=list(only),
             on_row=on_row,
         )
@@ -276,6 +280,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--radar", type=Path, metavar="FILE", help="a .toml with a table [radar], such as a scene [default: table 3.1]")
     parser.add_argument("--elements", type=float, nargs=3, metavar=("DB", "DEGREES", "MM"), help="elements that are off: standard deviations")
     parser.add_argument("--target", default="measured", choices=("measured", "ideal", "calibrated"), help="what outputs are held against")
+    parser.add_argument("--layout", help="elements that methods hear in place of the two ends, as apertura.layout names them, such as nested=12x78")
     parser.add_argument("--normalisation", default="min-max", help="min-max or db=RANGE")
     parser.add_argument("--out", type=Path, required=True, help="the table to write: .csv or .parquet")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask cluster, such as tcp://host:8786; workers on this machine where none is given")
@@ -287,6 +292,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         methods = given.methods or tuple(own)
         if not methods:
             parser.error("--methods or --method-command is needed")
+        radar = _apertura.Radar.load(given.radar) if given.radar else None
         run = Run(
             methods,
             given.sets,
@@ -295,9 +301,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
             given.floor,
             given.normalisation,
             tuple(given.method_command),
-            _apertura.Radar.load(given.radar) if given.radar else None,
+            radar,
             tuple(given.elements) if given.elements else None,
             given.target,
+            tuple(layout(given.layout, radar)) if given.layout else None,
         )
         rows = campaign(run, given.out, scheduler=given.scheduler, workers=given.workers, progress_seconds=given.progress)
     except (ValueError, OSError, ImportError) as error:

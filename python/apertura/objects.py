@@ -174,7 +174,7 @@ class Elements:
         seed: int = 0,
         radar: Radar | None = None,
     ) -> Elements:
-        """Elements drawn with these standard deviations; the same seed builds the same.
+        """Elements drawn with these standard deviations; the same seed builds the same. Pairs of antennas share what their common antenna is off by.
 
         Raises:
             ValueError: A number can't be used.

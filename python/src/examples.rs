@@ -220,9 +220,7 @@ fn arrays_of(elements: Option<(f64, f64, f64, f64)>) -> PyResult<Arrays> {
     let usable = [gain, phase_degrees, position_millimetres].iter().all(|v| (0.0..=MAX_TOLERANCE).contains(v));
     if !usable || !(0.0..=1.0).contains(&share) {
         let found = format!("elements is ({share}, {gain}, {phase_degrees}, {position_millimetres})");
-        return Err(value(format!(
-            "{found}; expected a share of 0 to 1 and three tolerances of 0 to {MAX_TOLERANCE}"
-        )));
+        return Err(value(format!("{found}; expected a share of 0 to 1 and three tolerances of 0 to {MAX_TOLERANCE}")));
     }
     Ok(Arrays { share, tolerances })
 }

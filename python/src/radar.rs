@@ -3,10 +3,10 @@
 use crate::arrays::owned;
 use crate::budget::{LinkBudget, budget_of, link_figures};
 use crate::errors::{scene_file, system, value};
-use crate::radar_fields::{antennas_of, carrier_name, carrier_of, convention_of, fields_of, window_of};
+use crate::radar_fields::{antennas_of, carrier_name, carrier_of, fields_of, replaced, text_of, usual_of, window_of};
 use apertura::files::read_bounded;
-use apertura::radar;
 use apertura::radar::presets::{ALL, RadarPreset};
+use apertura::radar::{self, Antennas};
 use apertura::scene;
 use apertura::scene::file::{MAX_FILE_BYTES, SceneFile, radar_of};
 use ndarray::Array1;
@@ -46,6 +46,19 @@ use std::path::PathBuf;
 #[derive(Clone, PartialEq)]
 pub struct Radar(pub radar::Radar);
 
+/// float64 of one axis.
+type Numbers<'py> = Bound<'py, PyArray1<f64>>;
+
+fn each(py: Python<'_>, count: usize, of: impl Fn(usize) -> f64) -> Numbers<'_> {
+    owned(py, (0..count).map(of).collect::<Array1<f64>>())
+}
+
+impl Radar {
+    fn of_antennas<'py>(&self, py: Python<'py>, of: fn(&Antennas) -> &[f64]) -> Option<Numbers<'py>> {
+        self.0.antennas.as_ref().map(|antennas| owned(py, Array1::from(of(antennas).to_vec())))
+    }
+}
+
 /// The radar given, or that of table 3.1.
 pub fn or_default(radar: Option<&Radar>) -> radar::Radar {
     radar.map(|r| r.0.clone()).unwrap_or_default()
@@ -80,20 +93,7 @@ impl Radar {
         chirp_interval_seconds: Option<f64>,
         budget: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let usual = match convention.map(convention_of).transpose()? {
-            None => radar::Radar::default(),
-            Some(convention) => {
-                if carrier.map(carrier_of).transpose()?.is_some_and(|c| c != convention.carrier()) {
-                    let expected = carrier_name(convention.carrier());
-                    let said = convention.name();
-                    return Err(value(format!("carrier is another than that of the {said} convention, {expected}")));
-                }
-                let usual = radar::Radar::default();
-                let carrier_hz = carrier_hz.unwrap_or(usual.carrier_hz);
-                let bandwidth_hz = bandwidth_hz.unwrap_or(usual.bandwidth_hz);
-                radar::Radar { carrier_hz, bandwidth_hz, ..usual }.in_convention(convention)
-            }
-        };
+        let usual = usual_of(convention, carrier, carrier_hz, bandwidth_hz)?;
         let radar = radar::Radar {
             transmit_power_watts: transmit_power_watts.unwrap_or(usual.transmit_power_watts),
             bandwidth_hz: bandwidth_hz.unwrap_or(usual.bandwidth_hz),
@@ -175,24 +175,7 @@ impl Radar {
     /// The same radar with other fields, named as in the constructor. A convention brings its carrier and its spacing with it.
     #[pyo3(signature = (**fields))]
     fn replace<'py>(&self, py: Python<'py>, fields: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        let all = fields_of(&self.0, py)?;
-        if let Some(fields) = fields {
-            let is_said = |key: &str| Ok::<_, PyErr>(fields.get_item(key)?.is_some_and(|v| !v.is_none()));
-            if is_said("convention")? {
-                all.del_item("carrier")?;
-                if self.0.is_monostatic() {
-                    all.del_item("element_spacing_metres")?;
-                }
-            }
-            if is_said("transmitter_x_metres")? || is_said("receiver_x_metres")? {
-                for key in ["elements", "element_spacing_metres", "transmitter_y_metres", "receiver_y_metres"] {
-                    if all.contains(key)? {
-                        all.del_item(key)?;
-                    }
-                }
-            }
-            all.update(fields.as_mapping())?;
-        }
+        let all = replaced(&self.0, py, fields)?;
         PyType::new::<Radar>(py).call((), Some(&all))
     }
 
@@ -288,28 +271,28 @@ impl Radar {
 
     /// Places of the transmitters in metres, float64 `[transmitters]`; None where every element sends and hears by itself.
     #[getter]
-    fn transmitter_x_metres<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.0.antennas.as_ref().map(|a| owned(py, Array1::from(a.transmitter_x_metres().to_vec())))
+    fn transmitter_x_metres<'py>(&self, py: Python<'py>) -> Option<Numbers<'py>> {
+        self.of_antennas(py, Antennas::transmitter_x_metres)
     }
 
     /// Places of the receivers in metres, float64 `[receivers]`; None where every element sends and hears by itself.
     #[getter]
-    fn receiver_x_metres<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.0.antennas.as_ref().map(|a| owned(py, Array1::from(a.receiver_x_metres().to_vec())))
+    fn receiver_x_metres<'py>(&self, py: Python<'py>) -> Option<Numbers<'py>> {
+        self.of_antennas(py, Antennas::receiver_x_metres)
     }
 
     /// How far each transmitter stands off the array's line, towards the scene, metres, float64 `[transmitters]`; None where every element
     /// sends and hears by itself.
     #[getter]
-    fn transmitter_y_metres<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.0.antennas.as_ref().map(|a| owned(py, Array1::from(a.transmitter_y_metres().to_vec())))
+    fn transmitter_y_metres<'py>(&self, py: Python<'py>) -> Option<Numbers<'py>> {
+        self.of_antennas(py, Antennas::transmitter_y_metres)
     }
 
     /// How far each receiver stands off the array's line, towards the scene, metres, float64 `[receivers]`; None where every element sends and
     /// hears by itself.
     #[getter]
-    fn receiver_y_metres<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.0.antennas.as_ref().map(|a| owned(py, Array1::from(a.receiver_y_metres().to_vec())))
+    fn receiver_y_metres<'py>(&self, py: Python<'py>) -> Option<Numbers<'py>> {
+        self.of_antennas(py, Antennas::receiver_y_metres)
     }
 
     /// Whether maps focus elements that stand off the array's line.
@@ -344,9 +327,8 @@ impl Radar {
 
     /// Radial velocities of the columns of a range-Doppler map, away from the radar positive, float64 `[chirps]`.
     #[getter]
-    fn velocity_metres_per_second<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let of = |column: usize| self.0.velocity_of_column_metres_per_second(column as f64);
-        owned(py, (0..self.0.chirps).map(of).collect::<Array1<f64>>())
+    fn velocity_metres_per_second<'py>(&self, py: Python<'py>) -> Numbers<'py> {
+        each(py, self.0.chirps, |column| self.0.velocity_of_column_metres_per_second(column as f64))
     }
 
     /// Wavelength of the carrier in metres.
@@ -375,14 +357,14 @@ impl Radar {
 
     /// Positions of the elements on the x axis in metres, float64 `[elements]`.
     #[getter]
-    fn element_x_metres<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        owned(py, (0..self.0.elements).map(|n| self.0.element_x_metres(n)).collect::<Array1<f64>>())
+    fn element_x_metres<'py>(&self, py: Python<'py>) -> Numbers<'py> {
+        each(py, self.0.elements, |n| self.0.element_x_metres(n))
     }
 
     /// Ranges of the bins of a map in metres, float64 `[samples]`.
     #[getter]
-    fn range_metres<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        owned(py, (0..self.0.samples).map(|bin| self.0.range_of_bin_metres(bin as f64)).collect::<Array1<f64>>())
+    fn range_metres<'py>(&self, py: Python<'py>) -> Numbers<'py> {
+        each(py, self.0.samples, |bin| self.0.range_of_bin_metres(bin as f64))
     }
 
     /// Cosines, from the array's axis, of the columns of a map, float64 `[elements]`.
@@ -392,8 +374,8 @@ impl Radar {
     /// `Y = numpy.fft.fftshift(numpy.fft.fft(numpy.fft.fft(Z * H, axis=1) * E[:, None], axis=0), axes=0).T`, each transform over the root of its
     /// length; `Maps.complex` is it.
     #[getter]
-    fn cos_theta<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        owned(py, (0..self.0.elements).map(|column| self.0.cos_of_column(column as f64)).collect::<Array1<f64>>())
+    fn cos_theta<'py>(&self, py: Python<'py>) -> Numbers<'py> {
+        each(py, self.0.elements, |column| self.0.cos_of_column(column as f64))
     }
 
     /// Numbers of the columns of a map from left to right, int64 `[elements]`: cos(theta) rises along `map[:, radar.rising_columns]`. The same brings
@@ -417,14 +399,7 @@ impl Radar {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let usual = fields_of(&radar::Radar::default(), py)?;
-        let mut parts = Vec::new();
-        for (key, own) in fields_of(&self.0, py)? {
-            if !own.eq(usual.get_item(&key)?)? {
-                parts.push(format!("{key}={}", own.repr()?));
-            }
-        }
-        Ok(format!("Radar({})", parts.join(", ")))
+        text_of(&self.0, py)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyDict>,))> {

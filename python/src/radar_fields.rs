@@ -24,7 +24,7 @@ pub fn carrier_name(carrier: Carrier) -> &'static str {
 }
 
 /// A convention by its name.
-pub fn convention_of(name: &str) -> PyResult<Convention> {
+fn convention_of(name: &str) -> PyResult<Convention> {
     Convention::by_name(name).ok_or_else(|| value(format!("convention is \"{name}\"; expected thesis or physical")))
 }
 
@@ -90,4 +90,62 @@ pub fn fields_of<'py>(radar: &radar::Radar, py: Python<'py>) -> PyResult<Bound<'
     fields.set_item("carrier", carrier_name(radar.carrier))?;
     fields.set_item("window", radar.window.name())?;
     Ok(fields)
+}
+
+/// The fields that a radar has where none is named, in a convention if one is.
+pub fn usual_of(
+    convention: Option<&str>,
+    carrier: Option<&str>,
+    carrier_hz: Option<f64>,
+    bandwidth_hz: Option<f64>,
+) -> PyResult<radar::Radar> {
+    let usual = radar::Radar::default();
+    let Some(convention) = convention.map(convention_of).transpose()? else { return Ok(usual) };
+    if carrier.map(carrier_of).transpose()?.is_some_and(|c| c != convention.carrier()) {
+        let expected = carrier_name(convention.carrier());
+        let said = convention.name();
+        return Err(value(format!("carrier is another than that of the {said} convention, {expected}")));
+    }
+    let carrier_hz = carrier_hz.unwrap_or(usual.carrier_hz);
+    let bandwidth_hz = bandwidth_hz.unwrap_or(usual.bandwidth_hz);
+    Ok(radar::Radar { carrier_hz, bandwidth_hz, ..usual }.in_convention(convention))
+}
+
+/// The constructor's arguments for `radar` with other `fields`.
+pub fn replaced<'py>(
+    radar: &radar::Radar,
+    py: Python<'py>,
+    fields: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let all = fields_of(radar, py)?;
+    if let Some(fields) = fields {
+        let is_said = |key: &str| Ok::<_, PyErr>(fields.get_item(key)?.is_some_and(|v| !v.is_none()));
+        if is_said("convention")? {
+            all.del_item("carrier")?;
+            if radar.is_monostatic() {
+                all.del_item("element_spacing_metres")?;
+            }
+        }
+        if is_said("transmitter_x_metres")? || is_said("receiver_x_metres")? {
+            for key in ["elements", "element_spacing_metres", "transmitter_y_metres", "receiver_y_metres"] {
+                if all.contains(key)? {
+                    all.del_item(key)?;
+                }
+            }
+        }
+        all.update(fields.as_mapping())?;
+    }
+    Ok(all)
+}
+
+/// `Radar(...)` with the fields that differ from table 3.1.
+pub fn text_of(radar: &radar::Radar, py: Python<'_>) -> PyResult<String> {
+    let usual = fields_of(&radar::Radar::default(), py)?;
+    let mut parts = Vec::new();
+    for (key, own) in fields_of(radar, py)? {
+        if !own.eq(usual.get_item(&key)?)? {
+            parts.push(format!("{key}={}", own.repr()?));
+        }
+    }
+    Ok(format!("Radar({})", parts.join(", ")))
 }

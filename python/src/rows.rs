@@ -23,7 +23,8 @@ use std::path::PathBuf;
 pub fn write_rows_to(py: Python<'_>, path: PathBuf, rows: Vec<Bound<'_, PyDict>>) -> PyResult<()> {
     let rows = rows_of(py, &rows)?;
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet")) {
-        let told = format!("{}: rows are written as CSV; expected a name that does not end in .parquet", path.display());
+        let told =
+            format!("{}: rows are written as CSV; expected a name that does not end in .parquet", path.display());
         return Err(value(told));
     }
     write_atomically(&path, |out| write_rows(out, &rows)).map_err(|e| system(&e, format!("{}: {e}", path.display())))

@@ -113,6 +113,14 @@ def test_a_campaign_that_is_killed_goes_on(tmp_path):
     assert figures(ap.read_rows(tmp_path / "rows.csv")) == expected(12)
 
 
+def test_a_campaign_hears_a_layout():
+    radar = ap.Radar(elements=86, end_elements=8, samples=128)
+    run = campaign.Run(("matched-filter",), ("2",), 1, radar=radar, layout=(0, 1, 9, 85))
+    [row] = campaign.rows_of(run, [*run.keys()])
+    assert row["layout"] == "0-1 9 85" and run.told()["layout"] == [0, 1, 9, 85]
+    assert "layout" not in campaign.Run(METHODS, SETS, 1).told()
+
+
 FAILS = """
 import numpy as np
 import apertura as ap

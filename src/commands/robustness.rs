@@ -17,7 +17,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Measure methods on arrays with element errors: gain, phase and place drawn for each element
+/// Measure methods on arrays with element errors: gain, phase and place drawn for each antenna
 ///
 /// Prints CSV, one line a method and scale: method, scale, gain_decibels, phase_degrees, position_millimetres (standard deviations),
 /// squared_error, squared_error_standard_error, detection, false_alarm. Maps are compared with that of the array without errors.

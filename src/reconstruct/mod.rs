@@ -26,6 +26,8 @@ mod grid;
 mod hearing;
 mod hybrid;
 mod judge;
+#[cfg(test)]
+mod layout_tests;
 mod noise;
 mod own_threshold;
 mod power;

@@ -317,13 +317,7 @@ pub(crate) fn unit_gain(ends: &TwoEnds) -> Option<(TwoEnds, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::maps::focus::map_of;
-    use crate::maps::{Aperture, Normalisation};
-    use crate::radar::BuiltArray;
-    use crate::reconstruct::{Baseline, Fista, IAA, Omp, SBL};
-    use crate::scene::{Reflector, Scene};
-    use crate::signal::{BeatSignal, Floor, simulate};
-    use ndarray::{Axis, Zip};
+    use crate::scene::Reflector;
 
     /// Answers one reflector as strong as the strongest sample.
     struct Echo;
@@ -361,51 +355,5 @@ mod tests {
         assert_eq!(error.unwrap_err().to_string(), "echo: too many samples");
         request.task.cancel();
         assert_eq!(Echo.reconstruct(&radar, &ends, &request), Err(ReconstructError::Cancelled));
-    }
-
-    /// What `method` makes of a point that the elements of `layout` heard: squared error, and P_D at its threshold.
-    fn of_layout(method: &dyn Reconstructor, radar: &Radar, layout: &[usize]) -> Result<(f64, f64), ReconstructError> {
-        let scene = Scene::of_points([(2.0, 6.0), (-3.0, 4.0)]);
-        let signal = simulate(radar, &scene, Floor::Thesis, 0).unwrap();
-        let heard = LayoutSamples { layout: layout.to_vec(), samples: signal.samples.select(Axis(0), layout) };
-        let request = Request { heard: Some(Arc::new(heard)), ..Request::default() };
-        let found = method.reconstruct(radar, &BeatSignal::silence(radar).two_ends(radar), &request)?;
-        let target = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full).log_magnitude();
-        let target = target.normalise(Normalisation::MinMax).lambda;
-        let squares =
-            Zip::from(&target).and(&found.lambda.lambda).fold(0.0, |sum, t, o| sum + f64::from(t - o).powi(2));
-        let eta = method.eta_of(&found);
-        let bright = target.iter().zip(&found.lambda.lambda).filter(|(t, _)| **t > 0.9);
-        let (seen, all) = bright.fold((0u32, 0u32), |(seen, all), (_, o)| (seen + u32::from(*o > eta), all + 1));
-        Ok((squares, f64::from(seen) / f64::from(all)))
-    }
-
-    #[test]
-    fn methods_that_bear_gaps_hear_any_layout() {
-        for elements in [64, 65] {
-            let radar = Radar { elements, end_elements: 12, samples: 128, ..Radar::default() };
-            // 65 elements have one in their middle.
-            let nested = [0, 1, 2, 3, 4, 5, 6, 13, 20, 27, 32, 34, 41, 48, 55];
-            let random = [0, 1, 3, 5, 11, 15, 17, 28, 34, 40, 44, 49, 57, 63];
-            for method in [&IAA as &dyn Reconstructor, &SBL, &Omp::default(), &Fista::default()] {
-                for layout in [&nested[..], &random] {
-                    let (error, detection) = of_layout(method, &radar, layout).unwrap();
-                    assert!(error < 300.0 && detection > 0.95, "{}, {elements}: {error}, {detection}", method.name());
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn layouts_that_a_method_cannot_hear_are_refused() {
-        let radar = Radar { elements: 64, end_elements: 12, samples: 128, ..Radar::default() };
-        let told =
-            |method: &dyn Reconstructor, layout: &[usize]| of_layout(method, &radar, layout).unwrap_err().to_string();
-        assert!(told(&Baseline, &[0, 63]).contains("it hears the two ends of an array"));
-        assert!(told(&IAA, &[0, 1, 5]).contains("no element of the last half heard anything"));
-        let wide = Radar { elements: 256, ..radar.clone() };
-        let every: Vec<usize> = (0..128).map(|n| 2 * n).collect();
-        let told = of_layout(&IAA, &wide, &every).unwrap_err().to_string();
-        assert!(told.contains("at most 96 elements, and 128 are heard"), "{told}");
     }
 }

@@ -96,7 +96,7 @@ impl Kind {
         if name.trim() == WORLD {
             return Ok(Kind::World);
         }
-        match name.parse()? {
+        match name.parse::<Kind>().map_err(|error| format!("{error}, or {WORLD}"))? {
             Kind::Beyond(kind) => Err(format!("{} makes scenes for tests alone; expected another kind", kind.name())),
             kind => Ok(kind),
         }
@@ -262,6 +262,7 @@ mod tests {
             "world".parse::<Kind>().unwrap_err().contains("no scenes for tests")
                 && !Kind::all().any(|k| k == Kind::World)
         );
+        assert!(Kind::for_training("hills").unwrap_err().ends_with("noise, or world"));
         assert!(Kind::for_training("beyond-ring").unwrap_err().contains("tests alone"));
         let error = "wall".parse::<Kind>().unwrap_err();
         assert!(error.contains("\"wall\"") && error.contains("walls, spacings"), "{error}");
