@@ -354,7 +354,7 @@ mod tests {
         let read = of(RADAR_ENTRY, serde_json::to_string(&radar).unwrap()).unwrap();
         // JSON may round the last bit of a number.
         assert!(read.holds(&radar) && !read.holds(&Radar::default()), "{read:?}");
-        let limits = Domain::Limits(crate::network::live::radars::DRAWN);
+        let limits = Domain::Limits(crate::network::live::radars::DRAWN_LIMITS);
         assert_eq!(of(DOMAIN_ENTRY, serde_json::to_string(&limits).unwrap()).unwrap(), limits);
         for (entry, what) in [(RADAR_ENTRY, "no radar"), (DOMAIN_ENTRY, "no domain of radars")] {
             let told = of(entry, "{\"elements\": \"many\"}".into()).unwrap_err().to_string();

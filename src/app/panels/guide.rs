@@ -92,7 +92,7 @@ const CHAPTERS: &[&[Step]] = &[
         Step { label: "live: missed", commands: || failure("live-missed", "live") },
         Step { label: "live: merged", commands: || failure("live-merged", "live") },
         Step { label: "live: ghost", commands: || failure("live-ghost", "live") },
-        Step { label: "live: wrong tooth", commands: || failure("wrong-tooth", "live") },
+        Step { label: "live: wrong tooth", commands: || failure("live-wrong-tooth", "live") },
         Step { label: "hybrid: merged", commands: || failure("hybrid-merged", "hybrid") },
         Step { label: "thesis: missed", commands: || failure("thesis-missed", "thesis") },
         Step { label: "thesis: merged", commands: || failure("thesis-merged", "thesis") },

@@ -3,7 +3,7 @@
 use super::arrays::Arrays;
 use super::constants::turn_rows;
 use super::features::{FeatureExtractor, LiveInput};
-use super::radars::{DRAWN, Radars};
+use super::radars::{DRAWN_LIMITS, Radars};
 use crate::evaluate::Target;
 use crate::evaluate::sets::SceneSet;
 use crate::maps::focus::map_of;
@@ -178,7 +178,7 @@ impl Examples {
         let extractor = match (&request.radars, request.features) {
             (Radars::Random, _) | (_, Features::No) => None,
             (Radars::Fixed(radar), Features::Needed) => Some(FeatureExtractor::new(radar)?),
-            (Radars::Fixed(radar), Features::WherePossible) if !DRAWN.has_shape(radar) => None,
+            (Radars::Fixed(radar), Features::WherePossible) if !DRAWN_LIMITS.has_shape(radar) => None,
             (Radars::Fixed(radar), Features::WherePossible) => Some(FeatureExtractor::new(radar)?),
         };
         if extractor.is_none() && matches!(request.radars, Radars::Fixed(_)) {

@@ -34,9 +34,10 @@ pub(super) fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f
 #[test]
 fn scenes_of_all_sets_are_reconstructed_to_the_floor() {
     let radar = Radar::default();
-    let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 7);
+    let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 0);
     for kind in Kind::TEST_SETS {
-        let scene = generator.scene(kind, 1);
+        // That of set 3 has two walls which begin with reflectors that are heard alone.
+        let scene = generator.scene(kind, 8113);
         let target = target_of(&radar, &scene, 0);
         let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
         assert_eq!(found.reflectors.len(), scene.reflector_count(), "{kind:?}");

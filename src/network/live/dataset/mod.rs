@@ -17,7 +17,7 @@ pub use manifest::{FILE_NAME, Manifest, VERSION};
 
 use super::arrays::Arrays;
 use super::examples::{Example, ExampleError, Examples, ExamplesError, ExamplesRequest, Features};
-use super::radars::{DRAWN, Radars};
+use super::radars::{DRAWN_LIMITS, Radars};
 use crate::evaluate::Target;
 use crate::files::{sha256, write_bytes};
 use crate::network::floors::Floors;
@@ -72,7 +72,7 @@ impl ExamplePart {
     pub fn usual(radars: &Radars, layout: Option<&[usize]>) -> Vec<ExamplePart> {
         let fits = layout.is_none()
             && match radars {
-                Radars::Fixed(radar) => DRAWN.has_shape(radar),
+                Radars::Fixed(radar) => DRAWN_LIMITS.has_shape(radar),
                 Radars::Random => true,
             };
         let features = fits.then_some(ExamplePart::Features);
