@@ -125,12 +125,6 @@ pub struct Radar {
     pub budget: Option<LinkBudget>,
 }
 
-impl Default for Radar {
-    fn default() -> Self {
-        presets::TABLE_3_1
-    }
-}
-
 /// What is wrong with a [`Radar`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.

@@ -20,7 +20,7 @@ const fn half_wavelength_metres(carrier_hz: f64) -> f64 {
     SPEED_OF_LIGHT / carrier_hz / 2.0
 }
 
-pub(super) const TABLE_3_1: Radar = Radar {
+const TABLE_3_1: Radar = Radar {
     antennas: None,
     focus_off_line: false,
     budget: None,
@@ -37,6 +37,12 @@ pub(super) const TABLE_3_1: Radar = Radar {
     chirps: 1,
     chirp_interval_seconds: CHIRP_SECONDS,
 };
+
+impl Default for Radar {
+    fn default() -> Self {
+        TABLE_3_1
+    }
+}
 
 /// Every preset, table 3.1 first.
 pub static ALL: LazyLock<Vec<RadarPreset>> =
