@@ -25,7 +25,8 @@ pub fn of_map(state: &State, kind: MapKind) -> Option<String> {
 
 fn text(kind: MapKind, radar: &Radar, method: &str) -> String {
     let [first, last] = End::BOTH.map(|end| radar.end_range(end).len());
-    let (all, ends) = (radar.elements, first + last);
+    // The middle one of three elements is of both ends.
+    let (all, ends) = (radar.elements, radar.elements.min(first + last));
     match kind {
         MapKind::Input0 => format!("Input 0: the first {first} elements"),
         MapKind::Input1 => format!("Input 1: the last {last} elements"),

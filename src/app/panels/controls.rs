@@ -10,6 +10,7 @@ use crate::app::content::{Content, Cx, Nothing, offered};
 pub use false_alarms::{FalseAlarmsMemory, Search};
 
 use crate::app::jobs::{Refusal, Scores};
+use crate::app::panels::map;
 use crate::app::state::{Command, MethodSlot, Settings, Units, ViewCommand, WorkCommand};
 use crate::app::widgets::levels::{level, with_unit};
 use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
@@ -63,6 +64,8 @@ pub struct Run<'a> {
     pub output: Option<(&'static str, Duration)>,
     /// Figures of that output against the target of the same scene.
     pub scores: Option<Scores>,
+    /// How many echoes that output has of a recording.
+    pub echoes: Option<String>,
     /// Whether that scene is an earlier one.
     pub outdated: bool,
     /// Whether a panel shows an output, or would if there were one.
@@ -87,7 +90,8 @@ impl Content for ControlsPanel {
             refusal: pipeline.method(MethodSlot::First).refusal(),
             output: pipeline.output().map(|o| (o.method, o.took)),
             // How many blobs there are answers many a question.
-            scores: pipeline.scores_in(MethodSlot::First).filter(|_| !state.is_predicting()),
+            scores: map::scores(state, jobs, MethodSlot::First),
+            echoes: map::echoes_found(state, jobs, MethodSlot::First),
             outdated: pipeline.output_is_outdated(),
             wanted: pipeline.maps.wants_ends(),
             detector_error: pipeline.detector_error(),
@@ -241,6 +245,9 @@ fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut V
             ui.weak("Show an output panel to reconstruct.");
         }
     });
+    if let Some(echoes) = &run.echoes {
+        ui.label(echoes).on_hover_text("The panel Found has their places, levels and how much each is needed");
+    }
     let Some(scores) = run.scores else { return };
     if scores.output_blobs == 0 {
         ui.weak(format!("Nothing is detected. {}: {}.", method.name(), method.description()));

@@ -29,7 +29,9 @@ pub use hatch::ToldApart;
 pub use input::Input;
 pub use kinds::Kinds;
 pub use theory::Theory;
-pub use told::{MapMemory, MapPanel, caption_of, cells, is_updating, map_input, marks_of, verdict};
+pub use told::{
+    MapMemory, MapPanel, caption_of, cells, echoes_found, is_updating, map_input, marks_of, scores, verdict,
+};
 
 use crate::app::state::{Command, LessonCommand, MapKind, MapView, Projection, ViewCommand};
 use crate::app::widgets::axes;
