@@ -6,8 +6,8 @@ use eframe::egui::{Context, Event, Key, Modifiers, Popup, RawInput};
 
 /// Events of one frame that must wait for the next.
 ///
-/// A field takes what was typed when it is drawn, but Tab, Enter and a press of the mouse move the focus before anything is drawn: letters
-/// that come in one frame with them would land in another field, or nowhere.
+/// A field takes what was typed when it is drawn, but Tab, Enter, a press of the mouse and the palette's key move the focus before anything is
+/// drawn: letters that come in one frame with them would land in another field, or nowhere, or run commands.
 #[derive(Default)]
 pub struct Later(Vec<Event>);
 
@@ -17,6 +17,8 @@ impl Later {
         let mut events = std::mem::take(&mut self.0);
         events.append(&mut input.events);
         let moves = |e: &Event| match e {
+            // Ctrl+K and Ctrl+Shift+P open the palette, whose field takes the letters after them.
+            Event::Key { key: Key::K | Key::P, pressed, modifiers, .. } => *pressed && modifiers.command,
             Event::Key { key, pressed, .. } => *pressed && matches!(key, Key::Tab | Key::Enter),
             Event::PointerButton { pressed, .. } => *pressed,
             _ => false,
@@ -157,6 +159,16 @@ mod tests {
             vec![text("p")],
         ];
         assert_eq!(frames(fast), slow);
+    }
+
+    #[test]
+    fn letters_after_the_palettes_key_wait_for_the_palette() {
+        let modifiers = Modifiers::COMMAND;
+        let open = Event::Key { key: Key::K, physical_key: None, pressed: true, repeat: false, modifiers };
+        let letters = [press(Key::T), text("t")];
+        let typed = [vec![open.clone()], letters.to_vec()].concat();
+        assert_eq!(frames(typed), [vec![open.clone()], letters.to_vec()]);
+        assert_eq!(frames(vec![text("t"), open.clone()]), [vec![text("t")], vec![open]]);
     }
 
     #[test]
