@@ -341,7 +341,7 @@ fn counted(
     (Counts { samples: cut.samples, receivers, chirps, loops: loops as usize }, found.is_none())
 }
 
-/// After how many rows they are the same again but for a turn that is always the same, as of an echo that moves; nothing where no usual count is.
+/// Period of the rows: rows so far apart differ by one constant phase, which a moving echo turns. `None` where no usual count fits.
 fn period(cut: &Cut, numbers: &[Complex64]) -> Option<usize> {
     let rows = rows(numbers, cut.samples, cut.mixed);
     let mut centred = rows.slice(s![..rows.nrows().min(MOST_ROWS), ..]).to_owned();

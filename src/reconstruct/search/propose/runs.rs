@@ -17,8 +17,8 @@ const NEAR_BINS: f64 = 10.0;
 /// Range bins in a row that only something longer than a few reflectors fills.
 pub const LONG_RUN_BINS: usize = 18;
 
-/// The longest row of neighbouring range bins, at either end, in which `residual` (all samples of both ends, not windowed) stands out of noise of
-/// `noise_variance`, and is no more than 60 dB below the strongest when ranges are evened out.
+/// Length of the longest row of neighbouring range bins that hold an echo, at either end, in `residual` (all samples of both ends, not windowed). An echo
+/// stands out of noise of `noise_variance`, and lies at most 60 dB below the strongest when ranges are evened out.
 pub fn longest_run_bins(radar: &Radar, residual: &[Complex64], noise_variance: f64) -> usize {
     let ends = TwoEnds::of_flat(radar, residual);
     let weights = radar.window.weights(radar.samples);
