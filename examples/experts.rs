@@ -9,6 +9,7 @@ use apertura::maps::Normalisation;
 use apertura::methods;
 use apertura::radar::{Decibels, Radar, Tolerances};
 use apertura::reconstruct::Request;
+use apertura::reconstruct::search::CALIBRATION;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::scene::{Reflector, Scene};
 use apertura::signal::{Floor, simulate_built};
@@ -42,6 +43,9 @@ struct Arguments {
     /// Test scenes in place of validation scenes
     #[arg(long)]
     test: bool,
+    /// A row for each scene in place of their means
+    #[arg(long)]
+    scenes: bool,
     /// How many of the reflectors that nomp lists are there, by what it says of them, in place of errors
     #[arg(long)]
     confidence: bool,
@@ -68,8 +72,18 @@ fn main() -> Outcome {
         );
     } else {
         println!(
-            "{:24}{:>8}{:>8}{:>8}{:>7}{:>7}{:>16}{:>16}{:>9}",
-            "scenes", "live", "nomp", "hybrid", "ratio", "+-", "live P_D/P_FA", "hybrid", "largest"
+            "{:24}{:>8}{:>8}{:>8}{:>7}{:>7}{:>16}{:>16}{:>9}{:>9}{:>11}",
+            "scenes",
+            "live",
+            "nomp",
+            "hybrid",
+            "ratio",
+            "+-",
+            "live P_D/P_FA",
+            "hybrid",
+            "largest",
+            "time",
+            "calibrated"
         );
     }
     for &kind in &arguments.kinds {
@@ -81,7 +95,13 @@ fn main() -> Outcome {
             if arguments.confidence {
                 arguments.print_confidence(&name, kind, &answers);
             } else {
-                print_row(&name, &answers, arguments.largest(kind, &answers));
+                let rows: Vec<&[Vec<TimedAnswer>]> = match arguments.scenes {
+                    true => answers.chunks(1).collect(),
+                    false => vec![&answers],
+                };
+                for (first, rows) in (arguments.first..).zip(rows) {
+                    print_row(&name, rows, arguments.largest(kind, first, rows));
+                }
             }
         }
     }
@@ -122,12 +142,12 @@ impl Arguments {
     }
 
     /// The largest reflectivity that nomp lists, over the largest true one of its scene.
-    fn largest(&self, kind: Kind, answers: &[Vec<TimedAnswer>]) -> f64 {
+    fn largest(&self, kind: Kind, first: u32, answers: &[Vec<TimedAnswer>]) -> f64 {
         let most = |reflectors: &[Reflector]| reflectors.iter().map(|r| r.reflectivity.abs()).fold(0.0, f64::max);
         let of_scene = |(number, answer): (u32, &Vec<TimedAnswer>)| {
             most(&answer[1].found.reflectors) / most(&self.scene(kind, number).reflectors())
         };
-        (self.first..).zip(answers).map(of_scene).fold(0.0, f64::max)
+        (first..).zip(answers).map(of_scene).fold(0.0, f64::max)
     }
 
     fn scene(&self, kind: Kind, number: u32) -> Scene {
@@ -157,7 +177,8 @@ fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
     values.clone().sum::<f64>() / values.count().max(1) as f64
 }
 
-/// Means of all scenes, and the largest reflector; the ratio is that of hybrid to the better of both experts, with the standard error of their paired difference.
+/// Means of all scenes, the largest reflector, hybrid's time over live's, and the scenes in which gains of elements were found; the ratio is that of hybrid to the better of both experts, with the
+/// standard error of their paired difference.
 fn print_row(name: &str, answers: &[Vec<TimedAnswer>], largest: f64) {
     let error = |method: usize| answers.iter().map(move |a| a[method].metrics.squared_error);
     let [live, nomp, hybrid] = [0, 1, 2].map(|method| mean(error(method)));
@@ -173,11 +194,15 @@ fn print_row(name: &str, answers: &[Vec<TimedAnswer>], largest: f64) {
         format!("{:>9.2} /{:>5.2}", 100.0 * detected, 100.0 * alarms)
     };
     let best = live.min(nomp);
+    let [live_time, time] = [0, 2].map(|method: usize| mean(answers.iter().map(|a| a[method].milliseconds)));
+    let is_calibrated = |a: &&Vec<TimedAnswer>| a[1].found.trace.iter().any(|attempt| attempt.rung == CALIBRATION);
+    let calibrated = answers.iter().filter(is_calibrated).count();
     println!(
-        "{name:24}{live:>8.0}{nomp:>8.0}{hybrid:>8.0}{:>7.2}{:>7.2}{}{}{largest:>9.2}",
+        "{name:24}{live:>8.0}{nomp:>8.0}{hybrid:>8.0}{:>7.2}{:>7.2}{}{}{largest:>9.2}{:>9.2}{calibrated:>11}",
         hybrid / best,
         standard_error / best,
         rates(0),
-        rates(2)
+        rates(2),
+        time / live_time
     );
 }

@@ -5,7 +5,8 @@ use std::fmt;
 /// One attempt to explain the samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attempt {
-    /// Name of the rung of the ladder ([`LADDER`](super::search::LADDER)) that made it, or [`FOLLOWING`](super::search::FOLLOWING) where it began with the last answer.
+    /// Name of the rung of the ladder ([`LADDER`](super::search::LADDER)) that made it, [`FOLLOWING`](super::search::FOLLOWING) where it began with the last answer, or
+    /// [`CALIBRATION`](super::search::CALIBRATION) where elements were off.
     pub rung: &'static str,
     /// What was tried.
     pub tried: Tried,
@@ -36,6 +37,13 @@ pub enum Tried {
         /// How many they are.
         count: usize,
     },
+    /// Gains of the ends' elements.
+    Gains {
+        /// Root of the mean square of their differences from their mean, decibels.
+        decibels: f64,
+        /// Root of the mean square of their phases, degrees.
+        degrees: f64,
+    },
     /// Several objects that are kept or refused together.
     Together {
         /// How many they are.
@@ -49,7 +57,7 @@ impl Tried {
         match *self {
             Tried::Point { at_metres } => Some(at_metres),
             Tried::Line { from_metres, .. } => Some(from_metres),
-            Tried::Nothing | Tried::Together { .. } => None,
+            Tried::Nothing | Tried::Gains { .. } | Tried::Together { .. } => None,
         }
     }
 }
@@ -119,6 +127,9 @@ impl fmt::Display for Tried {
             Tried::Nothing => write!(f, "nothing"),
             Tried::Point { .. } => write!(f, "point"),
             Tried::Line { count, .. } => write!(f, "line of {count}"),
+            Tried::Gains { decibels, degrees } => {
+                write!(f, "gains of elements off by {decibels:.2} dB and {degrees:.1}°")
+            }
             Tried::Together { count: 1 } => write!(f, "1 object"),
             Tried::Together { count } => write!(f, "{count} objects"),
         }

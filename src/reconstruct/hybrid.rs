@@ -46,6 +46,8 @@ impl Hybrid {
         if is_certain || found.atoms.is_empty() || self.network.check_array(radar).is_err() {
             return Ok(found.reconstruction(radar, request));
         }
+        let corrected = found.element_gains.as_ref().map(|gains| gains.taken_from(ends));
+        let ends = corrected.as_ref().unwrap_or(ends);
         // A dynamic range counts from the peak of the judged map, so the experts' maps are joined on a scale that cuts off nothing.
         let shown = Shown::of(request.normalisation);
         let whole = Request { normalisation: shown.whole, ..request.clone() };

@@ -31,6 +31,12 @@ impl Profile {
     pub fn at(&self, rows: &Rows) -> f64 {
         rows.iter().zip(&self.energy).map(|(rows, energy)| near(energy, rows).sum::<f64>()).sum()
     }
+
+    /// The same less noise of this energy a bin; at least 0.
+    pub fn over_noise(&self, rows: &Rows, noise_a_bin: f64) -> f64 {
+        let bins: usize = rows.iter().zip(&self.energy).map(|(rows, energy)| near(energy, rows).count()).sum();
+        (self.at(rows) - noise_a_bin * bins as f64).max(0.0)
+    }
 }
 
 /// Energy of each bin at and beside these rows of one end, none twice.

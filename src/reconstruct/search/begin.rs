@@ -7,7 +7,8 @@ use super::propose::strides::strides;
 use super::trace::decades;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Refusal;
-use crate::reconstruct::fit::{Atom, Fit, Profile, Spectra, rows_of};
+use crate::reconstruct::fit::{Atom, Fit, Profile, Rows, Spectra, rows_of};
+use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Rows that are held against the samples themselves, at each look.
@@ -46,7 +47,16 @@ fn is_long(radar: &Radar, wall: &Atom) -> bool {
 struct Left<'a> {
     fit: &'a Fit,
     profile: Profile,
+    /// Energy that noise gives to a range bin of an end.
+    noise_a_bin: f64,
     spectra: Spectra<'a>,
+}
+
+impl Left<'_> {
+    /// Energy in the range bins of a row, less that of the noise.
+    fn energy_at(&self, rows: &Rows) -> f64 {
+        self.profile.over_noise(rows, self.noise_a_bin).max(f64::MIN_POSITIVE)
+    }
 }
 
 /// The first reflectors of a wall.
@@ -63,7 +73,8 @@ impl Grower<'_> {
     pub fn next_wall(&self, fit: &Fit, points: &mut Vec<[f64; 2]>) -> Option<Fit> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let profile = Profile::new(self.radar, &flat);
-        let left = Left { fit, profile, spectra: Spectra::new(self.radar, self.bench, &fit.residual) };
+        let noise_a_bin = self.noise_a_bin(&flat);
+        let left = Left { fit, profile, noise_a_bin, spectra: Spectra::new(self.radar, self.bench, &fit.residual) };
         points.retain(|&[x_metres, y_metres]| {
             !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
         });
@@ -77,12 +88,19 @@ impl Grower<'_> {
         })
     }
 
+    /// Energy that the noise heard in `flat`, channel by channel, gives to a range bin of an end.
+    fn noise_a_bin(&self, flat: &[Complex64]) -> f64 {
+        let window = self.radar.window.weights(self.radar.samples).iter().map(|w| w * w).sum::<f64>();
+        let variance = self.bench.hearing.noise_variance(self.radar, flat);
+        variance * window * self.radar.end_elements as f64 / self.radar.samples as f64
+    }
+
     /// The row with the part that it explains, where it is, of the energy in its range bins.
     fn begun(&self, left: &Left, atom: Atom) -> Begun {
         let rows = rows_of(self.radar, &atom);
         let near = left.spectra.around(&rows, 0.0);
         let energy = near.energy - near.bench.solve_alone(&near.samples, atom).cost();
-        Begun { atom, part: energy / left.profile.at(&rows).max(f64::MIN_POSITIVE) }
+        Begun { atom, part: energy / left.energy_at(&rows) }
     }
 
     /// That of `rows` which explains the greatest part of what there is in its range bins.
@@ -97,7 +115,7 @@ impl Grower<'_> {
         let fit = left.fit;
         let best = self.best_begun(left, rows).filter(|row| row.part > LEAST_BEGUN)?;
         let wall = self.followed_to_its_ends(&fit.residual, best.atom);
-        let explained = (fit.cost() - wall.cost()) / left.profile.at(&rows_of(self.radar, &wall.atoms[0]));
+        let explained = (fit.cost() - wall.cost()) / left.energy_at(&rows_of(self.radar, &wall.atoms[0]));
         tracing::debug!(?best, explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
         let part = best.part.max(explained);
         if is_borne_out(self.radar, &wall.atoms[0], part) {

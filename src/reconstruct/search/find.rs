@@ -1,5 +1,6 @@
 //! The search from outside: samples of both ends in, objects out.
 
+use super::calibrate::{Calibration, asks_for_gains};
 use super::finish::{Found, finish};
 use super::ladder::climbed;
 use super::propose::peaks::Detector;
@@ -44,11 +45,38 @@ fn find_with(
     settings: &Settings,
 ) -> Result<Found, ReconstructError> {
     let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
+    let search = |previous: Option<&Found>, ends: &TwoEnds| found_in(previous, radar, ends, request, settings, scale);
+    // Gains of the elements outlast a moved object.
+    if let Some((previous, gains)) = previous.and_then(|previous| Some((previous, previous.element_gains.clone()?))) {
+        let found = search(Some(previous), &gains.taken_from(&ends))?;
+        if found.complete || found.left_by_search <= previous.left_by_search {
+            return Ok(Found { element_gains: Some(gains), ..found });
+        }
+    }
+    let plain = search(previous.filter(|p| p.element_gains.is_none()), &ends)?;
+    if !asks_for_gains(&plain) {
+        return Ok(plain);
+    }
+    let anew =
+        |ends: &TwoEnds, request: &Request, settings: &Settings| found_in(None, radar, ends, request, settings, scale);
+    let calibration = Calibration { search: &anew, radar, ends: &ends, request, settings, plain: &plain };
+    Ok(calibration.found()?.unwrap_or(plain))
+}
+
+/// The objects of `ends`, samples that were multiplied by `scale` to have a peak between 1 and 2, whose elements are alike.
+fn found_in(
+    previous: Option<&Found>,
+    radar: &Radar,
+    ends: &TwoEnds,
+    request: &Request,
+    settings: &Settings,
+    scale: f64,
+) -> Result<Found, ReconstructError> {
     let flat = ends.flat();
     let window = hann(radar.samples);
     let bench = Workbench::new(radar, &window, &request.task, settings.most_work)
         .hearing(&flat)
-        .over(Hearing::beneath(radar, &ends, request.noise));
+        .over(Hearing::beneath(radar, ends, request.noise));
     let samples = Samples::new(&bench.sensor, &flat);
     let detector = Detector::of(radar);
     let trace = Trace::default();

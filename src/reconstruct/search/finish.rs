@@ -1,5 +1,6 @@
 //! From a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
+use super::calibrate::ElementGains;
 use super::state::Answer;
 use crate::radar::{End, Radar};
 use crate::reconstruct::attempt::Attempt;
@@ -65,6 +66,8 @@ pub struct Found {
     pub left_when_drawn: Vec<Complex64>,
     /// Whether nothing stands out of the residual any more.
     pub complete: bool,
+    /// Gains of the elements, where the samples ask for them: the objects are those of samples without them.
+    pub element_gains: Option<ElementGains>,
     /// What the search tried, the first first; at most [`MOST_ATTEMPTS`](super::MOST_ATTEMPTS).
     pub trace: Vec<Attempt>,
 }
@@ -73,6 +76,13 @@ impl Found {
     /// Part of the samples' energy that is neither explained nor noise.
     pub fn energy_left(&self) -> f64 {
         (self.residual_variance - self.noise_variance).max(0.0) / self.sample_power.max(f64::MIN_POSITIVE)
+    }
+
+    /// Part of the samples' energy that the objects leave as they are drawn, less noise.
+    pub(super) fn drawn_left(&self) -> f64 {
+        let count = self.left_when_drawn.len().max(1) as f64;
+        let left = self.left_when_drawn.iter().map(Complex64::norm_sqr).sum::<f64>() / count;
+        (left - self.noise_variance).max(0.0) / self.sample_power.max(f64::MIN_POSITIVE)
     }
 
     /// What silence holds.
@@ -89,6 +99,7 @@ impl Found {
             needed_decades: Vec::new(),
             left_when_drawn: Vec::new(),
             complete: true,
+            element_gains: None,
             trace: Vec::new(),
         }
     }
@@ -138,6 +149,7 @@ pub(super) fn finish(
         gains: best.gains,
         scale,
         complete,
+        element_gains: None,
         trace: Vec::new(),
     })
 }

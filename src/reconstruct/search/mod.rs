@@ -23,12 +23,14 @@
 //! | `relax` | how many echoes a group of neighbours holds, where there is noise |
 //! | `settings` | bounds on time and memory |
 //! | `follow` | the answer from the last one, where little changed |
+//! | `calibrate` | gains of the elements, where the samples ask for them |
 //! | `finish` | one gain for both ends, reflectivities |
 //! | `explained` | which cells of the picture are explained |
 //! | `draw` | expected map of the objects found |
 //! | `over_noise` | mean of a log map's cells over noise |
 
 mod begin;
+mod calibrate;
 mod draw;
 mod explained;
 mod find;
@@ -57,6 +59,7 @@ mod wall_ends;
 mod walls;
 
 pub use super::fit::Atom;
+pub use calibrate::ElementGains;
 pub use draw::Expected;
 pub use find::{find, find_from};
 pub use finish::Found;
@@ -64,7 +67,7 @@ pub(super) use grow::Grower;
 pub use ladder::{LADDER, Rung};
 pub(super) use propose::peaks::Detector;
 pub use settings::Settings;
-pub use trace::{FOLLOWING, MOST_ATTEMPTS, ORDERING};
+pub use trace::{CALIBRATION, FOLLOWING, MOST_ATTEMPTS, ORDERING};
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;

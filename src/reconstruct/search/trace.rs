@@ -12,6 +12,9 @@ pub const FOLLOWING: &str = "last answer";
 /// The name that stands for a rung where echoes that noise hides from each other are counted anew.
 pub const ORDERING: &str = "count in noise";
 
+/// The name that stands for a rung where gains of the elements are estimated.
+pub const CALIBRATION: &str = "calibration";
+
 /// Decades from `before` to `after`; 0 where there is nothing to compare.
 pub fn decades(before: f64, after: f64) -> f64 {
     let decades = (before / after).log10();

@@ -1,0 +1,317 @@
+//! Gains of the ends' elements, estimated beside the objects: self-calibration.
+//!
+//! Elements that are off by some tenths of a decibel and some degrees leave a residual that no object explains. The search is told of loud noise
+//! first, so that it finds the strongest objects alone; each element's gain is fitted to them by least squares, and the noise that the search is told
+//! of falls, level by level. The gains are believed where they explain nearly all that was left without them.
+
+use super::finish::Found;
+use super::settings::Settings;
+use super::trace::{CALIBRATION, MOST_ATTEMPTS, decades};
+use crate::radar::{Radar, hann};
+use crate::reconstruct::attempt::{Attempt, Tried, Verdict};
+use crate::reconstruct::fit::{Atom, Gains, Limits, Samples, Tie, Workbench};
+use crate::reconstruct::hearing::range_energy;
+use crate::reconstruct::{NoisePrior, ReconstructError, Request};
+use crate::signal::TwoEnds;
+use num_complex::Complex64;
+
+/// Noise that the search is told of, as a part of the samples' power, level by level. After the first, an offset and a slope of phase are taken from
+/// each end's gains: while places are rough, both are a place of all objects, too.
+const NOISE_LEVELS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
+
+/// Part of a search's work that is granted to a level: what takes longer is no scene of a few objects.
+const WORK_SHARE: usize = 4;
+
+/// Turns of fitting the objects' gains and the elements' in a level.
+const TURNS: usize = 6;
+
+/// Part of the samples' energy that a level may leave, over the noise that it was told of.
+const MAX_LEFT_OVER_LEVEL: f64 = 3.0;
+
+/// Most turns of places, gains of objects and of elements after the last level, and the part that a turn must leave at most to be worth another.
+const LAST_TURNS: usize = 30;
+const WORTH_ANOTHER_TURN: f64 = 0.5;
+
+/// Part of the samples' energy that may be left where rounding alone lies beneath: more is an object, and its map would be that of a loud floor.
+const MAX_LEFT_OVER_ROUNDING: f64 = 1e-8;
+
+/// Noise that the last search is told of, over what the gains leave, as a ratio of powers.
+const LEFT_MARGIN: f64 = 3.0;
+
+/// Least gain of an object that elements are fitted to, as a part of the strongest.
+const MIN_GAIN_RATIO: f64 = 0.03;
+
+/// Price of an object's gain, as a part of its echo's energy.
+const OBJECT_RIDGE: f64 = 1e-4;
+
+/// Mean square of an element's error before anything is known of it: 0.3 dB and 3 degrees.
+const EXPECTED_SQUARE: f64 = 0.004;
+
+/// Gains that differ more from 1 in the mean square's root are no tolerances.
+const MAX_DEVIATION: f64 = 0.1;
+
+/// Part of the samples' energy that objects must leave for elements to be suspected: errors of a twentieth of the usual ones.
+const MIN_LEFT: f64 = 1e-5;
+
+/// Part of the samples' energy that calibrated objects may leave, and part of what is left without gains.
+const MAX_LEFT: f64 = 1e-2;
+const MAX_LEFT_RATIO: f64 = 0.1;
+
+/// Complex gains of the elements of both ends, those of the first end first; their geometric mean has the magnitude 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElementGains(Vec<Complex64>);
+
+impl ElementGains {
+    fn ones(radar: &Radar) -> Self {
+        ElementGains(vec![Complex64::ONE; 2 * radar.end_elements])
+    }
+
+    /// The gain of each element, those of the first end first.
+    pub fn values(&self) -> &[Complex64] {
+        &self.0
+    }
+
+    /// What `ends` would have been with elements that are alike.
+    pub fn taken_from(&self, ends: &TwoEnds) -> TwoEnds {
+        let mut corrected = ends.clone();
+        let channels = corrected.first.outer_iter_mut().chain(corrected.last.outer_iter_mut());
+        for (mut channel, gain) in channels.zip(&self.0) {
+            let inverse = gain.inv();
+            channel.mapv_inplace(|v| v * inverse);
+        }
+        corrected
+    }
+
+    /// Root of the mean square of the differences from 1.
+    fn deviation(&self) -> f64 {
+        (self.0.iter().map(|g| (g - 1.0).norm_sqr()).sum::<f64>() / self.0.len() as f64).sqrt()
+    }
+
+    /// How far they are off.
+    fn tried(&self) -> Tried {
+        let rms = |of: fn(&Complex64) -> f64| {
+            (self.0.iter().map(|g| of(g).powi(2)).sum::<f64>() / self.0.len() as f64).sqrt()
+        };
+        Tried::Gains { decibels: rms(|g| 20.0 * g.norm().log10()), degrees: rms(|g| g.arg().to_degrees()) }
+    }
+
+    /// The same but for a gain that all share and, where asked for, the phase's offset and slope along each end.
+    fn normalised(mut self, without_slope: bool) -> Self {
+        let mean_log = self.0.iter().map(|g| g.norm().ln()).sum::<f64>() / self.0.len() as f64;
+        let common = Complex64::from_polar(mean_log.exp(), self.0.iter().sum::<Complex64>().arg());
+        self.0.iter_mut().for_each(|g| *g /= common);
+        if without_slope {
+            let half = self.0.len() / 2;
+            self.0.chunks_mut(half).for_each(level);
+        }
+        self
+    }
+}
+
+/// Takes the line through an end's phases from them.
+fn level(gains: &mut [Complex64]) {
+    let n = gains.len() as f64;
+    let middle = (n - 1.0) / 2.0;
+    let offset = gains.iter().map(|g| g.arg()).sum::<f64>() / n;
+    let [along, square] = gains.iter().enumerate().fold([0.0; 2], |[along, square], (i, g)| {
+        let at = i as f64 - middle;
+        [along + at * g.arg(), square + at * at]
+    });
+    let slope = if square > 0.0 { along / square } else { 0.0 };
+    for (i, g) in gains.iter_mut().enumerate() {
+        *g *= Complex64::cis(-(offset + slope * (i as f64 - middle)));
+    }
+}
+
+/// Whether objects found in samples leave more than elements that are alike would.
+pub(super) fn asks_for_gains(plain: &Found) -> bool {
+    !plain.complete && !plain.atoms.is_empty() && plain.drawn_left() > MIN_LEFT
+}
+
+/// The objects in samples as if their elements were alike.
+///
+/// # Errors
+/// [`ReconstructError::Cancelled`].
+pub type SearchEnds<'a> = &'a dyn Fn(&TwoEnds, &Request, &Settings) -> Result<Found, ReconstructError>;
+
+/// What gains of elements are estimated from.
+pub(super) struct Calibration<'a> {
+    /// Searches without gains.
+    pub search: SearchEnds<'a>,
+    /// The radar.
+    pub radar: &'a Radar,
+    /// Samples of a peak between 1 and 2.
+    pub ends: &'a TwoEnds,
+    /// What was asked for.
+    pub request: &'a Request,
+    /// Limits of a search.
+    pub settings: &'a Settings,
+    /// What was found without gains.
+    pub plain: &'a Found,
+}
+
+/// Gains of the elements, and the part of the samples' energy that is left with them.
+struct Fitted {
+    gains: ElementGains,
+    left: f64,
+}
+
+impl Calibration<'_> {
+    /// The objects with gains of the elements, where these explain what is left without.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn found(&self) -> Result<Option<Found>, ReconstructError> {
+        let Some(Fitted { gains, left }) = self.fitted()? else { return Ok(None) };
+        tracing::debug!(left, deviation = gains.deviation(), "gains");
+        if gains.deviation() > MAX_DEVIATION {
+            return Ok(None);
+        }
+        let told = match self.request.noise.is_white() {
+            true => self.request.clone(),
+            false if left > MAX_LEFT_OVER_ROUNDING => return Ok(None),
+            false => self.over_noise(LEFT_MARGIN * left),
+        };
+        let found = (self.search)(&gains.taken_from(self.ends), &told, self.settings)?;
+        let (left, before) = (found.drawn_left(), self.plain.drawn_left());
+        tracing::debug!(left, before, deviation = gains.deviation(), complete = found.complete, "calibrated");
+        if left >= MAX_LEFT.min(MAX_LEFT_RATIO * before) {
+            return Ok(None);
+        }
+        let kept = Attempt {
+            rung: CALIBRATION,
+            tried: gains.tried(),
+            gain_decades: decades(before, left),
+            verdict: Verdict::Kept,
+            work: 0,
+        };
+        let trace = std::iter::once(kept).chain(found.trace).take(MOST_ATTEMPTS).collect();
+        Ok(Some(Found { element_gains: Some(gains), trace, ..found }))
+    }
+
+    /// The request with white noise of this part of the samples' power.
+    fn over_noise(&self, part: f64) -> Request {
+        let sigma = Some((part * self.plain.sample_power).sqrt());
+        Request { noise: NoisePrior::White { sigma }, ..self.request.clone() }
+    }
+
+    /// Gains of the elements after all levels; `None` where a level leaves much more than the noise that it was told of.
+    fn fitted(&self) -> Result<Option<Fitted>, ReconstructError> {
+        let &Calibration { radar, ends, request, plain, .. } = self;
+        let window = hann(radar.samples);
+        let bench = Workbench::new(radar, &window, &request.task, usize::MAX).hearing(&ends.flat());
+        let quick = Settings { most_work: self.settings.most_work / WORK_SHARE, ..*self.settings };
+        let noise = if request.noise.is_white() { plain.noise_variance / plain.sample_power } else { 0.0 };
+        let mut fitted = Fitted { gains: ElementGains::ones(radar), left: 1.0 };
+        let mut atoms = Vec::new();
+        for level in NOISE_LEVELS.iter().filter(|level| **level > noise) {
+            let found = (self.search)(&fitted.gains.taken_from(ends), &self.over_noise(*level), &quick)?;
+            atoms = strongest(&found);
+            for _ in 0..TURNS {
+                fitted = turned(radar, &bench, ends, &mut atoms, &fitted.gains, false);
+                fitted.gains = fitted.gains.normalised(*level == NOISE_LEVELS[0]);
+            }
+            if fitted.left > MAX_LEFT_OVER_LEVEL * level + noise {
+                return Ok(None);
+            }
+        }
+        for _ in 0..LAST_TURNS {
+            request.task.check()?;
+            let before = fitted.left;
+            fitted = turned(radar, &bench, ends, &mut atoms, &fitted.gains, true);
+            fitted.gains = fitted.gains.normalised(false);
+            if fitted.left > WORTH_ANOTHER_TURN * before {
+                break;
+            }
+        }
+        Ok((!atoms.is_empty()).then_some(fitted))
+    }
+}
+
+/// The objects of `found` whose gains are not much less than the strongest.
+fn strongest(found: &Found) -> Vec<Atom> {
+    let gain = |gains: &[Complex64; 2]| gains[0].norm().max(gains[1].norm());
+    let most = found.gains.iter().map(gain).fold(0.0, f64::max);
+    let is_strong = |gains: &[Complex64; 2]| gain(gains) >= MIN_GAIN_RATIO * most;
+    found.atoms.iter().zip(&found.gains).filter(|(_, gains)| is_strong(gains)).map(|(atom, _)| *atom).collect()
+}
+
+/// The gains that fit `atoms` best, whose own gains are fitted to samples with `gains` taken off, and their places where that is asked for.
+fn turned(
+    radar: &Radar,
+    bench: &Workbench,
+    ends: &TwoEnds,
+    atoms: &mut Vec<Atom>,
+    gains: &ElementGains,
+    moves: bool,
+) -> Fitted {
+    let corrected = gains.taken_from(ends).flat();
+    let samples = Samples::new(&bench.sensor, &corrected);
+    let fit = match moves {
+        false => bench.solve(&samples, atoms.clone(), Tie::Both, OBJECT_RIDGE),
+        true => bench.refine(&samples, atoms.clone(), vec![Gains::default(); atoms.len()], Tie::Both, Limits::ROUGH),
+    };
+    atoms.clone_from(&fit.atoms);
+    let residual = fit.residual.flat(&bench.sensor);
+    let drawn: Vec<Complex64> = corrected.iter().zip(&residual).map(|(c, r)| c - r).collect();
+    let price = fit.cost() / gains.0.len() as f64 / independent_bins(radar, &residual) / EXPECTED_SQUARE;
+    let raw = ends.flat();
+    let of_element = |(raw, drawn): (&[Complex64], &[Complex64])| {
+        let weighted = raw.iter().zip(drawn).zip(&bench.squared);
+        let (product, power) = weighted.fold((Complex64::ZERO, 0.0), |(product, power), ((d, m), w)| {
+            (product + m.conj() * d * w, power + m.norm_sqr() * w)
+        });
+        let gain = (product + price) / (power + price).max(f64::MIN_POSITIVE);
+        if gain.norm_sqr() > 0.0 { gain } else { Complex64::ONE }
+    };
+    let gains = raw.chunks(radar.samples).zip(drawn.chunks(radar.samples)).map(of_element).collect();
+    let all = bench.without(&samples, &[], &[]).energy.iter().sum::<f64>();
+    Fitted { gains: ElementGains(gains), left: fit.cost() / all.max(f64::MIN_POSITIVE) }
+}
+
+/// Range bins that a residual's energy is spread over: the square of the sum over the sum of the squares.
+fn independent_bins(radar: &Radar, residual: &[Complex64]) -> f64 {
+    let ends = TwoEnds::of_flat(radar, residual);
+    let energy: Vec<f64> = [&ends.first, &ends.last].iter().flat_map(|end| range_energy(radar, end.view())).collect();
+    let [sum, square] = energy.iter().fold([0.0; 2], |[sum, square], e| [sum + e, square + e * e]);
+    if square > 0.0 { sum * sum / square / 2.0 } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radar::{Decibels, Tolerances};
+    use crate::reconstruct::search::find;
+    use crate::scene::{GaussianCluster, Object, Scene};
+    use crate::signal::{Floor, simulate, simulate_built};
+
+    #[test]
+    fn gains_of_elements_that_are_off_are_found_with_the_points() {
+        let radar = Radar::default();
+        let scene = Scene::of_points([(3.0, 11.0), (-9.0, 20.0), (6.0, 25.0), (-2.0, 7.0)]);
+        let array = Tolerances { gain: Decibels(0.3), phase_degrees: 3.0, position_millimetres: 0.0 }.build(&radar, 5);
+        let ends = simulate_built(&radar, &scene, &array, Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let found = find(&radar, &ends, &Request::default(), &Settings::default()).unwrap();
+        let gains = found.element_gains.as_ref().expect("gains");
+        assert!((0.02..0.09).contains(&gains.deviation()), "{}", gains.deviation());
+        assert_eq!(found.atoms.len(), 4);
+        assert!(found.drawn_left() < 1e-4, "{}", found.drawn_left());
+    }
+
+    #[test]
+    fn elements_that_are_alike_have_no_gains() {
+        let radar = Radar::default();
+        let cloud = GaussianCluster { seed: 1, ..GaussianCluster::new([2.0, 15.0], [3.0, 3.0], 150) };
+        let scene = Scene { objects: vec![Object::Gaussian(cloud)], ..Scene::default() };
+        let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let found = find(&radar, &ends, &Request::default(), &Settings::default()).unwrap();
+        assert!(!found.complete && found.element_gains.is_none());
+    }
+
+    #[test]
+    fn an_offset_and_a_slope_of_phase_are_a_place() {
+        let mut end: Vec<Complex64> = (0..12).map(|i| Complex64::cis(0.1 + 0.02 * f64::from(i))).collect();
+        level(&mut end);
+        assert!(end.iter().all(|g| (g - 1.0).norm() < 1e-12), "{end:?}");
+    }
+}
