@@ -9,7 +9,7 @@ use super::settings::Settings;
 use super::trace::{CALIBRATION, MOST_ATTEMPTS, decades};
 use crate::radar::{Radar, hann};
 use crate::reconstruct::attempt::{Attempt, Tried, Verdict};
-use crate::reconstruct::fit::{Atom, Gains, Limits, Samples, Tie, Workbench};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie, Workbench};
 use crate::reconstruct::hearing::range_energy;
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use crate::signal::TwoEnds;
@@ -48,7 +48,7 @@ const OBJECT_RIDGE: f64 = 1e-4;
 const EXPECTED_SQUARE: f64 = 0.004;
 
 /// Gains that differ more from 1 in the mean square's root are no tolerances.
-const MAX_DEVIATION: f64 = 0.1;
+const MAX_DEVIATION: f64 = 0.3;
 
 /// Part of the samples' energy that objects must leave for elements to be suspected: errors of a twentieth of the usual ones.
 const MIN_LEFT: f64 = 1e-5;
@@ -128,11 +128,11 @@ pub(super) fn asks_for_gains(plain: &Found) -> bool {
     !plain.complete && !plain.atoms.is_empty() && plain.drawn_left() > MIN_LEFT
 }
 
-/// The objects in samples as if their elements were alike.
+/// The objects in samples as if their elements were alike, from those of an answer where there is one.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
-pub type SearchEnds<'a> = &'a dyn Fn(&TwoEnds, &Request, &Settings) -> Result<Found, ReconstructError>;
+pub type SearchEnds<'a> = &'a dyn Fn(Option<&Found>, &TwoEnds, &Request, &Settings) -> Result<Found, ReconstructError>;
 
 /// What gains of elements are estimated from.
 pub(super) struct Calibration<'a> {
@@ -150,9 +150,10 @@ pub(super) struct Calibration<'a> {
     pub plain: &'a Found,
 }
 
-/// Gains of the elements, and the part of the samples' energy that is left with them.
+/// Gains of the elements, the objects in samples without them, and the part of the samples' energy that is left.
 struct Fitted {
     gains: ElementGains,
+    fit: Fit,
     left: f64,
 }
 
@@ -162,7 +163,7 @@ impl Calibration<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn found(&self) -> Result<Option<Found>, ReconstructError> {
-        let Some(Fitted { gains, left }) = self.fitted()? else { return Ok(None) };
+        let Some(Fitted { gains, fit, left }) = self.fitted()? else { return Ok(None) };
         tracing::debug!(left, deviation = gains.deviation(), "gains");
         if gains.deviation() > MAX_DEVIATION {
             return Ok(None);
@@ -172,10 +173,12 @@ impl Calibration<'_> {
             false if left > MAX_LEFT_OVER_ROUNDING => return Ok(None),
             false => self.over_noise(LEFT_MARGIN * left),
         };
-        let found = (self.search)(&gains.taken_from(self.ends), &told, self.settings)?;
+        let start = Found { complete: true, atoms: fit.atoms, gains: fit.gains, ..self.plain.clone() };
+        let found = (self.search)(Some(&start), &gains.taken_from(self.ends), &told, self.settings)?;
         let (left, before) = (found.drawn_left(), self.plain.drawn_left());
         tracing::debug!(left, before, deviation = gains.deviation(), complete = found.complete, "calibrated");
-        if left >= MAX_LEFT.min(MAX_LEFT_RATIO * before) {
+        let is_certain = found.complete || self.request.noise.is_white();
+        if !is_certain || left >= MAX_LEFT.min(MAX_LEFT_RATIO * before) {
             return Ok(None);
         }
         let kept = Attempt {
@@ -202,29 +205,33 @@ impl Calibration<'_> {
         let bench = Workbench::new(radar, &window, &request.task, usize::MAX).hearing(&ends.flat());
         let quick = Settings { most_work: self.settings.most_work / WORK_SHARE, ..*self.settings };
         let noise = if request.noise.is_white() { plain.noise_variance / plain.sample_power } else { 0.0 };
-        let mut fitted = Fitted { gains: ElementGains::ones(radar), left: 1.0 };
-        let mut atoms = Vec::new();
+        let mut gains = ElementGains::ones(radar);
+        let mut last = None;
         for level in NOISE_LEVELS.iter().filter(|level| **level > noise) {
-            let found = (self.search)(&fitted.gains.taken_from(ends), &self.over_noise(*level), &quick)?;
-            atoms = strongest(&found);
-            for _ in 0..TURNS {
-                fitted = turned(radar, &bench, ends, &mut atoms, &fitted.gains, false);
-                fitted.gains = fitted.gains.normalised(*level == NOISE_LEVELS[0]);
+            let found = (self.search)(None, &gains.taken_from(ends), &self.over_noise(*level), &quick)?;
+            let atoms = strongest(&found);
+            if atoms.is_empty() {
+                return Ok(None);
             }
-            if fitted.left > MAX_LEFT_OVER_LEVEL * level + noise {
+            for _ in 0..TURNS {
+                let turned = turned(radar, &bench, ends, &atoms, &gains, false);
+                gains = turned.gains.clone().normalised(*level == NOISE_LEVELS[0]);
+                last = Some(turned);
+            }
+            if last.as_ref().is_some_and(|last| last.left > MAX_LEFT_OVER_LEVEL * level + noise) {
                 return Ok(None);
             }
         }
+        let Some(mut last) = last else { return Ok(None) };
         for _ in 0..LAST_TURNS {
             request.task.check()?;
-            let before = fitted.left;
-            fitted = turned(radar, &bench, ends, &mut atoms, &fitted.gains, true);
-            fitted.gains = fitted.gains.normalised(false);
-            if fitted.left > WORTH_ANOTHER_TURN * before {
+            let before = last.left;
+            last = turned(radar, &bench, ends, &last.fit.atoms, &last.gains.normalised(false), true);
+            if last.left > WORTH_ANOTHER_TURN * before {
                 break;
             }
         }
-        Ok((!atoms.is_empty()).then_some(fitted))
+        Ok(Some(Fitted { gains: last.gains.normalised(false), ..last }))
     }
 }
 
@@ -241,17 +248,16 @@ fn turned(
     radar: &Radar,
     bench: &Workbench,
     ends: &TwoEnds,
-    atoms: &mut Vec<Atom>,
+    atoms: &[Atom],
     gains: &ElementGains,
     moves: bool,
 ) -> Fitted {
     let corrected = gains.taken_from(ends).flat();
     let samples = Samples::new(&bench.sensor, &corrected);
     let fit = match moves {
-        false => bench.solve(&samples, atoms.clone(), Tie::Both, OBJECT_RIDGE),
-        true => bench.refine(&samples, atoms.clone(), vec![Gains::default(); atoms.len()], Tie::Both, Limits::ROUGH),
+        false => bench.solve(&samples, atoms.to_vec(), Tie::Both, OBJECT_RIDGE),
+        true => bench.refine(&samples, atoms.to_vec(), vec![Gains::default(); atoms.len()], Tie::Both, Limits::ROUGH),
     };
-    atoms.clone_from(&fit.atoms);
     let residual = fit.residual.flat(&bench.sensor);
     let drawn: Vec<Complex64> = corrected.iter().zip(&residual).map(|(c, r)| c - r).collect();
     let price = fit.cost() / gains.0.len() as f64 / independent_bins(radar, &residual) / EXPECTED_SQUARE;
@@ -266,7 +272,7 @@ fn turned(
     };
     let gains = raw.chunks(radar.samples).zip(drawn.chunks(radar.samples)).map(of_element).collect();
     let all = bench.without(&samples, &[], &[]).energy.iter().sum::<f64>();
-    Fitted { gains: ElementGains(gains), left: fit.cost() / all.max(f64::MIN_POSITIVE) }
+    Fitted { gains: ElementGains(gains), left: fit.cost() / all.max(f64::MIN_POSITIVE), fit }
 }
 
 /// Range bins that a residual's energy is spread over: the square of the sum over the sum of the squares.

@@ -57,9 +57,10 @@ fn find_with(
     if !asks_for_gains(&plain) {
         return Ok(plain);
     }
-    let anew =
-        |ends: &TwoEnds, request: &Request, settings: &Settings| found_in(None, radar, ends, request, settings, scale);
-    let calibration = Calibration { search: &anew, radar, ends: &ends, request, settings, plain: &plain };
+    let again = |previous: Option<&Found>, ends: &TwoEnds, request: &Request, settings: &Settings| {
+        found_in(previous, radar, ends, request, settings, scale)
+    };
+    let calibration = Calibration { search: &again, radar, ends: &ends, request, settings, plain: &plain };
     Ok(calibration.found()?.unwrap_or(plain))
 }
 
