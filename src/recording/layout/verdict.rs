@@ -77,6 +77,7 @@ impl Found {
                 format!("the spectrum, whose level is {:.1} dB lower", 10.0 * lower / std::f64::consts::LN_10)
             }
             Kind::Receivers => "the receivers, which see the same echoes".to_owned(),
+            Kind::Rows => "the rows, which are the same again after a loop of it".to_owned(),
             Kind::Counts => "the count of frames that fill the file".to_owned(),
             Kind::Half => "the empty half of the range axis".to_owned(),
             Kind::Images => "the images of its echoes".to_owned(),
@@ -99,7 +100,7 @@ impl Found {
 impl Candidate {
     /// The layout and its counts in a sentence's words.
     pub fn described(&self) -> String {
-        let Counts { samples, receivers, .. } = self.counts;
+        let Counts { samples, receivers, chirps, .. } = self.counts;
         let parts = self.layout.parts.described(self.layout.q_first);
         let order = match (receivers, self.layout.receivers) {
             (1, _) => "1 receiver".to_owned(),
@@ -107,7 +108,8 @@ impl Candidate {
             (_, ReceiverOrder::Interleaved) => format!("{receivers} receivers sample by sample"),
         };
         let real = if self.layout.parts == Parts::Real { "real " } else { "" };
-        format!("{}, {parts}, {order}, {samples} {real}samples a chirp", self.layout.words.described())
+        let chirps = if chirps == 1 { String::new() } else { format!(", {chirps} chirps a loop") };
+        format!("{}, {parts}, {order}, {samples} {real}samples a chirp{chirps}", self.layout.words.described())
     }
 }
 

@@ -233,12 +233,11 @@ fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     if found.certainty() != Certainty::Sure
         && let Some(next) = found.candidates.get(1)
     {
-        doubts.push(format!(
-            "The layout is {}: {}. As likely is: {}.",
-            if found.certainty() == Certainty::Open { "open" } else { "likely, not sure" },
-            found.best().described(),
-            next.described()
-        ));
+        let (how, or) = match found.certainty() {
+            Certainty::Open => ("open", "As likely is"),
+            _ => ("likely, not sure", "It may also be"),
+        };
+        doubts.push(format!("The layout is {how}: {}. {or}: {}.", found.best().described(), next.described()));
     }
     let best = found.best();
     let Some(profile) = profile else { return doubts };
