@@ -40,6 +40,14 @@ impl Found {
         Some(self.best().log_odds() - self.candidates.get(1)?.log_odds())
     }
 
+    /// The next, and the likeliest of other counts where that is not far below the best.
+    pub fn rivals(&self) -> Vec<&Candidate> {
+        let (best, next) = (self.best(), self.candidates.get(1));
+        let is_near = |other: &&Candidate| best.log_odds() - other.log_odds() < SURE;
+        let other = self.candidates.iter().filter(is_near).find(|other| other.counts != best.counts);
+        next.into_iter().chain(other.filter(|other| Some(*other) != next)).collect()
+    }
+
     /// How sure the choice is: never sure where the samples hide their counts.
     pub fn certainty(&self) -> Certainty {
         match Certainty::of(self.margin()) {
