@@ -139,6 +139,7 @@ fn kind(kind: Kind) -> &'static str {
     match kind {
         Kind::Sharp => "spectrum",
         Kind::Receivers => "receivers",
+        Kind::Rows => "rows",
         Kind::Counts => "counts",
         Kind::Half => "half",
         Kind::Images => "images",

@@ -3,17 +3,16 @@
 use super::canvas::{FAINT_INK, HAIRLINE, INK, PanelArea, PictureError};
 use super::colour::{ColourMap, Rgb};
 use super::detections::CellVerdict;
-use super::finer::FEW_COLUMNS;
 use super::text::{self, Weight};
-use crate::radar::Radar;
-use ndarray::{Array2, ArrayView2, CowArray, Ix2};
+use crate::radar::{FEW_COLUMNS, Radar};
+use ndarray::{Array2, CowArray, Ix2};
 use plotters::prelude::*;
 
 /// What a panel paints: cells `[range bins, columns]` as they are drawn, the leftmost column first.
 #[derive(Debug, Clone)]
 pub(super) enum MapCells<'a> {
     Lambda(CowArray<'a, f32, Ix2>, ColourMap),
-    Above(ArrayView2<'a, f32>, f32),
+    Above(CowArray<'a, f32, Ix2>, f32),
     /// The output above its threshold: hits, misses and false alarms.
     Detections(Array2<CellVerdict>),
 }

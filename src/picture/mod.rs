@@ -32,7 +32,7 @@ mod text;
 
 pub use colour::ColourMap;
 pub use detections::{CellVerdict, told_apart};
-pub use finer::{FEW_COLUMNS, finer};
+pub use finer::{finer, in_place};
 
 #[cfg(feature = "pictures")]
 pub use canvas::{Drawing, PictureError};

@@ -2,7 +2,7 @@
 
 use super::canvas::{Drawing, FAINT_INK, INK, PAPER, PanelArea, PictureError};
 use super::detections::{CellVerdict, told_apart};
-use super::finer::finer;
+use super::finer::{finer, in_place};
 use super::lettering::Lettered;
 use super::map_panel::{MapCells, MapPanel};
 use super::scene_panel::{self, SceneContent};
@@ -118,23 +118,28 @@ impl<'a> Panels<'a> {
         let drawn = |map: &'a RangeAngleMap| self.radar.left_to_right(&map.lambda);
         let lambda = |title: String, map| {
             let cells = drawn(map);
-            let cells = finer(cells).map_or_else(|| CowArray::from(cells), CowArray::from);
+            let cells = finer(self.radar, cells).map_or_else(|| CowArray::from(cells), CowArray::from);
             MapPanel { title, cells: MapCells::Lambda(cells, self.colours) }
         };
         let mut panels = vec![
             lambda(format!("Input 0: {}", elements(End::First)), self.first),
             lambda(format!("Input 1: {}", elements(End::Last)), self.last),
         ];
+        let above = |title: String, map, eta| {
+            let cells = drawn(map);
+            let cells = in_place(self.radar, cells).map_or_else(|| CowArray::from(cells), CowArray::from);
+            MapPanel { title, cells: MapCells::Above(cells, eta) }
+        };
         let output = lambda(format!("Output: {}", self.method), self.output);
         let title = format!("Output > {}", eta_text(self.eta));
         let Some(target) = self.target else {
-            panels.extend([output, MapPanel { title, cells: MapCells::Above(drawn(self.output), self.eta) }]);
+            panels.extend([output, above(title, self.output, self.eta)]);
             return panels;
         };
         panels.extend([
             lambda(format!("Target: all {} elements", self.radar.elements), target),
             output,
-            MapPanel { title: format!("Target > {TARGET_ETA}"), cells: MapCells::Above(drawn(target), TARGET_ETA) },
+            above(format!("Target > {TARGET_ETA}"), target, TARGET_ETA),
             MapPanel { title, cells: MapCells::Detections(self.told_apart(drawn(target), drawn(self.output))) },
         ]);
         panels
@@ -142,7 +147,8 @@ impl<'a> Panels<'a> {
 
     fn told_apart(&self, target: ArrayView2<'_, f32>, output: ArrayView2<'_, f32>) -> Array2<CellVerdict> {
         let mut kinds = told_apart(output, target, [self.eta, TARGET_ETA], 0.0).into_iter();
-        Array2::from_shape_simple_fn(output.dim(), || kinds.next().unwrap_or(CellVerdict::Nothing))
+        let cells = Array2::from_shape_simple_fn(output.dim(), || kinds.next().unwrap_or(CellVerdict::Nothing));
+        in_place(self.radar, cells.view()).unwrap_or(cells)
     }
 
     /// The three figures of the tables for this scene, then the scene's notes.

@@ -21,6 +21,7 @@ mod units;
 mod wave;
 mod window;
 
+pub use across::FEW_COLUMNS;
 pub use antennas::{Antennas, AntennasError};
 pub use budget::{LinkBudget, LinkFigures, Pattern};
 pub use convention::Convention;

@@ -66,7 +66,7 @@ impl Default for Chirp {
 pub enum Join {
     /// Their complex mean: what stands still stays, what moves fades.
     Mean,
-    /// Of each range bin the strongest Doppler cell, transmitters in turn compensated for its velocity.
+    /// Of each range bin the strongest Doppler cell and those that stand out beside it, transmitters in turn compensated for their velocities.
     Strongest,
 }
 

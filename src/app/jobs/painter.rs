@@ -7,10 +7,10 @@ use crate::app::widgets::textures::colour_table;
 use crate::app::widgets::theme;
 use crate::evaluate::TARGET_ETA;
 use crate::maps::{RangeAngleMap, cartesian};
-use crate::picture::{CellVerdict, ColourMap, finer, told_apart};
+use crate::picture::{CellVerdict, ColourMap, finer, in_place, told_apart};
 use crate::radar::Radar;
 use eframe::egui::{Color32, ColorImage};
-use ndarray::ArrayView2;
+use ndarray::{Array2, ArrayView2};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -66,11 +66,17 @@ impl Painter {
             Projection::RangeAngle => {
                 let minus = subject.minus.as_ref().map(|minus| radar.left_to_right(&minus.lambda));
                 let map = radar.left_to_right(&subject.map.lambda);
-                match finer(map).filter(|_| self.is_fine && !is_mask) {
-                    None => colour(subject, map, minus, end),
+                match finer(radar, map).filter(|_| self.is_fine && !is_mask) {
+                    None => {
+                        let cells = Array2::from_shape_vec((rows, columns), colour(subject, map, minus, end));
+                        let cells = cells.unwrap_or_default();
+                        let placed = in_place(radar, cells.view()).unwrap_or(cells);
+                        columns = placed.ncols();
+                        placed.into_raw_vec_and_offset().0
+                    }
                     Some(fine) => {
                         columns = fine.ncols();
-                        let minus = minus.and_then(finer);
+                        let minus = minus.and_then(|minus| finer(radar, minus));
                         colour(subject, fine.view(), minus.as_ref().map(|minus| minus.view()), end)
                     }
                 }
@@ -193,7 +199,7 @@ mod tests {
     use super::*;
     use crate::app::shared::Shared;
     use crate::app::state::DifferenceView;
-    use ndarray::{Array2, array};
+    use ndarray::array;
 
     fn subject(paint: Paint) -> Subject {
         let map = lambda(array![[0.0, 1.0], [0.5, 0.95]]);

@@ -1,4 +1,7 @@
-//! Of each range bin the strongest Doppler cell, with chirps in time division compensated for its velocity.
+//! Of each range bin the strongest Doppler cell and those that stand out beside it, with chirps in time division compensated for their velocities.
+//!
+//! Side lobes of an echo fill the bins around it, and the window over the samples takes them out where all are there. So a bin whose strongest cell
+//! is another echo's keeps them too.
 //!
 //! An object that moves turns by `f` turns from loop to loop and by a part of it from chirp to chirp of a loop, each sent by another
 //! transmitter. The cell tells `f` up to whole turns; each whole number turns the transmitters against each other, and the one whose
@@ -17,10 +20,13 @@ const COSINES: usize = 129;
 const SHARPER: f64 = 1.15;
 /// A cell counts for itself from so much above the middle of its bin's cells on, as a ratio of powers.
 const STANDS_OUT: f64 = 10.0;
+/// A cell beside the strongest stands no farther below it, as a ratio of powers: side lobes of the window over the loops do; and so many cells away.
+const BELOW_STRONGEST: f64 = 0.003;
+const APART_CELLS: f64 = 3.0;
 /// A cell of an echo that moves by a part of this of a loop's turn is told.
 const MOVES: f64 = 0.5;
 
-/// `[chirps, receivers, samples]` of the strongest Doppler cells, and what was done in a sentence. `turns` are those of the chosen chirps'
+/// `[chirps, receivers, samples]` of these Doppler cells, and what was done in a sentence. `turns` are those of the chosen chirps'
 /// pairs across the array at a cosine of 1.
 pub(super) fn strongest(
     frame: &Frame,
@@ -38,32 +44,44 @@ pub(super) fn strongest(
     let mut out = Array3::zeros((chirps, receivers, samples));
     let (mut moving, mut ambiguous) = (0usize, 0usize);
     for bin in 0..samples {
-        let plain = profiles.slice(s![.., .., bin]);
+        let plain = profiles.slice(s![.., .., bin]).to_owned();
         let (before, after) = ((bin + samples - 1) % samples, (bin + 1) % samples);
         // The window of Hann over the samples is a sum of three bins.
         let windowed = &plain * Complex64::from(0.5)
             - (&profiles.slice(s![.., .., before]) + &profiles.slice(s![.., .., after])) * Complex64::from(0.25);
         let found = cells.strongest(&windowed);
-        let turn = if found.ratio >= STANDS_OUT { found } else { cells.strongest(&plain.to_owned()) };
-        let value =
-            |of: &Array2<Complex64>, whole: f64| cells.value(of, turn.turns, whole, [chirps, receivers], channels);
-        let whole = whole_turns(chirps, |whole| array.sharpness(&value(&windowed, whole)));
-        out.slice_mut(s![.., .., bin]).assign(&value(&plain.to_owned(), whole).slice(s![.., .., 0]));
+        let turn = if found.ratio >= STANDS_OUT { found } else { cells.strongest(&plain) };
+        let value = |of: &Array2<Complex64>, turns: f64, whole: f64| {
+            cells.value(of, turns, whole, [chirps, receivers], channels)
+        };
+        let whole = whole_turns(chirps, |whole| array.sharpness(&value(&windowed, turn.turns, whole)));
+        let mut all = value(&plain, turn.turns, whole);
+        for turns in cells.beside(&plain, turn.turns) {
+            let whole = whole_turns(chirps, |whole| array.sharpness(&value(&plain, turns, whole)));
+            all += &value(&plain, turns, whole);
+        }
+        out.slice_mut(s![.., .., bin]).assign(&all.slice(s![.., .., 0]));
         if found.ratio >= STANDS_OUT * STANDS_OUT {
             moving += usize::from((turn.turns * loops as f64).abs() > MOVES);
             ambiguous += usize::from(whole != 0.0);
         }
     }
     transform_back(&mut out);
-    let several = if chirps > 1 { ", chirps of transmitters in time division turned back by its velocity" } else { "" };
+    let several =
+        if chirps > 1 { " What an echo turns from one transmitter's chirp to the next is taken out." } else { "" };
     let faster = match ambiguous {
         0 => String::new(),
         bins => format!(
             " In {bins} of them it moves faster than the loops tell: the sharper spectrum over the array says which velocity."
         ),
     };
+    let held = match moving {
+        0 => "No bin holds".to_owned(),
+        1 => "One bin holds".to_owned(),
+        bins => format!("{bins} bins hold"),
+    };
     let note = format!(
-        "The {loops} loops of the frame are joined: of each range bin the strongest Doppler cell{several}. {moving} bins hold an echo that moves.{faster}"
+        "The {loops} loops of the frame are joined: of each range bin the strongest Doppler cell, and those that stand out beside it.{several} {held} an echo that moves.{faster}"
     );
     (out, Some(note))
 }
@@ -117,22 +135,42 @@ impl Cells {
         Cells { transform: Box::new(move |line| fft.process(line)), weights }
     }
 
-    fn strongest(&self, profiles: &Array2<Complex64>) -> Cell {
-        let loops = self.weights.len();
-        let mut powers = vec![0.0; loops];
+    /// Power of each cell, all channels together.
+    fn powers(&self, profiles: &Array2<Complex64>) -> Vec<f64> {
+        let mut powers = vec![0.0; self.weights.len()];
         for channel in profiles.axis_iter(Axis(1)) {
             let mut line: Vec<Complex64> = channel.iter().zip(&self.weights).map(|(v, w)| v * w).collect();
             (self.transform)(&mut line);
             powers.iter_mut().zip(line).for_each(|(p, v)| *p += v.norm_sqr());
         }
+        powers
+    }
+
+    fn strongest(&self, profiles: &Array2<Complex64>) -> Cell {
+        let powers = self.powers(profiles);
         let (best, peak) =
             powers.iter().copied().enumerate().fold((0, 0.0), |best, v| if v.1 > best.1 { v } else { best });
-        let mut sorted = powers.clone();
-        sorted.sort_by(f64::total_cmp);
-        let ratio = peak / sorted[loops / 2].max(f64::MIN_POSITIVE);
-        let around = [powers[(best + loops - 1) % loops], peak, powers[(best + 1) % loops]];
-        let turns = (best as f64 + vertex(around)) / loops as f64;
-        Cell { turns: turns - turns.round(), ratio }
+        Cell { turns: turns_at(&powers, best), ratio: peak / middle(&powers) }
+    }
+
+    /// Turns of the cells that stand out beside that of `turns`, the strongest first.
+    fn beside(&self, profiles: &Array2<Complex64>, turns: f64) -> Vec<f64> {
+        let powers = self.powers(profiles);
+        let loops = powers.len();
+        let least = (middle(&powers) * STANDS_OUT).max(powers.iter().copied().fold(0.0, f64::max) * BELOW_STRONGEST);
+        let is_top = |n: &usize| {
+            powers[*n] >= least && powers[*n] >= powers[(n + loops - 1) % loops] && powers[*n] > powers[(n + 1) % loops]
+        };
+        let mut tops: Vec<usize> = (0..loops).filter(is_top).collect();
+        tops.sort_by(|a, b| powers[*b].total_cmp(&powers[*a]));
+        let mut taken = vec![turns];
+        for at in tops.into_iter().map(|top| turns_at(&powers, top)) {
+            let is_apart = |t: &f64| ((at - t) - (at - t).round()).abs() * loops as f64 >= APART_CELLS;
+            if taken.iter().all(is_apart) {
+                taken.push(at);
+            }
+        }
+        taken.split_off(1)
     }
 
     /// The bin's value at the cell, `[chirps, receivers, 1]`: chirps turned back, transmitters told apart.
@@ -158,6 +196,21 @@ impl Cells {
         }
         channels.of_loop(&ArrayView3::from(&found))
     }
+}
+
+/// Power of the middle cell.
+fn middle(powers: &[f64]) -> f64 {
+    let mut sorted = powers.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[powers.len() / 2].max(f64::MIN_POSITIVE)
+}
+
+/// Turns from loop to loop of an echo whose cell is the strongest around, -0.5 to 0.5.
+fn turns_at(powers: &[f64], top: usize) -> f64 {
+    let loops = powers.len();
+    let around = [powers[(top + loops - 1) % loops], powers[top], powers[(top + 1) % loops]];
+    let turns = (top as f64 + vertex(around)) / loops as f64;
+    turns - turns.round()
 }
 
 /// Where the parabola through three logarithms has its top, -0.5 to 0.5 of a cell from the middle one.

@@ -8,7 +8,7 @@
 //! | `plan` | what stands where in the file |
 //! | `frame` | reads a frame, `[loops, chirps, receivers, samples]` |
 //! | `quality` | zeros of lost packets, saturation, constant parts, real samples |
-//! | `doppler` | the strongest Doppler cell of each range bin, chirps in time division compensated |
+//! | `doppler` | the Doppler cells of each range bin that hold echoes, chirps in time division compensated |
 //! | `channels` | transmitters that send together, phases and range bias that a `.cfg` says |
 
 mod channels;

@@ -8,6 +8,8 @@ use num_complex::Complex64;
 const ORDER: usize = 12;
 /// A shorter length divides a longer one where so much more of its other beginnings does not follow.
 const DIVIDES: f64 = 1.4;
+/// So much leaves it open.
+const ALMOST_DIVIDES: f64 = 1.1;
 /// So little more at its other beginnings leaves a length a part of a longer one.
 const WHOLE: f64 = 1.15;
 
@@ -88,6 +90,13 @@ impl Breaks {
         let mut longer =
             lengths.iter().copied().filter(|l| *l > length && l.is_multiple_of(length) && self.numbers() >= 3 * l);
         longer.find(|l| l / length <= 4 && self.broken_within(length, *l) < WHOLE).unwrap_or(length)
+    }
+
+    /// A part of this length that may be a row by itself.
+    pub fn almost_divided(&self, length: usize, lengths: &[usize]) -> Option<usize> {
+        let shorter = lengths.iter().copied().filter(|l| *l < length && length.is_multiple_of(*l));
+        let within = shorter.map(|l| (self.broken_within(l, length), l)).filter(|(ratio, _)| *ratio > ALMOST_DIVIDES);
+        within.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, l)| l)
     }
 
     /// The length of rows of which `longest` is several: where an echo goes on almost unbroken from receiver to receiver, most of what does

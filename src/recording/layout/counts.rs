@@ -3,11 +3,11 @@
 
 use super::breaks::Breaks;
 use super::marks::{HEADER_BYTES, Marks};
+use super::period::{Period, period};
 use super::spectrum::{Spectrum, correlation};
 use super::stream::Stream;
 use super::{Counts, Layout, Parts, ReceiverOrder, Words, decode};
-use crate::recording::analytic::all_analytic;
-use ndarray::{Array2, s};
+use ndarray::Array2;
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
 
@@ -24,6 +24,7 @@ const COMB: f64 = 0.6;
 /// The line of an echo is one where its logarithm over the middle of the spectrum is such a part of the strongest line's; and how far that
 /// stands over the middle at least, nepers of power.
 const LINE: f64 = 0.3;
+const STRONG_LINE: f64 = 0.6;
 const CLIPPED_LINE: f64 = 0.75;
 const STANDS_OUT: f64 = 3.0;
 /// Receivers that radars usually have.
@@ -36,12 +37,6 @@ const JUDGED_NUMBERS: usize = 1 << 16;
 const LEVEL_LENGTHS: [usize; 3] = [64, 128, 256];
 /// Numbers between those that each is predicted from: receivers may stand sample by sample.
 const STRIDES: [usize; 4] = [1, 3, 4, 16];
-/// Rows after which rows may repeat: receivers of one, two or three transmitters in turn; and chirps after which those of receivers sample by
-/// sample may.
-const PERIODS: [usize; 8] = [2, 3, 4, 6, 8, 9, 12, 16];
-const CHIRPS: [usize; 7] = [1, 2, 3, 4, 6, 9, 12];
-/// Rows that are compared.
-const MOST_ROWS: usize = 512;
 /// Longest row that is tried, in samples of all interleaved receivers together.
 const LONGEST_ROW: usize = 16384;
 /// A spectrum of an order of parts that lies no more than this above the lowest, nepers in all of [`LEVEL_LENGTHS`], leaves it likely.
@@ -53,11 +48,12 @@ const DOUBTED: f64 = 50.0;
 /// Log-odds of a length of which the file holds no whole number, and of a usual one.
 const UNFILLED: f64 = -3.0;
 const USUAL_LENGTH: f64 = 2.0;
-/// Rows are the same again where they turn so much alike, as a part of those that do most, and are so much alike, as a part of the most alike; and at
-/// least so much. Of 335 captures made at random the period was right in 295, by the likeness alone in 244.
-const STEADY: f64 = 0.999;
-const REPEATS: f64 = 0.5;
-const LEAST_ALIKE: f64 = 0.3;
+/// Log-odds of the period that is almost as likely, and of fewer receivers with more transmitters in turn for as many rows.
+const LESS_STEADY: f64 = -2.0;
+const LESS_USUAL: f64 = -3.0;
+/// The same of a shorter row, or of fewer receivers sample by sample.
+const LESS_BROKEN: f64 = -2.0;
+const MOST_TRANSMITTERS: usize = 3;
 /// Most loops that are taken for a frame where nothing says how many there are.
 const MOST_LOOPS: usize = 64;
 
@@ -67,8 +63,12 @@ pub(super) const NOTE: &str = "No .cfg says samples and receivers: they are thos
     are those of elements half a wavelength apart.";
 
 /// What is told beside it where rows don't repeat.
-pub(super) const GUESSED_NOTE: &str =
+const GUESSED_NOTE: &str =
     "No rows of samples are the same again: how many receivers and chirps of a loop there are is a guess.";
+
+/// What is told beside it where all rows are the same.
+const ALIKE_NOTE: &str = "All rows of samples are alike, as of one receiver, or of echoes straight ahead of several: how many receivers and \
+    chirps of a loop there are is a guess.";
 
 /// What is told beside it where the search is not to be trusted.
 pub(super) const CLIPPED_NOTE: &str = "Many samples stand at the ends of their type, so echoes have harmonics that look like receivers and rows: \
@@ -79,14 +79,16 @@ pub(super) struct LikelyCounts {
     /// The order of parts that they are counts of; `None` where any may be.
     pub parts: Option<Parts>,
     pub counts: Counts,
-    /// Whether receivers and chirps are a guess.
-    pub guessed: bool,
+    /// Why receivers and chirps are a guess, where they are.
+    pub guessed: Option<&'static str>,
+    /// Log-odds of the rows that repeat, and of how usual the receivers are.
+    pub odds: [f64; 2],
 }
 
 impl LikelyCounts {
     /// Counts that are known.
     pub fn of(counts: Counts) -> LikelyCounts {
-        LikelyCounts { parts: None, counts, guessed: false }
+        LikelyCounts { parts: None, counts, guessed: None, odds: [0.0; 2] }
     }
 }
 
@@ -120,17 +122,20 @@ pub(super) fn search<R: Read + Seek>(
     let sharpest = all.iter().map(|(level, ..)| *level).fold(f64::INFINITY, f64::min);
     let (mut ways, mut is_clipped) = (Vec::new(), false);
     for (_, layout, numbers) in all.into_iter().filter(|(level, ..)| *level < sharpest + PLAUSIBLE) {
-        for cut in cuts(layout, &numbers, stream.bytes(), marked) {
+        for (cut, others) in cuts(layout, &numbers, stream.bytes(), marked) {
             is_clipped |= clipped(&numbers);
-            let (counts, guessed) = counted(&cut, &numbers, stream.bytes(), marks, marked);
-            ways.push(LikelyCounts { parts: Some(layout.parts), counts, guessed });
+            ways.extend(counted(&cut, &numbers, stream.bytes(), marks, marked));
+            for other in others {
+                let likeliest = counted(&other, &numbers, stream.bytes(), marks, marked).into_iter().next();
+                ways.extend(likeliest.map(|way| LikelyCounts { odds: [LESS_BROKEN, 0.0], ..way }));
+            }
         }
     }
     Ok((ways, is_clipped))
 }
 
-/// The likely ways to cut numbers into rows.
-fn cuts(layout: Layout, numbers: &[Complex64], bytes: u64, marked: Option<usize>) -> Vec<Cut> {
+/// The likely ways to cut numbers into rows, each with others that are almost as likely.
+fn cuts(layout: Layout, numbers: &[Complex64], bytes: u64, marked: Option<usize>) -> Vec<(Cut, Vec<Cut>)> {
     let fits = |length: &usize| marked.is_none_or(|held| held.is_multiple_of(length * layout.parts.bytes()));
     let lengths: Vec<usize> = (SAMPLES[0]..=LONGEST_ROW).filter(fits).collect();
     let likeliest = |stride: usize| {
@@ -141,16 +146,22 @@ fn cuts(layout: Layout, numbers: &[Complex64], bytes: u64, marked: Option<usize>
     };
     let all: Vec<(f64, Breaks, usize)> = STRIDES.into_iter().filter_map(likeliest).collect();
     let best = all.iter().map(|(score, ..)| *score).fold(f64::NEG_INFINITY, f64::max);
-    let mut cuts: Vec<Cut> = Vec::new();
+    let mut cuts: Vec<(Cut, Vec<Cut>)> = Vec::new();
     for (_, breaks, longest) in all.iter().filter(|(score, ..)| *score > best - LIKELY_LENGTH) {
         let whole = breaks.whole(*longest, &lengths);
         let mixed = interleaved(numbers, whole);
         let lengths: Vec<usize> = lengths.iter().copied().filter(|length| length.is_multiple_of(mixed)).collect();
         let length = if clipped(numbers) { whole } else { breaks.divided(whole, &lengths) };
         let cut = Cut { layout, samples: length / mixed, mixed };
-        if !cuts.iter().any(|c| (c.samples, c.mixed) == (cut.samples, cut.mixed)) {
-            cuts.push(cut);
+        if cuts.iter().any(|(c, _)| (c.samples, c.mixed) == (cut.samples, cut.mixed)) {
+            continue;
         }
+        let shorter = breaks.almost_divided(length, &lengths).map(|length| Cut { samples: length / mixed, ..cut });
+        let fewer = (mixed > 1 && !is_comb(numbers, &cut)).then(|| {
+            let by = if mixed.is_multiple_of(2) { 2 } else { mixed };
+            Cut { samples: cut.samples * by, mixed: mixed / by, ..cut }
+        });
+        cuts.push((cut, shorter.into_iter().chain(fewer).collect()));
     }
     cuts
 }
@@ -201,6 +212,27 @@ fn interleaved(numbers: &[Complex64], length: usize) -> usize {
             }
     };
     INTERLEAVED.into_iter().find(repeats).unwrap_or(1)
+}
+
+/// Whether receivers that stand sample by sample are sure: two echoes or more, each of which stands at every distance of a receiver. One may
+/// stand there by chance.
+fn is_comb(numbers: &[Complex64], cut: &Cut) -> bool {
+    let power = Spectrum::of(&rows(numbers, cut.samples * cut.mixed, 1), 1).power;
+    let logs: Vec<f64> = power.iter().map(|p| p.ln()).collect();
+    let (bins, places) = (logs.len(), cut.mixed - 1);
+    let mut sorted = logs.clone();
+    sorted.sort_by(f64::total_cmp);
+    let (middle, height) = (sorted[bins / 2], sorted[bins - 1] - sorted[bins / 2]);
+    let around = |bin: usize| (bin + bins - 1..=bin + bins + 1).map(|n| logs[n % bins]).fold(f64::MIN, f64::max);
+    let tops = (0..bins).filter(|n| logs[*n] - middle > STRONG_LINE * height && logs[*n] >= around(*n));
+    let repeats = |bin: &usize| {
+        let stands = |n: &usize| around(bin + n * cut.samples) - middle > LINE * height;
+        (1..=places).filter(stands).count() * 5 >= places * 4
+    };
+    let (combs, alone): (Vec<usize>, Vec<usize>) = tops.partition(repeats);
+    let mut residues: Vec<usize> = combs.into_iter().map(|bin| bin % cut.samples).collect();
+    residues.sort_unstable();
+    alone.is_empty() && residues.windows(2).any(|pair| pair[1] - pair[0] > 2)
 }
 
 /// Whether many parts stand at the ends of the numbers' type.
@@ -295,7 +327,7 @@ pub(super) fn doubted(layout: &Layout, counts: Counts, bytes: &[u8], of_file: u6
     let row_bytes = (counts.samples * layout.parts.bytes()) as u64;
     let fills = |rows: usize| of_file.is_multiple_of(rows as u64 * row_bytes);
     let judged = stride == 1 && layout.header_bytes == 0 && !fills(said);
-    let found = judged.then(|| period(&cut, &numbers)).flatten()?;
+    let found = judged.then(|| period_of(&cut, &numbers)).flatten()?.rows;
     (found != said && fills(found)).then(|| {
         format!(
             "By the .cfg a loop has {said} rows of samples, which don't fill the file, but rows are the same again after {found}, which do: it \
@@ -311,65 +343,53 @@ fn rows(numbers: &[Complex64], samples: usize, mixed: usize) -> Array2<Complex64
     Array2::from_shape_fn((count, samples), |(row, s)| numbers[row / mixed * block + s * mixed + row % mixed])
 }
 
-/// The counts that follow from a cut: after how many rows they repeat, and how many fill the file; and whether rows don't repeat.
+fn period_of(cut: &Cut, numbers: &[Complex64]) -> Option<Period> {
+    let is_real = cut.layout.parts == Parts::Real || numbers.iter().all(|v| v.im == 0.0);
+    period(&rows(numbers, cut.samples, cut.mixed), cut.mixed, is_real)
+}
+
+/// The counts that follow from a cut, the likeliest first: after how many rows they repeat, and how many fill the file.
 fn counted(
     cut: &Cut,
     numbers: &[Complex64],
     bytes: u64,
     marks: Option<Marks>,
     marked: Option<usize>,
-) -> (Counts, bool) {
+) -> Vec<LikelyCounts> {
     let row_bytes = cut.samples * cut.layout.parts.bytes();
-    let found = period(cut, numbers);
-    let period = found.unwrap_or(USUAL_RECEIVERS.min((numbers.len() / cut.samples).max(1)));
-    let receivers = match (marked, cut.mixed) {
+    let found = period_of(cut, numbers);
+    let rows = found.as_ref().map_or(USUAL_RECEIVERS.min((numbers.len() / cut.samples).max(1)), |found| found.rows);
+    let guessed = match found {
+        None => Some(GUESSED_NOTE),
+        Some(Period { next: Some(1), .. }) => Some(ALIKE_NOTE),
+        Some(_) => None,
+    };
+    let usual = |rows: usize| match (marked, cut.mixed) {
         (Some(held), _) => (held / row_bytes).max(1),
-        (None, 1) => [4, 3, 2].into_iter().find(|receivers| period.is_multiple_of(*receivers)).unwrap_or(period),
+        (None, 1) => [4, 3, 2].into_iter().find(|receivers| rows.is_multiple_of(*receivers)).unwrap_or(rows),
         (None, mixed) => mixed,
     };
-    // Lanes carry whole groups of parts.
-    let group = cut.layout.parts.group();
-    let fits = |more: &usize| (cut.samples * receivers * more).is_multiple_of(group);
-    let receivers = receivers * [1, 2, 4].into_iter().find(fits).unwrap_or(1);
-    let chirps = (period / receivers).max(1);
-    let header = if marks.is_some() { HEADER_BYTES as u64 } else { 0 };
-    let loop_bytes = chirps as u64 * ((receivers * row_bytes) as u64 + header);
-    let all = (bytes / loop_bytes.max(1)).max(1);
-    let loops = (1..=MOST_LOOPS as u64).rev().find(|loops| all.is_multiple_of(*loops)).unwrap_or(1);
-    // A count with few divisors is no reason to look at fewer loops.
-    let loops = if loops < all.min(8) { all.min(MOST_LOOPS as u64) } else { loops };
-    (Counts { samples: cut.samples, receivers, chirps, loops: loops as usize }, found.is_none())
-}
-
-/// Period of the rows: rows so far apart differ by one constant phase, which a moving echo turns. `None` where no usual count fits.
-fn period(cut: &Cut, numbers: &[Complex64]) -> Option<usize> {
-    let rows = rows(numbers, cut.samples, cut.mixed);
-    let mut centred = rows.slice(s![..rows.nrows().min(MOST_ROWS), ..]).to_owned();
-    if cut.layout.parts == Parts::Real || numbers.iter().all(|v| v.im == 0.0) {
-        // Real samples have no phase that turns.
-        centred = all_analytic(centred.view(), cut.samples.div_ceil(2));
-    }
-    for mut row in centred.outer_iter_mut() {
-        let mean = row.sum() / row.len().max(1) as f64;
-        row.mapv_inplace(|v| v - mean);
-    }
-    let power: Vec<f64> = centred.outer_iter().map(|row| row.iter().map(Complex64::norm_sqr).sum()).collect();
-    // How alike they are, and how much of that turns alike.
-    let alike = |lag: usize| {
-        let (mut sum, mut moduli, mut all) = (Complex64::default(), 0.0, f64::MIN_POSITIVE);
-        for (a, b) in (0..centred.nrows() - lag).map(|n| (n, n + lag)) {
-            let product: Complex64 = centred.row(a).iter().zip(centred.row(b)).map(|(a, b)| a * b.conj()).sum();
-            sum += product;
-            moduli += product.norm();
-            all += (power[a] * power[b]).sqrt();
-        }
-        (lag, sum.norm() / all, sum.norm() / moduli.max(f64::MIN_POSITIVE))
+    let of = |rows: usize, receivers: usize, odds: [f64; 2]| {
+        // Lanes carry whole groups of parts.
+        let group = cut.layout.parts.group();
+        let fits = |more: &usize| (cut.samples * receivers * more).is_multiple_of(group);
+        let receivers = receivers * [1, 2, 4].into_iter().find(fits).unwrap_or(1);
+        let chirps = (rows / receivers).max(1);
+        let header = if marks.is_some() { HEADER_BYTES as u64 } else { 0 };
+        let loop_bytes = chirps as u64 * ((receivers * row_bytes) as u64 + header);
+        let all = (bytes / loop_bytes.max(1)).max(1);
+        let loops = (1..=MOST_LOOPS as u64).rev().find(|loops| all.is_multiple_of(*loops)).unwrap_or(1);
+        // A count with few divisors is no reason to look at fewer loops.
+        let loops = if loops < all.min(8) { all.min(MOST_LOOPS as u64) } else { loops };
+        let counts = Counts { samples: cut.samples, receivers, chirps, loops: loops as usize };
+        LikelyCounts { parts: Some(cut.layout.parts), counts, guessed, odds }
     };
-    let usual = if cut.mixed == 1 { &PERIODS[..] } else { &CHIRPS[..] };
-    let lags = usual.iter().map(|count| count * cut.mixed).filter(|lag| 2 * lag <= centred.nrows());
-    let all: Vec<(usize, f64, f64)> = lags.map(alike).collect();
-    let [most, steadiest] =
-        all.iter().fold([0.0, 0.0], |[a, b]: [f64; 2], (_, alike, steady)| [a.max(*alike), b.max(*steady)]);
-    let repeats = |(_, alike, steady): &(usize, f64, f64)| *steady >= STEADY * steadiest && *alike >= REPEATS * most;
-    all.into_iter().find(|lag| most >= LEAST_ALIKE && repeats(lag)).map(|(lag, ..)| lag)
+    let mut all = vec![of(rows, usual(rows), [0.0; 2])];
+    let is_open = marked.is_none() && cut.mixed == 1 && guessed.is_none();
+    let others = [3, 2, 1].into_iter().filter(|n| is_open && rows.is_multiple_of(*n) && *n < usual(rows));
+    let others = others.filter(|n| rows / n <= MOST_TRANSMITTERS);
+    all.extend(others.map(|receivers| of(rows, receivers, [0.0, LESS_USUAL])));
+    let next = found.and_then(|found| found.next).filter(|next| *next > 1);
+    all.extend(next.map(|next| of(next, usual(next), [LESS_STEADY, 0.0])));
+    all
 }

@@ -110,17 +110,7 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     let (packets, bytes) = (stream.has_packets(), stream.bytes());
     let known = Known { profile, bytes };
     let mut candidates = Vec::new();
-    let mut none = None;
-    for way in &ways {
-        match (Job { counts: way.counts, only: way.parts, header_bytes, packets, known }).candidates(stream) {
-            Ok(of_way) => candidates.extend(of_way),
-            Err(LayoutError::Io(error)) => return Err(error.into()),
-            Err(error) => none = Some(error),
-        }
-    }
-    if let Some(error) = none.filter(|_| candidates.is_empty()) {
-        return Err(error);
-    }
+    judge(stream, &ways, header_bytes, known, &mut candidates)?;
     candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
     let Some(best) = candidates.first() else {
         return Err(match stream.bytes() {
@@ -134,9 +124,9 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     if best.flatness_db < FLAT_DB {
         return Err(LayoutError::NoEcho { tried: candidates.len() });
     }
-    if ways.iter().any(|way| way.guessed && way.counts == best.counts) {
+    if let Some(why) = ways.iter().find(|way| way.counts == best.counts).and_then(|way| way.guessed) {
         hides_counts = true;
-        notes.push(counts::GUESSED_NOTE.to_owned());
+        notes.push(why.to_owned());
     }
     if profile.is_some() {
         let Candidate { layout, counts, .. } = best;
@@ -147,6 +137,39 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     }
     notes.extend(packets.then(|| told_of_packets(stream.lost_packets())));
     Ok(Found { candidates, notes, hides_counts })
+}
+
+/// Judges every layout of each of the counts.
+fn judge<R: Read + Seek>(
+    stream: &mut Stream<R>,
+    ways: &[LikelyCounts],
+    header_bytes: usize,
+    known: Known<'_>,
+    candidates: &mut Vec<Candidate>,
+) -> Result<(), LayoutError> {
+    let packets = stream.has_packets();
+    let mut none = None;
+    // Log-odds of the likeliest counts, which others are beside.
+    let mut likeliest = 0.0;
+    for way in ways {
+        match (Job { counts: way.counts, only: way.parts, header_bytes, packets, known }).candidates(stream) {
+            Ok(of_way) if way.odds == [0.0; 2] => {
+                likeliest = of_way[0].log_odds();
+                candidates.extend(of_way);
+            }
+            // Spectra of as many numbers in other rows don't tell: how the rows repeat and break does.
+            Ok(of_way) => candidates.extend(of_way.into_iter().take(1).map(|mut other| {
+                let [rows, usual] = way.odds;
+                let log_odds = likeliest + rows - other.log_odds();
+                other.evidence.push(Evidence { kind: Kind::Rows, log_odds, sentence: String::new() });
+                other.evidence.push(Evidence { kind: Kind::Usual, log_odds: usual, sentence: String::new() });
+                other
+            })),
+            Err(LayoutError::Io(error)) => return Err(error.into()),
+            Err(error) => none = Some(error),
+        }
+    }
+    none.filter(|_| candidates.is_empty()).map_or(Ok(()), Err)
 }
 
 fn told_of_packets(lost: u64) -> String {

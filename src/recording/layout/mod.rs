@@ -13,6 +13,7 @@
 //! | `find` | the candidates and the best of them |
 //! | `breaks` | where samples don't follow from those before |
 //! | `counts` | samples and receivers where no text says them |
+//! | `period` | after how many rows they are the same again |
 //! | `verdict` | why, in sentences |
 
 mod breaks;
@@ -22,6 +23,7 @@ mod evidence;
 mod find;
 mod marks;
 mod parts;
+mod period;
 mod shape;
 mod spectrum;
 pub mod stream;

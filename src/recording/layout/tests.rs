@@ -163,6 +163,11 @@ fn samples_with_receivers_are_found_without_a_cfg() {
             "{:#?}",
             found.sentences()
         );
+        if receivers == ReceiverOrder::OneAfterAnother {
+            let of_three_transmitters = |c: &&Candidate| (c.counts.receivers, c.counts.chirps) == (1, 3);
+            assert!(found.rivals().iter().any(of_three_transmitters), "{:#?}", found.sentences());
+            assert_ne!(found.certainty(), Certainty::Sure, "{:#?}", found.sentences());
+        }
     }
 }
 
@@ -248,6 +253,15 @@ fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
         let counts = found.best().counts;
         assert_eq!((counts.samples, counts.receivers, counts.chirps), (120, 4, chirps), "{:#?}", found.sentences());
     }
+}
+
+#[test]
+fn rows_that_are_all_alike_leave_the_receivers_open() {
+    let one: Vec<Vec<Complex64>> = (0..40).flat_map(|_| chirps()).map(|chirp| chirp[..SAMPLES].to_vec()).collect();
+    let right = layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother);
+    let found = found(written(&right, &one), None);
+    assert_ne!(found.certainty(), Certainty::Sure, "{:#?}", found.sentences());
+    assert!(found.notes.iter().any(|n| n.starts_with("All rows of samples are alike")), "{:?}", found.notes);
 }
 
 #[test]

@@ -40,6 +40,14 @@ impl Found {
         Some(self.best().log_odds() - self.candidates.get(1)?.log_odds())
     }
 
+    /// The next, and the likeliest of other counts where that is not far below the best.
+    pub fn rivals(&self) -> Vec<&Candidate> {
+        let (best, next) = (self.best(), self.candidates.get(1));
+        let is_near = |other: &&Candidate| best.log_odds() - other.log_odds() < SURE;
+        let other = self.candidates.iter().filter(is_near).find(|other| other.counts != best.counts);
+        next.into_iter().chain(other.filter(|other| Some(*other) != next)).collect()
+    }
+
     /// How sure the choice is: never sure where the samples hide their counts.
     pub fn certainty(&self) -> Certainty {
         match Certainty::of(self.margin()) {
@@ -77,6 +85,7 @@ impl Found {
                 format!("the spectrum, whose level is {:.1} dB lower", 10.0 * lower / std::f64::consts::LN_10)
             }
             Kind::Receivers => "the receivers, which see the same echoes".to_owned(),
+            Kind::Rows => "the rows, which are the same again after a loop of it".to_owned(),
             Kind::Counts => "the count of frames that fill the file".to_owned(),
             Kind::Half => "the empty half of the range axis".to_owned(),
             Kind::Images => "the images of its echoes".to_owned(),
@@ -99,7 +108,7 @@ impl Found {
 impl Candidate {
     /// The layout and its counts in a sentence's words.
     pub fn described(&self) -> String {
-        let Counts { samples, receivers, .. } = self.counts;
+        let Counts { samples, receivers, chirps, .. } = self.counts;
         let parts = self.layout.parts.described(self.layout.q_first);
         let order = match (receivers, self.layout.receivers) {
             (1, _) => "1 receiver".to_owned(),
@@ -107,7 +116,8 @@ impl Candidate {
             (_, ReceiverOrder::Interleaved) => format!("{receivers} receivers sample by sample"),
         };
         let real = if self.layout.parts == Parts::Real { "real " } else { "" };
-        format!("{}, {parts}, {order}, {samples} {real}samples a chirp", self.layout.words.described())
+        let chirps = if chirps == 1 { String::new() } else { format!(", {chirps} chirps a loop") };
+        format!("{}, {parts}, {order}, {samples} {real}samples a chirp{chirps}", self.layout.words.described())
     }
 }
 

@@ -230,15 +230,13 @@ pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
 /// What is doubtful of the layout.
 fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     let mut doubts = found.notes.clone();
-    if found.certainty() != Certainty::Sure
-        && let Some(next) = found.candidates.get(1)
-    {
-        doubts.push(format!(
-            "The layout is {}: {}. As likely is: {}.",
-            if found.certainty() == Certainty::Open { "open" } else { "likely, not sure" },
-            found.best().described(),
-            next.described()
-        ));
+    let rivals: Vec<String> = found.rivals().into_iter().map(Candidate::described).collect();
+    if found.certainty() != Certainty::Sure && !rivals.is_empty() {
+        let (how, or) = match found.certainty() {
+            Certainty::Open => ("open", "As likely is"),
+            _ => ("likely, not sure", "It may also be"),
+        };
+        doubts.push(format!("The layout is {how}: {}. {or}: {}.", found.best().described(), rivals.join("; or: ")));
     }
     let best = found.best();
     let Some(profile) = profile else { return doubts };

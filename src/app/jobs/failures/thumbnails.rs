@@ -6,6 +6,7 @@ use crate::app::state::Conditions;
 use crate::evaluate::rows::Row;
 use crate::evaluate::trial::{TimedAnswer, Trial};
 use crate::maps::RangeAngleMap;
+use crate::picture::in_place;
 use crate::platform;
 use crate::radar::Radar;
 use crate::reconstruct::{Reconstructor, Request};
@@ -41,7 +42,9 @@ impl Thumbnail {
 }
 
 fn shrunk(radar: &Radar, map: &RangeAngleMap) -> Bytes {
-    let cells = radar.left_to_right(&map.lambda);
+    let drawn = radar.left_to_right(&map.lambda);
+    let placed = in_place(radar, drawn);
+    let cells = placed.as_ref().map_or(drawn, |placed| placed.view());
     let (rows, columns) = cells.dim();
     // The largest, so that no point is lost.
     let mut small = vec![0.0f32; WIDTH * HEIGHT];

@@ -4,7 +4,9 @@ use crate::app::state::{Cursor, CutMap, MapKind, Units};
 use crate::app::widgets::chart::Span;
 use crate::app::widgets::direction::direction;
 use crate::maps::LambdaScale;
+use crate::picture::finer;
 use crate::radar::Radar;
+use ndarray::s;
 
 /// Which way a cut goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -81,18 +83,14 @@ impl Trace {
     pub fn of(radar: &Radar, cursor: &Cursor, map: &CutMap, cut: Cut, pin: Option<usize>) -> Option<Trace> {
         let (bin, column) = cursor.cell(radar)?;
         let (rows, columns) = map.map.lambda.dim();
-        let mut lambda: Vec<_> = match cut {
-            Cut::Angle if bin < rows => {
-                let cells = map.map.lambda.row(bin);
-                cells.iter().enumerate().map(|(k, v)| [radar.cos_of_column(k as f64), f64::from(*v)]).collect()
-            }
+        let lambda = match cut {
+            Cut::Angle if bin < rows => angle_cut(radar, map, bin),
             Cut::Range if column < columns => {
                 let cells = map.map.lambda.column(column);
                 cells.iter().enumerate().map(|(k, v)| [radar.range_of_bin_metres(k as f64), f64::from(*v)]).collect()
             }
             _ => return None,
         };
-        lambda.sort_by(|a: &[f64; 2], b| a[0].total_cmp(&b[0]));
         Some(Trace { kind: map.kind, pin, lambda, scale: map.scale })
     }
 
@@ -114,4 +112,13 @@ impl Trace {
             Units::Decibels => self.decibels(),
         }
     }
+}
+
+/// cos(theta), rising, and Lambda of one range; of few columns on those that its map is drawn on.
+fn angle_cut(radar: &Radar, map: &CutMap, bin: usize) -> Vec<[f64; 2]> {
+    let row = radar.left_to_right(&map.map.lambda).slice_move(s![bin..=bin, ..]);
+    let fine = finer(radar, row);
+    let cells = fine.as_ref().map_or(row, |fine| fine.view());
+    let cos = |n: usize| radar.cos_of_column(radar.column_across((n as f64 + 0.5) / cells.ncols() as f64));
+    cells.iter().enumerate().map(|(n, v)| [cos(n), f64::from(*v)]).collect()
 }

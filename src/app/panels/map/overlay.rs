@@ -39,7 +39,7 @@ pub fn found(painter: &Painter, frame: Frame<'_>, found: &[Reflector], old: bool
 /// The map of one range bin as a line: Lambda over directions.
 pub fn line(painter: &Painter, frame: Frame<'_>, map: &RangeAngleMap, ink: Color32) {
     let cells = frame.radar.left_to_right(&map.lambda);
-    let fine = finer(cells);
+    let fine = finer(frame.radar, cells);
     let cells = fine.as_ref().map_or(cells, |fine| fine.view());
     let across = |n: usize| (n as f32 + 0.5) / cells.ncols() as f32;
     let point = |(n, lambda): (usize, &f32)| frame.view.to_screen(frame.rect, pos2(across(n), *lambda));

@@ -17,6 +17,9 @@ const BELOW: f32 = 28.0;
 /// Nearer to the top the pointer would be under a text in the right corner, points.
 const NEAR_TOP: f32 = 40.0;
 
+/// What is narrower beyond an edge is a rounding error, as a part of the map's width.
+const MIN_PIECE_RATIO: f32 = 1e-4;
+
 /// Draws the window around the pointer's cell.
 pub fn draw(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<&Cells<'_>>, cfar: &Cfar) {
     let Some((bin, column)) = cursor.cell(frame.radar) else { return };
@@ -64,19 +67,20 @@ fn told(found: &Level) -> String {
 /// The outline of the cells at most `sides` from a cell; in two pieces where it wraps around the end of the columns.
 fn outlines(frame: Frame<'_>, [bin, column]: [usize; 2], sides: [usize; 2]) -> Vec<Vec<Pos2>> {
     let (bins, columns) = (frame.radar.samples as f32, frame.radar.elements as f32);
+    let middle = frame.radar.across_of_column(column as f64) as f32;
+    let half = (sides[1] as f32 + 0.5) / columns;
     let [bottom, top] = [bin as f32 - sides[0] as f32, (bin + sides[0] + 1) as f32].map(|b| b.clamp(0.0, bins) / bins);
-    let [left, right] = [column as f32 - sides[1] as f32, (column + sides[1] + 1) as f32];
-    let mut pieces = vec![[left.max(0.0), right.min(columns)]];
-    if left < 0.0 {
-        pieces.push([left + columns, columns]);
+    let [left, right] = [middle - half, middle + half];
+    let mut pieces = vec![[left.max(0.0), right.min(1.0)]];
+    if left < -MIN_PIECE_RATIO {
+        pieces.push([left + 1.0, 1.0]);
     }
-    if right > columns {
-        pieces.push([0.0, right - columns]);
+    if right > 1.0 + MIN_PIECE_RATIO {
+        pieces.push([0.0, right - 1.0]);
     }
     let at = |fraction: Pos2| frame.at_fraction(frame.polar_of_cell(fraction), fraction);
     let outline = |[left, right]: [f32; 2]| {
-        let corners = [pos2(left, bottom), pos2(right, bottom), pos2(right, top), pos2(left, top)]
-            .map(|corner| pos2(frame.radar.across_of_column(f64::from(corner.x) - 0.5) as f32, corner.y));
+        let corners = [pos2(left, bottom), pos2(right, bottom), pos2(right, top), pos2(left, top)];
         let sides = (0..4).flat_map(move |i| (0..ALONG).map(move |k| (corners[i], corners[(i + 1) % 4], k)));
         sides.map(|(from, to, k)| at(from + (k as f32 / ALONG as f32) * (to - from))).collect()
     };

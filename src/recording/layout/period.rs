@@ -1,0 +1,91 @@
+//! After how many rows of samples they are the same again: those of a loop.
+
+use crate::recording::analytic::all_analytic;
+use ndarray::{Array2, s};
+use num_complex::Complex64;
+
+/// Rows after which rows may repeat: receivers of one, two or three transmitters in turn; and chirps after which those of receivers sample by
+/// sample may.
+const PERIODS: [usize; 9] = [1, 2, 3, 4, 6, 8, 9, 12, 16];
+const CHIRPS: [usize; 7] = [1, 2, 3, 4, 6, 9, 12];
+/// Rows that are compared.
+const MOST_ROWS: usize = 512;
+/// Rows are the same again where they turn so much alike, as a part of those that do most, and are so much alike, as a part of the most alike; and at
+/// least so much. Of 335 captures made at random the period was right in 295, by the likeness alone in 244.
+const STEADY: f64 = 0.999;
+const REPEATS: f64 = 0.5;
+const LEAST_ALIKE: f64 = 0.3;
+/// Another period is likely too where rows at no multiple of the one found turn no more than so many times less alike, and are alike by so
+/// much at least; or where those at a multiple turn so many times more alike. Of 209 periods of captures made at random these doubt 15 right ones and all
+/// 12 wrong ones.
+const LESS_STEADY_TIMES: f64 = 60.0;
+const MIN_ALIKE_RATIO: f64 = 0.1;
+const STEADIER_TIMES: f64 = 5.0;
+
+/// After how many rows they are the same again.
+pub(super) struct Period {
+    pub rows: usize,
+    /// Another count that is almost as likely.
+    pub next: Option<usize>,
+}
+
+/// Period of the rows: rows so far apart differ by one constant phase, which a moving echo turns. `None` where no usual count fits.
+/// Rows are of `mixed` receivers sample by sample.
+pub(super) fn period(rows: &Array2<Complex64>, mixed: usize, is_real: bool) -> Option<Period> {
+    let mut centred = rows.slice(s![..rows.nrows().min(MOST_ROWS), ..]).to_owned();
+    if is_real {
+        // Real samples have no phase that turns.
+        centred = all_analytic(centred.view(), centred.ncols().div_ceil(2));
+    }
+    for mut row in centred.outer_iter_mut() {
+        let mean = row.sum() / row.len().max(1) as f64;
+        row.mapv_inplace(|v| v - mean);
+    }
+    let power: Vec<f64> = centred.outer_iter().map(|row| row.iter().map(Complex64::norm_sqr).sum()).collect();
+    // How alike they are, and how much of that turns alike.
+    let alike = |lag: usize| {
+        let (mut sum, mut moduli, mut all) = (Complex64::default(), 0.0, f64::MIN_POSITIVE);
+        for (a, b) in (0..centred.nrows() - lag).map(|n| (n, n + lag)) {
+            let product: Complex64 = centred.row(a).iter().zip(centred.row(b)).map(|(a, b)| a * b.conj()).sum();
+            sum += product;
+            moduli += product.norm();
+            all += (power[a] * power[b]).sqrt();
+        }
+        Likeness { rows: lag, alike: sum.norm() / all, steady: sum.norm() / moduli.max(f64::MIN_POSITIVE) }
+    };
+    let usual = if mixed == 1 { &PERIODS[..] } else { &CHIRPS[..] };
+    let lags = usual.iter().map(|count| count * mixed).filter(|lag| 2 * lag <= centred.nrows());
+    let all: Vec<Likeness> = lags.map(alike).collect();
+    let most = all.iter().map(|lag| lag.alike).fold(0.0, f64::max);
+    let steadiest = all.iter().map(|lag| lag.steady).fold(0.0, f64::max);
+    // Rows that are all the same have one receiver, which tells no direction: that is another choice at most.
+    let can_be = |lag: &&Likeness| lag.rows > 1 && most >= LEAST_ALIKE;
+    let repeats = |lag: &&Likeness| lag.steady >= STEADY * steadiest && lag.alike >= REPEATS * most;
+    let found = all.iter().filter(can_be).find(repeats)?;
+    Some(Period { rows: found.rows, next: other_period(found, &all) })
+}
+
+/// How much rows so far apart are alike, and how much of that turns alike.
+struct Likeness {
+    rows: usize,
+    alike: f64,
+    steady: f64,
+}
+
+/// The period that is almost as likely as the one found: where rows at no multiple of it turn hardly less alike, what both have in common;
+/// where those at a multiple turn more alike, that.
+fn other_period(found: &Likeness, all: &[Likeness]) -> Option<usize> {
+    let unsteady = |lag: &&Likeness| 1.0 - lag.steady;
+    let least = |a: &&Likeness, b: &&Likeness| unsteady(a).total_cmp(&unsteady(b));
+    let (multiples, others): (Vec<_>, Vec<_>) = all.iter().partition(|lag| lag.rows.is_multiple_of(found.rows));
+    let other = others.into_iter().filter(|lag| lag.alike > MIN_ALIKE_RATIO).min_by(least);
+    if let Some(other) = other.filter(|lag| unsteady(lag) <= LESS_STEADY_TIMES * unsteady(&found)) {
+        return Some(common_divisor(other.rows, found.rows));
+    }
+    let multiple = multiples.into_iter().min_by(least);
+    multiple.filter(|lag| STEADIER_TIMES * unsteady(lag) < unsteady(&found)).map(|lag| lag.rows)
+}
+
+fn common_divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { common_divisor(b, a % b) }
+}
