@@ -268,7 +268,7 @@ mod tests {
         };
         let elements = Arc::new(elements);
         let state = Panel { elements, memory: ElementsMemory::default(), asked: 0, layout: None, calibrated };
-        let mut panel = Harness::builder().with_size([640.0, 360.0]).build_ui_state(draw, state);
+        let mut panel = Harness::builder().with_size([640.0, 420.0]).build_ui_state(draw, state);
         panel.run();
         panel
     }

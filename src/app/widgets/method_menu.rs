@@ -191,7 +191,8 @@ mod tests {
         let radar = Radar { elements: 86, end_elements: 8, ..Radar::default() };
         let draw = move |ui: &mut Ui, popup: &mut Popup| {
             let layout = layout.as_ref();
-            let offered = Offered { all: &all, radar: Some(&radar), layout, times: popup.times.on(&Radar::default()) };
+            let (radar, times) = (layout.map(|_| &radar), popup.times.on(&Radar::default()));
+            let offered = Offered { all: &all, radar, layout, times };
             eframe::egui::ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
                 method_list(ui, offered, chosen, |v| ViewCommand::Method(v).into(), &mut popup.asked);
             });

@@ -108,7 +108,7 @@ pub struct Args {
     /// Print the tables of rows from these files together
     #[arg(long, value_name = "FILE.csv", num_args = 1..,
           conflicts_with_all = ["method", "set", "count", "seed", "scenes", "shard", "floor", "carrier", "radar",
-                                "thesis_text"])]
+                                "layout", "thesis_text"])]
     merge: Vec<PathBuf>,
 
     /// Print the tables of --merge even if scenes are missing

@@ -60,7 +60,8 @@ fn tip(layout: Option<&LayoutKind>) -> &'static str {
 fn suggested(radar: &Radar) -> impl Iterator<Item = LayoutKind> {
     let elements = radar.elements;
     let neighbours = elements.isqrt().saturating_sub(1).max(1);
-    let step = (elements / 2).isqrt().saturating_sub(1).max(1);
+    let reaches = |step: &usize| (2 * step - 1) * (step + 1) < elements;
+    let step = (1..).take_while(reaches).last().unwrap_or(1);
     let few = (2 * radar.end_elements).clamp(2, elements.max(2));
     [
         LayoutKind::Nested { neighbours, apart: (elements / (neighbours + 1)).max(1) },
