@@ -96,6 +96,13 @@ pub fn preferred_for(radar: &Radar) -> Arc<dyn Reconstructor> {
     by_name("iaa").unwrap_or_else(|_| Arc::new(MatchedFilter::Incoherent))
 }
 
+/// The method whose output is shown of what the elements of `layout` hear by default.
+pub fn preferred_hearing(radar: &Radar, layout: &[usize]) -> Arc<dyn Reconstructor> {
+    let iaa: Arc<dyn Reconstructor> = Arc::new(IAA);
+    let hears = iaa.check_elements(radar, layout).is_ok();
+    if hears { iaa } else { Arc::new(MatchedFilter::Coherent) }
+}
+
 /// A method's name that is not known.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown method \"{name}\"; known: {known}")]

@@ -6,6 +6,7 @@
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
 use crate::picture::ColourMap;
+use crate::radar::LayoutKind;
 use crate::scene::SceneError;
 use crate::scene::file::{SceneFile, SceneTextError, from_toml_beside, to_toml_beside};
 use crate::signal::Floor;
@@ -64,6 +65,9 @@ pub struct SharedView {
     pub eta: Option<f32>,
     /// Name of the reconstruction method.
     pub method: String,
+    /// The elements that methods hear, where those are not the two ends.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layout: Option<LayoutKind>,
     /// Whether true reflectors are marked.
     pub marks: bool,
     /// Whether what the formulas say is drawn over the maps.
@@ -207,6 +211,7 @@ impl SharedView {
             cfar,
             eta: view.method_eta.get(&view.method).copied(),
             method: view.method.clone(),
+            layout: view.layout.clone(),
             marks: view.show_reflectors,
             theory: view.show_theory,
             lesson,
@@ -220,7 +225,7 @@ impl SharedView {
         (view.floor, view.normalisation, view.colours) = (self.floor, self.normalisation, self.colours);
         (view.target_eta, view.show_reflectors, view.show_theory) = (self.target_eta, self.marks, self.theory);
         view.projection = if self.cartesian { Projection::Cartesian } else { Projection::RangeAngle };
-        view.method = self.method;
+        (view.method, view.layout) = (self.method, self.layout);
     }
 
     /// Holds what comes from outside to what the app can show.
@@ -271,6 +276,7 @@ mod tests {
             cfar: None,
             eta: Some(0.31),
             method: "nomp".to_owned(),
+            layout: None,
             marks: true,
             theory: false,
             lesson: Some(LessonPlace { id: "near-field".to_owned(), step: 3 }),
@@ -311,7 +317,8 @@ mod tests {
             let floor = if marks { level } else { Floor::Snr(Decibels(snr)) };
             let normalisation = Normalisation::DynamicRange(Decibels(range));
             let cfar = marks.then(|| Cfar { guard: [samples, 2], ..Cfar::default() });
-            let view = SharedView { cfar, floor, normalisation, eta, target_eta, cartesian, theory, marks, lesson, ..view() };
+            let layout = theory.then_some(LayoutKind::Random { elements: samples, seed: 7 });
+            let view = SharedView { cfar, layout, floor, normalisation, eta, target_eta, cartesian, theory, marks, lesson, ..view() };
             let shared = SharedScene { file: SceneFile { scene, radar: Radar { samples, ..Radar::default() } }, view };
             let text = shared.to_text().unwrap();
             prop_assert!(is_shared(&text) && !text.contains(char::is_whitespace));

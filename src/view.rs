@@ -6,7 +6,7 @@ use crate::maps::cfar::Cfar;
 use crate::picture::ColourMap;
 #[cfg(feature = "pictures")]
 use crate::picture::Style;
-use crate::radar::{DecibelMilliwatts, Decibels, Radar};
+use crate::radar::{DecibelMilliwatts, Decibels, LayoutKind, Radar};
 use crate::signal::Floor;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -133,6 +133,8 @@ view! {
     method_eta: BTreeMap<String, f32> = BTreeMap::new(),
     /// Name of the reconstruction method.
     method: String = String::new(),
+    /// The elements that methods hear; the two ends where there is none.
+    layout: Option<LayoutKind> = None,
     /// Whether true reflectors are drawn over the maps.
     show_reflectors: bool = false,
     /// Whether the reflectors that the method found are drawn.
@@ -170,10 +172,16 @@ impl View {
         }
     }
 
-    /// A campaign over this floor, with this normalisation and detector.
+    /// Numbers of the elements of `radar` that methods hear in place of the two ends; `None` where they hear those, as where `radar` has not the
+    /// elements of the layout.
+    pub fn heard(&self, radar: &Radar) -> Option<Vec<usize>> {
+        self.layout.as_ref()?.numbers(radar).ok()
+    }
+
+    /// A campaign over this floor, with this normalisation, detector and layout.
     pub fn campaign(&self, radar: &Radar) -> Campaign {
         let View { floor, normalisation, cfar, .. } = *self;
-        Campaign { radar: radar.clone(), floor, normalisation, cfar, ..Campaign::default() }
+        Campaign { radar: radar.clone(), floor, normalisation, cfar, layout: self.heard(radar), ..Campaign::default() }
     }
 
     /// How pictures of a method's maps are drawn.

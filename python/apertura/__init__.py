@@ -29,6 +29,7 @@ from ._apertura import (
     dataset,
     evaluate,
     kinds,
+    layout,
     live_input,
     maps,
     method,
@@ -44,7 +45,6 @@ from ._apertura import (
     threshold,
     write_rows,
 )
-from .layouts import layout
 from .objects import (
     ArgumentError,
     Box,

@@ -19,7 +19,6 @@ from typing import Any, Callable, Iterator, Sequence
 
 from . import _apertura
 from ._journal import Journal, Key, sorted_rows, write_table
-from .layouts import layout
 
 #: Scenes of a task: each task asks every method once more than it has rows, untimed.
 SCENES_A_TASK = 16
@@ -304,7 +303,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             radar,
             tuple(given.elements) if given.elements else None,
             given.target,
-            tuple(layout(given.layout, radar)) if given.layout else None,
+            tuple(_apertura.layout(given.layout, radar)) if given.layout else None,
         )
         rows = campaign(run, given.out, scheduler=given.scheduler, workers=given.workers, progress_seconds=given.progress)
     except (ValueError, OSError, ImportError) as error:

@@ -1,4 +1,4 @@
-//! What no unbiased estimator can beat.
+//! Which elements are heard, and what no unbiased estimator can beat.
 
 use crate::arrays::{numbers, owned, reflectors};
 use crate::errors::named;
@@ -19,13 +19,30 @@ fn layout_of(name: &str, radar: &apertura::radar::Radar) -> PyResult<Layout> {
     named::<LayoutKind>(name)?.layout(radar).map_err(value)
 }
 
+/// Numbers of the elements of a layout, in rising order; those of a list in its own.
+///
+/// Args:
+///     name: "full"; "two-ends"; "one-end", the first; "nested=AxB", A neighbours and B elements A + 1 apart (Pal and Vaidyanathan 2010);
+///         "coprime=MxN", N elements M apart and 2 M elements N apart (Vaidyanathan and Pal 2011); "thinned=K", every K-th element; "random=N" or
+///         "random=N:SEED", N elements with the outermost two among them; "mimo=TxR", the pairs of T transmitters and R receivers; or numbers as rows have
+///         them, "0-11 1012-1023".
+///     radar: The radar; that of table 3.1 where none is given.
+///
+/// Raises:
+///     ValueError: The name is unknown, or the radar has no such elements.
+#[pyfunction]
+#[pyo3(signature = (name, radar=None))]
+pub fn layout(name: &str, radar: Option<&Radar>) -> PyResult<Vec<usize>> {
+    named::<LayoutKind>(name)?.numbers(&or_default(radar)).map_err(value)
+}
+
 /// Cramer-Rao bounds on the position of each reflector: the smallest errors of any unbiased estimator.
 ///
 /// Args:
 ///     reflectors: Numbers `[reflectors, 2]` (x and y in metres) or `[reflectors, 3]` (and reflectivity); at most 64.
 ///     snr_db: Signal-to-noise ratio a sample of the first reflector, averaged over the layout.
 ///     radar: The radar; that of table 3.1 where none is given.
-///     layout: "two-ends", "full", "one-end", "random=N", "random=N:SEED" or "mimo=TxR".
+///     layout: A name that `layout` knows.
 ///     gains: "one" (all elements hear a reflector coherently) or "per-end".
 ///
 /// Returns:

@@ -61,6 +61,7 @@ fn _apertura(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(rows::read_rows, module)?)?;
     module.add_function(wrap_pyfunction!(rows::write_rows_to, module)?)?;
     module.add_function(wrap_pyfunction!(bounds::cramer_rao, module)?)?;
+    module.add_function(wrap_pyfunction!(bounds::layout, module)?)?;
     module.add_function(wrap_pyfunction!(bounds::ambiguity, module)?)?;
     module.add_function(wrap_pyfunction!(objects::built_elements, module)?)?;
     module.add_function(wrap_pyfunction!(pool::set_threads, module)?)?;

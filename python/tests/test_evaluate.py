@@ -167,8 +167,8 @@ def test_layouts_have_names():
     assert ap.layout("two-ends", CHIP) == [*range(8), *range(78, 86)]
     assert ap.layout("coprime=3x5", CHIP) == sorted({0, 3, 6, 9, 12, 5, 10, 15, 20, 25})
     assert ap.layout("random=24:3", CHIP) == ap.layout("random=24:3", CHIP) and len(ap.layout("random=24", CHIP)) == 24
-    assert ap.layout("thinned=40", CHIP) == [0, 40, 80]
-    for name, words in (("magic", "expected two-ends, nested=AxB"), ("nested=4", "expected two-ends"), ("nested=40x40", "reaches to element"), ("random=1", "expected two-ends")):
+    assert ap.layout("thinned=40", CHIP) == ap.layout("0 40,80", CHIP) == [0, 40, 80]
+    for name, words in (("magic", "expected full, two-ends"), ("nested=4", "expected full"), ("nested=40x40", "has elements 0 to 85"), ("random=87", "1 to 86")):
         with pytest.raises(ValueError, match=words):
             ap.layout(name, CHIP)
 

@@ -165,7 +165,7 @@ impl<C: Content> AnyPanel for Held<C> {
 /// The methods to choose from, with the times that are known of them.
 pub fn offered(state: &State) -> Offered<'_> {
     let times = state.method_times.on(state.radar());
-    Offered { all: &state.methods.all, radar: Some(state.radar()), times }
+    Offered { all: &state.methods.all, radar: Some(state.radar()), layout: state.settings.layout.as_ref(), times }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! `apertura dataset`: examples to train on as files.
 
 use super::arguments::{real, seed, whole};
+use super::layout_arg::LayoutArg;
 use super::radar_arg::RadarArg;
 use super::{CommandError, print};
 use crate::network::floors::Floors;
@@ -17,7 +18,8 @@ use std::time::Duration;
 /// Write examples for training as files: samples of both ends, the live network's input, and maps of the whole array
 ///
 /// DIR gets train, validation and test with shards of NumPy arrays, and manifest.json with the SHA-256 of each file. The scenes of the three
-/// never meet. The same arguments write the same files. docs/data.md leads from here to a training loop.
+/// never meet. The same arguments write the same files. With --layout the samples of its elements stand in place of those of the ends, as the array
+/// heard, and manifest.json has the numbers of the elements. docs/data.md leads from here to a training loop.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[arg(long, value_name = "1,2,3,KIND,..", value_delimiter = ',', required = true, value_parser = Kind::for_training,
@@ -62,6 +64,9 @@ pub struct Args {
     #[command(flatten)]
     radar: RadarArg,
 
+    #[command(flatten)]
+    layout: LayoutArg,
+
     /// Examples of a shard; as many are in memory at once
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = whole(1..=4096u32))]
     shard: u32,
@@ -80,17 +85,19 @@ const TICK: Duration = Duration::from_millis(100);
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let [from, to] = THERMAL;
-        let radars = Radars::Fixed(Box::new(self.radar.load()?.0));
+        let radar = self.radar.load()?.0;
+        let layout = self.layout.numbers(&radar)?;
+        let radars = Radars::Fixed(Box::new(radar));
         let request = DatasetRequest {
             counts: DatasetRequest::counts(&self.set, self.count, self.validation, self.test),
             kinds: self.set,
             seed: self.seed,
             floors: self.thermal.map_or(Floors::Fixed(self.floor), |share| Floors::Thermal { share, from, to }),
             precision: self.dtype,
-            parts: if self.arrays.is_empty() { ExamplePart::usual(&radars, None) } else { self.arrays },
+            parts: if self.arrays.is_empty() { ExamplePart::usual(&radars, layout.as_deref()) } else { self.arrays },
             arrays: Arrays::IDEAL,
             radars,
-            layout: None,
+            layout,
             shard: self.shard,
         };
         let task = Task::default();

@@ -6,12 +6,11 @@ use super::{CommandError, print, print_json};
 use crate::bounds::{Lobes, cut, lobes};
 use crate::evaluate::{Estimate, Roc, squared_error};
 use crate::maps::LogMaps;
-use crate::radar::{Layout, LayoutKind, Polar, Radar, counted};
+use crate::radar::{Layout, LayoutError, LayoutKind, Polar, Radar, counted};
 use crate::reconstruct::{Request, layout_matched_filter};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
-use crate::signal::{BeatSignal, Floor, simulate};
-use ndarray::Array2;
-use num_complex::Complex64;
+use crate::signal::{Floor, simulate};
+use ndarray::Axis;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use serde::Serialize;
@@ -23,13 +22,8 @@ use std::path::PathBuf;
 /// radar's half-wavelength grid. P_D is at a false-alarm rate of 1 %.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Layouts: two-ends, one-end, random=N, random=N:SEED
-    #[arg(
-        long,
-        value_name = "NAME,..",
-        value_delimiter = ',',
-        default_value = "two-ends,random=24:0,random=24:1,random=64:0"
-    )]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "two-ends,random=24:0,random=24:1,random=64:0",
+          help = format!("Layouts: {}", LayoutKind::NAMES))]
     layout: Vec<LayoutKind>,
 
     /// Scenes of each test set
@@ -68,12 +62,10 @@ struct Row {
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let radar = Radar::default();
-        let layouts: Vec<Layout> = self
-            .layout
-            .iter()
-            .map(|kind| kind.layout(&radar).map_err(CommandError::failed))
-            .collect::<Result<_, _>>()?;
-        let mut rows: Vec<Row> = self.layout.iter().zip(&layouts).map(|(k, l)| Row::new(&radar, k, l)).collect();
+        let of = |kind: &LayoutKind| Ok((kind.layout(&radar)?, kind.numbers(&radar)?));
+        let layouts: Vec<(Layout, Vec<usize>)> =
+            self.layout.iter().map(of).collect::<Result<_, LayoutError>>().map_err(CommandError::failed)?;
+        let mut rows: Vec<Row> = self.layout.iter().zip(&layouts).map(|(k, (l, _))| Row::new(&radar, k, l)).collect();
         let bar = indicatif::ProgressBar::new(u64::from(self.count) * 3 * layouts.len() as u64);
         let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
         let request = Request::default();
@@ -84,8 +76,8 @@ impl Args {
                 let scene = generator.scene(kind, number);
                 let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed).map_err(CommandError::failed)?;
                 let target = LogMaps::of_signal(&radar, &signal).full.normalise(request.normalisation);
-                for (i, layout) in layouts.iter().enumerate() {
-                    let samples = heard(&radar, &self.layout[i], layout, &signal)?;
+                for (i, (layout, numbers)) in layouts.iter().enumerate() {
+                    let samples = signal.samples.select(Axis(0), numbers);
                     let map = layout_matched_filter(&radar, layout, samples.view(), &request)
                         .map_err(CommandError::failed)?;
                     errors[i].push(squared_error(&target, &map));
@@ -133,18 +125,6 @@ fn print_table(radar: &Radar, count: u32, rows: &[Row]) -> Result<(), CommandErr
         ))?;
     }
     Ok(())
-}
-
-/// The samples that `layout` receives, of a signal of the whole array.
-fn heard(
-    radar: &Radar,
-    kind: &LayoutKind,
-    layout: &Layout,
-    signal: &BeatSignal,
-) -> Result<Array2<Complex64>, CommandError> {
-    let samples = layout.samples_of(radar, &signal.samples);
-    let off_grid = || CommandError::Usage(format!("the elements of {kind} don't stand on the radar's own grid"));
-    samples.ok_or_else(off_grid)
 }
 
 impl Row {

@@ -17,6 +17,7 @@ mod figures;
 mod frames;
 mod import;
 mod input;
+mod layout_arg;
 mod layouts;
 #[cfg(feature = "app")]
 mod lesson;

@@ -3,6 +3,7 @@
 use super::arguments::FloorArgs;
 use super::frames::Frames;
 use super::input::{ConfigArg, load_recording, shared_text};
+use super::layout_arg::LayoutArg;
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
 use super::{CommandError, print};
@@ -12,7 +13,7 @@ use crate::maps::archive::{add_columns, read_radar};
 use crate::methods;
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
-use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstructor, Request};
+use crate::reconstruct::{Detection, LayoutSamples, NoisePrior, ReconstructError, Reconstructor, Request};
 use crate::recording::{self, Recording};
 use crate::scene::file;
 use crate::signal::TwoEnds;
@@ -24,7 +25,8 @@ use std::time::Instant;
 /// Estimate the whole array's map from the samples of the two ends
 ///
 /// IN has sub0 and sub1: complex128 [512, 12], or [samples, elements of an end] of another radar, of any gain. For the thesis' networks it may have
-/// polar_partial_mag_phase (f64 [4, 512, 1024]) instead. An archive of `apertura maps` and a recording's .toml name their own radar.
+/// polar_partial_mag_phase (f64 [4, 512, 1024]) instead. With --layout it has heard: complex128 [elements of the layout, samples]; of a recording of every
+/// element those of the layout are taken. An archive of `apertura maps` and a recording's .toml name their own radar.
 ///
 /// OUT gets net_output (f32 [512, 1024] or [samples, elements], 0 to 1), eta (the threshold of this answer) and
 /// milliseconds; cos_theta (f64 [1024]) and columns_left_to_right (0 where cos_theta falls from column to column) say which way the columns run.
@@ -44,7 +46,8 @@ pub struct Args {
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
 
-    /// Reconstruction method [default: that of --method-command, or else live where it takes the radar, or else iaa]
+    /// Reconstruction method [default: that of --method-command, or else live where it takes the radar, or else iaa; of a layout
+    /// iaa where it hears it, or else matched-filter]
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
 
@@ -54,6 +57,9 @@ pub struct Args {
 
     #[command(flatten)]
     radar: RadarArg,
+
+    #[command(flatten)]
+    layout: LayoutArg,
 
     #[command(flatten)]
     network: NetworkArgs,
@@ -76,7 +82,7 @@ impl Args {
         }
         let input = self.input()?;
         let radar = &input.radar;
-        let method = asked.map_or_else(|| self.method(methods::preferred_for(radar).name()), Ok)?;
+        let method = asked.map_or_else(|| self.usual(radar), Ok)?;
         let answer = match &input.samples {
             Samples::MagPhase(array) => {
                 let started = Instant::now();
@@ -88,8 +94,8 @@ impl Args {
                     found: Vec::new(),
                 }
             }
-            Samples::Ends(ends) => self
-                .answer(method.as_ref(), (radar, input.range_metres, input.noise), ends)
+            Samples::Heard(heard) => self
+                .answer(method.as_ref(), (radar, input.range_metres, input.noise), heard)
                 .map_err(CommandError::on(&self.input))?,
         };
         self.write(radar, &answer).map_err(CommandError::on(&self.output))?;
@@ -110,14 +116,14 @@ impl Args {
         }
         let frames = Frames::of(load_recording(&self.input, self.capture.config.as_deref())?);
         let radar = &frames.opened().radar;
-        let method = asked.map_or_else(|| self.method(methods::preferred_for(radar).name()), Ok)?;
+        let method = asked.map_or_else(|| self.usual(radar), Ok)?;
         let mut found: Vec<(usize, Detection)> = Vec::new();
         let shape = [frames.count(), radar.samples, radar.elements];
         let answer = |n: usize| -> Result<Answer, CommandError> {
             let recording = frames.at(n)?;
-            let ends = recording.two_ends();
+            let heard = self.heard(&recording)?;
             let Recording { radar, range_metres, .. } = recording;
-            self.answer(method.as_ref(), (&radar, range_metres, NoisePrior::UNKNOWN), &ends)
+            self.answer(method.as_ref(), (&radar, range_metres, NoisePrior::UNKNOWN), &heard)
                 .map_err(CommandError::on(&self.input))
         };
         let written = write_npz(&self.output, |out| {
@@ -152,13 +158,14 @@ impl Args {
                 return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
             }
             let recording = load_recording(&self.input, self.capture.config.as_deref())?;
-            let samples = Samples::Ends(recording.two_ends());
+            let samples = Samples::Heard(self.heard(&recording)?);
             let (radar, range_metres) = (recording.radar, recording.range_metres);
             return Ok(Input { radar, range_metres, noise: NoisePrior::UNKNOWN, samples });
         }
         let (asked, range_metres) = self.radar.load()?;
         let mut archive = Npz::open(&self.input).map_err(|error| self.not_samples(error))?;
-        if !archive.has("sub0") && !archive.has("polar_partial_mag_phase") && archive.has("all_point_x") {
+        let has_samples = ["sub0", "heard", "polar_partial_mag_phase"].iter().any(|key| archive.has(key));
+        if !has_samples && archive.has("all_point_x") {
             return Err(self.is_scene());
         }
         let own = match self.radar.is_given() {
@@ -166,12 +173,16 @@ impl Args {
             false => read_radar(&mut archive).map_err(CommandError::on(&self.input))?,
         };
         let radar = own.unwrap_or(asked);
+        let layout = self.layout.numbers(&radar)?;
         let ready_made = !archive.has("sub0") && archive.has("polar_partial_mag_phase");
-        let samples = if ready_made {
+        let samples = if let Some(layout) = layout {
+            let samples = archive.complexes::<Ix2>("heard").map_err(CommandError::on(&self.input))?;
+            Samples::Heard(Heard::layout(&radar, LayoutSamples { layout, samples }))
+        } else if ready_made {
             let array = archive.reals::<Ix3>("polar_partial_mag_phase").map_err(CommandError::on(&self.input))?;
             Samples::MagPhase(array)
         } else {
-            Samples::Ends(self.two_ends(&mut archive, &radar)?)
+            Samples::Heard(Heard::ends(self.two_ends(&mut archive, &radar)?))
         };
         Ok(Input { radar, range_metres, noise: self.floor.floor.into(), samples })
     }
@@ -214,13 +225,30 @@ impl Args {
         Ok(TwoEnds { first, last: last.map_err(CommandError::on(&self.input))? })
     }
 
+    /// The method of an input that is not told another.
+    fn usual(&self, radar: &Radar) -> Result<Arc<dyn Reconstructor>, CommandError> {
+        let layout = self.layout.numbers(radar)?;
+        let usual =
+            layout.map_or_else(|| methods::preferred_for(radar), |layout| methods::preferred_hearing(radar, &layout));
+        self.method(usual.name())
+    }
+
+    /// What the elements that are looked at heard.
+    fn heard(&self, recording: &Recording) -> Result<Heard, CommandError> {
+        let Some(layout) = self.layout.numbers(&recording.radar)? else { return Ok(Heard::ends(recording.two_ends())) };
+        let alone = "holds the samples of the two ends alone; leave --layout out";
+        let alone = || CommandError::Usage(format!("{}: the recording {alone}", self.input.display()));
+        let signal = recording.signal().ok_or_else(alone)?;
+        Ok(Heard::layout(&recording.radar, LayoutSamples::of(&signal.samples, &layout)))
+    }
+
     fn answer(
         &self,
         method: &dyn Reconstructor,
         (radar, snapshot_range_metres, noise): (&Radar, Option<f64>, NoisePrior),
-        ends: &TwoEnds,
+        Heard { ends, layout }: &Heard,
     ) -> Result<Answer, ReconstructError> {
-        let request = Request { noise, snapshot_range_metres, ..Request::default() };
+        let request = Request { noise, snapshot_range_metres, heard: layout.clone(), ..Request::default() };
         let started = Instant::now();
         let answer = method.reconstruct(radar, ends, &request)?;
         let milliseconds = started.elapsed().as_secs_f64() * 1e3;
@@ -295,8 +323,25 @@ struct Input {
 }
 
 enum Samples {
-    Ends(TwoEnds),
+    Heard(Heard),
     MagPhase(Array3<f64>),
+}
+
+/// What the two ends heard, or another layout in their place.
+struct Heard {
+    ends: TwoEnds,
+    layout: Option<Arc<LayoutSamples>>,
+}
+
+impl Heard {
+    fn ends(ends: TwoEnds) -> Heard {
+        Heard { ends, layout: None }
+    }
+
+    fn layout(radar: &Radar, heard: LayoutSamples) -> Heard {
+        let silence = || Array2::zeros((radar.end_elements, radar.samples));
+        Heard { ends: TwoEnds { first: silence(), last: silence() }, layout: Some(Arc::new(heard)) }
+    }
 }
 
 /// What is written.

@@ -17,7 +17,7 @@ use super::sets::{Case, SceneSet};
 use super::trial::{TimedAnswer, Trial};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
-use crate::radar::{Radar, check_layout};
+use crate::radar::{Radar, check_layout, ranges};
 use crate::reconstruct::{Reconstructor, Request, Weights, untrained_noise};
 use crate::scattering::Echoing;
 use crate::scene::generate::{Generator, Purpose, Reading};
@@ -150,7 +150,7 @@ impl Campaign {
             cfar: self.cfar.map(Text::from).unwrap_or_default(),
             elements: self.elements.text().into(),
             target: self.target.to_string().into(),
-            layout: self.layout.as_deref().map(elements::ranges).unwrap_or_default().into(),
+            layout: self.layout.as_deref().map(ranges).unwrap_or_default().into(),
             ..Row::default()
         };
         let of_set = |set: &SceneSet| -> Result<Vec<Row>, CampaignError> {

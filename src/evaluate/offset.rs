@@ -19,15 +19,19 @@ pub fn median_offset_metres(scene: &Scene, failures: &Failures, found: &[Reflect
     median(found_points(scene, failures).filter_map(nearest))
 }
 
-/// The median Cramér-Rao bound, in metres, of the same points, each alone before the two ends over the noise of `floor`; `None` where no
-/// point is found or there is no noise.
-pub fn median_bound_metres(radar: &Radar, scene: &Scene, failures: &Failures, floor: Floor) -> Option<f64> {
+/// The median Cramér-Rao bound, in metres, of the same points, each alone before the elements of `layout` over the noise of `floor`; `None`
+/// where no point is found or there is no noise.
+pub fn median_bound_metres(
+    (radar, layout): (&Radar, &Layout),
+    scene: &Scene,
+    failures: &Failures,
+    floor: Floor,
+) -> Option<f64> {
     let variances = noise_variance(radar, &Echoing::of(radar, scene), floor)?;
     let variance = variances.iter().sum::<f64>() / variances.len().max(1) as f64;
-    let layout = Layout::two_ends(radar);
     let bound = |point: &Point| {
         let Point { x_metres, y_metres, reflectivity, .. } = *point;
-        let bounds = cramer_rao(radar, &layout, &[Reflector { x_metres, y_metres, reflectivity }], variance).ok()?;
+        let bounds = cramer_rao(radar, layout, &[Reflector { x_metres, y_metres, reflectivity }], variance).ok()?;
         bounds.first().map(|bound| bound.position_metres()).filter(|metres| metres.is_finite())
     };
     median(found_points(scene, failures).filter_map(bound))
@@ -66,7 +70,8 @@ mod tests {
         let radar = Radar { elements: 64, samples: 64, ..Radar::default() };
         let scene = Scene::of_points([(0.0, 3.0)]);
         let failures = Failures { objects: vec![Fate::Found], covered: vec![1.0], ghosts: Vec::new() };
-        let bound = |floor| median_bound_metres(&radar, &scene, &failures, floor);
+        let layout = Layout::two_ends(&radar);
+        let bound = |floor| median_bound_metres((&radar, &layout), &scene, &failures, floor);
         let [near, far] = [40.0, 20.0].map(|db| bound(Floor::Snr(crate::radar::Decibels(db))).unwrap());
         assert!(near > 0.0 && (far / near - 10.0).abs() < 1e-6, "{near} and {far} m");
         assert_eq!(bound(Floor::Exact), None, "nothing limits it without noise");

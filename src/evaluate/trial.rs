@@ -11,7 +11,6 @@ use crate::radar::{BuiltArray, Radar};
 use crate::reconstruct::{LayoutSamples, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::scene::{Disturbances, Reflector, Scene, SceneError};
 use crate::signal::{self, Floor, TwoEnds};
-use ndarray::Axis;
 use std::sync::{Arc, OnceLock};
 
 /// A simulated scene: what methods get, and what they are held against.
@@ -83,9 +82,7 @@ impl Trial {
         };
         let target = full.normalise(normalisation);
         let ends = signal.two_ends(radar);
-        let of_layout = |layout: &[usize]| {
-            Arc::new(LayoutSamples { layout: layout.to_vec(), samples: signal.samples.select(Axis(0), layout) })
-        };
+        let of_layout = |layout: &[usize]| Arc::new(LayoutSamples::of(&signal.samples, layout));
         let heard = layout.map(of_layout);
         let (radar, scene, scale) = (radar.clone(), scene.clone(), full.scale(normalisation));
         Ok(Trial { radar, ends, heard, target, scene, scale, footprints: OnceLock::new() })

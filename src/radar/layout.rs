@@ -1,7 +1,6 @@
 //! Element positions of a line array: the whole array, its two ends, random places, or the virtual elements of a MIMO radar.
 
 use super::{End, Pair, Radar};
-use ndarray::{Array2, Axis};
 use rand::SeedableRng;
 use rand::seq::index;
 use rand_chacha::ChaCha8Rng;
@@ -14,12 +13,17 @@ pub struct Layout {
     pairs: Option<Vec<Pair>>,
 }
 
-/// A count of elements that a layout can't have.
+/// Elements that a radar has not.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("a random layout of {asked} elements was asked for; the aperture has room for 1 to {places}")]
-pub struct LayoutError {
-    asked: usize,
-    places: usize,
+#[allow(missing_docs)] // The messages name every field.
+pub enum LayoutError {
+    #[error("a random layout of {asked} elements was asked for; the aperture has room for 1 to {places}")]
+    Random { asked: usize, places: usize },
+    /// As [`check_layout`] says.
+    #[error("{0}")]
+    Elements(String),
+    #[error("the elements of {0} don't stand on the radar's own grid")]
+    OffGrid(String),
 }
 
 /// Checks a layout that is a list of numbers of elements.
@@ -77,7 +81,7 @@ impl Layout {
     pub fn random(radar: &Radar, count: usize, seed: u64) -> Result<Self, LayoutError> {
         let places = radar.elements;
         if count == 0 || count > places {
-            return Err(LayoutError { asked: count, places });
+            return Err(LayoutError::Random { asked: count, places });
         }
         let last = places - 1;
         let outermost = [0, last];
@@ -89,7 +93,7 @@ impl Layout {
         Ok(Layout::of_elements(radar, chosen))
     }
 
-    fn of_elements(radar: &Radar, elements: impl IntoIterator<Item = usize>) -> Self {
+    pub(super) fn of_elements(radar: &Radar, elements: impl IntoIterator<Item = usize>) -> Self {
         let elements: Vec<usize> = elements.into_iter().filter(|n| !radar.is_gap(*n)).collect();
         let pairs = (!radar.is_monostatic()).then(|| elements.iter().map(|n| radar.pair(*n)).collect());
         Layout { x_metres: elements.iter().map(|n| radar.element_x_metres(*n)).collect(), pairs }
@@ -100,17 +104,14 @@ impl Layout {
         Layout { x_metres, pairs: None }
     }
 
-    /// The rows of `samples`, `[elements of radar, samples]`, that this layout receives; `None` where one of its elements stands
-    /// between those of `radar`, or beside them.
-    pub fn samples_of<T: Clone>(&self, radar: &Radar, samples: &Array2<T>) -> Option<Array2<T>> {
-        let spacing = radar.element_spacing_metres;
+    /// Numbers of this layout's elements on `radar`; `None` where one stands between those of `radar`, or beside them.
+    pub fn numbers(&self, radar: &Radar) -> Option<Vec<usize>> {
         let element = |x: &f64| {
-            let n = (x - radar.element_x_metres(0)) / spacing;
-            let on_grid = (n - n.round()).abs() < 1e-6 && (-0.5..samples.nrows() as f64 - 0.5).contains(&n);
+            let n = (x - radar.element_x_metres(0)) / radar.element_spacing_metres;
+            let on_grid = (n - n.round()).abs() < 1e-6 && (-0.5..radar.elements as f64 - 0.5).contains(&n);
             on_grid.then_some(n.round() as usize)
         };
-        let elements: Option<Vec<usize>> = self.x_metres.iter().map(element).collect();
-        Some(samples.select(Axis(0), &elements?))
+        self.x_metres.iter().map(element).collect()
     }
 
     /// Each element as a pair of antennas.
@@ -221,13 +222,12 @@ mod tests {
     }
 
     #[test]
-    fn a_layout_hears_its_own_rows() {
+    fn a_layout_knows_its_elements() {
         let radar = Radar::default();
-        let numbered = Array2::from_shape_fn((1024, 2), |(n, _)| n);
-        let heard = Layout::two_ends(&radar).samples_of(&radar, &numbered).unwrap();
-        assert_eq!((heard.dim(), heard[[11, 0]], heard[[12, 1]]), ((24, 2), 11, 1012));
-        assert_eq!(Layout::at(vec![0.0]).samples_of(&radar, &numbered), None, "the centre lies between elements");
-        assert_eq!(Layout::at(vec![2.0]).samples_of(&radar, &numbered), None, "beyond the last");
+        let heard = Layout::two_ends(&radar).numbers(&radar).unwrap();
+        assert_eq!((heard.len(), heard[11], heard[12]), (24, 11, 1012));
+        assert_eq!(Layout::at(vec![0.0]).numbers(&radar), None, "the centre lies between elements");
+        assert_eq!(Layout::at(vec![2.0]).numbers(&radar), None, "beyond the last");
     }
 
     #[test]

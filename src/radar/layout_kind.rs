@@ -1,11 +1,14 @@
 //! Layouts by name, as the command line offers them.
 
-use super::{End, Layout, LayoutError, Mimo, Radar};
+use super::{End, Layout, LayoutError, Mimo, Radar, check_layout};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::str::FromStr;
 
-/// A layout that can be named: `full`, `two-ends`, `one-end`, `random=N` or `random=N:SEED`, `mimo=TxR`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+/// A layout that can be named: [`LayoutKind::NAMES`].
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 #[allow(missing_docs)] // Names of fields say what is in them.
 pub enum LayoutKind {
     /// Every element.
@@ -14,27 +17,65 @@ pub enum LayoutKind {
     TwoEnds,
     /// The first end alone.
     OneEnd,
+    /// Neighbours, and as many elements as `apart` one more than the neighbours apart (Pal and Vaidyanathan 2010).
+    Nested { neighbours: usize, apart: usize },
+    /// `many` elements `step` apart, and twice `step` elements `many` apart (Vaidyanathan and Pal 2011).
+    Coprime { step: usize, many: usize },
+    /// Every so many-th element.
+    Thinned { step: usize },
     /// Elements at random places of the whole aperture.
     Random { elements: usize, seed: u64 },
     /// The virtual elements of every pair of a transmitter and a receiver.
     Mimo { transmitters: usize, receivers: usize },
+    /// The elements of these numbers.
+    Listed(Vec<usize>),
 }
 
 /// Most transmitters or receivers that a name may ask for.
 const MAX_CHANNELS: usize = 64;
 
+/// Most elements that a list may name.
+const MAX_LISTED_ELEMENTS: usize = 65_536;
+
 impl LayoutKind {
+    /// How layouts are named.
+    pub const NAMES: &str = "full, two-ends, one-end, nested=AxB (A neighbours and B elements A + 1 apart), coprime=MxN (N elements M apart and 2 M elements N apart), \
+                             thinned=K (every K-th element), random=N or random=N:SEED (the outermost two among them), mimo=TxR (up to 64 each), or numbers of \
+                             elements as 0-11 1012-1023";
+
     /// Where the elements stand on `radar`.
     /// # Errors
-    /// [`LayoutError`] for a random layout of no element or of more than `radar` has.
-    pub fn layout(self, radar: &Radar) -> Result<Layout, LayoutError> {
-        Ok(match self {
-            LayoutKind::Full => Layout::uniform(radar),
-            LayoutKind::TwoEnds => Layout::two_ends(radar),
-            LayoutKind::OneEnd => Layout::one_end(radar, End::First),
-            LayoutKind::Random { elements, seed } => Layout::random(radar, elements, seed)?,
-            LayoutKind::Mimo { transmitters, receivers } => Mimo::filled(radar, transmitters, receivers).layout(),
-        })
+    /// [`LayoutError`] for elements that `radar` has not.
+    pub fn layout(&self, radar: &Radar) -> Result<Layout, LayoutError> {
+        // One element too many is enough to be refused.
+        let steps = |count: usize, step: usize| (0..count.min(radar.elements + 1)).map(move |k| k.saturating_mul(step));
+        let numbers: Vec<usize> = match self {
+            LayoutKind::Full => return Ok(Layout::uniform(radar)),
+            LayoutKind::TwoEnds => return Ok(Layout::two_ends(radar)),
+            LayoutKind::OneEnd => return Ok(Layout::one_end(radar, End::First)),
+            LayoutKind::Random { elements, seed } => return Layout::random(radar, *elements, *seed),
+            LayoutKind::Mimo { transmitters, receivers } => {
+                return Ok(Mimo::filled(radar, *transmitters, *receivers).layout());
+            }
+            LayoutKind::Nested { neighbours: a, apart: b } => {
+                steps(*a, 1).chain(steps(*b, a.saturating_add(1)).map(|n| n.saturating_add(*a))).collect()
+            }
+            LayoutKind::Coprime { step: m, many: n } => {
+                let both: BTreeSet<usize> = steps(*n, *m).chain(steps(m.saturating_mul(2), *n)).collect();
+                both.into_iter().collect()
+            }
+            LayoutKind::Thinned { step } => (0..radar.elements).step_by((*step).max(1)).collect(),
+            LayoutKind::Listed(numbers) => numbers.clone(),
+        };
+        check_layout(&numbers, radar.elements).map_err(LayoutError::Elements)?;
+        Ok(Layout::of_elements(radar, numbers))
+    }
+
+    /// Numbers of the elements of `radar`.
+    /// # Errors
+    /// [`LayoutError`] as of [`LayoutKind::layout`], and for elements that stand between those of `radar`.
+    pub fn numbers(&self, radar: &Radar) -> Result<Vec<usize>, LayoutError> {
+        self.layout(radar)?.numbers(radar).ok_or_else(|| LayoutError::OffGrid(self.to_string()))
     }
 }
 
@@ -44,17 +85,58 @@ impl fmt::Display for LayoutKind {
             LayoutKind::Full => f.pad("full"),
             LayoutKind::TwoEnds => f.pad("two-ends"),
             LayoutKind::OneEnd => f.pad("one-end"),
+            LayoutKind::Nested { neighbours, apart } => f.pad(&format!("nested={neighbours}x{apart}")),
+            LayoutKind::Coprime { step, many } => f.pad(&format!("coprime={step}x{many}")),
+            LayoutKind::Thinned { step } => f.pad(&format!("thinned={step}")),
             LayoutKind::Random { elements, seed } => f.pad(&format!("random={elements}:{seed}")),
             LayoutKind::Mimo { transmitters, receivers } => f.pad(&format!("mimo={transmitters}x{receivers}")),
+            LayoutKind::Listed(numbers) => f.pad(&ranges(numbers)),
         }
+    }
+}
+
+/// Numbers as ranges: "0-11 1012-1023".
+pub fn ranges(numbers: &[usize]) -> String {
+    let runs = numbers.chunk_by(|a, b| a + 1 == *b);
+    let text = |run: &[usize]| match run {
+        [one] => one.to_string(),
+        [first, .., last] => format!("{first}-{last}"),
+        [] => String::new(),
+    };
+    runs.map(text).collect::<Vec<_>>().join(" ")
+}
+
+/// The numbers that [`ranges`] writes; commas may stand between them too.
+fn listed(text: &str) -> Option<Vec<usize>> {
+    let mut numbers = Vec::new();
+    for run in text.split([' ', ',']).filter(|run| !run.is_empty()) {
+        let (first, last) = run.split_once('-').unwrap_or((run, run));
+        let (first, last): (usize, usize) = (first.parse().ok()?, last.parse().ok()?);
+        if first > last || last - first >= MAX_LISTED_ELEMENTS - numbers.len() {
+            return None;
+        }
+        numbers.extend(first..=last);
+    }
+    (!numbers.is_empty()).then_some(numbers)
+}
+
+impl From<LayoutKind> for String {
+    fn from(kind: LayoutKind) -> Self {
+        kind.to_string()
+    }
+}
+
+impl TryFrom<String> for LayoutKind {
+    type Error = UnknownLayout;
+
+    fn try_from(name: String) -> Result<Self, UnknownLayout> {
+        name.parse()
     }
 }
 
 /// A name that stands for no layout.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "there is no layout \"{0}\"; expected full, two-ends, one-end, random=N, random=N:SEED or mimo=TxR with up to 64 each"
-)]
+#[error("there is no layout \"{0}\"; expected {names}", names = LayoutKind::NAMES)]
 pub struct UnknownLayout(String);
 
 impl FromStr for LayoutKind {
@@ -62,30 +144,35 @@ impl FromStr for LayoutKind {
 
     fn from_str(name: &str) -> Result<Self, UnknownLayout> {
         let unknown = || UnknownLayout(name.to_owned());
-        let number = |text: &str| text.parse::<usize>().map_err(|_| unknown());
-        match name.trim().split_once('=') {
+        let count = |text: &str| text.parse::<usize>().ok().filter(|count| *count > 0).ok_or_else(unknown);
+        let two = |text: &str| -> Result<(usize, usize), UnknownLayout> {
+            let (a, b) = text.split_once('x').ok_or_else(unknown)?;
+            Ok((count(a)?, count(b)?))
+        };
+        Ok(match name.trim().split_once('=') {
             None => match name.trim() {
-                "full" => Ok(LayoutKind::Full),
-                "two-ends" => Ok(LayoutKind::TwoEnds),
-                "one-end" => Ok(LayoutKind::OneEnd),
-                _ => Err(unknown()),
+                "full" => LayoutKind::Full,
+                "two-ends" => LayoutKind::TwoEnds,
+                "one-end" => LayoutKind::OneEnd,
+                numbers => LayoutKind::Listed(listed(numbers).ok_or_else(unknown)?),
             },
+            Some(("nested", rest)) => two(rest).map(|(neighbours, apart)| LayoutKind::Nested { neighbours, apart })?,
+            Some(("coprime", rest)) => two(rest).map(|(step, many)| LayoutKind::Coprime { step, many })?,
+            Some(("thinned", rest)) => LayoutKind::Thinned { step: count(rest)? },
             Some(("random", rest)) => {
                 let (elements, seed) = rest.split_once(':').unwrap_or((rest, "0"));
                 let seed = seed.parse().map_err(|_| unknown())?;
-                Ok(LayoutKind::Random { elements: number(elements)?, seed })
+                LayoutKind::Random { elements: count(elements)?, seed }
             }
             Some(("mimo", rest)) => {
-                let (transmitters, receivers) = rest.split_once('x').ok_or_else(unknown)?;
-                let (transmitters, receivers) = (number(transmitters)?, number(receivers)?);
-                let allowed = 1..=MAX_CHANNELS;
-                if !(allowed.contains(&transmitters) && allowed.contains(&receivers)) {
+                let (transmitters, receivers) = two(rest)?;
+                if transmitters.max(receivers) > MAX_CHANNELS {
                     return Err(unknown());
                 }
-                Ok(LayoutKind::Mimo { transmitters, receivers })
+                LayoutKind::Mimo { transmitters, receivers }
             }
-            Some(_) => Err(unknown()),
-        }
+            Some(_) => return Err(unknown()),
+        })
     }
 }
 
@@ -96,9 +183,15 @@ mod tests {
     #[test]
     fn every_layout_has_its_name() {
         let radar = Radar::default();
-        for (name, elements) in
-            [("full", 1024), ("two-ends", 24), ("one-end", 12), ("random=24:7", 24), ("mimo=3x4", 12)]
-        {
+        for (name, elements) in [
+            ("full", 1024),
+            ("two-ends", 24),
+            ("one-end", 12),
+            ("random=24:7", 24),
+            ("mimo=3x4", 12),
+            ("nested=12x78", 90),
+            ("0-3 9", 5),
+        ] {
             let kind: LayoutKind = name.parse().unwrap();
             assert_eq!(kind.to_string(), name);
             assert_eq!(kind.layout(&radar).unwrap().len(), elements);
@@ -108,8 +201,47 @@ mod tests {
     }
 
     #[test]
+    fn a_layout_is_a_list_of_numbers() {
+        let radar = Radar { elements: 86, end_elements: 8, ..Radar::default() };
+        let numbers = |name: &str| name.parse::<LayoutKind>().unwrap().numbers(&radar);
+        let nested = numbers("nested=8x8").unwrap();
+        assert_eq!(ranges(&nested), "0-8 17 26 35 44 53 62 71");
+        assert_eq!(numbers("coprime=3x5").unwrap(), [0, 3, 5, 6, 9, 10, 12, 15, 20, 25]);
+        assert_eq!(numbers("thinned=40").unwrap(), [0, 40, 80]);
+        assert_eq!(ranges(&numbers("two-ends").unwrap()), "0-7 78-85");
+        assert_eq!(numbers("mimo=2x2").unwrap(), [41, 42, 43, 44]);
+        for text in ["0-8 17 26 35 44 53 62 71", "0-8,17,26,35,44,53,62,71"] {
+            assert_eq!(numbers(text).unwrap(), nested);
+        }
+        for name in ["nested=40x40", "nested=1x99999999999999999999"] {
+            let refused = name.parse::<LayoutKind>().map_err(|e| e.to_string());
+            let told = refused.and_then(|kind| kind.numbers(&radar).map_err(|e| e.to_string())).unwrap_err();
+            assert!(told.contains("the radar has elements 0 to 85") || told.contains("there is no layout"), "{told}");
+        }
+        let told = numbers("nested=18446744073709551615x18446744073709551615").unwrap_err().to_string();
+        assert!(told.contains("the radar has elements 0 to 85"), "{told}");
+        assert!(numbers("mimo=3x3").unwrap_err().to_string().contains("own grid"));
+    }
+
+    #[test]
     fn other_names_are_refused() {
-        for name in ["", "fulll", "random", "random=x", "random=3:y", "mimo=3", "mimo=0x4", "mimo=3x65", "none=3"] {
+        for name in [
+            "",
+            "fulll",
+            "random",
+            "random=x",
+            "random=3:y",
+            "mimo=3",
+            "mimo=0x4",
+            "mimo=3x65",
+            "none=3",
+            "nested=3",
+            "coprime=0x3",
+            "thinned=0",
+            "3-1",
+            "1 x",
+            "0-99999999",
+        ] {
             let error = name.parse::<LayoutKind>().unwrap_err().to_string();
             assert!(error.contains(&format!("\"{name}\"")) && error.contains("two-ends"), "{error}");
         }

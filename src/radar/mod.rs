@@ -28,7 +28,7 @@ pub use convention::Convention;
 pub use element_list::ElementListError;
 pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
 pub use layout::{Layout, LayoutError, Mimo, VirtualElement, check_layout};
-pub use layout_kind::{LayoutKind, UnknownLayout};
+pub use layout_kind::{LayoutKind, UnknownLayout, ranges};
 pub use memory::MAX_MEMORY_BYTES;
 pub use pair::Pair;
 pub use polar::Polar;

@@ -7,7 +7,7 @@ use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
 use crate::signal::TwoEnds;
 use crate::task::Task;
-use ndarray::Array2;
+use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -39,11 +39,21 @@ pub struct LayoutSamples {
     pub samples: Array2<Complex64>,
 }
 
+/// The radar whose ends are the halves of the array. Of an odd number of elements the middle one belongs to both.
+pub(super) fn halves(radar: &Radar) -> Radar {
+    Radar { end_elements: radar.elements.div_ceil(2), ..radar.clone() }
+}
+
 impl LayoutSamples {
-    /// The radar whose ends are the halves of the array, and their samples: zeros where an element is not heard. Of an odd number of elements the middle
-    /// one belongs to both halves, and is heard in the first.
+    /// Those of `samples`, `[elements of the array, samples]`.
+    pub fn of(samples: &Array2<Complex64>, layout: &[usize]) -> Self {
+        LayoutSamples { layout: layout.to_vec(), samples: samples.select(Axis(0), layout) }
+    }
+
+    /// The [`halves`] of the array and their samples: zeros where an element is not heard. What belongs to both halves is heard in the first.
     pub(super) fn as_halves(&self, radar: &Radar) -> (Radar, TwoEnds) {
-        let half = radar.elements.div_ceil(2);
+        let radar = halves(radar);
+        let half = radar.end_elements;
         let silence = || Array2::zeros((half, radar.samples));
         let mut ends = TwoEnds { first: silence(), last: silence() };
         for (&element, samples) in self.layout.iter().zip(self.samples.outer_iter()) {
@@ -52,7 +62,7 @@ impl LayoutSamples {
                 Some(_) => ends.last.row_mut(element - (radar.elements - half)).assign(&samples),
             }
         }
-        (Radar { end_elements: half, ..radar.clone() }, ends)
+        (radar, ends)
     }
 }
 

@@ -49,19 +49,21 @@ pub fn find(
     answer: &Reconstruction,
 ) -> Result<Vec<Detection>, ReconstructError> {
     let normalisation = Normalisation::DynamicRange(MAP_RANGE);
+    // Of another layout the ends heard nothing.
+    let heard = request.heard.is_none().then_some(ends);
     if radar.elements <= FEW_ELEMENTS && !method.lists_few_elements() {
         Ok(Vec::new())
     } else if !answer.reflectors.is_empty() {
         Ok(answer.detections(radar))
     } else if request.normalisation == normalisation {
-        Ok(found_in_map(radar, ends, answer))
+        Ok(found_in_map(radar, heard, answer))
     } else {
         let in_decibels = Request { normalisation, ..request.clone() };
-        Ok(found_in_map(radar, ends, &method.reconstruct(radar, ends, &in_decibels)?))
+        Ok(found_in_map(radar, heard, &method.reconstruct(radar, ends, &in_decibels)?))
     }
 }
 
-fn found_in_map(radar: &Radar, ends: &TwoEnds, answer: &Reconstruction) -> Vec<Detection> {
+fn found_in_map(radar: &Radar, ends: Option<&TwoEnds>, answer: &Reconstruction) -> Vec<Detection> {
     let decibels = answer.lambda.lambda.mapv(|v| (f64::from(v) - 1.0) * MAP_RANGE.0);
     let peaks = peaks(decibels.view(), SPAN.0, MOST_PEAKS);
     let strongest = peaks.first().map_or(0.0, |p| p.value);
@@ -72,7 +74,10 @@ fn found_in_map(radar: &Radar, ends: &TwoEnds, answer: &Reconstruction) -> Vec<D
         relative_power: Decibels(p.value - strongest),
         confidence: None,
     });
-    if radar.elements > FEW_ELEMENTS { found.collect() } else { between_columns(radar, ends, found) }
+    match ends.filter(|_| radar.elements <= FEW_ELEMENTS) {
+        Some(ends) => between_columns(radar, ends, found),
+        None => found.collect(),
+    }
 }
 
 /// The peaks with the directions from which both ends together hear most near them, peaks that are then one once; each as strong as both ends

@@ -6,14 +6,14 @@ use crate::maps::{Aperture, Normalisation};
 use crate::radar::{BuiltArray, Radar};
 use crate::scene::Scene;
 use crate::signal::{BeatSignal, Floor, simulate};
-use ndarray::{Axis, Zip};
+use ndarray::Zip;
 use std::sync::Arc;
 
 /// What `method` makes of a point that the elements of `layout` heard: squared error, and P_D at its threshold.
 fn of_layout(method: &dyn Reconstructor, radar: &Radar, layout: &[usize]) -> Result<(f64, f64), ReconstructError> {
     let scene = Scene::of_points([(2.0, 6.0), (-3.0, 4.0)]);
     let signal = simulate(radar, &scene, Floor::Thesis, 0).unwrap();
-    let heard = LayoutSamples { layout: layout.to_vec(), samples: signal.samples.select(Axis(0), layout) };
+    let heard = LayoutSamples::of(&signal.samples, layout);
     let request = Request { heard: Some(Arc::new(heard)), ..Request::default() };
     let found = method.reconstruct(radar, &BeatSignal::silence(radar).two_ends(radar), &request)?;
     let target = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full).log_magnitude();

@@ -1,6 +1,6 @@
 //! What every method is, and what is done once for all of them.
 
-use super::answer::{LayoutSamples, Reconstruction, Request};
+use super::answer::{LayoutSamples, Reconstruction, Request, halves};
 use super::error::ReconstructError;
 use super::family::Family;
 use super::hearing::ends_noise_variance;
@@ -111,6 +111,41 @@ pub trait Reconstructor: Send + Sync {
         let reason = "it takes every element for one antenna that sends and hears, but this radar's transmitters stand apart from its \
                       receivers: near by, ranges would be wrong";
         Err(self.unusable(reason.to_owned()))
+    }
+
+    /// Says at once whether the method can make maps of what the elements of these numbers hear, in place of the two ends.
+    /// # Errors
+    /// [`ReconstructError::Unusable`] says what is in the way.
+    fn check_elements(&self, radar: &Radar, layout: &[usize]) -> Result<(), ReconstructError> {
+        check_layout(layout, radar.elements).map_err(|reason| self.unusable(reason))?;
+        match self.hears() {
+            Hears::Layouts => self.check_array(radar),
+            Hears::Halves => {
+                let halves = halves(radar);
+                self.check_halves(&halves, layout.len())?;
+                let is_first = |n: &usize| *n < halves.end_elements;
+                self.check_both_halves([!layout.iter().any(is_first), layout.iter().all(is_first)])
+            }
+            Hears::Ends => {
+                let others = "matched-filter, iaa, sbl, omp and fista make maps, and functions of your own in Python";
+                Err(self.unusable(format!("it hears the two ends of an array; of other layouts {others}")))
+            }
+        }
+    }
+
+    /// Says whether a method that joins the halves of the array can work where these halves are silent.
+    /// # Errors
+    /// [`ReconstructError::Unusable`] names the half that is silent alone.
+    fn check_both_halves(&self, is_silent: [bool; 2]) -> Result<(), ReconstructError> {
+        let half = match is_silent {
+            [true, false] => "first",
+            [false, true] => "last",
+            _ => return Ok(()),
+        };
+        let reason = format!(
+            "it joins the halves of the array, and no element of the {half} half heard anything; matched-filter takes any layout"
+        );
+        Err(self.unusable(reason))
     }
 
     /// Estimates the whole array's map from `ends`, which have the radar's shape, are finite, and whose largest real or imaginary
@@ -231,28 +266,12 @@ fn reconstruct_layout<M: Reconstructor + ?Sized>(
     }
     let (halves, ends) = heard.as_halves(radar);
     check_ends(&halves, &ends)?;
-    match method.hears() {
-        Hears::Layouts => {
-            method.check_array(radar)?;
-            answer(method, radar, (&halves, &ends), request)
-        }
-        Hears::Halves => {
-            method.check_halves(&halves, heard.layout.len())?;
-            let (first, last) = (is_silent(&ends.first), is_silent(&ends.last));
-            if first != last {
-                let half = if first { "first" } else { "last" };
-                let reason = format!(
-                    "it joins the halves of the array, and no element of the {half} half heard anything; matched-filter takes any layout"
-                );
-                return Err(method.unusable(reason));
-            }
-            answer(method, &halves, (&halves, &ends), &Request { heard: None, ..request.clone() })
-        }
-        Hears::Ends => {
-            let others = "matched-filter, iaa, sbl, omp and fista make maps, and programs of your own";
-            Err(method.unusable(format!("it hears the two ends of an array; of other layouts {others}")))
-        }
+    method.check_elements(radar, &heard.layout)?;
+    if method.hears() == Hears::Layouts {
+        return answer(method, radar, (&halves, &ends), request);
     }
+    method.check_both_halves([is_silent(&ends.first), is_silent(&ends.last)])?;
+    answer(method, &halves, (&halves, &ends), &Request { heard: None, ..request.clone() })
 }
 
 /// What `method` makes of samples that were checked, with a threshold that knows the noise of `ends`, those of a radar that hears as much as `radar`.

@@ -8,6 +8,7 @@ mod documents;
 mod failures;
 mod figures;
 mod keyboard;
+mod layouts;
 mod left;
 mod lessons;
 mod monkey;

@@ -5,6 +5,7 @@ mod captures;
 mod cli;
 mod documents;
 mod kept_rows;
+mod layouts;
 mod merge;
 mod messages;
 mod numerics_features;

@@ -89,11 +89,39 @@ pub fn opened(state: &mut State) {
 
 /// Changes to a method that takes the radar of what was opened, where the one in use doesn't; says so.
 fn use_a_method_that_can(state: &mut State) {
+    fit_layout(state);
+    if state.settings.layout.is_some() {
+        return;
+    }
     let Some(method) = state.method().filter(|method| method.check_array(state.radar()).is_err()) else { return };
     let name = method.name();
     if let Some(other) = state.methods.instead_of(name, state.radar()) {
         state.settings.method = other.to_owned();
         state.notices.info(format!("{name} can't do this radar: {other} is used instead."));
+    }
+}
+
+/// Changes to a method that hears the layout in use, where the one in use doesn't, and to the two ends where what is on screen has not the elements
+/// of the layout; says so.
+pub fn fit_layout(state: &mut State) {
+    let Some(kind) = &state.settings.layout else { return };
+    let has_ends_alone = state.editor.document().recording().is_some_and(|recording| recording.signal().is_none());
+    let layout = match kind.numbers(state.radar()) {
+        _ if has_ends_alone => Err("the recording has the samples of the two ends alone".to_owned()),
+        numbers => numbers.map_err(|error| error.to_string()),
+    };
+    let layout = match layout {
+        Ok(layout) => layout,
+        Err(problem) => {
+            state.settings.layout = None;
+            return state.notices.info(format!("The two ends are heard: {problem}."));
+        }
+    };
+    let Some(method) = state.method() else { return };
+    let Err(refusal) = method.check_elements(state.radar(), &layout) else { return };
+    if let Some(other) = state.methods.hearing(state.radar(), &layout) {
+        state.settings.method = other.to_owned();
+        state.notices.info(format!("{refusal}. {other} is used instead."));
     }
 }
 

@@ -72,6 +72,7 @@ fn set_up(state: &mut State) {
     state.settings.normalisation = step.view.normalisation;
     state.settings.one_scale = step.view.one_scale;
     state.settings.method.clone_from(&step.view.method);
+    state.settings.layout = None;
     state.settings.detect_by(step.view.cfar);
     let name = state.lesson.as_ref().map_or_else(String::new, |run| run.lesson.title.clone());
     // Name and notes of a scene tell what its maps show: that is asked for here.

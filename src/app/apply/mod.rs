@@ -26,8 +26,15 @@ pub use shared::of as shared_text;
 use super::jobs::Jobs;
 use super::state::{Command, State};
 
-/// Does a command: each group in the file of its name.
+/// Does a command, and holds the layout in use to what is on screen then.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Effect> {
+    let effect = done(state, jobs, command);
+    document::fit_layout(state);
+    effect
+}
+
+/// Does a command: each group in the file of its name.
+fn done(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Effect> {
     match command {
         Command::Document(command) => document::apply(state, jobs, command),
         Command::Edit(command) => return edit::apply(state, command),

@@ -70,6 +70,7 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
     let before = state.setup();
     state.settings.floor = SceneSet::by_name(&row.set).map_or(conditions.floor, |set| set.floor(conditions.floor));
     state.settings.normalisation = conditions.normalisation;
+    state.settings.layout = row.layout.parse().ok();
     match state.methods.all.iter().find(|m| m.name() == &*row.method) {
         Some(method) => {
             state.settings.method = row.method.to_string();

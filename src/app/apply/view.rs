@@ -4,6 +4,7 @@ use super::document;
 use crate::app::jobs::Jobs;
 use crate::app::state::{MapViews, Panel, PinnedCut, State, ViewCommand};
 use crate::maps::cfar::Cfar;
+use crate::reconstruct::Reconstructor;
 
 pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
     let settings = &mut state.settings;
@@ -47,6 +48,7 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::ToggleKinds => settings.show_kinds ^= true,
         ViewCommand::SetCompare(compare) => settings.compare = *compare,
         ViewCommand::Method(name) => settings.method = name.to_owned(),
+        ViewCommand::Hear(layout) => settings.layout = layout,
         ViewCommand::Flip => {
             settings.compare.flip();
             if !state.arrangement.shown().contains(&Panel::Compare) {
@@ -54,7 +56,11 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
             }
         }
         ViewCommand::NextMethod => {
-            let next = state.method().and_then(|now| state.methods.after(now.name()));
+            let layout = state.settings.heard(state.radar());
+            let hears = |method: &dyn Reconstructor| {
+                layout.as_ref().is_none_or(|layout| method.check_elements(state.radar(), layout).is_ok())
+            };
+            let next = state.method().and_then(|now| state.methods.after(now.name(), hears));
             next.into_iter().for_each(|name| state.settings.method = name.to_owned());
         }
         ViewCommand::PinCuts => {

@@ -57,6 +57,7 @@ impl Exports {
     /// Why it could not be begun.
     pub fn picture(&self, state: &State, path: PathBuf) -> Result<String, String> {
         let format = PictureFormat::of_path(&path).ok_or_else(|| Purpose::ExportPicture.unknown_ending(&path))?;
+        check_two_ends(state)?;
         let Some(method) = state.method().cloned() else {
             return Err("There is no method to draw the output of.".to_owned());
         };
@@ -81,6 +82,7 @@ impl Exports {
     /// # Errors
     /// Why it could not be begun.
     pub fn maps(&self, state: &State, path: PathBuf) -> Result<String, String> {
+        check_two_ends(state)?;
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
         let (floor, normalisation) = (state.settings.floor, state.settings.normalisation);
         let method = state.method().cloned();
@@ -135,6 +137,12 @@ impl Exports {
             Err(error) => Err(format!("{name}: the export could not be started: {error}")),
         }
     }
+}
+
+/// Pictures and archives have the samples and maps of the two ends.
+fn check_two_ends(state: &State) -> Result<(), String> {
+    let Some(layout) = &state.settings.layout else { return Ok(()) };
+    Err(format!("{layout} is heard, and exports show what the two ends hear: choose the two ends in Elements first."))
 }
 
 /// The recording on screen as its radar takes it now.

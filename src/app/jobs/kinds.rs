@@ -12,6 +12,7 @@ use crate::evaluate::failure::{CellIndex, Failures, Footprints};
 use crate::evaluate::failure::{Fate, Ghost};
 use crate::evaluate::median_bound_metres;
 use crate::maps::RangeAngleMap;
+use crate::radar::Layout;
 use crate::scene::Scene;
 use crate::task::Task;
 
@@ -71,7 +72,7 @@ pub struct KeptFates {
 
 impl KeptFates {
     fn footprints(&mut self, truth: &Truth) -> &Footprints {
-        let Truth { source: Source { radar, scene, .. }, target, scale } = truth;
+        let Truth { source: Source { radar, scene, .. }, target, scale, .. } = truth;
         self.footprints.of(target.clone(), |target| Footprints::new(radar, scene, target, *scale))
     }
 }
@@ -128,7 +129,8 @@ pub fn fates_of<'a>(
 }
 
 fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
-    let Truth { source: Source { radar, scene, floor, .. }, target, .. } = &request.truth;
+    let Truth { source: Source { radar, scene, floor, .. }, target, layout, .. } = &request.truth;
+    let heard = layout.as_ref().map_or_else(|| Layout::two_ends(radar), |layout| Layout::of_numbers(radar, layout));
     let fates = |output: &Output| {
         let failures = footprints.judge_cells(target, &output.lambda, &output.judged.above(output.eta));
         let brightest = |cells: &[CellIndex]| {
@@ -140,7 +142,7 @@ fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
         let ghosts = failures.ghosts.iter().map(|ghost| verdict(None, &ghost.cells));
         let verdicts = objects.chain(ghosts).collect();
         let (scene, target) = (scene.clone(), target.clone());
-        let bound_metres = median_bound_metres(radar, &scene, &failures, *floor);
+        let bound_metres = median_bound_metres((radar, &heard), &scene, &failures, *floor);
         Fates { scene, verdicts, failures, eta: output.eta, bound_metres, output: output.lambda.clone(), target }
     };
     request.outputs.each_ref().map(|output| output.as_ref().map(fates))
@@ -184,7 +186,7 @@ mod tests {
         let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
         let target = Shared::new(full.normalise(Normalisation::MinMax));
         let source = Source { radar, scene, recording: None, floor: Floor::Thesis };
-        Truth { source, target, scale: full.scale(Normalisation::MinMax) }
+        Truth { source, target, layout: None, scale: full.scale(Normalisation::MinMax) }
     }
 
     #[test]
@@ -196,7 +198,7 @@ mod tests {
         output.lambda[[402, 205]] = 1.0;
         let judged = Shared::new(output.clone());
         let request = KindsQuery { truth, outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None] };
-        let Truth { source: Source { radar, scene, .. }, target, scale } = &request.truth;
+        let Truth { source: Source { radar, scene, .. }, target, scale, .. } = &request.truth;
         let footprints = Footprints::new(radar, scene, target, *scale);
         let [Some(fates), None] = judge(&footprints, &request) else { panic!("of the first alone") };
         let expected = footprints.judge(target, &output, 0.9);

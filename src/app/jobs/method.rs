@@ -9,7 +9,9 @@ use crate::platform::{self, Instant};
 use crate::radar::Radar;
 use crate::reconstruct::Attempt;
 use crate::reconstruct::found::find;
-use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{
+    Detection, LayoutSamples, NoisePrior, ReconstructError, Reconstruction, Reconstructor, Request,
+};
 use crate::scene::Reflector;
 use crate::signal::TwoEnds;
 use crate::task::{Reply, Task, Worker};
@@ -25,6 +27,8 @@ const PATIENCE: Duration = Duration::from_millis(400);
 pub struct Basis {
     radar: Radar,
     ends: Shared<TwoEnds>,
+    /// What another layout hears in their place.
+    heard: Option<Shared<LayoutSamples>>,
     noise: NoisePrior,
     normalisation: Normalisation,
     snapshot_range_metres: Option<f64>,
@@ -33,10 +37,11 @@ pub struct Basis {
 impl Basis {
     /// What a method gets of a scene; `None` where its ends were not wanted.
     pub fn of(result: &MapsResult) -> Option<Basis> {
-        let MapsRequest { source: Source { radar, recording, .. }, wanted, .. } = &result.request;
+        let MapsRequest { source: Source { radar, recording, .. }, wanted, layout, .. } = &result.request;
         Some(Basis {
             radar: radar.clone(),
             ends: result.frame.ends.as_ref()?.into(),
+            heard: if layout.is_some() { Some(result.heard.clone()?) } else { None },
             noise: if recording.is_some() { NoisePrior::UNKNOWN } else { wanted.floor.into() },
             normalisation: wanted.normalisation,
             snapshot_range_metres: recording.as_ref().and_then(|r| r.range_metres),
@@ -49,7 +54,7 @@ impl Basis {
             normalisation: self.normalisation,
             snapshot_range_metres: self.snapshot_range_metres,
             may_follow,
-            heard: None,
+            heard: self.heard.as_deref().cloned(),
             task,
         }
     }

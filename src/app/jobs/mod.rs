@@ -14,6 +14,7 @@ mod evaluation;
 mod export;
 mod failures;
 mod frame_log;
+mod heard;
 mod kinds;
 mod lessons;
 mod listening;

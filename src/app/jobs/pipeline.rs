@@ -101,13 +101,14 @@ impl Pipeline {
         let all = wants.every_map;
         let output = read.contains(&true);
         let settings = &state.settings;
+        let layout = settings.heard(state.radar());
         let on_one_scale = settings.one_scale && (map(MapKind::Input0) || map(MapKind::Input1) || all);
         let wanted = MapRequest {
             floor: settings.floor,
             seed: state.editor.scene().noise_seed,
             normalisation: settings.normalisation,
-            first: map(MapKind::Input0) || all,
-            last: map(MapKind::Input1) || all,
+            first: (map(MapKind::Input0) || all) && layout.is_none(),
+            last: (map(MapKind::Input1) || all) && layout.is_none(),
             full: on_one_scale
                 || map(MapKind::Target)
                 || map(MapKind::TargetAbove)
@@ -125,6 +126,7 @@ impl Pipeline {
         MapsRequest {
             document: state.editor.document().id(),
             wanted,
+            layout,
             at_rest: false,
             pictures,
             pairs: MethodSlot::BOTH.map(pair),
@@ -189,7 +191,8 @@ impl Pipeline {
     pub fn truth(&self) -> Option<Truth> {
         let MapsResult { request, frame, .. } = self.maps.result()?;
         let full = frame.full.as_ref().filter(|_| request.source.recording.is_none())?;
-        Some(Truth { source: request.source.clone(), target: (&full.lambda).into(), scale: full.scale })
+        let layout = request.layout.clone();
+        Some(Truth { source: request.source.clone(), layout, target: (&full.lambda).into(), scale: full.scale })
     }
 
     /// Why the detector in use finds nothing.

@@ -129,7 +129,8 @@ impl RecordedMaps {
     }
 }
 
-fn ready(log: &LogMap, scale: LambdaScale) -> ReadyMap {
+/// A map of decades on a scale.
+pub fn ready(log: &LogMap, scale: LambdaScale) -> ReadyMap {
     let lambda = RangeAngleMap { lambda: log.decades().mapv(|v| scale.lambda(v).clamp(0.0, 1.0) as f32) };
     ReadyMap { lambda: Arc::new(lambda), scale }
 }

@@ -1,6 +1,7 @@
 //! The maps of a scene, their pictures and their figures: what the maps worker is asked for, and what it makes.
 
 use super::detected::{DETECTED, Detected, Detector};
+use super::heard::Heard;
 use super::memo::Memo;
 use super::one_scale::{OneScale, Rescaled};
 use super::painter::{Painter, Picture, largest_difference};
@@ -15,6 +16,7 @@ use crate::maps::cfar::Cfar;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::{BuiltArray, Radar};
+use crate::reconstruct::LayoutSamples;
 use crate::recording::Recording;
 use crate::signal::Unfinished;
 use crate::task::Task;
@@ -44,6 +46,9 @@ pub struct MapsRequest {
     pub source: Source,
     /// Which maps, and how.
     pub wanted: MapRequest,
+    /// Numbers of the elements that methods hear in place of the two ends, where they do: their map stands in place of the first end's, and there is
+    /// none of the last.
+    pub layout: Option<Vec<usize>>,
     /// Whether the scene rests: its maps are then those of the command line, bit for bit.
     pub at_rest: bool,
     /// Maps in sight.
@@ -92,6 +97,8 @@ pub struct MapsResult {
     pub request: MapsRequest,
     /// The maps.
     pub frame: EngineFrame,
+    /// What the elements of the layout hear.
+    pub heard: Option<Shared<LayoutSamples>>,
     /// What the scene leaves of a recording, where it is in sight, or why it can't be fitted.
     pub unexplained: Option<Result<Unexplained, String>>,
     /// What a detector finds in them, where one is in use.
@@ -115,6 +122,8 @@ pub struct MapsResult {
 pub struct Truth {
     /// Where its samples come from.
     pub source: Source,
+    /// Numbers of the elements that methods hear in place of the two ends.
+    pub layout: Option<Vec<usize>>,
     /// What all of its elements see.
     pub target: Shared<RangeAngleMap>,
     pub scale: LambdaScale,
@@ -135,6 +144,7 @@ type Scored = (Pair, [f32; 2], Option<Cfar>);
 pub struct MapsState {
     engine: Memo<Radar, Engine>,
     recorded: Memo<(Shared<Recording>, Radar, BuiltArray), RecordedMaps>,
+    heard: Memo<(Source, Vec<usize>), Option<Heard>>,
     painter: Painter,
     one_scale: OneScale,
     detector: Detector,
@@ -149,7 +159,8 @@ impl MapsState {
     /// # Errors
     /// Why a scene has no maps, or that `task` was cancelled.
     pub fn work(&mut self, request: MapsRequest, task: &Task) -> Result<MapsResult, Unfinished> {
-        let (frame, unexplained) = self.frame(&request, task)?;
+        let (mut frame, unexplained) = self.frame(&request, task)?;
+        let heard = self.heard(&request, task, &mut frame)?;
         let shows = |kind| request.pictures.contains(&kind) || request.scores;
         let output =
             |slot: usize, above| request.pairs[slot].as_ref().filter(|_| shows(above)).map(|pair| &*pair.output);
@@ -183,7 +194,19 @@ impl MapsState {
         let roc = request.pairs[0].as_ref().filter(|_| request.roc).and_then(|pair| self.roc(is_silent, pair));
         let painted = self.painter.painted;
         let took = Duration::ZERO;
-        Ok(MapsResult { request, frame, unexplained, detected, on_one_scale, pictures, scores, roc, painted, took })
+        Ok(MapsResult {
+            request,
+            frame,
+            heard,
+            unexplained,
+            detected,
+            on_one_scale,
+            pictures,
+            scores,
+            roc,
+            painted,
+            took,
+        })
     }
 
     /// The maps of the scene, or of the recording that stands in its place, and what the scene leaves of it.
@@ -209,6 +232,23 @@ impl MapsState {
             false => engine.update_for(task, scene, wanted)?,
         };
         Ok((frame, None))
+    }
+
+    /// What the elements of the layout hear, where there is one; their map stands in `frame`.
+    fn heard(
+        &mut self,
+        request: &MapsRequest,
+        task: &Task,
+        frame: &mut EngineFrame,
+    ) -> Result<Option<Shared<LayoutSamples>>, Unfinished> {
+        let Some(layout) = &request.layout else {
+            self.heard = Memo::default();
+            return Ok(None);
+        };
+        let of = (request.source.clone(), layout.clone());
+        let heard = self.heard.try_of(of, |(source, layout)| Heard::of(task, source, layout))?;
+        frame.first = heard.as_mut().map(|heard| heard.map(request.wanted.normalisation));
+        Ok(heard.as_ref().map(|heard| heard.samples.clone()))
     }
 
     fn roc(&mut self, is_silent: bool, pair: &Pair) -> Option<Arc<Vec<RocPoint>>> {

@@ -1,5 +1,6 @@
 //! One map several times, off the UI thread: the latest request wins, and each map is shown as soon as it is there.
 
+use super::heard::log_map;
 use super::painter::Painter;
 use super::subject::{Paint, Subject};
 use crate::app::shared::Shared;
@@ -7,8 +8,8 @@ use crate::app::state::{MapKind, Panel, Projection, State, Variant};
 use crate::maps::focus::map_of;
 use crate::maps::{Aperture, Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
-use crate::radar::End;
-use crate::reconstruct::Request as MethodRequest;
+use crate::radar::{End, LayoutKind};
+use crate::reconstruct::{LayoutSamples, Request as MethodRequest};
 use crate::scene::Scene;
 use crate::signal;
 use crate::task::{Reply, Task, Worker};
@@ -26,6 +27,8 @@ struct Request {
     scene: Shared<Scene>,
     variants: Vec<Variant>,
     map: MapKind,
+    /// What methods hear in place of the two ends.
+    layout: Option<LayoutKind>,
     normalisation: Normalisation,
     colours: ColourMap,
     projection: Projection,
@@ -84,6 +87,7 @@ impl SeveralMaps {
             scene: state.scene().into(),
             variants,
             map: settings.several.map,
+            layout: settings.layout.clone(),
             normalisation: settings.normalisation,
             colours: settings.colours,
             projection: settings.projection,
@@ -160,19 +164,25 @@ fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMa
     let signal =
         signal::simulate(radar, &request.scene, *floor, request.scene.noise_seed).map_err(|e| e.to_string())?;
     let normalisation = request.normalisation;
+    let elements = &request.scene.disturbances.elements;
+    let numbers = request.layout.as_ref().map(|layout| layout.numbers(radar).map_err(|e| e.to_string())).transpose()?;
+    let heard = numbers.map(|numbers| Arc::new(LayoutSamples::of(&signal.samples, &numbers)));
     let aperture = match request.map {
+        MapKind::Input0 if let Some(heard) = &heard => {
+            return Ok(log_map(radar, elements, heard).normalise(normalisation));
+        }
         MapKind::Input0 => Aperture::End(End::First),
         MapKind::Input1 => Aperture::End(End::Last),
         MapKind::Output => {
             let method = method.as_ref().ok_or("there is no method")?;
-            let wanted =
-                MethodRequest { noise: (*floor).into(), normalisation, task: task.clone(), ..MethodRequest::default() };
+            let (noise, task) = ((*floor).into(), task.clone());
+            let wanted = MethodRequest { noise, normalisation, heard, task, ..MethodRequest::default() };
             let made = method.reconstruct(radar, &signal.two_ends(radar), &wanted);
             return made.map(|made| made.lambda).map_err(|e| e.to_string());
         }
         _ => Aperture::Full,
     };
-    let map = map_of(radar, &request.scene.disturbances.elements, &signal, aperture);
+    let map = map_of(radar, elements, &signal, aperture);
     Ok(map.log_magnitude().normalise(normalisation))
 }
 
@@ -196,6 +206,7 @@ mod tests {
             scene: Shared::new(Scene::of_points([(0.3, 1.2)])),
             variants: several.variants(&radar, Floor::Exact, None, &[]),
             map: several.map,
+            layout: None,
             normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
             colours: ColourMap::Grey,
             projection: Projection::RangeAngle,

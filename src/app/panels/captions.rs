@@ -5,7 +5,7 @@ use crate::app::panels::scene::Hint;
 use crate::app::state::{MapKind, MethodSlot, State};
 use crate::evaluate::dip_between;
 use crate::interact::Place;
-use crate::radar::{End, Radar};
+use crate::radar::{End, LayoutKind, Radar};
 use crate::scene::{Object, Scene, presets};
 use std::sync::LazyLock;
 
@@ -19,15 +19,17 @@ const STREET_POST: usize = 3;
 pub fn of_map(state: &State, kind: MapKind) -> Option<String> {
     (state.shows_captions() && !state.settings.show_theory).then(|| {
         let method = state.method_in(kind.slot().unwrap_or(MethodSlot::First)).map_or("the method", |m| m.name());
-        text(kind, state.radar(), method)
+        text(kind, state.radar(), state.settings.layout.as_ref(), method)
     })
 }
 
-fn text(kind: MapKind, radar: &Radar, method: &str) -> String {
+fn text(kind: MapKind, radar: &Radar, layout: Option<&LayoutKind>, method: &str) -> String {
     let [first, last] = End::BOTH.map(|end| radar.end_range(end).len());
     // The middle one of three elements is of both ends.
     let (all, ends) = (radar.elements, radar.elements.min(first + last));
     match kind {
+        MapKind::Input0 if let Some(layout) = layout => format!("Input 0: the elements of {layout}"),
+        MapKind::Output | MapKind::Second if layout.is_some() => format!("Output: what {method} makes of them"),
         MapKind::Input0 => format!("Input 0: the first {first} elements"),
         MapKind::Input1 => format!("Input 1: the last {last} elements"),
         MapKind::Target => format!("Target: all {all} elements"),
@@ -127,7 +129,7 @@ mod tests {
 
     #[test]
     fn every_map_of_the_first_window_says_what_it_shows() {
-        let of = |kind| text(kind, &Radar::default(), "live");
+        let of = |kind| text(kind, &Radar::default(), None, "live");
         assert_eq!(of(MapKind::Input0), "Input 0: the first 12 elements");
         assert_eq!(of(MapKind::Target), "Target: all 1024 elements");
         assert_eq!(of(MapKind::Output), "Output: what live makes of the 24");

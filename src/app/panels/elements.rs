@@ -1,5 +1,6 @@
-//! Elements as they are built: a strip to click, numbers to type, a seed to draw from, and calibration on the selected reflector.
+//! Elements: which are heard, and how they are built: a strip to click, numbers to type, a seed to draw from, and calibration on the selected reflector.
 
+mod heard;
 mod list;
 mod strip;
 
@@ -12,7 +13,7 @@ use crate::app::widgets::entry::press;
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::padded::scrolled;
-use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
+use crate::radar::{BuiltArray, Decibels, ElementError, LayoutKind, Radar, Tolerances};
 use eframe::egui::{Grid, Ui};
 use std::sync::Arc;
 
@@ -20,6 +21,10 @@ use std::sync::Arc;
 pub struct Input<'a> {
     pub radar: &'a Radar,
     pub elements: &'a BuiltArray,
+    /// The layout that methods hear; the two ends where there is none.
+    pub layout: Option<&'a LayoutKind>,
+    /// Whether a recording has the samples of the two ends alone, so that nothing else can be heard.
+    pub has_ends_alone: bool,
     /// What the selected reflector tells of them; `None` where none is selected.
     pub calibration: Option<Result<&'a Calibrated, &'a str>>,
 }
@@ -30,13 +35,14 @@ pub struct ElementsMemory {
     chosen: usize,
     tolerances: Tolerances,
     seed: u64,
+    heard: heard::HeardMemory,
     list: list::ElementListMemory,
 }
 
 impl Default for ElementsMemory {
     fn default() -> Self {
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.0 };
-        ElementsMemory { chosen: 0, tolerances, seed: 0, list: list::ElementListMemory::default() }
+        ElementsMemory { chosen: 0, tolerances, seed: 0, heard: Default::default(), list: Default::default() }
     }
 }
 
@@ -51,9 +57,12 @@ impl Content for ElementsPanel {
     }
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let recording = cx.state.editor.document().recording();
         let input = Input {
             radar: cx.state.radar(),
             elements: &cx.state.editor.scene().disturbances.elements,
+            layout: cx.state.settings.layout.as_ref(),
+            has_ends_alone: recording.is_some_and(|recording| recording.signal().is_none()),
             calibration: cx.value,
         };
         show(ui, input, cx.memory)
@@ -64,7 +73,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ElementsMemory) -> Vec<C
     memory.chosen = memory.chosen.min(input.radar.elements - 1);
     scrolled(ui, |ui, asked| {
         summary(ui, &input, asked);
-        if let Some((n, error)) = strip::show(ui, input.radar, input.elements, &mut memory.chosen) {
+        heard::show(ui, &input, &mut memory.heard, asked);
+        if let Some((n, error)) = strip::show(ui, &input, &mut memory.chosen) {
             asked.push(with(&input, n, |e| *e = error));
         }
         one(ui, &input, memory, asked);
@@ -220,6 +230,7 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::ViewCommand;
     use crate::scene::Reflector;
     use crate::signal::{Floor, calibrate, simulate_built};
     use eframe::egui;
@@ -231,6 +242,7 @@ mod tests {
         elements: Arc<BuiltArray>,
         memory: ElementsMemory,
         asked: usize,
+        layout: Option<LayoutKind>,
         calibrated: Option<Calibrated>,
     }
 
@@ -242,15 +254,21 @@ mod tests {
         let draw = |ui: &mut Ui, state: &mut Panel| {
             let elements = state.elements.clone();
             let calibration = state.calibrated.as_ref().map(Ok);
-            let input = Input { radar: &radar(), elements: &elements, calibration };
+            let layout = state.layout.clone();
+            let layout = layout.as_ref();
+            let input = Input { radar: &radar(), elements: &elements, layout, has_ends_alone: false, calibration };
             for command in show(ui, input, &mut state.memory) {
-                let Command::Radar(RadarCommand::SetElements(elements)) = command else { panic!("{command:?}") };
-                state.elements = elements;
+                match command {
+                    Command::Radar(RadarCommand::SetElements(elements)) => state.elements = elements,
+                    Command::View(ViewCommand::Hear(layout)) => state.layout = layout,
+                    other => panic!("{other:?}"),
+                }
                 state.asked += 1;
             }
         };
-        let state = Panel { elements: Arc::new(elements), memory: ElementsMemory::default(), asked: 0, calibrated };
-        let mut panel = Harness::builder().with_size([640.0, 360.0]).build_ui_state(draw, state);
+        let elements = Arc::new(elements);
+        let state = Panel { elements, memory: ElementsMemory::default(), asked: 0, layout: None, calibrated };
+        let mut panel = Harness::builder().with_size([640.0, 420.0]).build_ui_state(draw, state);
         panel.run();
         panel
     }
@@ -270,6 +288,30 @@ mod tests {
         }
         assert_eq!(panel.state().asked, 2);
         assert!(panel.state().elements.is_ideal());
+    }
+
+    #[test]
+    fn a_layout_is_chosen_or_typed() {
+        let mut panel = panel(BuiltArray::default(), None);
+        panel.get_by_label("heard").click();
+        panel.run();
+        panel.get_by_label("nested=4x6").click();
+        panel.run();
+        assert_eq!(panel.state().layout, Some(LayoutKind::Nested { neighbours: 4, apart: 6 }));
+        for (text, told) in [("0-3 40", Some("the radar has elements 0 to 31")), ("0-3 30", None)] {
+            let field = panel.get_by_label("as text");
+            field.focus();
+            panel.run();
+            panel.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
+            panel.event(egui::Event::Text(text.to_owned()));
+            panel.run();
+            panel.key_press(Key::Enter);
+            panel.run();
+            match told {
+                Some(told) => assert!(panel.query_by_label_contains(told).is_some(), "{text}"),
+                None => assert_eq!(panel.state().layout, Some(LayoutKind::Listed(vec![0, 1, 2, 3, 30]))),
+            }
+        }
     }
 
     #[test]

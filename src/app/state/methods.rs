@@ -44,6 +44,14 @@ impl Methods {
         [preferred].into_iter().chain(ROBUST).find(|other| works(other))
     }
 
+    /// A method that makes maps of what the elements of `layout` hear, if there is one.
+    pub fn hearing(&self, radar: &Radar, layout: &[usize]) -> Option<&'static str> {
+        let preferred = crate::methods::preferred_hearing(radar, layout).name();
+        let mut able = self.all.iter().filter(|method| method.check_elements(radar, layout).is_ok());
+        let first = able.clone().next();
+        able.find(|method| method.name() == preferred).or(first).map(|method| method.name())
+    }
+
     /// The method to set beside the one called `first`: the one called `name`, or else a plain one, or else any other.
     pub fn second_to(&self, first: Option<&str>, name: &str) -> Option<&Arc<dyn Reconstructor>> {
         let named = |name: &str| self.all.iter().find(|m| m.name() == name);
@@ -52,10 +60,10 @@ impl Methods {
         named(name).or_else(plain).or_else(|| self.all.iter().find(other)).or_else(|| self.all.first())
     }
 
-    /// The method after the one called `name`; the first after the last.
-    pub fn after(&self, name: &str) -> Option<&'static str> {
+    /// The first that `is_able` after the method called `name`; the first of all comes after the last.
+    pub fn after(&self, name: &str, is_able: impl Fn(&dyn Reconstructor) -> bool) -> Option<&'static str> {
         let index = self.all.iter().position(|m| m.name() == name).unwrap_or(0);
-        let next = (index + 1) % self.all.len().max(1);
-        self.all.get(next).map(|m| m.name())
+        let others = self.all.iter().cycle().skip(index + 1).take(self.all.len());
+        others.map(AsRef::as_ref).find(|method| is_able(*method)).map(Reconstructor::name)
     }
 }

@@ -3,10 +3,10 @@
 use super::kind_boxes::{member_box, ticking_menu};
 use super::numbers::significant;
 use crate::app::state::{Command, Times};
-use crate::radar::Radar;
+use crate::radar::{LayoutKind, Radar};
 use crate::reconstruct::{Family, Reconstructor};
 use eframe::egui::{Align, Grid, Label, Layout, Response, RichText, Sense, Ui};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Height of a popup that lists methods, points.
@@ -29,15 +29,27 @@ pub struct Offered<'a> {
     /// The radar of the scene on screen, where there is one.
     #[cfg_attr(not(feature = "live"), allow(dead_code, reason = "the networks for it are listed"))]
     pub radar: Option<&'a Radar>,
+    /// The layout that methods are to hear; the two ends where there is none.
+    pub layout: Option<&'a LayoutKind>,
     /// How long each takes on this machine.
     pub times: Times<'a>,
 }
 
 impl<'a> Offered<'a> {
+    /// Why each method that can't hear the layout can't.
+    fn refusals(&self) -> BTreeMap<&'static str, String> {
+        let Some((radar, layout)) = self.radar.zip(self.layout) else { return BTreeMap::new() };
+        let Ok(layout) = layout.numbers(radar) else { return BTreeMap::new() };
+        let refusal = |method: &Arc<dyn Reconstructor>| {
+            Some((method.name(), method.check_elements(radar, &layout).err()?.to_string()))
+        };
+        self.all.iter().filter_map(refusal).collect()
+    }
+
     /// These methods, of whose times nothing is known.
     #[cfg(test)]
     pub fn untimed(all: &'a [Arc<dyn Reconstructor>]) -> Self {
-        Offered { all, radar: None, times: Times::default() }
+        Offered { all, radar: None, layout: None, times: Times::default() }
     }
 }
 
@@ -104,7 +116,7 @@ pub fn method_lines(
     offered: Offered<'_>,
     mut name: impl FnMut(&mut Ui, &dyn Reconstructor) -> Response,
 ) -> Option<&'static str> {
-    let mut clicked = None;
+    let (mut clicked, refusals) = (None, offered.refusals());
     let room = DESCRIPTION_WIDTH.min((ui.ctx().content_rect().width() - 180.0 - TIME_WIDTH).max(120.0));
     Grid::new("methods").num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
         for family in Family::ALL {
@@ -116,11 +128,17 @@ pub fn method_lines(
             ui.label(RichText::new(family.describe()).weak().italics().small());
             ui.end_row();
             for method in of_family {
-                name(ui, method.as_ref());
+                let refusal = refusals.get(method.name());
+                let named = ui.add_enabled_ui(refusal.is_none(), |ui| name(ui, method.as_ref())).inner;
+                if let Some(reason) = refusal {
+                    named.on_disabled_hover_text(reason);
+                }
                 ui.scope(|ui| {
                     ui.set_width(room);
                     let text = RichText::new(method.description()).weak().small();
-                    if ui.add(Label::new(text).wrap().selectable(false).sense(Sense::click())).clicked() {
+                    if ui.add(Label::new(text).wrap().selectable(false).sense(Sense::click())).clicked()
+                        && refusal.is_none()
+                    {
                         clicked = Some(method.name());
                     }
                 });
@@ -152,7 +170,7 @@ mod tests {
     use crate::app::state::{MethodTimes, ViewCommand};
     use crate::app::widgets::seen;
     use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use egui_kittest::kittest::{NodeT, Queryable};
     use std::time::Duration;
 
     struct Popup {
@@ -162,11 +180,19 @@ mod tests {
 
     /// A popup of all methods of 300 points.
     fn popup(chosen: &'static str) -> Harness<'static, Popup> {
+        popup_of(chosen, None)
+    }
+
+    /// The same where methods are to hear a layout.
+    fn popup_of(chosen: &'static str, layout: Option<LayoutKind>) -> Harness<'static, Popup> {
         let mut times = MethodTimes::default();
         times.record(&Radar::default(), chosen, Duration::from_millis(1240));
         let all = crate::methods::all();
+        let radar = Radar { elements: 86, end_elements: 8, ..Radar::default() };
         let draw = move |ui: &mut Ui, popup: &mut Popup| {
-            let offered = Offered { all: &all, radar: None, times: popup.times.on(&Radar::default()) };
+            let layout = layout.as_ref();
+            let (radar, times) = (layout.map(|_| &radar), popup.times.on(&Radar::default()));
+            let offered = Offered { all: &all, radar, layout, times };
             eframe::egui::ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
                 method_list(ui, offered, chosen, |v| ViewCommand::Method(v).into(), &mut popup.asked);
             });
@@ -186,6 +212,22 @@ mod tests {
             popup.run_steps(4);
             assert!(in_sight(&popup, chosen), "{chosen}: {:?}", seen::texts(popup.output()));
         }
+    }
+
+    #[test]
+    fn methods_that_cannot_hear_the_layout_are_grey_and_say_why() {
+        let mut popup = popup_of("iaa", Some(LayoutKind::Nested { neighbours: 8, apart: 8 }));
+        popup.run_steps(4);
+        let is_grey = |label: &str| popup.get_by_label(label).accesskit_node().is_disabled();
+        let grey = ["capon", "baseline", "iaa", "matched-filter"].map(is_grey);
+        assert_eq!(grey, [true, true, false, false]);
+        popup.get_by_label("capon").hover();
+        popup.run_steps(60);
+        let told = "it hears the two ends of an array";
+        assert!(seen::texts(popup.output()).iter().any(|text| text.text.contains(told)));
+        popup.get_by_label("capon").click();
+        popup.run_steps(2);
+        assert_eq!(popup.state().asked, []);
     }
 
     #[test]

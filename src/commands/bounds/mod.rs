@@ -30,13 +30,8 @@ use std::path::PathBuf;
 /// no draw counts), trials, miscounted, off_by_a_tooth (numbers of draws).
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Layouts: full, two-ends, one-end, random=N, random=N:SEED, mimo=TxR
-    #[arg(
-        long,
-        value_name = "NAME,..",
-        value_delimiter = ',',
-        default_value = "two-ends,one-end,random=24,mimo=3x4,full"
-    )]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "two-ends,one-end,random=24,mimo=3x4,full",
+          help = format!("Layouts: {}", LayoutKind::NAMES))]
     layout: Vec<LayoutKind>,
 
     /// Place of the reflector, metres along the array and ahead of it
@@ -107,7 +102,7 @@ impl Args {
         let layouts: Vec<(LayoutKind, Layout)> = self
             .layout
             .iter()
-            .map(|kind| Ok((*kind, kind.layout(&radar).map_err(CommandError::failed)?)))
+            .map(|kind| Ok((kind.clone(), kind.layout(&radar).map_err(CommandError::failed)?)))
             .collect::<Result<_, CommandError>>()?;
         let other = self.neighbour(&radar, centre)?;
         let report = BoundsReport {

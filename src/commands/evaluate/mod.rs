@@ -8,6 +8,7 @@ mod progress;
 mod report;
 
 use super::arguments::{self, FloorArgs, real, seed, whole};
+use super::layout_arg::LayoutArg;
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
 use super::{CommandError, print, print_json};
@@ -26,6 +27,7 @@ use report::EvaluationReport;
 use std::collections::HashSet;
 use std::fs::File;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Fill tables 4.1 to 4.3: squared error, detection and false-alarm rates of reconstruction methods on random test scenes
@@ -38,6 +40,9 @@ use std::time::Duration;
 /// which the squared error is at most 1.2 times the smallest of the other methods'. The optimisers that trained a network stand behind
 /// its name. For scenes with bodies a further table counts echoes: those that stand 10 dB out of the map of the whole array, and those of them
 /// that the method shows, by classes of 10 dB below the scene's strongest. The end of a wall lies 30 to 60 dB below its glint, where P_D doesn't see it.
+///
+/// With --layout methods hear those elements in place of the two ends; each row names them in the column layout. A method that can't is left out,
+/// and standard error says why.
 ///
 /// With --cfar a further table gives P_D and P_FA where each cell is held against the cells around it in place of the threshold; rows have it
 /// in the columns cfar_detection, cfar_false_alarm and cfar. The output is brought to power on the target's scale.
@@ -52,7 +57,8 @@ use std::time::Duration;
 /// refused. --merge joins the rows of the parts of one run, and fails where scenes are missing.
 ///
 /// With --json one object is printed: count, seed, floor, normalisation, carrier, reading and radar (what made the rows; null where older rows
-/// don't say, the last three also for the scenes of a folder; radar is empty for table 3.1's), missing (what lacks of the whole run: set,
+/// don't say, the last three also for the scenes of a folder; radar is empty for table 3.1's), layout (numbers of the elements heard; empty for the two
+/// ends), missing (what lacks of the whole run: set,
 /// method, missing, of, first numbers, shard) and sets,
 /// each with its name (set: a number for the thesis' sets), its description, what the thesis prints there (printed: baseline, experiment_1,
 /// experiment_2; null for other scenes), false_alarm (the printed rate, experiment 2's; 1 % for other scenes) and methods, each with name, weights (the first 12
@@ -102,7 +108,7 @@ pub struct Args {
     /// Print the tables of rows from these files together
     #[arg(long, value_name = "FILE.csv", num_args = 1..,
           conflicts_with_all = ["method", "set", "count", "seed", "scenes", "shard", "floor", "carrier", "radar",
-                                "thesis_text"])]
+                                "layout", "thesis_text"])]
     merge: Vec<PathBuf>,
 
     /// Print the tables of --merge even if scenes are missing
@@ -125,6 +131,9 @@ pub struct Args {
 
     #[command(flatten)]
     radar: RadarArg,
+
+    #[command(flatten)]
+    layout: LayoutArg,
 
     /// Make scenes as the thesis' text describes them, not as its author's program does
     #[arg(long)]
@@ -157,12 +166,12 @@ impl Args {
         }
     }
 
-    fn campaign(&self) -> Result<Campaign, CommandError> {
+    fn campaign(&self, sets: &[SceneSet]) -> Result<Campaign, CommandError> {
         let radar = match self.radar.is_given() {
             true => self.radar.load()?.0,
             false => Radar { carrier: self.carrier, ..Radar::default() },
         };
-        Ok(Campaign {
+        let campaign = Campaign {
             radar,
             reading: if self.thesis_text { Reading::Text } else { Reading::Program },
             seed: self.seed,
@@ -171,14 +180,26 @@ impl Args {
             floor: self.floor.floor,
             cfar: self.cfar,
             ..Campaign::default()
+        };
+        let radar = match sets {
+            // Its scenes say which radar sees them.
+            [folder @ SceneSet::Folder(_)] => {
+                folder.case(&campaign.radar, &campaign.generator(), 0).map_err(CommandError::failed)?.radar
+            }
+            _ => campaign.radar.clone(),
+        };
+        Ok(match self.layout.numbers(&radar)? {
+            None => campaign,
+            layout => Campaign { layout, radar, ..campaign },
         })
     }
 
     fn measure(&self) -> Result<Vec<Row>, CommandError> {
         let own = self.network.start_own()?;
         let methods = self.network.methods(&arguments::chosen(&self.method, &own, "baseline"))?;
-        let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
-        let (campaign, sets) = (self.campaign()?, self.sets()?);
+        let sets = self.sets()?;
+        let campaign = self.campaign(&sets)?;
+        let methods = hearing(&campaign, &methods)?;
         let empty = campaign.empty_rows(&sets, &methods).map_err(CommandError::failed)?;
         let scenes: u64 = sets.iter().map(|set| u64::from(campaign.scenes(set))).sum();
         if scenes == 0 {
@@ -263,6 +284,25 @@ impl Args {
             write_merged(path, &rows, self.overwrite).map_err(told)?;
         }
         Ok((rows, missing))
+    }
+}
+
+/// The methods that make maps of what the campaign's layout hears; the others are named.
+fn hearing<'a>(
+    campaign: &Campaign,
+    methods: &'a [Arc<dyn Reconstructor>],
+) -> Result<Vec<&'a dyn Reconstructor>, CommandError> {
+    let (mut hearing, mut refusals) = (Vec::new(), Vec::new());
+    for method in methods {
+        let heard = campaign.layout.as_ref().map_or(Ok(()), |layout| method.check_elements(&campaign.radar, layout));
+        heard.map_or_else(|error| refusals.push(error), |()| hearing.push(method.as_ref()));
+    }
+    match refusals.pop() {
+        Some(refusal) if hearing.is_empty() => Err(CommandError::failed(refusal)),
+        last => {
+            refusals.iter().chain(&last).for_each(|refusal| eprintln!("apertura: left out: {refusal}"));
+            Ok(hearing)
+        }
     }
 }
 

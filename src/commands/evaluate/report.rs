@@ -25,6 +25,7 @@ pub struct EvaluationReport {
     carrier: Option<Carrier>,
     reading: Option<Reading>,
     radar: Option<String>,
+    layout: String,
     missing: Vec<Lack>,
     sets: Vec<SetReport>,
     doubt: Vec<DoubtReport>,
@@ -152,6 +153,7 @@ impl EvaluationReport {
             carrier: generated.and_then(|row| row.carrier),
             reading: generated.and_then(|row| row.reading),
             radar: generated.map(|row| row.radar.to_string()),
+            layout: rows.first().map(|row| row.layout.to_string()).unwrap_or_default(),
             missing,
             doubt: if sets.len() > 1 { of_methods(&all, limit) } else { Vec::new() },
             sets,
@@ -179,6 +181,9 @@ impl EvaluationReport {
         }
         if let Some(radar) = self.radar.as_ref().filter(|radar| !radar.is_empty()) {
             let _ = write!(text, ", radar {radar}");
+        }
+        if !self.layout.is_empty() {
+            let _ = write!(text, ", elements {} heard", self.layout);
         }
         text.push_str("; mean \u{b1} standard error, and beneath it the median\n");
         for lack in &self.missing {

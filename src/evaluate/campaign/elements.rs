@@ -15,17 +15,6 @@ pub enum Elements {
     Drawn(Tolerances),
 }
 
-/// Numbers as ranges: "0-11 1012-1023".
-pub(super) fn ranges(numbers: &[usize]) -> String {
-    let runs = numbers.chunk_by(|a, b| a + 1 == *b);
-    let text = |run: &[usize]| match run {
-        [one] => one.to_string(),
-        [first, .., last] => format!("{first}-{last}"),
-        [] => String::new(),
-    };
-    runs.map(text).collect::<Vec<_>>().join(" ")
-}
-
 impl Elements {
     /// Those of scene `index`, in the place of its own; the seed of the scenes picks them.
     pub(super) fn of(&self, radar: &Radar, seed: u64, index: u32) -> Option<BuiltArray> {
@@ -54,11 +43,6 @@ impl Elements {
 mod tests {
     use super::*;
     use crate::radar::Decibels;
-
-    #[test]
-    fn numbers_in_a_row_are_a_range() {
-        assert_eq!(ranges(&[0, 1, 2, 5, 7, 8]), "0-2 5 7-8");
-    }
 
     #[test]
     fn elements_are_drawn_anew_for_each_scene() {

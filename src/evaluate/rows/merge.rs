@@ -83,14 +83,14 @@ fn check_alike(names: &[String], rows: &[(usize, Row)]) -> Result<(), MergeError
 
 fn difference(a: &Row, b: &Row) -> Option<Column> {
     use Column::{
-        Carrier, Cfar, Floor, Normalisation, Program, Purpose, Radar, Reading, Scenes, Seed, Version, Weights,
+        Carrier, Cfar, Floor, Layout, Normalisation, Program, Purpose, Radar, Reading, Scenes, Seed, Version, Weights,
     };
     let of_scenes: &[Column] = match [a, b].map(Row::is_generated) {
         [true, true] => &[Seed, Purpose, Reading, Carrier, Radar],
         _ if a.set == b.set => &[Carrier, Scenes],
         _ => &[],
     };
-    let of_method: &[Column] = if a.method == b.method { &[Program, Weights] } else { &[] };
+    let of_method: &[Column] = if a.method == b.method { &[Program, Weights, Layout] } else { &[] };
     // Scenes of noise alone may lie over another floor than the rest.
     let of_floor: &[Column] = if a.has_own_floor() == b.has_own_floor() { &[Floor] } else { &[] };
     let columns = [&[Version], of_floor, &[Normalisation, Cfar], of_scenes, of_method].into_iter().flatten();
@@ -138,6 +138,12 @@ mod tests {
         ] {
             assert!(refused(first(), Row { index: 1, ..other }).starts_with(told), "{told}");
         }
+        let heard = Row { layout: "0-3 9".into(), index: 1, ..first() };
+        assert!(refused(first(), heard.clone()).contains("0-3 9 in b.csv"));
+        assert!(
+            merge(vec![("a.csv".into(), vec![first(), Row { method: "iaa".into(), ..heard }])]).is_ok(),
+            "two methods"
+        );
         let weighted = |weights: &str, method: &str| Row { weights: weights.into(), ..made("1", 0, method) };
         let weights = refused(weighted("aa", "live"), weighted("bb", "live"));
         assert!(weights.starts_with("weights is aa in a.csv") && weights.contains("bb in b.csv"), "{weights}");

@@ -10,6 +10,7 @@ mod wanted;
 
 pub use wanted::{Aim, Finding, WorsenError, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
 
+use super::Target;
 use super::failure::Failures;
 use super::trial::Trial;
 use crate::reconstruct::{Reconstructor, Request};
@@ -86,7 +87,8 @@ impl WorseningSearch {
     }
 
     fn trial(&self, scene: &Scene) -> Result<Trial, SceneError> {
-        let trial = Trial::new(&self.radar, scene, self.floor, self.normalisation)?;
+        let (target, layout) = (Target::Measured, self.layout.as_deref());
+        let trial = Trial::against(target, layout, &self.radar, scene, self.floor, self.normalisation)?;
         if self.measure != WorseningMeasure::SquaredError {
             trial.footprints();
         }

@@ -68,6 +68,8 @@ pub struct WorseningSearch {
     pub floor: Floor,
     /// How maps are normalised.
     pub normalisation: Normalisation,
+    /// Numbers of the elements that the method hears in place of the two ends.
+    pub layout: Option<Vec<usize>>,
     /// What is looked for.
     pub aim: Aim,
     /// What it is judged by.
@@ -86,6 +88,7 @@ impl Default for WorseningSearch {
             radar: Radar::default(),
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
+            layout: None,
             aim: Aim::default(),
             measure: WorseningMeasure::default(),
             within_metres: 2.0,

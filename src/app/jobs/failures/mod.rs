@@ -19,6 +19,7 @@ use crate::evaluate::campaign::{Campaign, Unfit};
 use crate::evaluate::rows::{FORMAT, Row, WHY_NO_OTHER_FORMAT};
 use crate::evaluate::sets::SceneSet;
 use crate::platform::{self, Instant, fs};
+use crate::radar::ranges;
 use crate::reconstruct::Reconstructor;
 use crate::signal::Floor;
 use eframe::egui::Context;
@@ -121,7 +122,8 @@ impl Failures {
         let Campaign { floor, normalisation, ref radar, .. } = plan.campaign;
         let conditions = Conditions { floor, normalisation, radar: radar.clone() };
         self.take_in_rows();
-        if *self.table.conditions() != conditions || !self.table.is_of_this_format() {
+        let layout = plan.campaign.layout.as_deref().map(ranges).unwrap_or_default();
+        if *self.table.conditions() != conditions || !self.table.is_of_this_format() || !self.table.hears(&layout) {
             self.replace(Vec::new(), conditions);
         }
         self.thumbnails.stop();

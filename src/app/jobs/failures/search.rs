@@ -73,6 +73,7 @@ impl Search {
             radar: state.radar().clone(),
             floor: state.settings.floor,
             normalisation: state.settings.normalisation,
+            layout: state.settings.heard(state.radar()),
             aim: choice.aim,
             measure: choice.measure,
             within_metres: choice.within_metres,

@@ -91,6 +91,11 @@ impl RowTable {
         self.rows.iter().all(|row| row.version == Some(FORMAT))
     }
 
+    /// Whether methods heard these elements in all rows, as [`Row::layout`] has them.
+    pub fn hears(&self, layout: &str) -> bool {
+        self.rows.iter().all(|row| &*row.layout == layout)
+    }
+
     /// Whether there is a row of the same scene and method.
     pub fn has(&self, row: &Row) -> bool {
         self.places.contains_key(&RowKey::of(row))

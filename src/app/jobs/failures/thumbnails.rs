@@ -3,12 +3,13 @@
 use super::table::RowKey;
 use crate::app::jobs::rows::{Plan, RowJob, Stopped, Teller};
 use crate::app::state::Conditions;
+use crate::evaluate::Target;
 use crate::evaluate::rows::Row;
 use crate::evaluate::trial::{TimedAnswer, Trial};
 use crate::maps::RangeAngleMap;
 use crate::picture::in_place;
 use crate::platform;
-use crate::radar::Radar;
+use crate::radar::{LayoutKind, Radar};
 use crate::reconstruct::{Reconstructor, Request};
 use crate::task::panic_message;
 use std::collections::HashMap;
@@ -207,12 +208,15 @@ fn one<'a>(
 ) -> Made {
     let method = method.ok_or_else(|| format!("there is no method \"{}\" here", row.method))?;
     let Conditions { floor, normalisation, .. } = plan.conditions;
-    let scene = |of: &Row| (of.set.clone(), of.seed, of.index);
+    let scene = |of: &Row| (of.set.clone(), of.seed, of.index, of.layout.clone());
     let (_, trial) = match last.take().filter(|(of, _)| scene(of) == scene(row)) {
         Some(same) => last.insert(same),
         None => {
             let case = plan.conditions.case(row)?;
-            let trial = Trial::new(&case.radar, &case.scene, floor, normalisation).map_err(|e| e.to_string())?;
+            let layout = row.layout.parse().ok().and_then(|layout: LayoutKind| layout.numbers(&case.radar).ok());
+            let (layout, target) = (layout.as_deref(), Target::Measured);
+            let trial = Trial::against(target, layout, &case.radar, &case.scene, floor, normalisation);
+            let trial = trial.map_err(|e| e.to_string())?;
             last.insert((row, trial))
         }
     };

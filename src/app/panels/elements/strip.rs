@@ -1,5 +1,6 @@
 //! The strip of elements: side by side, to click and to drag.
 
+use super::Input;
 use crate::app::widgets::theme::Inks;
 use crate::radar::{BuiltArray, ElementError, End, Radar};
 use eframe::egui;
@@ -24,19 +25,18 @@ pub(super) const MOST_MILLIMETRES: f64 = 1000.0;
 struct Strip<'a> {
     radar: &'a Radar,
     elements: &'a BuiltArray,
+    /// Numbers of those that are heard, where they are not the two ends.
+    heard: Option<Vec<usize>>,
     rect: Rect,
 }
 
 /// Draws the strip. `chosen` is the element whose numbers are shown; the answer is an element that was changed, with its errors.
-pub(super) fn show(
-    ui: &mut Ui,
-    radar: &Radar,
-    elements: &BuiltArray,
-    chosen: &mut usize,
-) -> Option<(usize, ElementError)> {
+pub(super) fn show(ui: &mut Ui, input: &Input<'_>, chosen: &mut usize) -> Option<(usize, ElementError)> {
+    let Input { radar, elements, layout, .. } = *input;
+    let heard = layout.and_then(|layout| layout.numbers(radar).ok());
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 58.0), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Elements"));
-    let strip = Strip { radar, elements, rect };
+    let strip = Strip { radar, elements, heard, rect };
     strip.draw(ui, *chosen);
     let changed = strip.switched(&response, chosen).or_else(|| strip.moved(&response, chosen));
     if response.has_focus() {
@@ -70,6 +70,13 @@ impl Strip<'_> {
         let [first, last] = End::BOTH.map(|end| self.radar.end_range(end));
         for n in 0..self.radar.elements {
             let ink = match n {
+                n if let Some(heard) = &self.heard => {
+                    if heard.contains(&n) {
+                        inks.ends[0]
+                    } else {
+                        inks.array
+                    }
+                }
                 n if first.contains(&n) => inks.ends[0],
                 n if last.contains(&n) => inks.ends[1],
                 _ => inks.array,

@@ -101,7 +101,9 @@ pub fn map_input<'a>(
         .value()
         .filter(|_| !jobs.theory.is_stale())
         .and_then(Result::ok)
-        .filter(|r| r.request.radar == *state.radar());
+        .filter(|r| r.request.radar == *state.radar())
+        // The formulas of the two inputs are those of the ends.
+        .filter(|_| settings.layout.is_none() || !matches!(kind, MapKind::Input0 | MapKind::Input1));
     Input {
         kind,
         radar: state.editor.radar(),
@@ -163,6 +165,9 @@ fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Kinds<'a>> 
 /// What stands in a map's title.
 pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     let pipeline = &jobs.pipeline;
+    if let (MapKind::Input0, Some(layout)) = (kind, &state.settings.layout) {
+        return Some(format!("{layout} {}", if is_updating(jobs, kind) { "(updating) " } else { "" }));
+    }
     let slot = kind.slot().unwrap_or(MethodSlot::First);
     caption(Caption {
         kind,
@@ -315,6 +320,9 @@ fn veil(state: &State, kind: MapKind) -> Option<Veil> {
 fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>> {
     if let Some(reason) = jobs.pipeline.maps.scene_error() {
         return Some(Problem { reason, instead: None });
+    }
+    if kind == MapKind::Input1 && state.settings.layout.is_some() {
+        return Some(Problem { reason: "Input 0 shows what the elements of the layout hear.", instead: None });
     }
     let is_recorded = state.editor.document().recording().is_some();
     if kind == MapKind::Unexplained {

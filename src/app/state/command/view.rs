@@ -6,6 +6,7 @@ use crate::app::state::{
 use crate::maps::Normalisation;
 use crate::maps::cfar::{Cfar, Statistic};
 use crate::picture::ColourMap;
+use crate::radar::LayoutKind;
 use crate::signal::Floor;
 
 /// Commands that change how the scene is looked at: which maps, by which method, and what is drawn over them.
@@ -91,6 +92,8 @@ pub enum ViewCommand {
     Flip,
     /// Reconstruct with the method of this name.
     Method(&'static str),
+    /// Let methods hear these elements; the two ends where `None`.
+    Hear(Option<LayoutKind>),
     /// The next reconstruction method.
     NextMethod,
 }

@@ -1,0 +1,82 @@
+//! What other elements than those of the two ends hear: their samples and their map.
+
+use super::memo::Memo;
+use super::recorded::{ready, seen_by};
+use super::source::Source;
+use crate::app::shared::Shared;
+use crate::engine::ReadyMap;
+use crate::maps::focus::map_of;
+use crate::maps::{Aperture, LogMap, Normalisation};
+use crate::radar::{BuiltArray, Radar};
+use crate::reconstruct::LayoutSamples;
+use crate::signal::{self, BeatSignal, Unfinished};
+use crate::task::Task;
+
+/// What the elements of a layout hear.
+pub struct Heard {
+    pub samples: Shared<LayoutSamples>,
+    log: LogMap,
+    shown: Memo<Normalisation, ReadyMap>,
+}
+
+impl Heard {
+    /// Of a scene, or of a recording of every element; `None` of one of the two ends alone.
+    ///
+    /// # Errors
+    /// [`Unfinished`] when the scene can't be simulated, or `task` was cancelled.
+    pub fn of(task: &Task, source: &Source, layout: &[usize]) -> Result<Option<Heard>, Unfinished> {
+        let Source { radar, scene, recording, floor } = source;
+        let elements = &scene.disturbances.elements;
+        let heard = |signal: &BeatSignal| {
+            let samples = LayoutSamples::of(&signal.samples, layout);
+            let log = log_map(radar, elements, &samples);
+            Heard { samples: Shared::new(samples), log, shown: Memo::default() }
+        };
+        Ok(match recording {
+            None => Some(heard(&signal::simulate_for(task, radar, scene, *floor, scene.noise_seed)?)),
+            Some(recording) => seen_by(recording, radar, elements).signal().map(heard),
+        })
+    }
+
+    /// Their map.
+    pub fn map(&mut self, normalisation: Normalisation) -> ReadyMap {
+        self.shown.of(normalisation, |normalisation| ready(&self.log, self.log.scale(*normalisation))).clone()
+    }
+}
+
+/// The map of the array where the other elements hear nothing.
+pub fn log_map(radar: &Radar, elements: &BuiltArray, heard: &LayoutSamples) -> LogMap {
+    let mut alone = BeatSignal::silence(radar);
+    for (element, samples) in heard.layout.iter().zip(heard.samples.outer_iter()) {
+        alone.samples.row_mut(*element).assign(&samples);
+    }
+    map_of(radar, elements, &alone, Aperture::Full).log_magnitude()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::{Recorded, Recording};
+    use crate::scene::Scene;
+    use crate::signal::Floor;
+
+    #[test]
+    fn every_element_of_the_array_hears_the_target() {
+        let radar = Radar { elements: 64, end_elements: 6, samples: 32, ..Radar::default() };
+        let scene = Shared::new(Scene::of_points([(0.2, 0.9)]));
+        let mut source = Source { radar: radar.clone(), scene, recording: None, floor: Floor::Thesis };
+        let signal = source.every_element().unwrap();
+        let target = map_of(&radar, &BuiltArray::default(), &signal, Aperture::Full).log_magnitude();
+        let every: Vec<usize> = (0..64).collect();
+        let heard = |source: &Source, layout: &[usize]| Heard::of(&Task::default(), source, layout).unwrap();
+        assert_eq!(*heard(&source, &every).unwrap().log.decades(), *target.decades());
+        let few = heard(&source, &[0, 9, 63]).unwrap();
+        assert_eq!(few.samples.samples.row(1), signal.samples.row(9));
+        let mut recording = Recording::of_signal(radar.clone(), signal.clone());
+        source.recording = Some(Shared::new(recording.clone()));
+        assert_eq!(heard(&source, &[0, 9, 63]).unwrap().samples.samples, few.samples.samples);
+        recording.samples = Recorded::Ends(signal.two_ends(&radar));
+        source.recording = Some(Shared::new(recording));
+        assert!(heard(&source, &[0, 9, 63]).is_none());
+    }
+}

@@ -1,0 +1,124 @@
+//! Which elements methods hear: a layout to choose, or its name or numbers to type.
+
+use super::Input;
+use crate::app::state::{Command, ViewCommand};
+use crate::app::widgets::labelled::choice_told;
+use crate::radar::{LayoutKind, Radar};
+use eframe::egui::{TextEdit, Ui};
+
+/// What is typed, until it is a layout.
+#[derive(Default)]
+pub struct HeardMemory {
+    typed: Option<Typed>,
+}
+
+/// A text that was typed in place of a layout.
+struct Typed {
+    over: Option<LayoutKind>,
+    text: String,
+    problem: Option<String>,
+}
+
+/// Most letters that are taken.
+const MAX_LETTERS: usize = 4000;
+
+const TIP: &str = "The elements that methods hear. The target stays the map of the whole array. Not every method hears other elements than those of the two ends";
+
+pub(super) fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut HeardMemory, asked: &mut Vec<Command>) {
+    if input.has_ends_alone {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        let mut chosen = input.layout.cloned();
+        let offered = std::iter::once(None).chain(suggested(input.radar).map(Some));
+        choice_told(ui, "heard", TIP, &mut chosen, offered, |layout| (name(layout.as_ref()), tip(layout.as_ref())));
+        let typed = field(ui, input, memory);
+        let new = typed.or_else(|| (chosen.as_ref() != input.layout).then_some(chosen));
+        asked.extend(new.map(|layout| Command::View(ViewCommand::Hear(layout))));
+    });
+    if let Some(problem) = memory.typed.as_ref().and_then(|typed| typed.problem.as_ref()) {
+        ui.colored_label(ui.visuals().error_fg_color, problem);
+    }
+}
+
+fn name(layout: Option<&LayoutKind>) -> String {
+    layout.map_or_else(|| "the two ends".to_owned(), LayoutKind::to_string)
+}
+
+fn tip(layout: Option<&LayoutKind>) -> &'static str {
+    match layout {
+        None => "The first and the last elements of the array",
+        Some(LayoutKind::Nested { .. }) => "nested=AxB: A neighbours, and B elements A + 1 apart",
+        Some(LayoutKind::Coprime { .. }) => "coprime=MxN: N elements M apart, and 2 M elements N apart",
+        Some(LayoutKind::Thinned { .. }) => "thinned=K: every K-th element",
+        Some(LayoutKind::Random { .. }) => "random=N:SEED: N elements at random places, the outermost two among them",
+        Some(_) => "These elements",
+    }
+}
+
+/// A layout of each kind over most of the array.
+fn suggested(radar: &Radar) -> impl Iterator<Item = LayoutKind> {
+    let elements = radar.elements;
+    let neighbours = elements.isqrt().saturating_sub(1).max(1);
+    let reaches = |step: &usize| (2 * step - 1) * (step + 1) < elements;
+    let step = (1..).take_while(reaches).last().unwrap_or(1);
+    let few = (2 * radar.end_elements).clamp(2, elements.max(2));
+    [
+        LayoutKind::Nested { neighbours, apart: (elements / (neighbours + 1)).max(1) },
+        LayoutKind::Coprime { step, many: step + 1 },
+        LayoutKind::Thinned { step: elements.div_ceil(few) },
+        LayoutKind::Random { elements: few, seed: 0 },
+    ]
+    .into_iter()
+    .filter(|layout| layout.numbers(radar).is_ok())
+}
+
+/// The layout's name, to be typed over. Returns another layout once one was typed.
+fn field(ui: &mut Ui, input: &Input<'_>, memory: &mut HeardMemory) -> Option<Option<LayoutKind>> {
+    let shown = || input.layout.map_or_else(|| LayoutKind::TwoEnds.to_string(), LayoutKind::to_string);
+    let typed = memory.typed.take().filter(|typed| typed.over.as_ref() == input.layout);
+    let (mut text, mut problem) = typed.map_or_else(|| (shown(), None), |typed| (typed.text, typed.problem));
+    let label = ui.label("as text").on_hover_text(LayoutKind::NAMES);
+    let edit = TextEdit::singleline(&mut text).char_limit(MAX_LETTERS).desired_width(180.0);
+    let response = ui.add(edit).labelled_by(label.id);
+    if response.changed() {
+        problem = None;
+    }
+    let is_new = text != shown();
+    let mut taken = None;
+    if response.lost_focus() && is_new {
+        match layout_of(&text, input.radar) {
+            Ok(layout) => taken = Some(layout),
+            Err(why) => problem = Some(why),
+        }
+    }
+    if is_new && taken.is_none() {
+        memory.typed = Some(Typed { over: input.layout.cloned(), text, problem });
+    }
+    taken
+}
+
+/// The layout that a text names; `None` for the two ends.
+fn layout_of(text: &str, radar: &Radar) -> Result<Option<LayoutKind>, String> {
+    let layout: LayoutKind = text.parse().map_err(|error: crate::radar::UnknownLayout| error.to_string())?;
+    layout.numbers(radar).map_err(|error| error.to_string())?;
+    Ok(Some(layout).filter(|layout| *layout != LayoutKind::TwoEnds))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_layout_is_offered_for_the_radar() {
+        for (elements, end_elements) in [(1024, 12), (86, 8), (64, 3), (16, 4)] {
+            let radar = Radar { elements, end_elements, ..Radar::default() };
+            let offered: Vec<LayoutKind> = suggested(&radar).collect();
+            assert_eq!(offered.len(), 4, "{elements}: {offered:?}");
+            for layout in offered {
+                let numbers = layout.numbers(&radar).unwrap();
+                assert!(numbers.len() < elements && *numbers.last().unwrap() > elements / 2, "{layout}: {numbers:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! `--layout`: other elements than those of the two ends are heard.
+
+use super::cli::program;
+use ndarray::Array2;
+use ndarray_npy::{NpzReader, NpzWriter};
+use num_complex::Complex64;
+use predicates::str::contains;
+use serde_json::Value;
+use std::fs::{File, read_to_string, write};
+use std::path::{Path, PathBuf};
+
+/// A small radar, in a file of `folder`.
+fn radar(folder: &Path) -> PathBuf {
+    let path = folder.join("radar.toml");
+    write(&path, "[radar]\nelements = 64\nend_elements = 6\nsamples = 64\n").unwrap();
+    path
+}
+
+const NESTED: &str = "0-6 13 20 27 34 41 48 55";
+
+#[test]
+fn methods_that_hear_the_layout_are_tried_and_rows_name_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = folder.path().join("rows.csv");
+    let evaluate = |methods: &str, layout: &str| {
+        let mut command = program(&["evaluate", "--set", "2", "--count", "1", "--json", "--method", methods]);
+        command.arg("--radar").arg(radar(folder.path())).args(["--layout", layout, "--rows"]).arg(&rows);
+        command.assert()
+    };
+    let run = evaluate("matched-filter,capon,iaa", "nested=6x8").success();
+    let run = run.stderr(contains("left out: capon: it hears the two ends of an array"));
+    let report: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    assert_eq!((&report["layout"], report["sets"][0]["methods"].as_array().unwrap().len()), (&NESTED.into(), 2));
+    assert!(read_to_string(&rows).unwrap().contains(NESTED));
+    evaluate("matched-filter,iaa", NESTED).success().stderr(contains("holds all 2 rows"));
+    evaluate("matched-filter,iaa", "thinned=8").failure().stderr(contains("layout is 0-6 13"));
+    evaluate("capon", "nested=6x8").failure().stderr(contains("it hears the two ends of an array"));
+    evaluate("iaa", "nested=40x40").failure().stderr(contains("the radar has elements 0 to 63"));
+}
+
+#[test]
+fn two_ends_are_a_layout_that_every_method_hears() {
+    let folder = tempfile::tempdir().unwrap();
+    let run =
+        program(&["evaluate", "--set", "2", "--count", "1", "--json", "--method", "capon", "--layout", "two-ends"])
+            .arg("--radar")
+            .arg(radar(folder.path()))
+            .assert()
+            .success();
+    let report: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    assert_eq!(report["layout"], "");
+}
+
+#[test]
+fn samples_of_a_layout_are_reconstructed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (input, output) = (folder.path().join("in.npz"), folder.path().join("out.npz"));
+    let mut npz = NpzWriter::new(File::create(&input).unwrap());
+    let heard = Array2::from_shape_fn((14, 64), |(_, n)| Complex64::from_polar(3.0, 0.9 * n as f64));
+    npz.add_array("heard", &heard).unwrap();
+    npz.finish().unwrap();
+    let reconstruct = |layout: &str, method: &[&str]| {
+        let mut command = program(&["reconstruct"]);
+        command.arg(&input).arg("--radar").arg(radar(folder.path())).args(["--layout", layout]).args(method);
+        command.arg("-o").arg(&output).assert()
+    };
+    reconstruct("nested=6x8", &[]).success().stdout(contains("(iaa, "));
+    let map: Array2<f32> = NpzReader::new(File::open(&output).unwrap()).unwrap().by_name("net_output").unwrap();
+    assert_eq!(map.dim(), (64, 64));
+    reconstruct("nested=6x8", &["--method", "nomp"]).failure().stderr(contains("it hears the two ends of an array"));
+    reconstruct("thinned=8", &[]).failure().stderr(contains("samples of the layout"));
+}
+
+#[test]
+fn elements_of_a_recording_are_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let chip = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/recordings/chip-8.toml");
+    let reconstruct = |layout: &str| {
+        let mut command = program(&["reconstruct", chip, "--layout", layout, "-o"]);
+        command.arg(folder.path().join("out.npz")).assert()
+    };
+    reconstruct("0-2,5,7").success();
+    reconstruct("0-2,8").failure().stderr(contains("the radar has elements 0 to 7"));
+}
+
+#[cfg(feature = "live")]
+#[test]
+fn a_dataset_has_the_samples_of_its_layout() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("data");
+    program(&["dataset", "--set", "2", "--count", "1", "--validation", "0", "--test", "0", "--layout", "nested=6x8"])
+        .arg("--radar")
+        .arg(radar(folder.path()))
+        .arg("-o")
+        .arg(&data)
+        .assert()
+        .success();
+    let manifest: Value = serde_json::from_str(&read_to_string(data.join("manifest.json")).unwrap()).unwrap();
+    assert_eq!(manifest["layout"].as_array().unwrap().len(), 14);
+    assert_eq!(manifest["arrays"]["heard"]["shape"], serde_json::json!([14, 64]));
+    assert!(data.join("train/00000.heard.npy").exists());
+}
