@@ -15,9 +15,11 @@ use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
 
-/// Noise that the search is told of, as a part of the samples' power, level by level. After the first, an offset and a slope of phase are taken from
-/// each end's gains: while places are rough, both are a place of all objects, too.
-const NOISE_LEVELS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
+/// Noise that the search is told of, as a part of the samples' power, level by level.
+const NOISE_LEVELS: [f64; 5] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4];
+
+/// Least noise after which an offset and a slope of phase are taken from each end's gains: while places are rough, both are a place of all objects.
+const MIN_ROUGH_LEVEL: f64 = 0.1;
 
 /// Part of a search's work that is granted to a level: what takes longer is no scene of a few objects.
 const WORK_SHARE: usize = 4;
@@ -25,15 +27,16 @@ const WORK_SHARE: usize = 4;
 /// Turns of fitting the objects' gains and the elements' in a level.
 const TURNS: usize = 6;
 
-/// Part of the samples' energy that a level may leave, over the noise that it was told of.
+/// Part of the samples' energy that a level may leave, over the noise that it was told of, and at most.
 const MAX_LEFT_OVER_LEVEL: f64 = 3.0;
+const MAX_LEFT_OF_LEVEL: f64 = 0.3;
 
 /// Most turns of places, gains of objects and of elements after the last level, and the part that a turn must leave at most to be worth another.
 const LAST_TURNS: usize = 30;
 const WORTH_ANOTHER_TURN: f64 = 0.5;
 
 /// Part of the samples' energy that may be left where rounding alone lies beneath: more is an object, and its map would be that of a loud floor.
-const MAX_LEFT_OVER_ROUNDING: f64 = 1e-8;
+const MAX_LEFT_OVER_ROUNDING: f64 = 1e-6;
 
 /// Noise that the last search is told of, over what the gains leave, as a ratio of powers.
 const LEFT_MARGIN: f64 = 3.0;
@@ -44,8 +47,8 @@ const MIN_GAIN_RATIO: f64 = 0.03;
 /// Price of an object's gain, as a part of its echo's energy.
 const OBJECT_RIDGE: f64 = 1e-4;
 
-/// Mean square of an element's error before anything is known of it: 0.3 dB and 3 degrees.
-const EXPECTED_SQUARE: f64 = 0.004;
+/// Mean square of an element's error before anything is known of it: 0.8 dB and 6 degrees.
+const EXPECTED_SQUARE: f64 = 0.02;
 
 /// Gains that differ more from 1 in the mean square's root are no tolerances.
 const MAX_DEVIATION: f64 = 0.3;
@@ -215,10 +218,11 @@ impl Calibration<'_> {
             }
             for _ in 0..TURNS {
                 let turned = turned(radar, &bench, ends, &atoms, &gains, false);
-                gains = turned.gains.clone().normalised(*level == NOISE_LEVELS[0]);
+                gains = turned.gains.clone().normalised(*level >= MIN_ROUGH_LEVEL);
                 last = Some(turned);
             }
-            if last.as_ref().is_some_and(|last| last.left > MAX_LEFT_OVER_LEVEL * level + noise) {
+            if last.as_ref().is_some_and(|last| last.left > MAX_LEFT_OF_LEVEL.min(MAX_LEFT_OVER_LEVEL * level) + noise)
+            {
                 return Ok(None);
             }
         }
