@@ -28,18 +28,18 @@ const WORK_SHARE: usize = 4;
 const TURNS: usize = 6;
 
 /// Part of the samples' energy that a level may leave, over the noise that it was told of, and at most.
-const MAX_LEFT_OVER_LEVEL: f64 = 3.0;
-const MAX_LEFT_OF_LEVEL: f64 = 0.3;
+const MAX_LEVEL_RATIO: f64 = 3.0;
+const MAX_LEVEL_ENERGY_RATIO: f64 = 0.3;
 
 /// Most turns of places, gains of objects and of elements after the last level, and the part that a turn must leave at most to be worth another.
-const LAST_TURNS: usize = 30;
+const MAX_LAST_TURNS: usize = 30;
 const WORTH_ANOTHER_TURN: f64 = 0.5;
 
 /// Part of the samples' energy that may be left where rounding alone lies beneath: more is an object, and its map would be that of a loud floor.
-const MAX_LEFT_OVER_ROUNDING: f64 = 1e-6;
+const MAX_ROUNDING_ENERGY_RATIO: f64 = 1e-6;
 
 /// Noise that the last search is told of, over what the gains leave, as a ratio of powers.
-const LEFT_MARGIN: f64 = 3.0;
+const NOISE_MARGIN_RATIO: f64 = 3.0;
 
 /// Least gain of an object that elements are fitted to, as a part of the strongest.
 const MIN_GAIN_RATIO: f64 = 0.03;
@@ -54,11 +54,11 @@ const EXPECTED_SQUARE: f64 = 0.02;
 const MAX_DEVIATION: f64 = 0.3;
 
 /// Part of the samples' energy that objects must leave for elements to be suspected: errors of a twentieth of the usual ones.
-const MIN_LEFT: f64 = 1e-5;
+const MIN_ENERGY_RATIO: f64 = 1e-5;
 
 /// Part of the samples' energy that calibrated objects may leave, and part of what is left without gains.
-const MAX_LEFT: f64 = 1e-2;
-const MAX_LEFT_RATIO: f64 = 0.1;
+const MAX_ENERGY_RATIO: f64 = 1e-2;
+const MAX_PLAIN_RATIO: f64 = 0.1;
 
 /// Complex gains of the elements of both ends, those of the first end first; their geometric mean has the magnitude 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,11 +67,6 @@ pub struct ElementGains(Vec<Complex64>);
 impl ElementGains {
     fn ones(radar: &Radar) -> Self {
         ElementGains(vec![Complex64::ONE; 2 * radar.end_elements])
-    }
-
-    /// The gain of each element, those of the first end first.
-    pub fn values(&self) -> &[Complex64] {
-        &self.0
     }
 
     /// What `ends` would have been with elements that are alike.
@@ -128,7 +123,7 @@ fn level(gains: &mut [Complex64]) {
 
 /// Whether objects found in samples leave more than elements that are alike would.
 pub(super) fn asks_for_gains(plain: &Found) -> bool {
-    !plain.complete && !plain.atoms.is_empty() && plain.drawn_left() > MIN_LEFT
+    !plain.complete && !plain.atoms.is_empty() && plain.drawn_left() > MIN_ENERGY_RATIO
 }
 
 /// The objects in samples as if their elements were alike, from those of an answer where there is one.
@@ -173,15 +168,15 @@ impl Calibration<'_> {
         }
         let told = match self.request.noise.is_white() {
             true => self.request.clone(),
-            false if left > MAX_LEFT_OVER_ROUNDING => return Ok(None),
-            false => self.over_noise(LEFT_MARGIN * left),
+            false if left > MAX_ROUNDING_ENERGY_RATIO => return Ok(None),
+            false => self.over_noise(NOISE_MARGIN_RATIO * left),
         };
         let start = Found { complete: true, atoms: fit.atoms, gains: fit.gains, ..self.plain.clone() };
         let found = (self.search)(Some(&start), &gains.taken_from(self.ends), &told, self.settings)?;
         let (left, before) = (found.drawn_left(), self.plain.drawn_left());
         tracing::debug!(left, before, deviation = gains.deviation(), complete = found.complete, "calibrated");
         let is_certain = found.complete || self.request.noise.is_white();
-        if !is_certain || left >= MAX_LEFT.min(MAX_LEFT_RATIO * before) {
+        if !is_certain || left >= MAX_ENERGY_RATIO.min(MAX_PLAIN_RATIO * before) {
             return Ok(None);
         }
         let kept = Attempt {
@@ -221,13 +216,13 @@ impl Calibration<'_> {
                 gains = turned.gains.clone().normalised(*level >= MIN_ROUGH_LEVEL);
                 last = Some(turned);
             }
-            if last.as_ref().is_some_and(|last| last.left > MAX_LEFT_OF_LEVEL.min(MAX_LEFT_OVER_LEVEL * level) + noise)
+            if last.as_ref().is_some_and(|last| last.left > MAX_LEVEL_ENERGY_RATIO.min(MAX_LEVEL_RATIO * level) + noise)
             {
                 return Ok(None);
             }
         }
         let Some(mut last) = last else { return Ok(None) };
-        for _ in 0..LAST_TURNS {
+        for _ in 0..MAX_LAST_TURNS {
             request.task.check()?;
             let before = last.left;
             last = turned(radar, &bench, ends, &last.fit.atoms, &last.gains.normalised(false), true);
