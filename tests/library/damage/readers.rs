@@ -96,6 +96,7 @@ fn shared() -> Reader {
         cfar: None,
         eta: None,
         method: "live".to_owned(),
+        layout: "0-11 20".parse().ok(),
         marks: false,
         theory: true,
         lesson: None,
