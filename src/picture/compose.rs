@@ -79,7 +79,7 @@ pub fn compose(
     };
     let panels = Panels {
         scene,
-        objects_title: "Scene",
+        found: None,
         radar,
         about: &format!("{reflectors}, {carrier}, floor {floor}, normalisation {normalisation}"),
         first: &maps.first.normalise(normalisation),

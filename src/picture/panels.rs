@@ -10,6 +10,7 @@ use super::{ColourMap, text};
 use crate::evaluate::{Metrics, TARGET_ETA, eta_text};
 use crate::maps::RangeAngleMap;
 use crate::radar::{End, Radar};
+use crate::reconstruct::Detection;
 use crate::scene::Scene;
 use image::RgbImage;
 use ndarray::{Array2, ArrayView2, CowArray};
@@ -20,8 +21,8 @@ use plotters::prelude::*;
 pub struct Panels<'a> {
     /// The scene; of a recording its name and notes, and what was found in it.
     pub scene: &'a Scene,
-    /// What the scene's objects are: "Scene", or "Found by" a method.
-    pub objects_title: &'a str,
+    /// Of a recording what the method found in it, the strongest first. It is drawn and told in place of what only a known scene has.
+    pub found: Option<&'a [Detection]>,
     /// The radar that looks at it.
     pub radar: &'a Radar,
     /// What the maps were made of (reflectors, carrier, floor, normalisation), in words.
@@ -81,7 +82,8 @@ impl Drawing for Panels<'_> {
         let field = |row: i32| {
             root.clone().shrink((MARGIN, HEADER + 8 + row * (field_height + 12)), (field_width, field_height))
         };
-        scene_panel::draw(&field(0), self.radar, self.objects_title, SceneContent::Scene(self.scene))?;
+        let objects = if self.found.is_some() { format!("Found by {}", self.method) } else { "Scene".to_owned() };
+        scene_panel::draw(&field(0), self.radar, &objects, SceneContent::Scene(self.scene))?;
         let (title, map) = match self.target {
             Some(target) => ("Target, seen from above", target),
             None => ("Output, seen from above", self.output),
@@ -140,8 +142,14 @@ impl<'a> Panels<'a> {
             lambda(format!("Target: all {} elements", self.radar.elements), target),
             output,
             above(format!("Target > {TARGET_ETA}"), target, TARGET_ETA),
-            MapPanel { title, cells: MapCells::Detections(self.told_apart(drawn(target), drawn(self.output))) },
         ]);
+        panels.push(match self.found {
+            Some(_) => above(title, self.output, self.eta),
+            None => {
+                let cells = MapCells::Detections(self.told_apart(drawn(target), drawn(self.output)));
+                MapPanel { title, cells }
+            }
+        });
         panels
     }
 
@@ -151,12 +159,14 @@ impl<'a> Panels<'a> {
         in_place(self.radar, cells.view()).unwrap_or(cells)
     }
 
-    /// The three figures of the tables for this scene, then the scene's notes.
+    /// The three figures of the tables for this scene, or the echoes found in a recording, then the notes.
     fn figures_and_notes<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Result<(), PictureError> {
+        if let Some(found) = self.found {
+            text::line(area, (0, 0), &strongest_of(found), 20, text::Weight::Bold, &INK)?;
+            return text::paragraphs(area, (0, 40), &self.scene.notes, 18, &INK);
+        }
         let Some(target) = self.target else { return text::paragraphs(area, (0, 0), &self.scene.notes, 18, &INK) };
-        // Detections in a recording are no ground truth.
-        let has_echoes = !self.scene.is_silent() || self.objects_title != "Scene";
-        let metrics = Metrics::of_echoes(has_echoes, target, self.output, self.eta);
+        let metrics = Metrics::of_echoes(!self.scene.is_silent(), target, self.output, self.eta);
         let percent = |part: f64| format!("{:.2} %", 100.0 * part);
         let figures = [
             ("SE", format!("{:.0}", metrics.squared_error)),
@@ -172,11 +182,20 @@ impl<'a> Panels<'a> {
     }
 }
 
+/// How many echoes were found, and where the strongest is.
+fn strongest_of(found: &[Detection]) -> String {
+    let Some(strongest) = found.first() else { return "no echo found".to_owned() };
+    let Detection { range_metres, cos_theta, .. } = strongest;
+    let plural = if found.len() == 1 { "" } else { "es" };
+    format!("{} echo{plural} found, the strongest at {range_metres:.2} m, cos θ {cos_theta:.3}", found.len())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::maps::{LogMaps, Normalisation};
     use crate::picture::{encode_png, is_our_png};
+    use crate::radar::Decibels;
     use crate::scene::presets;
     use crate::signal::BeatSignal;
 
@@ -189,7 +208,7 @@ mod tests {
         let panels = Panels {
             scene: &file.scene,
             radar: &radar,
-            objects_title: "Scene",
+            found: None,
             about: "exact floor",
             first: &flat,
             last: &flat,
@@ -205,6 +224,10 @@ mod tests {
         let without = render_svg(&Panels { target: None, ..panels }).unwrap();
         assert_eq!(without.matches("<image").count(), 5, "no target, no map of it and of its threshold");
         assert!(without.contains("Output, seen from above") && !without.contains("P_FA"));
+        let echo = Detection { cos_theta: 0.3, range_metres: 4.0, relative_power: Decibels(0.0), confidence: None };
+        let recorded = render_svg(&Panels { found: Some(&[echo]), ..panels }).unwrap();
+        assert!(recorded.contains("1 echo found, the strongest at 4.00 m, cos θ 0.300"));
+        assert!(!recorded.contains("P_FA") && !recorded.contains("false alarm"), "a recording has no truth");
         let picture = render(&panels).unwrap();
         assert_eq!(picture.dimensions(), (WIDTH, HEIGHT));
         let bytes = encode_png(&picture).unwrap();

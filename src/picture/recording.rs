@@ -101,7 +101,7 @@ fn panels(
         format!("recorded by {} elements{missing}, {carrier}, normalisation {}", radar.elements, style.normalisation);
     let panels = Panels {
         scene: &scene,
-        objects_title: &format!("Found by {}", method.name()),
+        found: Some(&found),
         radar,
         about: &about,
         first: &lambda(&first),
