@@ -55,14 +55,7 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
                 state.arrangement.set_open(Panel::Compare, true);
             }
         }
-        ViewCommand::NextMethod => {
-            let layout = state.settings.heard(state.radar());
-            let hears = |method: &dyn Reconstructor| {
-                layout.as_ref().is_none_or(|layout| method.check_elements(state.radar(), layout).is_ok())
-            };
-            let next = state.method().and_then(|now| state.methods.after(now.name(), hears));
-            next.into_iter().for_each(|name| state.settings.method = name.to_owned());
-        }
+        ViewCommand::NextMethod => next_method(state),
         ViewCommand::PinCuts => {
             let (radar, cursor) = (state.radar().clone(), state.cut_cursor());
             state.pins.push(PinnedCut { radar, cursor, maps: jobs.pipeline.cut_maps() });
@@ -70,6 +63,16 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::Unpin(index) => state.pins.remove(index),
         ViewCommand::UnpinAll => state.pins.clear(),
     }
+}
+
+/// Takes the next method that hears the layout.
+fn next_method(state: &mut State) {
+    let layout = state.settings.heard(state.radar());
+    let hears = |method: &dyn Reconstructor| {
+        layout.as_ref().is_none_or(|layout| method.check_elements(state.radar(), layout).is_ok())
+    };
+    let next = state.method().and_then(|now| state.methods.after(now.name(), hears));
+    next.into_iter().for_each(|name| state.settings.method = name.to_owned());
 }
 
 /// Plays or stops the frames of a recording, or a scene that moves.

@@ -1,33 +1,22 @@
 //! Elements: which are heard, and how they are built: a strip to click, numbers to type, a seed to draw from, and calibration on the selected reflector.
 
 mod heard;
+mod input;
 mod list;
 mod strip;
 
+use self::input::Input;
 use self::strip::MOST_MILLIMETRES;
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::Calibrated;
 use crate::app::jobs::{CalibrationQuery, Jobs};
 use crate::app::state::{Command, RadarCommand, State};
 use crate::app::widgets::entry::press;
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::padded::scrolled;
-use crate::radar::{BuiltArray, Decibels, ElementError, LayoutKind, Radar, Tolerances};
+use crate::radar::{BuiltArray, Decibels, ElementError, Tolerances};
 use eframe::egui::{Grid, Ui};
 use std::sync::Arc;
-
-/// What is shown.
-pub struct Input<'a> {
-    pub radar: &'a Radar,
-    pub elements: &'a BuiltArray,
-    /// The layout that methods hear; the two ends where there is none.
-    pub layout: Option<&'a LayoutKind>,
-    /// Whether a recording has the samples of the two ends alone, so that nothing else can be heard.
-    pub has_ends_alone: bool,
-    /// What the selected reflector tells of them; `None` where none is selected.
-    pub calibration: Option<Result<&'a Calibrated, &'a str>>,
-}
 
 /// What the panel remembers.
 pub struct ElementsMemory {
@@ -230,7 +219,9 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::jobs::Calibrated;
     use crate::app::state::ViewCommand;
+    use crate::radar::{BuiltArray, LayoutKind, Radar};
     use crate::scene::Reflector;
     use crate::signal::{Floor, calibrate, simulate_built};
     use eframe::egui;

@@ -4,11 +4,12 @@
 //! first, so that it finds the strongest objects alone; each element's gain is fitted to them by least squares, and the noise that the search is told
 //! of falls, level by level. The gains are believed where they explain nearly all that was left without them.
 
+use super::element_gains::ElementGains;
 use super::finish::Found;
 use super::settings::Settings;
 use super::trace::{CALIBRATION, MOST_ATTEMPTS, decades};
 use crate::radar::{Radar, hann};
-use crate::reconstruct::attempt::{Attempt, Tried, Verdict};
+use crate::reconstruct::attempt::{Attempt, Verdict};
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie, Workbench};
 use crate::reconstruct::hearing::range_energy;
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
@@ -59,67 +60,6 @@ const MIN_ENERGY_RATIO: f64 = 1e-5;
 /// Part of the samples' energy that calibrated objects may leave, and part of what is left without gains.
 const MAX_ENERGY_RATIO: f64 = 1e-2;
 const MAX_PLAIN_RATIO: f64 = 0.1;
-
-/// Complex gains of the elements of both ends, those of the first end first; their geometric mean has the magnitude 1.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ElementGains(Vec<Complex64>);
-
-impl ElementGains {
-    fn ones(radar: &Radar) -> Self {
-        ElementGains(vec![Complex64::ONE; 2 * radar.end_elements])
-    }
-
-    /// What `ends` would have been with elements that are alike.
-    pub fn taken_from(&self, ends: &TwoEnds) -> TwoEnds {
-        let mut corrected = ends.clone();
-        let channels = corrected.first.outer_iter_mut().chain(corrected.last.outer_iter_mut());
-        for (mut channel, gain) in channels.zip(&self.0) {
-            let inverse = gain.inv();
-            channel.mapv_inplace(|v| v * inverse);
-        }
-        corrected
-    }
-
-    /// Root of the mean square of the differences from 1.
-    fn deviation(&self) -> f64 {
-        (self.0.iter().map(|g| (g - 1.0).norm_sqr()).sum::<f64>() / self.0.len() as f64).sqrt()
-    }
-
-    /// How far they are off.
-    fn tried(&self) -> Tried {
-        let rms = |of: fn(&Complex64) -> f64| {
-            (self.0.iter().map(|g| of(g).powi(2)).sum::<f64>() / self.0.len() as f64).sqrt()
-        };
-        Tried::Gains { decibels: rms(|g| 20.0 * g.norm().log10()), degrees: rms(|g| g.arg().to_degrees()) }
-    }
-
-    /// The same but for a gain that all share and, where asked for, the phase's offset and slope along each end.
-    fn normalised(mut self, without_slope: bool) -> Self {
-        let mean_log = self.0.iter().map(|g| g.norm().ln()).sum::<f64>() / self.0.len() as f64;
-        let common = Complex64::from_polar(mean_log.exp(), self.0.iter().sum::<Complex64>().arg());
-        self.0.iter_mut().for_each(|g| *g /= common);
-        if without_slope {
-            let half = self.0.len() / 2;
-            self.0.chunks_mut(half).for_each(level);
-        }
-        self
-    }
-}
-
-/// Takes the line through an end's phases from them.
-fn level(gains: &mut [Complex64]) {
-    let n = gains.len() as f64;
-    let middle = (n - 1.0) / 2.0;
-    let offset = gains.iter().map(|g| g.arg()).sum::<f64>() / n;
-    let [along, square] = gains.iter().enumerate().fold([0.0; 2], |[along, square], (i, g)| {
-        let at = i as f64 - middle;
-        [along + at * g.arg(), square + at * at]
-    });
-    let slope = if square > 0.0 { along / square } else { 0.0 };
-    for (i, g) in gains.iter_mut().enumerate() {
-        *g *= Complex64::cis(-(offset + slope * (i as f64 - middle)));
-    }
-}
 
 /// Whether objects found in samples leave more than elements that are alike would.
 pub(super) fn asks_for_gains(plain: &Found) -> bool {
@@ -311,12 +251,5 @@ mod tests {
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let found = find(&radar, &ends, &Request::default(), &Settings::default()).unwrap();
         assert!(!found.complete && found.element_gains.is_none());
-    }
-
-    #[test]
-    fn an_offset_and_a_slope_of_phase_are_a_place() {
-        let mut end: Vec<Complex64> = (0..12).map(|i| Complex64::cis(0.1 + 0.02 * f64::from(i))).collect();
-        level(&mut end);
-        assert!(end.iter().all(|g| (g - 1.0).norm() < 1e-12), "{end:?}");
     }
 }

@@ -1,6 +1,6 @@
 //! From a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
-use super::calibrate::ElementGains;
+use super::element_gains::ElementGains;
 use super::state::Answer;
 use crate::radar::{End, Radar};
 use crate::reconstruct::attempt::Attempt;

@@ -24,6 +24,7 @@
 //! | `settings` | bounds on time and memory |
 //! | `follow` | the answer from the last one, where little changed |
 //! | `calibrate` | gains of the elements, where the samples ask for them |
+//! | `element_gains` | what each element is off by |
 //! | `finish` | one gain for both ends, reflectivities |
 //! | `explained` | which cells of the picture are explained |
 //! | `draw` | expected map of the objects found |
@@ -32,6 +33,7 @@
 mod begin;
 mod calibrate;
 mod draw;
+mod element_gains;
 mod explained;
 mod find;
 mod finish;
@@ -59,8 +61,8 @@ mod wall_ends;
 mod walls;
 
 pub use super::fit::Atom;
-pub use calibrate::ElementGains;
 pub use draw::Expected;
+pub use element_gains::ElementGains;
 pub use find::{find, find_from};
 pub use finish::Found;
 pub(super) use grow::Grower;

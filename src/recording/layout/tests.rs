@@ -257,11 +257,23 @@ fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
 
 #[test]
 fn rows_that_are_all_alike_leave_the_receivers_open() {
-    let one: Vec<Vec<Complex64>> = (0..40).flat_map(|_| chirps()).map(|chirp| chirp[..SAMPLES].to_vec()).collect();
+    let mut state = 7u32;
+    let mut noise = move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        8.0 * (f64::from(state >> 16) / 65536.0 - 0.5)
+    };
+    let echoes =
+        |n: usize| [(900.0, 13.3), (300.0, 29.7)].map(|(size, bin)| (size, TAU * bin * n as f64 / SAMPLES as f64));
+    let mut sample = |n: usize| {
+        let of_echoes: Complex64 = echoes(n).iter().map(|(size, turns)| Complex64::from_polar(*size, *turns)).sum();
+        of_echoes + Complex64::new(noise(), noise())
+    };
+    let one: Vec<Vec<Complex64>> = (0..320).map(|_| (0..SAMPLES).map(&mut sample).collect()).collect();
     let right = layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother);
     let found = found(written(&right, &one), None);
     assert_ne!(found.certainty(), Certainty::Sure, "{:#?}", found.sentences());
-    assert!(found.notes.iter().any(|n| n.starts_with("All rows of samples are alike")), "{:?}", found.notes);
+    let told = (found.best().counts, found.sentences(), &found.notes);
+    assert!(found.notes.iter().any(|n| n.starts_with("All rows of samples are alike")), "{told:#?}");
 }
 
 #[test]

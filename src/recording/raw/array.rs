@@ -107,7 +107,8 @@ fn largest(data: &Path) -> Result<(Option<String>, Numbers), Fault> {
 }
 
 /// Arrays of an `.npz` that is a scene, or what the program itself wrote.
-const OTHERS: [&str; 6] = [X_KEY, "format_version", "net_output", "polar_full", "polar_partial_mag_phase", "sub0"];
+const OTHERS: [&str; 7] =
+    [X_KEY, "format_version", "heard", "net_output", "polar_full", "polar_partial_mag_phase", "sub0"];
 
 /// Whether an `.npz` holds samples: an array of two axes or more, and none of a scene or of maps.
 pub(super) fn has_samples(path: &Path) -> bool {

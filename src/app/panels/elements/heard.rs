@@ -1,6 +1,6 @@
 //! Which elements methods hear: a layout to choose, or its name or numbers to type.
 
-use super::Input;
+use super::input::Input;
 use crate::app::state::{Command, ViewCommand};
 use crate::app::widgets::labelled::choice_told;
 use crate::radar::{LayoutKind, Radar};

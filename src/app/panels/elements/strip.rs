@@ -1,6 +1,6 @@
 //! The strip of elements: side by side, to click and to drag.
 
-use super::Input;
+use super::input::Input;
 use crate::app::widgets::theme::Inks;
 use crate::radar::{BuiltArray, ElementError, End, Radar};
 use eframe::egui;

@@ -1,0 +1,80 @@
+//! Gains of the ends' elements.
+
+use crate::radar::Radar;
+use crate::reconstruct::attempt::Tried;
+use crate::signal::TwoEnds;
+use num_complex::Complex64;
+
+/// Complex gains of the elements of both ends, those of the first end first; their geometric mean has the magnitude 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElementGains(pub(super) Vec<Complex64>);
+
+impl ElementGains {
+    /// Of elements that are alike.
+    pub fn ones(radar: &Radar) -> Self {
+        ElementGains(vec![Complex64::ONE; 2 * radar.end_elements])
+    }
+
+    /// What `ends` would have been with elements that are alike.
+    pub fn taken_from(&self, ends: &TwoEnds) -> TwoEnds {
+        let mut corrected = ends.clone();
+        let channels = corrected.first.outer_iter_mut().chain(corrected.last.outer_iter_mut());
+        for (mut channel, gain) in channels.zip(&self.0) {
+            let inverse = gain.inv();
+            channel.mapv_inplace(|v| v * inverse);
+        }
+        corrected
+    }
+
+    /// Root of the mean square of the differences from 1.
+    pub fn deviation(&self) -> f64 {
+        (self.0.iter().map(|g| (g - 1.0).norm_sqr()).sum::<f64>() / self.0.len() as f64).sqrt()
+    }
+
+    /// How far they are off.
+    pub fn tried(&self) -> Tried {
+        let rms = |of: fn(&Complex64) -> f64| {
+            (self.0.iter().map(|g| of(g).powi(2)).sum::<f64>() / self.0.len() as f64).sqrt()
+        };
+        Tried::Gains { decibels: rms(|g| 20.0 * g.norm().log10()), degrees: rms(|g| g.arg().to_degrees()) }
+    }
+
+    /// The same but for a gain that all share and, where asked for, the phase's offset and slope along each end.
+    pub fn normalised(mut self, without_slope: bool) -> Self {
+        let mean_log = self.0.iter().map(|g| g.norm().ln()).sum::<f64>() / self.0.len() as f64;
+        let common = Complex64::from_polar(mean_log.exp(), self.0.iter().sum::<Complex64>().arg());
+        self.0.iter_mut().for_each(|g| *g /= common);
+        if without_slope {
+            let half = self.0.len() / 2;
+            self.0.chunks_mut(half).for_each(level);
+        }
+        self
+    }
+}
+
+/// Takes the line through an end's phases from them.
+fn level(gains: &mut [Complex64]) {
+    let n = gains.len() as f64;
+    let middle = (n - 1.0) / 2.0;
+    let offset = gains.iter().map(|g| g.arg()).sum::<f64>() / n;
+    let [along, square] = gains.iter().enumerate().fold([0.0; 2], |[along, square], (i, g)| {
+        let at = i as f64 - middle;
+        [along + at * g.arg(), square + at * at]
+    });
+    let slope = if square > 0.0 { along / square } else { 0.0 };
+    for (i, g) in gains.iter_mut().enumerate() {
+        *g *= Complex64::cis(-(offset + slope * (i as f64 - middle)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_offset_and_a_slope_of_phase_are_a_place() {
+        let mut end: Vec<Complex64> = (0..12).map(|i| Complex64::cis(0.1 + 0.02 * f64::from(i))).collect();
+        level(&mut end);
+        assert!(end.iter().all(|g| (g - 1.0).norm() < 1e-12), "{end:?}");
+    }
+}
