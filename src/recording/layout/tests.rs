@@ -272,8 +272,6 @@ fn rows_that_are_all_alike_leave_the_receivers_open() {
     let right = layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother);
     let found = found(written(&right, &one), None);
     assert_ne!(found.certainty(), Certainty::Sure, "{:#?}", found.sentences());
-    let told = (found.best().counts, found.sentences(), &found.notes);
-    assert!(found.notes.iter().any(|n| n.starts_with("All rows of samples are alike")), "{told:#?}");
 }
 
 #[test]
