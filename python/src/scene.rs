@@ -243,6 +243,7 @@ impl Scene {
             cfar: None,
             eta: None,
             method: method.to_owned(),
+            layout: None,
             marks: false,
             theory: false,
             lesson: None,
