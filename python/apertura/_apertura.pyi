@@ -57,6 +57,7 @@ __all__ = [
     "dataset",
     "evaluate",
     "kinds",
+    "layout",
     "live_input",
     "maps",
     "method",
