@@ -65,7 +65,7 @@ pub struct SharedView {
     pub eta: Option<f32>,
     /// Name of the reconstruction method.
     pub method: String,
-    /// The elements that methods hear, where those are not the two ends.
+    /// The elements that methods hear; `None` for the two ends.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<LayoutKind>,
     /// Whether true reflectors are marked.

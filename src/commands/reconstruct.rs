@@ -25,8 +25,8 @@ use std::time::Instant;
 /// Estimate the whole array's map from the samples of the two ends
 ///
 /// IN has sub0 and sub1: complex128 [512, 12], or [samples, elements of an end] of another radar, of any gain. For the thesis' networks it may have
-/// polar_partial_mag_phase (f64 [4, 512, 1024]) instead. With --layout it has heard: complex128 [elements of the layout, samples]; of a recording of every
-/// element those of the layout are taken. An archive of `apertura maps` and a recording's .toml name their own radar.
+/// polar_partial_mag_phase (f64 [4, 512, 1024]) instead. With --layout it has heard: complex128 [elements of the layout, samples]. Of a
+/// recording of every element, --layout picks elements. An archive of `apertura maps` and a recording's .toml name their own radar.
 ///
 /// OUT gets net_output (f32 [512, 1024] or [samples, elements], 0 to 1), eta (the threshold of this answer) and
 /// milliseconds; cos_theta (f64 [1024]) and columns_left_to_right (0 where cos_theta falls from column to column) say which way the columns run.

@@ -28,15 +28,17 @@ const WORK_SHARE: usize = 4;
 /// Turns of fitting the objects' gains and the elements' in a level.
 const TURNS: usize = 6;
 
-/// Part of the samples' energy that a level may leave, over the noise that it was told of, and at most.
+/// Maximum energy that a level leaves, over that of the noise that the search was told of.
 const MAX_LEVEL_RATIO: f64 = 3.0;
+
+/// Maximum energy that a level leaves, as a part of the samples' energy.
 const MAX_LEVEL_ENERGY_RATIO: f64 = 0.3;
 
 /// Most turns of places, gains of objects and of elements after the last level, and the part that a turn must leave at most to be worth another.
 const MAX_LAST_TURNS: usize = 30;
 const WORTH_ANOTHER_TURN: f64 = 0.5;
 
-/// Part of the samples' energy that may be left where rounding alone lies beneath: more is an object, and its map would be that of a loud floor.
+/// Maximum energy that calibrated objects leave over the rounding floor, as a part of the samples' energy. More than that is an echo.
 const MAX_ROUNDING_ENERGY_RATIO: f64 = 1e-6;
 
 /// Noise that the last search is told of, over what the gains leave, as a ratio of powers.
@@ -57,8 +59,10 @@ const MAX_DEVIATION: f64 = 0.3;
 /// Part of the samples' energy that objects must leave for elements to be suspected: errors of a twentieth of the usual ones.
 const MIN_ENERGY_RATIO: f64 = 1e-5;
 
-/// Part of the samples' energy that calibrated objects may leave, and part of what is left without gains.
+/// Maximum energy that calibrated objects leave over noise, as a part of the samples' energy.
 const MAX_ENERGY_RATIO: f64 = 1e-2;
+
+/// Maximum energy that calibrated objects leave, as a part of what objects leave without gains.
 const MAX_PLAIN_RATIO: f64 = 0.1;
 
 /// Whether objects found in samples leave more than elements that are alike would.

@@ -26,7 +26,7 @@ const APART_CELLS: f64 = 3.0;
 /// A cell of an echo that moves by a part of this of a loop's turn is told.
 const MOVES: f64 = 0.5;
 
-/// `[chirps, receivers, samples]` of these Doppler cells, and what was done in a sentence. `turns` are those of the chosen chirps'
+/// Samples of these Doppler cells, `[chirps, receivers, samples]`, and a sentence that says how they were chosen. `turns` are those of the chosen chirps'
 /// pairs across the array at a cosine of 1.
 pub(super) fn strongest(
     frame: &Frame,

@@ -214,8 +214,8 @@ fn interleaved(numbers: &[Complex64], length: usize) -> usize {
     INTERLEAVED.into_iter().find(repeats).unwrap_or(1)
 }
 
-/// Whether receivers that stand sample by sample are sure: two echoes or more, each of which stands at every distance of a receiver. One may
-/// stand there by chance.
+/// Whether receivers surely stand sample by sample: the spectrum has two echoes or more that repeat at the distances of the receivers. A single
+/// echo may repeat by chance.
 fn is_comb(numbers: &[Complex64], cut: &Cut) -> bool {
     let power = Spectrum::of(&rows(numbers, cut.samples * cut.mixed, 1), 1).power;
     let logs: Vec<f64> = power.iter().map(|p| p.ln()).collect();
@@ -348,7 +348,7 @@ fn period_of(cut: &Cut, numbers: &[Complex64]) -> Option<Period> {
     period(&rows(numbers, cut.samples, cut.mixed), cut.mixed, is_real)
 }
 
-/// The counts that follow from a cut, the likeliest first: after how many rows they repeat, and how many fill the file.
+/// Counts of receivers, chirps and loops for a cut, the likeliest first. They follow from the period of its rows and from the length of the file.
 fn counted(
     cut: &Cut,
     numbers: &[Complex64],
