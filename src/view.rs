@@ -187,8 +187,8 @@ impl View {
     /// How pictures of a method's maps are drawn.
     #[cfg(feature = "pictures")]
     pub fn style(&self, method: &str) -> Style {
-        let View { floor, normalisation, colours, .. } = *self;
-        Style { floor, normalisation, colours, eta: self.method_eta.get(method).copied() }
+        let View { floor, normalisation, colours, target_eta, cfar, .. } = *self;
+        Style { floor, normalisation, colours, eta: self.method_eta.get(method).copied(), target_eta, cfar }
     }
 }
 

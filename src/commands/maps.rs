@@ -7,6 +7,7 @@ use super::own_method::OwnMethodArgs;
 use super::{CommandError, print, write_file};
 use crate::files::npz::NpzError;
 use crate::maps::archive::{write_frames, write_maps, write_recorded_maps};
+use crate::maps::cfar::Cfar;
 use crate::maps::{LogMap, Normalisation, RangeAngleMap};
 use crate::methods;
 use crate::picture::{ColourMap, PictureFormat, Style, compose, compose_recording, maps_of};
@@ -15,7 +16,7 @@ use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
 use crate::recording::explain::explain;
 use crate::scene::file::{self, SceneFile};
-use crate::signal::{self, Floor, TwoEnds};
+use crate::signal::{self, TwoEnds};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -71,6 +72,10 @@ pub struct Args {
     /// Picture: colours of the maps
     #[arg(long, value_name = "inferno|viridis|grey|diverging", default_value_t = ColourMap::default())]
     colours: ColourMap,
+
+    /// Picture: a detector of constant false-alarm rate in place of both thresholds, as `apertura evaluate --cfar` takes it
+    #[arg(long, value_name = "ca|os[:..]")]
+    cfar: Option<Cfar>,
 
     /// Recording: fit the gains of this scene's reflectors, subtract their echoes, and draw the residual
     #[arg(long, value_name = "SCENE")]
@@ -216,7 +221,7 @@ impl Args {
     }
 
     fn style(&self) -> Style {
-        Style { floor: Floor::default(), normalisation: self.normalisation, colours: self.colours, eta: None }
+        Style { normalisation: self.normalisation, colours: self.colours, cfar: self.cfar, ..Style::default() }
     }
 }
 

@@ -1,6 +1,8 @@
 //! From a signal to a picture's bytes: maps, reconstruction, panels.
 
-use super::{ColourMap, Panels, PictureError, encode_png, render, render_svg};
+use super::{ColourMap, DetectedCells, Panels, PictureError, encode_png, render, render_svg};
+use crate::evaluate::TARGET_ETA;
+use crate::maps::cfar::{Cfar, CfarError};
 use crate::maps::{LogMaps, Normalisation};
 use crate::radar::{Carrier, Radar, counted};
 use crate::reconstruct::{ReconstructError, Reconstructor, Request};
@@ -28,8 +30,8 @@ impl PictureFormat {
     }
 }
 
-/// How the maps are made and painted.
-#[derive(Debug, Clone, Copy, Default)]
+/// How the maps are made, judged and painted.
+#[derive(Debug, Clone, Copy)]
 pub struct Style {
     /// The floor beneath a scene's signal; a recording has noise of its own.
     pub floor: Floor,
@@ -39,6 +41,23 @@ pub struct Style {
     pub colours: ColourMap,
     /// Threshold of the output; the method's own where `None`.
     pub eta: Option<f32>,
+    /// Threshold of the target.
+    pub target_eta: f32,
+    /// The detector in the place of both thresholds, if one is in use.
+    pub cfar: Option<Cfar>,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Style {
+            floor: Floor::default(),
+            normalisation: Normalisation::default(),
+            colours: ColourMap::default(),
+            eta: None,
+            target_eta: TARGET_ETA,
+            cfar: None,
+        }
+    }
 }
 
 /// Why there is no picture.
@@ -49,6 +68,10 @@ pub enum ComposeError {
     Reconstruct(#[from] ReconstructError),
     #[error(transparent)]
     Picture(#[from] PictureError),
+    #[error(transparent)]
+    Detector(#[from] CfarError),
+    #[error("the detector needs the power of every cell, which an output has only beside a target")]
+    DetectorAlone,
 }
 
 /// Reconstructs and draws all panels; the bytes of a file.
@@ -62,7 +85,7 @@ pub fn compose(
     style: &Style,
     format: PictureFormat,
 ) -> Result<Vec<u8>, ComposeError> {
-    let Style { floor, normalisation, colours, eta } = *style;
+    let Style { floor, normalisation, .. } = *style;
     let maps = LogMaps::heard_by(radar, &scene.disturbances.elements, signal);
     let request = Request { noise: floor.into(), normalisation, ..Request::default() };
     let output = method.reconstruct(radar, &signal.two_ends(radar), &request)?;
@@ -77,6 +100,9 @@ pub fn compose(
         (0, bodies) => counted(bodies, "body", "bodies"),
         (n, bodies) => format!("{}, {}", counted(n, "reflector", "reflectors"), counted(bodies, "body", "bodies")),
     };
+    let target = maps.full.normalise(normalisation);
+    let detect = |cfar| DetectedCells::of(cfar, maps.full.scale(normalisation), &target, &output.lambda);
+    let detected = style.cfar.map(detect).transpose()?;
     let panels = Panels {
         scene,
         found: None,
@@ -84,11 +110,12 @@ pub fn compose(
         about: &format!("{reflectors}, {carrier}, floor {floor}, normalisation {normalisation}"),
         first: &maps.first.normalise(normalisation),
         last: &maps.last.normalise(normalisation),
-        target: Some(&maps.full.normalise(normalisation)),
+        target: Some(&target),
         output: &output.lambda,
         method: method.name(),
-        eta: eta.unwrap_or_else(|| method.eta_of(&output)),
-        colours,
+        etas: [style.eta.unwrap_or_else(|| method.eta_of(&output)), style.target_eta],
+        detected: detected.as_ref(),
+        colours: style.colours,
     };
     Ok(match format {
         PictureFormat::Png => encode_png(&render(&panels)?)?,

@@ -43,7 +43,7 @@ pub use directions::{Curve, DirectionAxis, Mark};
 #[cfg(feature = "pictures")]
 pub use doppler::compose_range_doppler;
 #[cfg(feature = "pictures")]
-pub use panels::{Panels, render, render_svg};
+pub use panels::{DetectedCells, Panels, render, render_svg};
 #[cfg(feature = "pictures")]
 pub use png::{encode_png, is_our_png};
 #[cfg(feature = "pictures")]

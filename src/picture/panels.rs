@@ -7,8 +7,9 @@ use super::lettering::Lettered;
 use super::map_panel::{MapCells, MapPanel};
 use super::scene_panel::{self, SceneContent};
 use super::{ColourMap, text};
-use crate::evaluate::{Metrics, TARGET_ETA, eta_text};
-use crate::maps::RangeAngleMap;
+use crate::evaluate::{Metrics, eta_text, squared_error};
+use crate::maps::cfar::{Cfar, CfarError, DETECTED};
+use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{End, Radar};
 use crate::reconstruct::Detection;
 use crate::scene::Scene;
@@ -37,10 +38,38 @@ pub struct Panels<'a> {
     pub output: &'a RangeAngleMap,
     /// Name of the method.
     pub method: &'a str,
-    /// The method's threshold.
-    pub eta: f32,
+    /// Thresholds of output and target.
+    pub etas: [f32; 2],
+    /// The cells that a detector found, in the place of those above the thresholds.
+    pub detected: Option<&'a DetectedCells>,
     /// Colours of the maps.
     pub colours: ColourMap,
+}
+
+/// The cells that a detector found: 1, the others 0. Both maps are `[range bins, columns]`.
+#[derive(Debug, Clone)]
+pub struct DetectedCells {
+    /// The detector.
+    pub cfar: Cfar,
+    /// Of the target.
+    pub target: RangeAngleMap,
+    /// Of the output.
+    pub output: RangeAngleMap,
+}
+
+impl DetectedCells {
+    /// Those of both maps, which `scale` made Lambda of.
+    /// # Errors
+    /// [`Cfar::check_map`].
+    pub fn of(
+        cfar: Cfar,
+        scale: LambdaScale,
+        target: &RangeAngleMap,
+        output: &RangeAngleMap,
+    ) -> Result<Self, CfarError> {
+        let detect = |map| Ok(cfar.detect_lambda(map, scale)?.as_map());
+        Ok(DetectedCells { cfar, target: detect(target)?, output: detect(output)? })
+    }
 }
 
 const WIDTH: u32 = 2180;
@@ -133,28 +162,45 @@ impl<'a> Panels<'a> {
             MapPanel { title, cells: MapCells::Above(cells, eta) }
         };
         let output = lambda(format!("Output: {}", self.method), self.output);
-        let title = format!("Output > {}", eta_text(self.eta));
-        let Some(target) = self.target else {
-            panels.extend([output, above(title, self.output, self.eta)]);
+        let judged = self.judged();
+        let [title, target_title] = [("Output", 0), ("Target", 1)].map(|(name, of)| match self.detected {
+            Some(detected) => format!("{name} by {}", detected.cfar.statistic.short_name()),
+            None => format!("{name} > {}", eta_text(self.etas[of])),
+        });
+        let (Some(target), Some(judged_target)) = (self.target, judged.target) else {
+            panels.extend([output, above(title, judged.output, judged.etas[0])]);
             return panels;
         };
         panels.extend([
             lambda(format!("Target: all {} elements", self.radar.elements), target),
             output,
-            above(format!("Target > {TARGET_ETA}"), target, TARGET_ETA),
+            above(target_title, judged_target, judged.etas[1]),
         ]);
         panels.push(match self.found {
-            Some(_) => above(title, self.output, self.eta),
+            Some(_) => above(title, judged.output, judged.etas[0]),
             None => {
-                let cells = MapCells::Detections(self.told_apart(drawn(target), drawn(self.output)));
-                MapPanel { title, cells }
+                let verdicts = self.told_apart(drawn(judged_target), drawn(judged.output), judged.etas);
+                MapPanel { title, cells: MapCells::Detections(verdicts) }
             }
         });
         panels
     }
 
-    fn told_apart(&self, target: ArrayView2<'_, f32>, output: ArrayView2<'_, f32>) -> Array2<CellVerdict> {
-        let mut kinds = told_apart(output, target, [self.eta, TARGET_ETA], 0.0).into_iter();
+    /// The maps and thresholds that hits and misses are counted by.
+    fn judged(&self) -> Judged<'a> {
+        match self.detected {
+            Some(cells) => Judged { target: Some(&cells.target), output: &cells.output, etas: [DETECTED; 2] },
+            None => Judged { target: self.target, output: self.output, etas: self.etas },
+        }
+    }
+
+    fn told_apart(
+        &self,
+        target: ArrayView2<'_, f32>,
+        output: ArrayView2<'_, f32>,
+        etas: [f32; 2],
+    ) -> Array2<CellVerdict> {
+        let mut kinds = told_apart(output, target, etas, 0.0).into_iter();
         let cells = Array2::from_shape_simple_fn(output.dim(), || kinds.next().unwrap_or(CellVerdict::Nothing));
         in_place(self.radar, cells.view()).unwrap_or(cells)
     }
@@ -166,7 +212,12 @@ impl<'a> Panels<'a> {
             return text::paragraphs(area, (0, 40), &self.scene.notes, 18, &INK);
         }
         let Some(target) = self.target else { return text::paragraphs(area, (0, 0), &self.scene.notes, 18, &INK) };
-        let metrics = Metrics::of_echoes(!self.scene.is_silent(), target, self.output, self.eta);
+        let judged = self.judged();
+        let truth = self.detected.map_or(target, |cells| &cells.target);
+        let metrics = Metrics {
+            squared_error: squared_error(target, self.output),
+            ..Metrics::of_echoes(!self.scene.is_silent(), truth, judged.output, judged.etas[0])
+        };
         let percent = |part: f64| format!("{:.2} %", 100.0 * part);
         let figures = [
             ("SE", format!("{:.0}", metrics.squared_error)),
@@ -180,6 +231,13 @@ impl<'a> Panels<'a> {
         }
         text::paragraphs(area, (0, 40), &self.scene.notes, 18, &INK)
     }
+}
+
+/// See [`Panels::judged`].
+struct Judged<'a> {
+    target: Option<&'a RangeAngleMap>,
+    output: &'a RangeAngleMap,
+    etas: [f32; 2],
 }
 
 /// How many echoes were found, and where the strongest is.
@@ -215,7 +273,8 @@ mod tests {
             target: Some(&flat),
             output: &flat,
             method: "baseline",
-            eta: 0.9,
+            etas: [0.8, 0.9],
+            detected: None,
             colours: ColourMap::Grey,
         };
         let svg = render_svg(&panels).unwrap();
@@ -228,6 +287,13 @@ mod tests {
         let recorded = render_svg(&Panels { found: Some(&[echo]), ..panels }).unwrap();
         assert!(recorded.contains("1 echo found, the strongest at 4.00 m, cos θ 0.300"));
         assert!(!recorded.contains("P_FA") && !recorded.contains("false alarm"), "a recording has no truth");
+        let mut cells = DetectedCells { cfar: Cfar::default(), target: flat.clone(), output: flat.clone() };
+        cells.target.lambda.fill(0.0);
+        cells.output.lambda.fill(0.0);
+        cells.target.lambda[[3, 5]] = 1.0;
+        let by_detector = render_svg(&Panels { detected: Some(&cells), ..panels }).unwrap();
+        assert!(by_detector.contains("Target by CA-CFAR") && by_detector.contains("Output by CA-CFAR"));
+        assert!(!svg.contains("CFAR") && svg.contains("Target &gt; 0.9") && svg.contains("Output &gt; 0.8"));
         let picture = render(&panels).unwrap();
         assert_eq!(picture.dimensions(), (WIDTH, HEIGHT));
         let bytes = encode_png(&picture).unwrap();

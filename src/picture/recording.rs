@@ -3,7 +3,7 @@
 use super::canvas::Drawing;
 use super::compose::{ComposeError, PictureFormat, Style};
 use super::directions::{Curve, DirectionAxis, Mark};
-use super::{Panels, encode_png, render, render_svg};
+use super::{DetectedCells, Panels, encode_png, render, render_svg};
 use crate::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap, Spectrum, channels_map};
 use crate::radar::{Carrier, Decibels, End, Radar};
 use crate::reconstruct::found::reconstruct_and_find;
@@ -83,6 +83,11 @@ fn panels(
     let (output, found) = reconstruct_and_find(method, radar, &recording.two_ends(), &request(recording, style))?;
     let lambda = |map: &LogMap| -> RangeAngleMap { map.normalise(style.normalisation) };
     let target = full.as_ref().map(lambda);
+    let detect = |cfar| {
+        let (Some(full), Some(target)) = (&full, &target) else { return Err(ComposeError::DetectorAlone) };
+        Ok(DetectedCells::of(cfar, full.scale(style.normalisation), target, &output.lambda)?)
+    };
+    let detected = style.cfar.map(detect).transpose()?;
     let scene = Scene {
         name: recording.name.clone(),
         notes: recording.notes.clone(),
@@ -109,7 +114,8 @@ fn panels(
         target: target.as_ref(),
         output: &output.lambda,
         method: method.name(),
-        eta: style.eta.unwrap_or_else(|| method.eta_of(&output)),
+        etas: [style.eta.unwrap_or_else(|| method.eta_of(&output)), style.target_eta],
+        detected: detected.as_ref(),
         colours: style.colours,
     };
     bytes_of(&panels, format)

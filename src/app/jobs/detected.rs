@@ -7,9 +7,6 @@ use crate::maps::cfar::Cfar;
 use crate::maps::{LambdaScale, RangeAngleMap};
 use std::sync::Arc;
 
-/// The threshold that gives a detector's cells from [`Detected`]'s maps.
-pub const DETECTED: f32 = 0.5;
-
 /// Maps whose detected cells are 1 and others 0.
 #[derive(Debug, Clone, Default)]
 pub struct Detected {

@@ -9,7 +9,6 @@
 //! The second method works only while the panel that compares it with the first is in sight.
 
 use super::derived::STALE;
-use super::detected::DETECTED;
 use super::maps::MapsJob;
 use super::method::{Basis, MethodJob, MethodRequest, MethodResult};
 use super::recorded::Unexplained;
@@ -20,6 +19,7 @@ use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, State};
 use crate::engine::MapRequest;
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
+use crate::maps::cfar::DETECTED;
 use crate::platform::Instant;
 use crate::scene::Reflector;
 use std::collections::BTreeSet;

@@ -1,6 +1,6 @@
 //! The maps of a scene, their pictures and their figures: what the maps worker is asked for, and what it makes.
 
-use super::detected::{DETECTED, Detected, Detector};
+use super::detected::{Detected, Detector};
 use super::heard::Heard;
 use super::memo::Memo;
 use super::one_scale::{OneScale, Rescaled};
@@ -12,7 +12,7 @@ use crate::app::shared::Shared;
 use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, EngineFrame, MapRequest, ReadyMap};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs, squared_error};
-use crate::maps::cfar::Cfar;
+use crate::maps::cfar::{Cfar, DETECTED};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::{BuiltArray, Radar};

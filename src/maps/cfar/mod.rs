@@ -25,6 +25,9 @@ use std::collections::BTreeMap;
 /// Most guard or training cells a side.
 pub const MOST_CELLS: usize = 1000;
 
+/// The threshold between the two values of a map of detected cells ([`Mask::as_map`]).
+pub const DETECTED: f32 = 0.5;
+
 const RANK: f64 = 0.75;
 
 /// The noise estimate from the training cells.
@@ -45,6 +48,14 @@ impl Statistic {
         match self {
             Statistic::CellAveraging => "cell averaging",
             Statistic::OrderedStatistics => "ordered statistics",
+        }
+    }
+
+    /// Name of a detector that uses it, in captions.
+    pub fn short_name(self) -> &'static str {
+        match self {
+            Statistic::CellAveraging => "CA-CFAR",
+            Statistic::OrderedStatistics => "OS-CFAR",
         }
     }
 }

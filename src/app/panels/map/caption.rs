@@ -4,7 +4,7 @@ use crate::app::state::{MapKind, Units};
 use crate::app::widgets::levels::{level, with_unit};
 use crate::app::widgets::numbers::percent;
 use crate::evaluate::{Metrics, eta_text};
-use crate::maps::cfar::{Cfar, Statistic};
+use crate::maps::cfar::Cfar;
 
 /// Figures for a map's title bar.
 pub struct Caption {
@@ -43,7 +43,7 @@ pub fn caption(input: Caption) -> Option<String> {
     };
     let verdict = input.verdict.as_deref().map_or_else(String::new, |verdict| format!("{verdict} · "));
     let text = match input.kind {
-        MapKind::TargetAbove if let Some(cfar) = input.cfar => format!("{} {updating}", detector(cfar)),
+        MapKind::TargetAbove if let Some(cfar) = input.cfar => format!("{} {updating}", cfar.statistic.short_name()),
         MapKind::TargetAbove => format!("η' = {} {updating}", threshold(&input, input.target_eta)),
         MapKind::OutputAbove | MapKind::SecondAbove => {
             let figures = input.metrics.map_or_else(String::new, |m| {
@@ -51,7 +51,7 @@ pub fn caption(input: Caption) -> Option<String> {
                 format!("{verdict}P_D {detection} · P_FA {} · ", percent(m.false_alarm))
             });
             match input.cfar {
-                Some(cfar) => format!("{figures}{} {updating}", detector(cfar)),
+                Some(cfar) => format!("{figures}{} {updating}", cfar.statistic.short_name()),
                 None => format!("{figures}η = {} {updating}", threshold(&input, input.output_eta)),
             }
         }
@@ -69,14 +69,6 @@ pub fn caption(input: Caption) -> Option<String> {
         _ => updating.to_owned(),
     };
     (!text.trim().is_empty()).then_some(text)
-}
-
-/// A detector in a few letters.
-fn detector(cfar: Cfar) -> &'static str {
-    match cfar.statistic {
-        Statistic::CellAveraging => "CA-CFAR",
-        Statistic::OrderedStatistics => "OS-CFAR",
-    }
 }
 
 /// A threshold in Lambda, or in decibels relative to the target's peak where these are chosen and known.
