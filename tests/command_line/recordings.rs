@@ -41,7 +41,11 @@ fn recordings_are_drawn() {
     };
     draw("chip-8", "chip.svg").success();
     let svg = std::fs::read_to_string(folder.path().join("chip.svg")).unwrap();
-    assert!(svg.contains("A room, 8 elements") && svg.contains("Found by omp"));
+    assert!(svg.contains("A room, 8 elements") && svg.contains("Found by omp") && !svg.contains("CFAR"));
+    let mut by_detector = apertura(&folder);
+    by_detector.arg("maps").arg(format!("{SHIPPED}/chip-8.toml")).args(["-o", "chip.svg", "--cfar", "os"]);
+    by_detector.args(["--method", "omp"]).assert().success();
+    assert!(std::fs::read_to_string(folder.path().join("chip.svg")).unwrap().contains("by OS-CFAR"));
     apertura(&folder).arg(format!("{SHIPPED}/chip-8.toml")).assert().success().stdout(contains("apertura.png"));
 }
 

@@ -85,7 +85,7 @@ fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
                 let detection = m.detection.map_or("–".to_owned(), percent);
                 format!(" · SE {:.0} · P_D {detection} · P_FA {}", m.squared_error, percent(m.false_alarm))
             });
-            let verdict = verdict(state, jobs, kind.slot().unwrap_or(MethodSlot::First));
+            let verdict = verdict(state, jobs, kind.slot().unwrap_or(MethodSlot::First), true);
             let verdict = verdict.map_or_else(String::new, |verdict| format!(" · {verdict}"));
             format!("{method}{verdict}{figures}{updating}")
         }

@@ -12,6 +12,8 @@ pub struct Seen {
     pub rect: Rect,
     /// What may be drawn to at all there.
     pub clip: Rect,
+    /// Whether its end is left out for want of room.
+    pub is_shortened: bool,
 }
 
 /// Every text of a frame of which anything can be seen.
@@ -29,7 +31,7 @@ fn gather(clip: Rect, shape: &Shape, found: &mut Vec<Seen>) {
         Shape::Text(text) => {
             let (rect, said) = (text.visual_bounding_rect(), text.galley.text().to_owned());
             if !said.trim().is_empty() && rect.intersects(clip) {
-                found.push(Seen { text: said, rect, clip });
+                found.push(Seen { text: said, rect, clip, is_shortened: text.galley.elided });
             }
         }
         _ => {}

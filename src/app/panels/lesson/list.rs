@@ -78,10 +78,12 @@ fn listed(ui: &mut Ui, lesson: &Lesson, done: usize) -> bool {
     let (steps, room) = (lesson.steps.len(), ui.available_width());
     let bar = BAR.min(0.3 * room).max(MIN_BAR);
     let clicked = ui.horizontal(|ui| {
-        let title = RichText::new(&lesson.title).strong();
-        let height = ui.spacing().interact_size.y;
-        let title = egui::Button::new(title).right_text("").frame_when_inactive(false).truncate();
-        let button = ui.add_sized([room - bar - 12.0, height], title);
+        let title = egui::Button::new(RichText::new(&lesson.title).strong()).frame_when_inactive(false).wrap();
+        let button = ui.scope(|ui| {
+            ui.set_width(room - bar - 12.0);
+            ui.add(title)
+        });
+        let button = button.inner;
         button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &lesson.title));
         let clicked = button.on_hover_text("Begin this lesson").clicked();
         let text = format!("{done} of {}", counted(steps, "step", "steps"));

@@ -232,6 +232,8 @@ fn every_lesson_of_the_list_shows_how_far_it_was_taken() {
     let texts = crate::app::widgets::seen::texts(panel.output());
     let bars = texts.iter().filter(|t| t.text.contains(" of ") && t.text.ends_with("steps")).count();
     assert_eq!(bars, crate::lesson::shipped::ALL.len());
+    let narrow = harness_of([320.0, 2400.0], None, Progress::default(), false);
+    assert!(crate::app::widgets::seen::texts(narrow.output()).iter().all(|t| !t.is_shortened), "titles are whole");
     crate::app::widgets::seen::assert_readable(panel.output());
 }
 

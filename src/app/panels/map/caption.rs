@@ -46,17 +46,23 @@ pub fn caption(input: Caption) -> Option<String> {
         MapKind::TargetAbove if let Some(cfar) = input.cfar => format!("{} {updating}", cfar.statistic.short_name()),
         MapKind::TargetAbove => format!("η' = {} {updating}", threshold(&input, input.target_eta)),
         MapKind::OutputAbove | MapKind::SecondAbove => {
-            let figures = input.metrics.map_or_else(String::new, |m| {
+            let figures = input.metrics.map(|m| {
                 let detection = m.detection.map_or("–".to_owned(), percent);
-                format!("{verdict}P_D {detection} · P_FA {} · ", percent(m.false_alarm))
+                format!("{verdict}P_D {detection} · P_FA {}", percent(m.false_alarm))
             });
-            match input.cfar {
-                Some(cfar) => format!("{figures}{} {updating}", cfar.statistic.short_name()),
-                None => format!("{figures}η = {} {updating}", threshold(&input, input.output_eta)),
+            match (input.cfar, figures) {
+                (Some(cfar), Some(figures)) => format!("{figures} · {} {updating}", cfar.statistic.short_name()),
+                (Some(cfar), None) => format!("{} {updating}", cfar.statistic.short_name()),
+                // The settings have η, and both would be cut off.
+                (None, Some(figures)) if input.verdict.is_some() => format!("{figures} {updating}"),
+                (None, Some(figures)) => format!("{figures} · η = {} {updating}", threshold(&input, input.output_eta)),
+                (None, None) => format!("η = {} {updating}", threshold(&input, input.output_eta)),
             }
         }
         MapKind::Output | MapKind::Second => {
-            format!("{verdict}{} {updating}", input.method.unwrap_or_default())
+            // A narrow panel cuts off the end of the verdict, not the name.
+            let told = input.verdict.as_deref().map_or_else(String::new, |verdict| format!(": {verdict}"));
+            format!("{}{told} {updating}", input.method.unwrap_or_default())
         }
         MapKind::Doubt => format!("{} {updating}", input.method.unwrap_or_default()),
         MapKind::Difference | MapKind::SecondDifference => {
@@ -102,8 +108,8 @@ mod tests {
             };
             caption(input).unwrap()
         };
-        assert_eq!(of(MapKind::Output).trim(), "5 of 5 found, 0 false · live");
-        assert!(of(MapKind::OutputAbove).starts_with("5 of 5 found, 0 false · P_D "), "{}", of(MapKind::OutputAbove));
+        assert_eq!(of(MapKind::Output).trim(), "live: 5 of 5 found, 0 false");
+        assert_eq!(of(MapKind::OutputAbove).trim(), "5 of 5 found, 0 false · P_D 50.00 % · P_FA 1.00 %");
     }
 
     #[test]

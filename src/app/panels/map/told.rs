@@ -174,7 +174,7 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
         method: pipeline.method(slot).output().map(|o| o.method),
         updating: is_updating(jobs, kind),
         running: kind.slot().and_then(|slot| running(state, jobs, slot)),
-        verdict: verdict(state, jobs, slot),
+        verdict: verdict(state, jobs, slot, !kind.is_above()),
         metrics: scores(state, jobs, slot).map(|s| s.metrics),
         target_eta: state.settings.target_eta,
         output_eta: pipeline.eta(state, slot),
@@ -208,14 +208,18 @@ fn echoes_text(count: usize, explained: Option<f64>) -> String {
     format!("{count} echo{plural} found{explained}")
 }
 
-/// What became of the objects in a method's output, as far as that is known of the one on screen: "5 of 5 found, 0 false, 3 cm off (bound 1 cm)".
-pub fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<String> {
+/// What became of the objects in a method's output, as far as that is known of the one on screen: "5 of 5 found, 0 false", and where it
+/// `tells_distance` also "3 cm off (bound 1 cm)".
+pub fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot, tells_distance: bool) -> Option<String> {
     if let Some(found) = echoes_found(state, jobs, slot) {
         return Some(found);
     }
     let (fates, current) = fates_of(&jobs.kinds, slot, &jobs.pipeline)?;
     if !current || state.is_predicting() || fates.scene.objects.is_empty() {
         return None;
+    }
+    if !tells_distance {
+        return Some(fates.failures.verdict());
     }
     let output = jobs.pipeline.method(slot).output()?;
     let offset = median_offset_metres(&fates.scene, &fates.failures, &output.reflectors);
@@ -227,7 +231,7 @@ pub fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<String> {
 /// A distance in the unit in which it has one to three digits before the point.
 fn length(metres: f64) -> String {
     match metres {
-        m if m < 0.0005 => "below 1 mm".to_owned(),
+        m if m < 0.0005 => "<1 mm".to_owned(),
         m if m < 0.0095 => format!("{:.0} mm", 1e3 * m),
         m if m < 0.995 => format!("{:.0} cm", 1e2 * m),
         m => format!("{m:.1} m"),
