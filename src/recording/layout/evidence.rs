@@ -56,6 +56,8 @@ const MOST_IMAGES: usize = 6;
 const OF_ORDER: f64 = 5.0;
 const OF_RECEIVERS: f64 = 8.0;
 const OF_REAL: f64 = 40.0;
+/// Log-odds against receivers one after another on four lanes, of which each carries a receiver: at broadside both orders have one spectrum.
+const OF_LANES: f64 = 20.0;
 
 /// What is known of a file beside its samples.
 #[derive(Debug, Clone, Copy)]
@@ -181,7 +183,8 @@ pub(in crate::recording) fn said(layout: &Layout, profile: &RadarProfile) -> Vec
     [real, order, receivers].into_iter().enumerate().filter(|(n, _)| is_told(n)).filter_map(|(_, s)| of(s)).collect()
 }
 
-fn usual(layout: &Layout) -> f64 {
+/// Log-odds of how usual a layout is.
+pub(super) fn usual(layout: &Layout) -> f64 {
     let words = match layout.words {
         Words::Int16 => 0.0,
         Words::OffsetBinary | Words::TwelveBits => -1.0,
@@ -193,5 +196,6 @@ fn usual(layout: &Layout) -> f64 {
         Parts::Real => -2.0,
     };
     let order = if layout.q_first { -0.5 } else { 0.0 };
-    words + parts + order
+    let is_one_lane_each = layout.parts != Parts::FourLanes || layout.receivers == ReceiverOrder::Interleaved;
+    words + parts + order - if is_one_lane_each { 0.0 } else { OF_LANES }
 }

@@ -11,7 +11,7 @@ use ndarray::Array2;
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
 
-/// Most chirps that a candidate is judged by.
+/// Most chirps of complex samples that a candidate is judged by.
 const CHIRPS: usize = 16;
 /// Most bytes that a candidate is judged by.
 const MOST_BYTES: usize = 1 << 20;
@@ -251,7 +251,10 @@ impl Job<'_> {
     /// The first chirps without their headers; those with runs of zeros are left out where others are left.
     fn chirps<R: Read + Seek>(&self, stream: &mut Stream<R>, size: usize, numbers: usize) -> io::Result<Vec<Vec<u8>>> {
         let before = self.known.profile.map_or(0, |p| p.numbers_before) / numbers * size;
-        let most = (MOST_BYTES / size).clamp(1, CHIRPS);
+        // Real samples are half as long: every layout is judged by the same bytes.
+        let bytes =
+            CHIRPS.saturating_mul(numbers.saturating_mul(Parts::Pairs.bytes()).saturating_add(self.header_bytes));
+        let most = (MOST_BYTES.min(bytes) / size).max(1);
         let there = stream.bytes().saturating_sub(before as u64) / size as u64;
         let mut chirps = Vec::new();
         for n in 0..there.min(most as u64) {

@@ -88,6 +88,28 @@ fn every_layout_is_found_by_the_spectrum_alone() {
 }
 
 #[test]
+fn complex_and_real_samples_are_judged_by_the_same_bytes() {
+    let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
+    let quiet = chirps();
+    let mut all = [quiet.clone(), quiet.clone(), quiet.clone(), quiet].concat();
+    // Where the second half is louder, real samples, which are half as long, must not be judged by the first half alone.
+    let mut state = 1u32;
+    for sample in all[8..].iter_mut().flatten() {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        *sample += Complex64::from_polar(120.0, TAU * f64::from(state >> 16) / 65536.0);
+    }
+    let found = found(written(&right, &all), Some(&profile("")));
+    assert_eq!(found.best().layout, right, "{:#?}", found.sentences());
+}
+
+#[test]
+fn four_lanes_carry_a_receiver_each() {
+    let order = |receivers| evidence::usual(&layout(Words::Int16, Parts::FourLanes, false, receivers));
+    let told = order(ReceiverOrder::Interleaved) - order(ReceiverOrder::OneAfterAnother);
+    assert!(told > 16.0, "more than a .cfg's word for the other order: {told}");
+}
+
+#[test]
 fn the_evidence_says_what_decided() {
     let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
     let plain = found(written(&right, &chirps()), Some(&profile("")));
