@@ -45,11 +45,11 @@ server() {
     fail "Xvfb did not start: $(cat "$work/xvfb-$number.log")"
 }
 
-# A display of this script's own, for all that it starts.
+# own_display OPTIONS...: a display of this script's own, for all that it starts.
 own_display() {
     export DISPLAY=:$((90 + RANDOM % 800)) LIBGL_ALWAYS_SOFTWARE=1
     unset WAYLAND_DISPLAY
-    server "${DISPLAY#:}"
+    server "${DISPLAY#:}" "$@"
 }
 
 # await_window SECONDS WHAT [PROCESS]: waits for the window of a program that runs; its number is left in $window.
