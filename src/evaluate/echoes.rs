@@ -148,7 +148,7 @@ pub(super) fn of_bodies(
     if !scene.has_bodies() {
         return of;
     }
-    let decibels_of_lambda = 20.0 * (scale.peak - scale.floor);
+    let decibels_of_lambda = scale.decibels();
     let mut heard = heard_in_the_middle(radar, scene);
     heard.retain(|(_, echo)| echo.kind != EchoKind::Diffuse);
     heard.sort_by(|a, b| b.1.amplitude.norm().total_cmp(&a.1.amplitude.norm()));
@@ -206,7 +206,7 @@ pub fn tally(
     output: &RangeAngleMap,
     scale: &LambdaScale,
 ) -> EchoTally {
-    let decibels_of_lambda = 20.0 * (scale.peak - scale.floor);
+    let decibels_of_lambda = scale.decibels();
     let mut tally = EchoTally::default();
     for echo in shown(radar, scene) {
         if stands_out(target, &echo, decibels_of_lambda).is_none_or(|decibels| decibels < STANDS_OUT_DB) {

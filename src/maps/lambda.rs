@@ -72,6 +72,11 @@ impl LambdaScale {
         let range = self.peak - self.floor;
         if range > 0.0 { ((decades - self.floor) / range).clamp(0.0, 1.0) } else { 0.0 }
     }
+
+    /// Decibels from Lambda 0 to Lambda 1.
+    pub fn decibels(&self) -> f64 {
+        20.0 * (self.peak - self.floor)
+    }
 }
 
 /// Lambda over range and angle, `[range bins, columns]`, every cell in [0, 1].

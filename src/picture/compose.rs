@@ -114,6 +114,7 @@ pub fn compose(
         output: &output.lambda,
         method: method.name(),
         etas: [style.eta.unwrap_or_else(|| method.eta_of(&output)), style.target_eta],
+        target_decibels: maps.full.scale(normalisation).decibels() as f32,
         detected: detected.as_ref(),
         colours: style.colours,
     };

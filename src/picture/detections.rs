@@ -1,6 +1,7 @@
 //! The output above its threshold: hits, misses and false alarms differ in brightness as well as in hue.
 
 use super::colour::Rgb;
+use crate::evaluate::shows_echo;
 use ndarray::ArrayView2;
 
 /// The verdict on a cell of a thresholded output.
@@ -78,14 +79,11 @@ impl CellVerdict {
 const RIM_CELLS: usize = 3;
 /// Smallest blob that counts as an object, cells.
 const SPECK_CELLS: usize = 8;
-/// Contrast in the target above which a cell below its threshold counts as an echo, decibels.
-const STANDS_OUT_DB: f32 = 10.0;
-const SURROUNDING_CELLS: usize = 5;
 
 /// What each cell of an output above `etas[0]` is beside a target above `etas[1]`, both `[range bins, columns]`, row by row.
 ///
-/// A blob of the output is false where the target has nothing near it: neither cells above its threshold nor a cell that stands 10 dB out of
-/// its surroundings. `decibels` is what Lambda spans in the target; 0 leaves the second rule out.
+/// A blob of the output is false where the target has nothing near it: neither cells above its threshold nor an echo
+/// below it ([`shows_echo`]). `decibels` is what Lambda spans in the target; 0 leaves the second rule out.
 pub fn told_apart(
     output: ArrayView2<'_, f32>,
     target: ArrayView2<'_, f32>,
@@ -119,38 +117,12 @@ pub fn told_apart(
         let is_there = |at: usize| matches!(kinds[at], CellVerdict::Hit | CellVerdict::Miss);
         let is_rim = blob.len() < SPECK_CELLS
             || blob.iter().any(|at| around(*at, RIM_CELLS).any(is_there))
-            || stands_out(target, &blob) * decibels >= STANDS_OUT_DB;
+            || shows_echo(target, decibels, blob.iter().map(|at| [at / columns, at % columns]));
         if is_rim {
             blob.into_iter().for_each(|at| kinds[at] = CellVerdict::Rim);
         }
     }
     kinds
-}
-
-/// Lambda of the largest of some cells of a map, less the median around them.
-fn stands_out(map: ArrayView2<'_, f32>, cells: &[usize]) -> f32 {
-    let (rows, columns) = map.dim();
-    let of = |at: &usize| map[[at / columns, at % columns]];
-    let peak = cells.iter().map(of).fold(f32::NEG_INFINITY, f32::max);
-    let ends = |axis: fn(usize, usize) -> usize| {
-        let all = cells.iter().map(|at| axis(*at, columns));
-        all.fold((usize::MAX, 0), |(low, high), at| (low.min(at), high.max(at)))
-    };
-    let ((top, bottom), (left, right)) = (ends(|at, columns| at / columns), ends(|at, columns| at % columns));
-    let band = top.saturating_sub(SURROUNDING_CELLS)..(bottom + SURROUNDING_CELLS + 1).min(rows);
-    let across = left.saturating_sub(SURROUNDING_CELLS)..(right + SURROUNDING_CELLS + 1).min(columns);
-    let is_beside = |r: usize, c: usize| !((top..=bottom).contains(&r) && (left..=right).contains(&c));
-    let mut beside: Vec<f32> = band
-        .flat_map(|r| across.clone().map(move |c| (r, c)))
-        .filter(|(r, c)| is_beside(*r, *c))
-        .map(|(r, c)| map[[r, c]])
-        .filter(|v| !v.is_nan())
-        .collect();
-    if beside.is_empty() {
-        return 0.0;
-    }
-    let middle = beside.len() / 2;
-    peak - *beside.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
 #[cfg(test)]

@@ -173,7 +173,7 @@ fn legend<B: DrawingBackend>(area: &PanelArea<B>) -> Result<(), PictureError> {
         let [r, g, b] = detection.fill(true);
         area.draw(&Rectangle::new(square, RGBColor(r, g, b).filled())).map_err(PictureError::new)?;
         area.draw(&Rectangle::new(square, FAINT_INK)).map_err(PictureError::new)?;
-        x -= 14;
+        x -= 8;
     }
     Ok(())
 }

@@ -40,6 +40,8 @@ pub struct Panels<'a> {
     pub method: &'a str,
     /// Thresholds of output and target.
     pub etas: [f32; 2],
+    /// What Lambda spans in the target, decibels.
+    pub target_decibels: f32,
     /// The cells that a detector found, in the place of those above the thresholds.
     pub detected: Option<&'a DetectedCells>,
     /// Colours of the maps.
@@ -164,8 +166,8 @@ impl<'a> Panels<'a> {
         let output = lambda(format!("Output: {}", self.method), self.output);
         let judged = self.judged();
         let [title, target_title] = [("Output", 0), ("Target", 1)].map(|(name, of)| match self.detected {
-            Some(detected) => format!("{name} by {}", detected.cfar.statistic.short_name()),
-            None => format!("{name} > {}", eta_text(self.etas[of])),
+            Some(detected) => format!("{name}: {}", detected.cfar.statistic.short_name()),
+            None => format!("{name} > {}", short(self.etas[of])),
         });
         let (Some(target), Some(judged_target)) = (self.target, judged.target) else {
             panels.extend([output, above(title, judged.output, judged.etas[0])]);
@@ -200,7 +202,8 @@ impl<'a> Panels<'a> {
         output: ArrayView2<'_, f32>,
         etas: [f32; 2],
     ) -> Array2<CellVerdict> {
-        let mut kinds = told_apart(output, target, etas, 0.0).into_iter();
+        let decibels = if self.detected.is_some() { 0.0 } else { self.target_decibels };
+        let mut kinds = told_apart(output, target, etas, decibels).into_iter();
         let cells = Array2::from_shape_simple_fn(output.dim(), || kinds.next().unwrap_or(CellVerdict::Nothing));
         in_place(self.radar, cells.view()).unwrap_or(cells)
     }
@@ -240,6 +243,12 @@ struct Judged<'a> {
     etas: [f32; 2],
 }
 
+/// A threshold with at most three digits after the point: the legend stands beside the title.
+fn short(eta: f32) -> String {
+    let exact = eta_text(eta);
+    if exact.len() > "0.000".len() { format!("{eta:.3}") } else { exact }
+}
+
 /// How many echoes were found, and where the strongest is.
 fn strongest_of(found: &[Detection]) -> String {
     let Some(strongest) = found.first() else { return "no echo found".to_owned() };
@@ -274,6 +283,7 @@ mod tests {
             output: &flat,
             method: "baseline",
             etas: [0.8, 0.9],
+            target_decibels: 0.0,
             detected: None,
             colours: ColourMap::Grey,
         };
@@ -292,7 +302,7 @@ mod tests {
         cells.output.lambda.fill(0.0);
         cells.target.lambda[[3, 5]] = 1.0;
         let by_detector = render_svg(&Panels { detected: Some(&cells), ..panels }).unwrap();
-        assert!(by_detector.contains("Target by CA-CFAR") && by_detector.contains("Output by CA-CFAR"));
+        assert!(by_detector.contains("Target: CA-CFAR") && by_detector.contains("Output: CA-CFAR"));
         assert!(!svg.contains("CFAR") && svg.contains("Target &gt; 0.9") && svg.contains("Output &gt; 0.8"));
         let picture = render(&panels).unwrap();
         assert_eq!(picture.dimensions(), (WIDTH, HEIGHT));

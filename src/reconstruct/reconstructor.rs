@@ -126,10 +126,7 @@ pub trait Reconstructor: Send + Sync {
                 let is_first = |n: &usize| *n < halves.end_elements;
                 self.check_both_halves([!layout.iter().any(is_first), layout.iter().all(is_first)])
             }
-            Hears::Ends => {
-                let others = "matched-filter, iaa, sbl, omp and fista make maps, and functions of your own in Python";
-                Err(self.unusable(format!("it hears the two ends of an array; of other layouts {others}")))
-            }
+            Hears::Ends => Err(self.unusable("it hears the two ends of an array, and no other layout".to_owned())),
         }
     }
 

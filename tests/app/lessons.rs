@@ -2,7 +2,7 @@
 
 use crate::session::{Session, step_until};
 use apertura::app::{
-    DocumentCommand, EditCommand, LessonCommand, MapKind, Panel, RadarCommand, ViewCommand, WindowCommand,
+    DocumentCommand, EditCommand, LessonCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand,
 };
 use apertura::lesson::question::Answer;
 use apertura::lesson::{Cell, Guess, Lesson, MapName, Question, Stage, Step, Truth, shipped};
@@ -233,6 +233,20 @@ fn lessons_close_the_panels_that_they_do_not_use() {
     s.ask(LessonCommand::Leave);
     s.ask(WindowCommand::ClosePanel(Panel::Lesson));
     assert_eq!(*s.state().arrangement().shown(), before, "what was in sight is in sight again");
+}
+
+#[test]
+fn undo_stops_at_the_scene_of_the_step() {
+    let mut s = Session::start();
+    let objects = |s: &Session| s.state().editor().scene().objects.len();
+    begin(&mut s, "range-and-bandwidth", 1);
+    let of_step = objects(&s);
+    s.ask(EditCommand::Add(NewObject::Point, None));
+    assert_eq!(objects(&s), of_step + 1);
+    for _ in 0..3 {
+        s.ask(EditCommand::Undo);
+        assert_eq!(objects(&s), of_step, "neither the learner's own scene nor another step");
+    }
 }
 
 #[test]

@@ -45,7 +45,7 @@ fn recordings_are_drawn() {
     let mut by_detector = apertura(&folder);
     by_detector.arg("maps").arg(format!("{SHIPPED}/chip-8.toml")).args(["-o", "chip.svg", "--cfar", "os"]);
     by_detector.args(["--method", "omp"]).assert().success();
-    assert!(std::fs::read_to_string(folder.path().join("chip.svg")).unwrap().contains("by OS-CFAR"));
+    assert!(std::fs::read_to_string(folder.path().join("chip.svg")).unwrap().contains("Output: OS-CFAR"));
     apertura(&folder).arg(format!("{SHIPPED}/chip-8.toml")).assert().success().stdout(contains("apertura.png"));
 }
 

@@ -78,13 +78,13 @@ fn set_up(state: &mut State) {
     // Name and notes of a scene tell what its maps show: that is asked for here.
     let scene = Scene { name, notes: String::new(), noise_seed: step.view.seed, ..step.scene() };
     state.set_document("lesson", Document::shipped(SceneFile { scene, radar: step.radar.clone() }));
-    let scene = state.editor.scene().clone();
+    let (scene, depth) = (state.editor.scene().clone(), state.editor.history().depth());
     state.map_views = MapViews::default();
     state.arrangement.set_open(Panel::Scene, true);
     state.arrangement.put_large(map_of(&step));
     show_challenge(state);
     let Some(run) = &mut state.lesson else { return };
-    run.set_up = Some(scene);
+    (run.set_up, run.depth) = (Some(scene), depth);
     if let Some(Guess::Eta(eta)) = run.guess {
         state.settings.target_eta = eta;
     }

@@ -231,7 +231,7 @@ impl Pipeline {
     /// What Lambda of the target on screen spans, decibels.
     pub fn range_db(&self) -> Option<f64> {
         let scale = self.maps.result()?.frame.full.as_ref()?.scale;
-        Some(20.0 * (scale.peak - scale.floor))
+        Some(scale.decibels())
     }
 
     /// What the reflectors on screen leave of the recording, where it is in sight.

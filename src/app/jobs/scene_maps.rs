@@ -324,7 +324,7 @@ fn subject(
                 None => pair?.target.clone(),
                 Some(_) => shared(&detected.target).filter(|_| pair.is_some_and(|pair| pair.target.is_some())),
             };
-            let spans = |map: &ReadyMap| (20.0 * (map.scale.peak - map.scale.floor)) as f32;
+            let spans = |map: &ReadyMap| map.scale.decibels() as f32;
             let decibels = frame.full.as_ref().filter(|_| request.cfar.is_none()).map_or(0.0, spans);
             match target {
                 Some(target) => (output, Some(target), Paint::Detections { eta, dark, decibels }),

@@ -33,7 +33,8 @@ const HANDLE: f32 = 5.0;
 const DRAGGED_BANDWIDTH_HZ: [f64; 2] = [1e6, 2e10];
 const DRAGGED_CARRIER_HZ: [f64; 2] = [1e9, 3e11];
 
-/// Height in which the charts can be read, points.
+/// Height in which the charts can be read, and from which on an axis has its whole title, points.
+const MIN_TITLE_HEIGHT_POINTS: f32 = 170.0;
 const LEAST_CHARTS_HEIGHT: f32 = 230.0;
 
 /// Decibels that the spectrum spans.
@@ -165,9 +166,11 @@ impl Shown<'_> {
     fn frequencies(&self, ui: &mut Ui, area: Rect, asked: &mut Vec<Command>) {
         let (chirp, inks) = (self.chirp, Inks::of(ui.visuals()));
         let (microseconds, giga) = (1e6 * chirp.duration_seconds, chirp.bandwidth_hz / 1e9);
-        let title = format!("GHz above {:.4} GHz", chirp.start_hz / 1e9);
+        // The whole title stands upright beside a tall chart alone.
+        let whole = format!("GHz above {:.4} GHz", chirp.start_hz / 1e9);
+        let title = if area.height() < MIN_TITLE_HEIGHT_POINTS { "GHz" } else { &whole };
         let x = Axis::new(-0.05 * microseconds, 1.25 * microseconds, "time, µs");
-        let mut chart = Chart::new("Frequency against time", x, Axis::new(-0.08 * giga, 1.12 * giga, &title));
+        let mut chart = Chart::new("Frequency against time", x, Axis::new(-0.08 * giga, 1.12 * giga, title));
         let stroke = Stroke::new(1.2, inks.ends[0].gamma_multiply(0.9));
         let mut beats: Vec<(usize, [f64; 2])> = Vec::new();
         for echo in self.echoes {

@@ -133,7 +133,7 @@ fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     });
     let of_file = input.result.and_then(Result::ok).filter(|_| input.is_recorded).map(|result| &result.radar);
     ui.weak(follows(of_file.unwrap_or(input.radar)));
-    if radar != *input.radar {
+    if radar != *input.radar && !input.is_recorded {
         radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
         asked.push(RadarCommand::Set(Box::new(radar)).into());
     }

@@ -93,7 +93,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             1 => format!("{method} found one echo"),
             count => format!("{method} found {count} echoes, the strongest first"),
         });
-        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
             Grid::new("found").num_columns(6).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
                 if !found.is_empty() {
                     for (heading, tooltip) in [

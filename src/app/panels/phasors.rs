@@ -9,6 +9,7 @@ use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::direction::direction;
 use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::numbers::plain;
 use crate::app::widgets::padded::{computed, padded};
 use crate::app::widgets::theme::{self, Inks};
 use crate::radar::{End, Radar};
@@ -141,11 +142,11 @@ fn said(ui: &mut Ui, radar: &Radar, result: &PhasorsResult) {
     let (sum, length) = (result.measured.sum(), whole_length(&result.measured));
     let part = if length > 0.0 { 100.0 * sum.norm() / length } else { 0.0 };
     let place = format!(
-        "{}, {:.2} m: amplitude {:.3e}, phase {:.0}°; {part:.1} % of the length of all contributions",
+        "{}, {:.2} m: amplitude {:.3e}, phase {}°; {part:.1} % of the length of all contributions",
         direction(radar.cos_of_column(column as f64), 1),
         radar.range_of_bin_metres(bin as f64),
         sum.norm(),
-        sum.arg().to_degrees()
+        plain(sum.arg().to_degrees(), 0)
     );
     ui.label(place).on_hover_text("100 % where all contributions have one phase, 0 % where they cancel");
 }

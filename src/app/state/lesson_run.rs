@@ -45,6 +45,8 @@ pub struct LessonRun {
     pub gave_up: bool,
     /// The scene as the step set it up.
     pub set_up: Option<Arc<Scene>>,
+    /// Changes that could be undone when the step was set up: those are the learner's own before the lesson.
+    pub depth: usize,
     /// Panels that the lesson closed, since it doesn't use them, and whether each tab was in front.
     pub closed: Vec<(Panel, bool)>,
     /// As everything was before the lesson.
@@ -67,6 +69,7 @@ impl LessonRun {
             measured: None,
             gave_up: false,
             set_up: None,
+            depth: 0,
             closed: Vec::new(),
             before,
             part: None,

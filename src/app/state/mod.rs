@@ -259,11 +259,16 @@ impl State {
 
     /// Whether there is something to undo.
     pub fn can_undo(&self) -> bool {
-        self.editor.history().undo_label().is_some() || self.guided.can_undo(&self.setup())
+        // A lesson's step stays on screen.
+        let is_left = self.lesson.as_ref().is_none_or(|run| self.editor.history().depth() > run.depth);
+        is_left && (self.editor.history().undo_label().is_some() || self.guided.can_undo(&self.setup()))
     }
 
     /// Undoes the last change of the scene, or all that a button of the guide did.
     pub fn undo(&mut self) {
+        if !self.can_undo() {
+            return;
+        }
         let Some(step) = self.guided.undo(&self.setup()) else {
             self.editor.undo();
             return;

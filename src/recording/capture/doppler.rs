@@ -72,16 +72,16 @@ pub(super) fn strongest(
     let faster = match ambiguous {
         0 => String::new(),
         bins => format!(
-            " In {bins} of them it moves faster than the loops tell: the sharper spectrum over the array says which velocity."
+            " In {bins} bins it moves faster than the loops tell: the sharper spectrum over the array says which velocity."
         ),
     };
     let held = match moving {
-        0 => "No bin holds".to_owned(),
-        1 => "One bin holds".to_owned(),
-        bins => format!("{bins} bins hold"),
+        0 => String::new(),
+        1 => " One bin holds an echo that moves.".to_owned(),
+        bins => format!(" {bins} bins hold echoes that move."),
     };
     let note = format!(
-        "The {loops} loops of the frame are joined: of each range bin the strongest Doppler cell, and those that stand out beside it.{several} {held} an echo that moves.{faster}"
+        "The {loops} loops of the frame are joined: of each range bin the strongest Doppler cell, and those that stand out beside it.{several}{held}{faster}"
     );
     (out, Some(note))
 }

@@ -96,7 +96,7 @@ impl Trace {
 
     /// What Lambda spans, decibels.
     pub fn range_db(&self) -> Option<f64> {
-        self.scale.map(|s| 20.0 * (s.peak - s.floor)).filter(|range| *range > 0.0)
+        self.scale.map(|s| s.decibels()).filter(|range| *range > 0.0)
     }
 
     /// Place on the axis and decibels below the map's peak, cell by cell.

@@ -231,14 +231,14 @@ fn bars(ui: &Ui, chart: &mut Chart<'_>, points: &Points, boxed: Option<&Boxed>) 
     // Each group's part of a bar stands on those before it.
     let mut below = vec![0usize; bars.counts.len()];
     for group in 0..points.groups.len() {
+        let colour = colour_of(ui, group, points.groups.len());
         let mut own = vec![0usize; bars.counts.len()];
         points.dots.iter().filter(|dot| dot.group == group).for_each(|dot| own[place(dot)] += 1);
         let bar = |(i, (own, below)): (usize, (&usize, &usize))| {
-            let bar = Bar::new(bars.low + wide * (i as f64 + 0.5), *own as f64).width(wide);
+            let bar = Bar::new(bars.low + wide * (i as f64 + 0.5), *own as f64).width(wide).fill(colour);
             bar.base_offset(*below as f64).stroke(Stroke::NONE)
         };
         let each = own.iter().zip(&below).enumerate().filter(|(_, (own, _))| **own > 0).map(bar);
-        let colour = colour_of(ui, group, points.groups.len());
         chart.add(BarChart::new(points.groups[group].clone(), each.collect()).color(colour));
         below.iter_mut().zip(own).for_each(|(below, own)| *below += own);
     }

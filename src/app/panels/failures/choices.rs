@@ -60,7 +60,7 @@ fn unfit(ui: &mut Ui, unfit: &[Unfit]) {
 
 fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mut Vec<Command>) {
     method_menu(ui, input.methods, &mut memory.methods, "Methods to try");
-    let menu = ticking_menu(ui, &format!("Scenes: {}", sets(memory)), |ui| {
+    let menu = ticking_menu(ui, &format!("Kinds: {}", sets(memory)), |ui| {
         kind_boxes(ui, Kind::all(), &mut memory.kinds);
         ui.separator();
         let folder = input.own.map_or_else(|| "none is chosen".to_owned(), |path| path.display().to_string());

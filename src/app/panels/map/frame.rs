@@ -180,7 +180,7 @@ impl Cells<'_> {
     /// What a cell says; `None` outside the map.
     pub fn value(&self, bin: usize, column: usize) -> Option<Value> {
         let lambda = *self.map.lambda.get((bin, column))?;
-        let range_db = self.scale.map(|s| 20.0 * (s.peak - s.floor));
+        let range_db = self.scale.map(|s| s.decibels());
         Some(match self.minus {
             Some(minus) => {
                 let difference = f64::from(lambda - minus.lambda.get((bin, column))?);

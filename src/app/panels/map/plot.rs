@@ -103,16 +103,20 @@ fn degrees(painter: &Painter, low: f64, high: f64, length: f32) -> Vec<Tick> {
         let apart = |pair: &[f64]| (part(pair[1]) - part(pair[0])).abs() * length >= room(pair[1]).max(room(pair[0]));
         angles.len() < 4 || angles.windows(2).filter(|pair| apart(pair)).count() * 2 > angles.len()
     };
-    let step = DEGREES.iter().find(fits).copied().unwrap_or(30.0);
-    let mut free = f32::NEG_INFINITY;
+    let mut angles = of(DEGREES.iter().find(fits).copied().unwrap_or(30.0));
+    // From straight ahead to both sides, so that both have the same labels.
+    angles.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let mut taken: Vec<[f32; 2]> = Vec::new();
     let mut ticks = Vec::new();
-    for degrees in of(step) {
+    for degrees in angles {
         let (at, half) = (part(degrees) * length, room(degrees) / 2.0);
-        if at - half >= free {
+        let [from, to] = [at - half, at + half];
+        if taken.iter().all(|other| to <= other[0] || from >= other[1]) {
             ticks.push(Tick { value: degrees.to_radians().sin(), text: text(degrees) });
-            free = at + half;
+            taken.push([from, to]);
         }
     }
+    ticks.sort_by(|a, b| a.value.total_cmp(&b.value));
     ticks
 }
 
@@ -178,6 +182,9 @@ mod tests {
                 }
                 let places: Vec<f32> = ticks.iter().map(|t| ((t.value - low) / (high - low)) as f32 * length).collect();
                 assert!(places.windows(2).all(|pair| pair[1] - pair[0] > 16.0), "{ticks:?} at {places:?}");
+                let mirrored = ticks.iter().rev().map(|t| -t.value);
+                let is_even = ticks.iter().zip(mirrored).all(|(t, other)| (t.value - other).abs() < 1e-9);
+                assert!(is_even || low != -high, "both sides have the same marks: {ticks:?}");
             }
         };
         _ = egui_kittest::Harness::new_ui(draw);

@@ -11,7 +11,7 @@ use crate::picture::ColourMap;
 pub fn bar(input: &Input<'_>) -> Bar {
     let Input { kind, look, .. } = *input;
     let lambda = input.cells.as_ref().and_then(|cells| cells.scale);
-    let range_db = lambda.map(|s| 20.0 * (s.peak - s.floor)).filter(|range| *range > 0.0);
+    let range_db = lambda.map(|s| s.decibels()).filter(|range| *range > 0.0);
     let range_db = range_db.filter(|_| look.units == Units::Decibels);
     let table = colour_table(look.colours);
     let high = f64::from(input.end) * range_db.unwrap_or(1.0);

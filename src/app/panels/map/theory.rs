@@ -101,7 +101,8 @@ impl Theory<'_> {
         };
         let middle = cell(x_metres, y_metres);
         let reach = |times: f64| outline(times).iter().map(|p| p.distance(middle)).fold(0.0f32, f32::max);
-        let times = (0..=9).map(|i| 10f64.powi(i)).find(|times| reach(*times) > ELLIPSE)?;
+        let round = |i: usize| [1.0, 2.0, 5.0][i % 3] * 10f64.powi(i as i32 / 3);
+        let times = (0..=27).map(round).find(|times| reach(*times) > ELLIPSE)?;
         Some((outline(times), times))
     }
 

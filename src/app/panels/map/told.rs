@@ -168,6 +168,10 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     if let (MapKind::Input0, Some(layout)) = (kind, &state.settings.layout) {
         return Some(format!("{layout} {}", if is_updating(jobs, kind) { "(updating) " } else { "" }));
     }
+    if state.is_predicting() && kind.is_above() {
+        // A threshold may be asked for.
+        return None;
+    }
     let slot = kind.slot().unwrap_or(MethodSlot::First);
     caption(Caption {
         kind,

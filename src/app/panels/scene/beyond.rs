@@ -18,7 +18,7 @@ const WIDEST: f32 = 330.0;
 const NARROWEST: f32 = 110.0;
 
 /// From the point of the arc at -60 degrees to the sentence: half a label and the margin, points.
-const BESIDE_ARC: f32 = 36.0;
+const BESIDE_ARC: f32 = 44.0;
 
 /// An object that the maps show elsewhere.
 struct Beyond<'a> {
