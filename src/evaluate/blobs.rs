@@ -2,17 +2,11 @@
 
 use crate::maps::{Mask, RangeAngleMap};
 use crate::radar::Radar;
-use ndarray::{Array2, ArrayView2};
+use ndarray::Array2;
 
 /// How far from its place a blob is looked for: range bins, and as a part of all columns.
 const NEAR_BINS: usize = 8;
 const NEAR_PART: usize = 48;
-
-/// See [`shows_echo`].
-const STANDS_OUT_DB: f32 = 10.0;
-const OVER_NOISE_DB: f32 = 3.0;
-/// How far around cells their surroundings reach, cells.
-const SURROUNDING_CELLS: usize = 5;
 
 /// Regions of touching cells: 8 neighbours, columns wrap around as angles do.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,41 +55,6 @@ impl Blobs {
         }
         counts.into_iter().max_by_key(|(_, count)| *count).map(|(label, _)| label)
     }
-}
-
-/// Whether a target, `[range bins, columns]`, whose Lambda spans `decibels` shows an echo in some of its cells, be it below its threshold: their
-/// largest stands 10 dB out of the median around them, and 3 dB more than the largest of as many cells of noise does. The power of noise is
-/// exponentially distributed: the largest of n cells has ln n + 0.58 times the mean on average, the median ln 2 times.
-pub fn shows_echo(
-    target: ArrayView2<'_, f32>,
-    decibels: f32,
-    cells: impl ExactSizeIterator<Item = [usize; 2]> + Clone,
-) -> bool {
-    let largest = 10.0 * (((cells.len().max(1) as f32).ln() + 0.58) / std::f32::consts::LN_2).log10();
-    contrast(target, cells) * decibels >= STANDS_OUT_DB.max(largest + OVER_NOISE_DB)
-}
-
-/// Lambda of the largest of some cells of a map, less the median of those around them.
-fn contrast(map: ArrayView2<'_, f32>, cells: impl Iterator<Item = [usize; 2]> + Clone) -> f32 {
-    let (rows, columns) = map.dim();
-    let peak = cells.clone().map(|cell| map[cell]).fold(f32::NEG_INFINITY, f32::max);
-    let ends =
-        |axis: usize| cells.clone().fold((usize::MAX, 0), |(low, high), at| (low.min(at[axis]), high.max(at[axis])));
-    let ((top, bottom), (left, right)) = (ends(0), ends(1));
-    let band = top.saturating_sub(SURROUNDING_CELLS)..(bottom + SURROUNDING_CELLS + 1).min(rows);
-    let across = left.saturating_sub(SURROUNDING_CELLS)..(right + SURROUNDING_CELLS + 1).min(columns);
-    let is_beside = |r: usize, c: usize| !((top..=bottom).contains(&r) && (left..=right).contains(&c));
-    let mut beside: Vec<f32> = band
-        .flat_map(|r| across.clone().map(move |c| (r, c)))
-        .filter(|(r, c)| is_beside(*r, *c))
-        .map(|(r, c)| map[[r, c]])
-        .filter(|v| !v.is_nan())
-        .collect();
-    if beside.is_empty() {
-        return 0.0;
-    }
-    let middle = beside.len() / 2;
-    peak - *beside.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
 /// How far Lambda falls between the blobs of two places in metres, below the weaker of the two; 0 where the map shows one blob.

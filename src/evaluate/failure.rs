@@ -7,7 +7,7 @@
 //! not it believes in reflectors.
 
 use super::TARGET_ETA;
-use super::blobs::{Blobs, shows_echo};
+use super::blobs::Blobs;
 use super::echoes::of_bodies;
 use crate::maps::focus::map_of;
 use crate::maps::{Aperture, LambdaScale, Mask, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
@@ -117,8 +117,6 @@ pub struct Footprints {
     /// For each body, the cells of each of its echoes that stands out, the strongest first.
     echoes: Vec<Vec<Vec<CellIndex>>>,
     target: Blobs,
-    /// What Lambda spans in the target.
-    decibels: f32,
 }
 
 impl Footprints {
@@ -136,8 +134,7 @@ impl Footprints {
             cells.dedup();
         }
         let shown = target.above(if scene.is_silent() { 1.0 } else { TARGET_ETA });
-        let decibels = scale.decibels() as f32;
-        Footprints { objects, echoes, target: Blobs::of(&shown), decibels }
+        Footprints { objects, echoes, target: Blobs::of(&shown) }
     }
 
     /// The cells of every object, in the scene's order; empty for one that the target doesn't show.
@@ -169,7 +166,7 @@ impl Footprints {
                 objects[i] = Fate::Merged { with };
             }
         }
-        let ghosts = self.ghosts(target, &found, &objects);
+        let ghosts = self.ghosts(&found, &objects);
         Failures { objects, covered, ghosts }
     }
 
@@ -181,7 +178,7 @@ impl Footprints {
             .find(|&o| blob(found, o) == Some(seen) && blob(&self.target, o).is_some_and(|other| other != shown))
     }
 
-    fn ghosts(&self, target: &RangeAngleMap, found: &Blobs, fates: &[Fate]) -> Vec<Ghost> {
+    fn ghosts(&self, found: &Blobs, fates: &[Fate]) -> Vec<Ghost> {
         let (rows, columns) = found.labels.dim();
         let mut taken = vec![false; found.cells.len() + 1];
         let mut take = |[row, column]: CellIndex, shift: i32| {
@@ -198,11 +195,9 @@ impl Footprints {
             let shift = if let Fate::WrongTooth { columns } = fate { *columns } else { 0 };
             cells.iter().for_each(|&cell| take(cell, shift));
         }
-        // Nor is an echo that the target shows below its threshold.
-        let is_shown = |cells: &[CellIndex]| shows_echo(target.lambda.view(), self.decibels, cells.iter().copied());
         let blobs = found.cells.iter().zip(&taken[1..]);
         blobs
-            .filter(|(cells, taken)| !**taken && cells.len() >= GHOST_CELLS && !is_shown(cells))
+            .filter(|(cells, taken)| !**taken && cells.len() >= GHOST_CELLS)
             .map(|(cells, _)| Ghost { cells: cells.clone() })
             .collect()
     }
@@ -346,10 +341,6 @@ mod tests {
         let found = footprints.judge(&target, &output, TARGET_ETA);
         assert_eq!((found.objects[0], found.ghosts.len()), (Fate::Found, 1), "a speck is no ghost");
         assert_eq!(found.ghosts[0].cells.len(), 24);
-        // A weak echo that the target shows below its threshold is none.
-        let mut target = target;
-        target.lambda[[102, 203]] += 25.0 / footprints.decibels;
-        assert!(footprints.judge(&target, &output, TARGET_ETA).ghosts.is_empty());
     }
 
     #[test]

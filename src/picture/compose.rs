@@ -2,7 +2,8 @@
 
 use super::{ColourMap, DetectedCells, Panels, PictureError, encode_png, render, render_svg};
 use crate::evaluate::TARGET_ETA;
-use crate::maps::cfar::{Cfar, CfarError};
+use crate::evaluate::failure::Footprints;
+use crate::maps::cfar::{Cfar, CfarError, DETECTED};
 use crate::maps::{LogMaps, Normalisation};
 use crate::radar::{Carrier, Radar, counted};
 use crate::reconstruct::{ReconstructError, Reconstructor, Request};
@@ -101,8 +102,12 @@ pub fn compose(
         (n, bodies) => format!("{}, {}", counted(n, "reflector", "reflectors"), counted(bodies, "body", "bodies")),
     };
     let target = maps.full.normalise(normalisation);
-    let detect = |cfar| DetectedCells::of(cfar, maps.full.scale(normalisation), &target, &output.lambda);
+    let scale = maps.full.scale(normalisation);
+    let detect = |cfar| DetectedCells::of(cfar, scale, &target, &output.lambda);
     let detected = style.cfar.map(detect).transpose()?;
+    let eta = style.eta.unwrap_or_else(|| method.eta_of(&output));
+    let above = detected.as_ref().map_or_else(|| output.lambda.above(eta), |cells| cells.output.above(DETECTED));
+    let ghosts = Footprints::new(radar, scene, &target, scale).judge_cells(&target, &output.lambda, &above).ghosts;
     let panels = Panels {
         scene,
         found: None,
@@ -113,8 +118,8 @@ pub fn compose(
         target: Some(&target),
         output: &output.lambda,
         method: method.name(),
-        etas: [style.eta.unwrap_or_else(|| method.eta_of(&output)), style.target_eta],
-        target_decibels: maps.full.scale(normalisation).decibels() as f32,
+        etas: [eta, style.target_eta],
+        ghosts: &ghosts,
         detected: detected.as_ref(),
         colours: style.colours,
     };

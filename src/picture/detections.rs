@@ -1,8 +1,8 @@
 //! The output above its threshold: hits, misses and false alarms differ in brightness as well as in hue.
 
 use super::colour::Rgb;
-use crate::evaluate::shows_echo;
-use ndarray::ArrayView2;
+use crate::evaluate::failure::Ghost;
+use ndarray::{Array2, ArrayView2, Zip};
 
 /// The verdict on a cell of a thresholded output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -75,60 +75,32 @@ impl CellVerdict {
     }
 }
 
-/// Largest distance of a rim from the target's blobs, cells.
-const RIM_CELLS: usize = 3;
-/// Smallest blob that counts as an object, cells.
-const SPECK_CELLS: usize = 8;
-
-/// What each cell of an output above `etas[0]` is beside a target above `etas[1]`, both `[range bins, columns]`, row by row.
-///
-/// A blob of the output is false where the target has nothing near it: neither cells above its threshold nor an echo
-/// below it ([`shows_echo`]). `decibels` is what Lambda spans in the target; 0 leaves the second rule out.
+/// What each cell of an output above `etas[0]` is beside a target above `etas[1]`, both `[range bins, columns]`. The cells of `ghosts` are false
+/// alarms; others that the target has not are the rim of something.
 pub fn told_apart(
     output: ArrayView2<'_, f32>,
     target: ArrayView2<'_, f32>,
     etas: [f32; 2],
-    decibels: f32,
-) -> Vec<CellVerdict> {
-    let (rows, columns) = output.dim();
-    let mut kinds: Vec<CellVerdict> =
-        output.iter().zip(&target).map(|(&v, &t)| CellVerdict::of(t > etas[1], v > etas[0])).collect();
-    let near = |at: usize, by: usize, end: usize| at.saturating_sub(by)..(at + by + 1).min(end);
-    let around = |at: usize, by: usize| {
-        let (row, column) = (at / columns, at % columns);
-        near(row, by, rows).flat_map(move |r| near(column, by, columns).map(move |c| r * columns + c))
-    };
-    let mut seen = vec![false; kinds.len()];
-    for start in 0..kinds.len() {
-        if seen[start] || kinds[start] != CellVerdict::FalseAlarm {
-            continue;
+    ghosts: &[Ghost],
+) -> Array2<CellVerdict> {
+    let mut verdicts = Zip::from(output).and(target).map_collect(|&output, &target| {
+        match CellVerdict::of(target > etas[1], output > etas[0]) {
+            CellVerdict::FalseAlarm => CellVerdict::Rim,
+            other => other,
         }
-        seen[start] = true;
-        let mut blob = vec![start];
-        let mut next = 0;
-        while let Some(&at) = blob.get(next) {
-            next += 1;
-            for beside in around(at, 1) {
-                if kinds[beside] == CellVerdict::FalseAlarm && !std::mem::replace(&mut seen[beside], true) {
-                    blob.push(beside);
-                }
-            }
-        }
-        let is_there = |at: usize| matches!(kinds[at], CellVerdict::Hit | CellVerdict::Miss);
-        let is_rim = blob.len() < SPECK_CELLS
-            || blob.iter().any(|at| around(*at, RIM_CELLS).any(is_there))
-            || shows_echo(target, decibels, blob.iter().map(|at| [at / columns, at % columns]));
-        if is_rim {
-            blob.into_iter().for_each(|at| kinds[at] = CellVerdict::Rim);
+    });
+    for cell in ghosts.iter().flat_map(|ghost| &ghost.cells) {
+        if let Some(verdict) = verdicts.get_mut(*cell).filter(|verdict| **verdict == CellVerdict::Rim) {
+            *verdict = CellVerdict::FalseAlarm;
         }
     }
-    kinds
+    verdicts
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ndarray::{Array2, s};
+    use ndarray::array;
 
     /// What common colour deficiencies make of linear red, green and blue, at full severity (Machado, Oliveira and Fernandes, 2009, table 1).
     const VISIONS: [(&str, [[f64; 3]; 3]); 4] = [
@@ -192,21 +164,12 @@ mod tests {
     }
 
     #[test]
-    fn only_a_blob_where_the_target_has_nothing_is_a_false_alarm() {
-        let mut target = Array2::from_elem((40, 60), 0.2f32);
-        let mut output = Array2::from_elem((40, 60), 0.0f32);
-        target.slice_mut(s![4..6, 8..14]).fill(0.95);
-        output.slice_mut(s![3..7, 6..16]).fill(1.0);
-        // One that the target shows below its threshold, one where it shows nothing, and a speck.
-        target.slice_mut(s![20..22, 30..34]).fill(0.5);
-        output.slice_mut(s![20..22, 29..35]).fill(1.0);
-        output.slice_mut(s![30..33, 45..50]).fill(1.0);
-        output[[36, 3]] = 1.0;
-        let count = |decibels: f32| {
-            let kinds = told_apart(output.view(), target.view(), [0.8, 0.9], decibels);
-            CellVerdict::SEEN.map(|kind| kinds.iter().filter(|k| **k == kind).count())
-        };
-        assert_eq!(count(100.0), [12, 4 * 10 - 12 + 12 + 1, 15, 0]);
-        assert_eq!(count(0.0), [12, 4 * 10 - 12 + 1, 15 + 12, 0], "thresholds alone");
+    fn cells_of_ghosts_alone_are_false_alarms() {
+        let target = array![[0.95f32, 0.2, 0.95], [0.2, 0.2, 0.95]];
+        let output = array![[1.0f32, 1.0, 0.0], [0.0, 1.0, 1.0]];
+        let ghosts = [Ghost { cells: vec![[1, 1], [1, 2], [7, 7]] }];
+        let verdicts = told_apart(output.view(), target.view(), [0.8, 0.9], &ghosts);
+        use CellVerdict::{FalseAlarm, Hit, Miss, Nothing, Rim};
+        assert_eq!(verdicts, array![[Hit, Rim, Miss], [Nothing, FalseAlarm, Hit]]);
     }
 }

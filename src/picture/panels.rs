@@ -7,6 +7,7 @@ use super::lettering::Lettered;
 use super::map_panel::{MapCells, MapPanel};
 use super::scene_panel::{self, SceneContent};
 use super::{ColourMap, text};
+use crate::evaluate::failure::Ghost;
 use crate::evaluate::{Metrics, eta_text, squared_error};
 use crate::maps::cfar::{Cfar, CfarError, DETECTED};
 use crate::maps::{LambdaScale, RangeAngleMap};
@@ -14,7 +15,7 @@ use crate::radar::{End, Radar};
 use crate::reconstruct::Detection;
 use crate::scene::Scene;
 use image::RgbImage;
-use ndarray::{Array2, ArrayView2, CowArray};
+use ndarray::{Array2, CowArray};
 use plotters::prelude::*;
 
 /// Everything a picture shows.
@@ -40,8 +41,8 @@ pub struct Panels<'a> {
     pub method: &'a str,
     /// Thresholds of output and target.
     pub etas: [f32; 2],
-    /// What Lambda spans in the target, decibels.
-    pub target_decibels: f32,
+    /// Blobs of the output where the scene has nothing.
+    pub ghosts: &'a [Ghost],
     /// The cells that a detector found, in the place of those above the thresholds.
     pub detected: Option<&'a DetectedCells>,
     /// Colours of the maps.
@@ -180,10 +181,7 @@ impl<'a> Panels<'a> {
         ]);
         panels.push(match self.found {
             Some(_) => above(title, judged.output, judged.etas[0]),
-            None => {
-                let verdicts = self.told_apart(drawn(judged_target), drawn(judged.output), judged.etas);
-                MapPanel { title, cells: MapCells::Detections(verdicts) }
-            }
+            None => MapPanel { title, cells: MapCells::Detections(self.told_apart(judged_target, &judged)) },
         });
         panels
     }
@@ -196,16 +194,10 @@ impl<'a> Panels<'a> {
         }
     }
 
-    fn told_apart(
-        &self,
-        target: ArrayView2<'_, f32>,
-        output: ArrayView2<'_, f32>,
-        etas: [f32; 2],
-    ) -> Array2<CellVerdict> {
-        let decibels = if self.detected.is_some() { 0.0 } else { self.target_decibels };
-        let mut kinds = told_apart(output, target, etas, decibels).into_iter();
-        let cells = Array2::from_shape_simple_fn(output.dim(), || kinds.next().unwrap_or(CellVerdict::Nothing));
-        in_place(self.radar, cells.view()).unwrap_or(cells)
+    fn told_apart(&self, target: &RangeAngleMap, judged: &Judged<'_>) -> Array2<CellVerdict> {
+        let verdicts = told_apart(judged.output.lambda.view(), target.lambda.view(), judged.etas, self.ghosts);
+        let drawn = self.radar.left_to_right(&verdicts);
+        in_place(self.radar, drawn).unwrap_or_else(|| drawn.to_owned())
     }
 
     /// The three figures of the tables for this scene, or the echoes found in a recording, then the notes.
@@ -283,7 +275,7 @@ mod tests {
             output: &flat,
             method: "baseline",
             etas: [0.8, 0.9],
-            target_decibels: 0.0,
+            ghosts: &[],
             detected: None,
             colours: ColourMap::Grey,
         };

@@ -115,7 +115,7 @@ fn panels(
         output: &output.lambda,
         method: method.name(),
         etas: [style.eta.unwrap_or_else(|| method.eta_of(&output)), style.target_eta],
-        target_decibels: 0.0,
+        ghosts: &[],
         detected: detected.as_ref(),
         colours: style.colours,
     };

@@ -149,8 +149,10 @@ fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<
             let mask = theme::mask(dark);
             cells.map(|&v| shown(v, mask[usize::from(v > eta)])).collect()
         }
-        (Paint::Detections { eta, dark, decibels }, Some(target)) => {
-            let colours = fills(&told_apart(map, target, [eta, TARGET_ETA], decibels), map.dim(), dark);
+        // Ghosts are drawn over it, once the output is judged.
+        (Paint::Detections { eta, dark }, Some(target)) => {
+            let verdicts = told_apart(map, target, [eta, TARGET_ETA], &[]);
+            let colours = fills(&verdicts.into_raw_vec_and_offset().0, map.dim(), dark);
             cells.zip(colours).map(|(&v, colour)| shown(v, colour)).collect()
         }
         (Paint::Difference { view, colours, .. }, Some(minus)) if view.absolute => {
@@ -239,7 +241,7 @@ mod tests {
             let subject = Subject {
                 map: lambda(array![[0.0f32, 0.0], [0.8, 0.8]]),
                 minus: Some(lambda(array![[0.0f32, 0.95], [0.89, 0.95]])),
-                paint: Paint::Detections { eta: 0.5, dark, decibels: 0.0 },
+                paint: Paint::Detections { eta: 0.5, dark },
                 projection: Projection::RangeAngle,
             };
             let painted = painter.paint(&radar, MapKind::OutputAbove, &subject).image.pixels.clone();
@@ -257,8 +259,8 @@ mod tests {
     fn a_patch_of_hits_is_flat_with_an_outline_around_it() {
         let mut target = Array2::from_elem((9, 9), 0.0f32);
         target.slice_mut(ndarray::s![3..6, 2..7]).fill(0.95);
-        let kinds = told_apart(target.view(), target.view(), [0.5, TARGET_ETA], 0.0);
-        let colours = fills(&kinds, target.dim(), true);
+        let verdicts = told_apart(target.view(), target.view(), [0.5, TARGET_ETA], &[]);
+        let colours = fills(&verdicts.into_raw_vec_and_offset().0, target.dim(), true);
         let of = |[r, g, b]: [u8; 3]| colours.iter().filter(|c| **c == Color32::from_rgb(r, g, b)).count();
         let [inside, around, beside] =
             [CellVerdict::Hit.fill(true), CellVerdict::Hit.outline(true), CellVerdict::Nothing.fill(true)].map(of);

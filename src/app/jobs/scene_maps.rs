@@ -324,10 +324,8 @@ fn subject(
                 None => pair?.target.clone(),
                 Some(_) => shared(&detected.target).filter(|_| pair.is_some_and(|pair| pair.target.is_some())),
             };
-            let spans = |map: &ReadyMap| map.scale.decibels() as f32;
-            let decibels = frame.full.as_ref().filter(|_| request.cfar.is_none()).map_or(0.0, spans);
             match target {
-                Some(target) => (output, Some(target), Paint::Detections { eta, dark, decibels }),
+                Some(target) => (output, Some(target), Paint::Detections { eta, dark }),
                 None => (output, None, Paint::Above { eta, dark }),
             }
         }

@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn detections_are_counted() {
         let (output, target) = (map(&[(9, 9, 0.95), (99, 99, 0.9)]), map(&[(9, 9, 0.95), (200, 9, 1.0)]));
-        let told = said(Paint::Detections { eta: 0.8, dark: true, decibels: 0.0 }, output.clone(), Some(target));
+        let told = said(Paint::Detections { eta: 0.8, dark: true }, output.clone(), Some(target));
         assert!(told.starts_with("1 cell hit, 1 false alarms, 1 missed; peaks"), "{told}");
         let told = said(Paint::Above { eta: 0.8, dark: true }, output, None);
         assert!(told.starts_with("2 cells above the threshold; peaks"), "{told}");

@@ -23,8 +23,6 @@ pub enum Paint {
         eta: f32,
         /// Whether the window is dark.
         dark: bool,
-        /// What Lambda spans in the target, decibels; 0 where the target is what a detector made of it.
-        decibels: f32,
     },
     /// Expected errors, from none to the next round number.
     Doubt(ColourMap),

@@ -2,16 +2,20 @@
 
 use crate::scene::generate::Kind;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
-use eframe::egui::{Grid, Label, PopupCloseBehavior, Response, RichText, Ui};
+use eframe::egui::{Button, Grid, Label, PopupCloseBehavior, Response, RichText, Ui, vec2};
 use std::collections::BTreeSet;
 
 /// Width of what is said of a kind, points.
 const SENTENCE_WIDTH: f32 = 420.0;
+/// Least width of a button with such a menu, points.
+const TITLE_WIDTH: f32 = 160.0;
 
 /// A button with a menu that a click into it leaves open; the button's response.
 pub fn ticking_menu(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) -> Response {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    MenuButton::new(title).config(config).ui(ui, contents).0
+    // Such a menu may open beside its button: it must stay where it is while the title grows.
+    let button = Button::new(title).min_size(vec2(TITLE_WIDTH.min(0.2 * ui.available_width()), 0.0));
+    MenuButton::from_button(button).config(config).ui(ui, contents).0
 }
 
 /// A box that is ticked while `value` is in `chosen`.

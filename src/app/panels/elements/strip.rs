@@ -68,7 +68,14 @@ impl Strip<'_> {
         let painter = ui.painter().with_clip_rect(self.rect);
         painter.rect_filled(self.rect, 3.0, inks.ground);
         let [first, last] = End::BOTH.map(|end| self.radar.end_range(end));
-        for n in 0..self.radar.elements {
+        // Where bars lie closer than a pixel, those that are heard lie over the others.
+        let lies_over = |n: &usize| match &self.heard {
+            Some(heard) => heard.contains(n),
+            None => first.contains(n) || last.contains(n),
+        };
+        let mut all: Vec<usize> = (0..self.radar.elements).collect();
+        all.sort_by_key(lies_over);
+        for n in all {
             let ink = match n {
                 n if let Some(heard) = &self.heard => {
                     if heard.contains(&n) {

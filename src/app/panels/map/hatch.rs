@@ -1,18 +1,17 @@
 //! Hatches over hits, misses and false alarms, where a cell is large enough on screen: they tell kinds apart without any colour.
 
 use super::frame::Frame;
+use crate::evaluate::failure::Ghost;
 use crate::maps::RangeAngleMap;
 use crate::picture::CellVerdict;
-use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
+use crate::theory::MapPlace;
+use eframe::egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
 /// The least height of a cell that hatches are drawn in, points.
 const MIN_CELL_POINTS: f32 = 4.0;
 
 /// Between two lines of a hatch, points.
 const STEP: f32 = 7.0;
-
-/// How far around what the target shows an output has its rim, cells.
-const RIM_CELLS: usize = 3;
 
 /// What tells hits, misses and false alarms apart.
 #[derive(Clone, Copy)]
@@ -23,6 +22,8 @@ pub struct ToldApart<'a> {
     pub target: &'a RangeAngleMap,
     /// Their thresholds.
     pub etas: [f32; 2],
+    /// Blobs of the output where the scene has nothing, once it is judged.
+    pub ghosts: &'a [Ghost],
 }
 
 impl ToldApart<'_> {
@@ -36,22 +37,37 @@ impl ToldApart<'_> {
         }
         let cell = (bin as usize, column);
         let above = |map: &RangeAngleMap, eta: f32| map.lambda.get(cell).is_some_and(|v| *v > eta);
+        let is_ghost = || self.ghosts.iter().any(|ghost| ghost.cells.contains(&[cell.0, cell.1]));
         match CellVerdict::of(above(self.target, self.etas[1]), above(self.output, self.etas[0])) {
-            CellVerdict::FalseAlarm if self.is_near_target(cell) => CellVerdict::Rim,
+            CellVerdict::FalseAlarm if !is_ghost() => CellVerdict::Rim,
             kind => kind,
         }
     }
 
-    /// Whether the target shows something near a cell.
-    fn is_near_target(&self, (bin, column): (usize, usize)) -> bool {
-        let (rows, columns) = self.target.lambda.dim();
-        let near = |at: usize, end: usize| at.saturating_sub(RIM_CELLS)..(at + RIM_CELLS + 1).min(end);
-        let mut cells = near(bin, rows).flat_map(|r| near(column, columns).map(move |c| (r, c)));
-        cells.any(|cell| self.target.lambda[cell] > self.etas[1])
+    /// Fills the cells of ghosts with the colour of false alarms.
+    fn fill(&self, painter: &Painter, frame: Frame<'_>, dark: bool) {
+        let [r, g, b] = CellVerdict::FalseAlarm.fill(dark);
+        let mut mesh = Mesh::default();
+        for &[bin, column] in self.ghosts.iter().flat_map(|ghost| &ghost.cells) {
+            let corner = |up: f64, across: f64| {
+                frame.cell(MapPlace { bin: (bin as f64 + up).max(0.0), column: column as f64 + across })
+            };
+            let corners = [corner(-0.5, -0.5), corner(-0.5, 0.5), corner(0.5, 0.5), corner(0.5, -0.5)];
+            // The first and the last column touch each other across the whole map.
+            if corners.iter().any(|corner| corner.distance(corners[0]) > 0.5 * frame.rect.width()) {
+                continue;
+            }
+            let first = mesh.vertices.len() as u32;
+            corners.iter().for_each(|corner| mesh.colored_vertex(*corner, Color32::from_rgb(r, g, b)));
+            mesh.add_triangle(first, first + 1, first + 2);
+            mesh.add_triangle(first, first + 2, first + 3);
+        }
+        painter.add(mesh);
     }
 
-    /// Draws them over what is shown of the map: misses lean to the right, false alarms to the left, hits have none.
+    /// Draws ghosts and hatches over what is shown of the map: misses lean to the right, false alarms to the left, hits have none.
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>, dark: bool) {
+        self.fill(painter, frame, dark);
         let rect = frame.rect.intersect(painter.clip_rect());
         if frame.cell_height() < MIN_CELL_POINTS {
             return;
@@ -92,7 +108,11 @@ mod tests {
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 200.0));
         let harness = Harness::builder().with_size(rect.size()).build_ui(|ui: &mut Ui| {
             let frame = Frame::of(rect, view, &radar, Projection::RangeAngle, 0.0);
-            ToldApart { output: &output, target: &target, etas: [0.5, 0.9] }.draw(ui.painter(), frame, true);
+            ToldApart { output: &output, target: &target, etas: [0.5, 0.9], ghosts: &[] }.draw(
+                ui.painter(),
+                frame,
+                true,
+            );
         });
         harness.output().shapes.iter().filter(|s| matches!(s.shape, Shape::LineSegment { .. })).count()
     }

@@ -170,13 +170,15 @@ impl Kinds<'_> {
         Some(Reflector { x_metres, y_metres, reflectivity: 1.0 })
     }
 
-    /// Where a mark is: where the map shows the object, or where a ghost is brightest.
+    /// Where a mark is: where the map shows the object, or where a body or a ghost is brightest.
     fn place(&self, frame: Frame<'_>, verdict: &Verdict) -> Option<Pos2> {
-        match verdict.object {
-            Some(object) => self.centre(object).map(|centre| frame.blob(&centre)),
-            None => {
-                verdict.brightest.map(|[bin, column]| frame.cell(MapPlace { bin: bin as f64, column: column as f64 }))
-            }
+        let is_body = |object: usize| self.fates.scene.objects.get(object).is_some_and(|o| o.body().is_some());
+        let brightest = verdict.brightest.map(|[bin, column]| MapPlace { bin: bin as f64, column: column as f64 });
+        match (verdict.object, brightest) {
+            // A body shines at its ends, its corners and its glint, and seldom at its middle.
+            (Some(object), Some(cell)) if is_body(object) => Some(frame.cell(cell)),
+            (Some(object), _) => self.centre(object).map(|centre| frame.blob(&centre)),
+            (None, cell) => cell.map(|cell| frame.cell(cell)),
         }
     }
 

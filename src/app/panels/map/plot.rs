@@ -96,7 +96,8 @@ fn degrees(painter: &Painter, low: f64, high: f64, length: f32) -> Vec<Tick> {
         let angles = (-last..=last).map(|i| i as f64 * step);
         angles.filter(|degrees| (-1e-4..=1.0 + 1e-4).contains(&part(*degrees))).collect()
     };
-    let room = |degrees: f64| axes::width(painter, &text(degrees)) + BETWEEN_DIRECTIONS;
+    // With room for a minus, so that both sides have the same marks.
+    let room = |degrees: f64| axes::width(painter, &text(-degrees.abs())) + BETWEEN_DIRECTIONS;
     // Straight ahead directions are farthest apart; the middle of what is shown decides.
     let fits = |step: &&f64| {
         let angles = of(**step);
@@ -104,7 +105,7 @@ fn degrees(painter: &Painter, low: f64, high: f64, length: f32) -> Vec<Tick> {
         angles.len() < 4 || angles.windows(2).filter(|pair| apart(pair)).count() * 2 > angles.len()
     };
     let mut angles = of(DEGREES.iter().find(fits).copied().unwrap_or(30.0));
-    // From straight ahead to both sides, so that both have the same labels.
+    // From straight ahead to both sides.
     angles.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
     let mut taken: Vec<[f32; 2]> = Vec::new();
     let mut ticks = Vec::new();

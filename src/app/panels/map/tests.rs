@@ -146,7 +146,8 @@ fn every_map_has_the_same_margins() {
         let rect = |kind: MapKind, units| {
             let radar = Radar::default();
             let map = Harness::builder().with_size(size).build_ui(move |ui| {
-                let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9] });
+                let told_apart =
+                    Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9], ghosts: &[] });
                 let told_apart = told_apart.filter(|_| kind == MapKind::OutputAbove);
                 let texture = Some(TextureId::default());
                 let look = View { units, projection, ..View::default() };
@@ -227,7 +228,7 @@ fn judged(size: [f32; 2]) -> Harness<'static> {
     let mut map = Harness::builder().with_size(size).build_ui(move |ui| {
         let kinds = Some(Kinds { fates: &fates, current: true });
         let texture = Some(TextureId::default());
-        let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9] });
+        let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9], ghosts: &[] });
         let (kind, look) = (MapKind::OutputAbove, View { show_kinds: true, ..View::default() });
         let input = Input { kinds, texture, told_apart, look: &look, kind, ..input(&radar, None) };
         _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());

@@ -141,7 +141,10 @@ fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<Tol
         Some(_) if pair.target.is_none() => None,
         Some(_) => jobs.pipeline.maps.result().and_then(|result| result.detected.target.as_ref()),
     };
-    Some(ToldApart { output, target: target?, etas: [eta, TARGET_ETA] })
+    // Those of another output would be drawn where this one has nothing.
+    let ghosts = fates_of(&jobs.kinds, slot, &jobs.pipeline).filter(|(_, current)| *current);
+    let ghosts = ghosts.map_or(&[][..], |(fates, _)| &fates.failures.ghosts);
+    Some(ToldApart { output, target: target?, etas: [eta, TARGET_ETA], ghosts })
 }
 
 /// Over which noise the method whose map it is was trained, where the scene has other noise. A recording's noise is not known.
