@@ -16,9 +16,6 @@ use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Of what more is to come beside: one new atom by itself, or walls and points together.
-pub const ROUGHLY: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
-
 /// Of a group while more atoms are to come.
 const GROWING: Limits = Limits { iterations: 12, least_gain: 3e-2, ridge: 0.0 };
 
@@ -197,8 +194,9 @@ impl Grower<'_> {
         let own = Atom::Point { x_metres, y_metres };
         let wrap = self.radar.max_range_metres();
         let is_near = x_metres.hypot(y_metres) <= wrap;
-        let alone =
-            |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ROUGHLY);
+        let alone = |atom: Atom| {
+            self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, Limits::ROUGH)
+        };
         let (own, other) = rayon::join(|| alone(own), || alone(wrapped([x_metres, y_metres], wrap)));
         // The nearer one unless the other is clearly better.
         let (near, far) = if is_near { (own, other) } else { (other, own) };
