@@ -28,6 +28,9 @@ const LINK_BINS: f64 = 6.0;
 /// Most rounds of refinement where more is left than noise.
 const MOST_SWEEPS: usize = 5;
 
+/// Another round needs that this part of the energy at most is left by the last.
+const WORTH_ANOTHER_SWEEP: f64 = 0.3;
+
 /// A point that both ends see has the same gain at both, within this factor while its neighbours are not known.
 const MOST_UNLIKE: f64 = 3.0;
 
@@ -152,13 +155,20 @@ impl Grower<'_> {
         Ok(if best.cost() < fit.cost() { best } else { fit })
     }
 
-    /// All atoms refined once, each with its neighbours.
+    /// All atoms refined with their neighbours, as long as the energy falls fast: what one group leaves blinds the others.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn swept(&self, fit: Fit) -> Result<Fit, ReconstructError> {
-        let all = vec![true; fit.atoms.len()];
-        self.refined(fit, &all, LINK_BINS, GROWING)
+    pub fn settled(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        for _ in 0..MOST_SWEEPS {
+            let before = fit.cost();
+            let all = vec![true; fit.atoms.len()];
+            fit = self.refined(fit, &all, LINK_BINS, GROWING)?;
+            if fit.cost() > WORTH_ANOTHER_SWEEP * before {
+                break;
+            }
+        }
+        Ok(fit)
     }
 
     /// `fit` with one more atom for every one of `points` (x and y, metres; the strongest first), each refined alone, then with its
@@ -281,7 +291,7 @@ impl Grower<'_> {
                 marked = marked.iter().filter(|m| **m).count(),
                 "refined where needed"
             );
-            if fit.cost() > 0.3 * before {
+            if fit.cost() > WORTH_ANOTHER_SWEEP * before {
                 break;
             }
         }
