@@ -3,7 +3,7 @@
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
 use super::family::Family;
-use super::judge::{blended, darker_by, lift, network_weight};
+use super::judge::{HIDDEN_DECADES, blended, network_weight, scales_joined};
 use super::own_threshold::own_threshold;
 use super::reconstructor::{About, Reconstructor, Weights};
 use super::search::{Found, Settings, find, find_from};
@@ -51,17 +51,20 @@ impl Hybrid {
         // A dynamic range counts from the peak of the judged map, so the experts' maps are joined on a scale that cuts off nothing.
         let shown = Shown::of(request.normalisation);
         let whole = Request { normalisation: shown.whole, ..request.clone() };
-        let (mut expected, network) = (found.expected(radar, &whole), self.network.reconstruct(radar, ends, &whole)?);
-        // Dark cells, which tell of another scale, are cut off by a dynamic range.
-        if request.noise.is_white() && shown.part == 1.0 {
-            let darker = darker_by(&expected.map, &network.lambda);
-            lift(&mut expected.map, darker);
+        let (mut expected, mut network) =
+            (found.expected(radar, &whole), self.network.reconstruct(radar, ends, &whole)?);
+        let mut left = found.left_decades(radar, ends, &expected);
+        let mut least_etas = [expected.least_eta, network.least_eta.unwrap_or(0.0)];
+        if request.noise.is_white() {
+            left.par_mapv_inplace(|v| v.max(HIDDEN_DECADES));
+            // A dynamic range is no guess.
+            if shown.part == 1.0 {
+                least_etas = scales_joined([&mut expected.map, &mut network.lambda], least_etas);
+            }
         }
-        let left = found.left_decades(radar, ends, &expected);
         let weight = network_weight(&expected.map, &network.lambda, network.doubt.as_ref(), &left, shown.part);
-        let least_eta = network.least_eta.unwrap_or(0.0).max(expected.least_eta);
         let mut lambda = blended(expected.map, &network.lambda, &weight);
-        let least_eta = shown.cut(&mut lambda, least_eta);
+        let least_eta = shown.cut(&mut lambda, least_etas[0].max(least_etas[1]));
         let eta = own_threshold(&lambda, network.doubt.map(|doubt| shown.doubt(doubt)).as_ref());
         Ok(Reconstruction { eta: Some(eta), ..found.as_drawn(lambda, Some(least_eta)) })
     }

@@ -2,7 +2,8 @@
 //!
 //! The search's map is exact where its objects are right, and says so: nothing is left of the samples when they are drawn. The network's is
 //! about right everywhere, and says how far off it expects to be. So the search is believed where it leaves nothing. Elsewhere the two are
-//! averaged, and the more they differ beyond the network's doubt, the more the network is believed.
+//! averaged, and the more they differ beyond the network's doubt, the more the network is believed. White noise hides what the search may lack, so
+//! that the network counts everywhere over it.
 
 use crate::maps::RangeAngleMap;
 use ndarray::{Array1, Array2, ArrayView1, Axis, Zip};
@@ -12,8 +13,8 @@ use rayon::prelude::*;
 /// than the network: a tenth of the power is half a decibel of the cell.
 const LEFT_DECADES: [f32; 2] = [-3.0, -1.0];
 
-/// The same where a dynamic range cuts off the dark cells. In bright ones the network draws narrow lobes too dark.
-const BRIGHT_LEFT_DECADES: [f32; 2] = [0.0, 1.0];
+/// By how many decades these bounds are higher where a dynamic range cuts off the dark cells. In bright ones the network draws narrow lobes too dark.
+const BRIGHT_SHIFT_DECADES: f32 = 3.0;
 
 /// Part of the shown cells with more left than drawn, between which the search isn't believed anywhere: such a scene is not made of what it
 /// looks for. Cells that a dynamic range cuts off say nothing of it.
@@ -23,16 +24,12 @@ const UNEXPLAINED_PART: [f32; 2] = [0.7, 0.9];
 /// better than either, and the network's is the smaller one there.
 const AGREED_WEIGHT: f32 = 0.7;
 
-/// The same where a dynamic range cuts off the dark cells.
-const BRIGHT_AGREED_WEIGHT: f32 = 0.3;
-
 /// Mean square of the difference, over that of the network's expected error, from which on the two contradict each other, and from which on
 /// the network is believed alone.
 const CONTRADICTION: [f32; 2] = [1.0, 3.0];
 
-/// Lambda by which the search's map over noise may be darker than the network's in half of all cells. At twice as much it is taken to the
-/// network's scale: a reflector that is not there outshines the others, and all else is dark beside it.
-const SCALE_MARGIN: f32 = 0.02;
+/// What noise hides, over what is drawn, in decades of power at least: half way between the bounds of [`LEFT_DECADES`].
+pub const HIDDEN_DECADES: f32 = -2.0;
 
 /// Standard deviations in a doubt that nine of ten normal errors stay below.
 const DOUBT_DEVIATIONS: f32 = 1.645;
@@ -57,12 +54,9 @@ pub fn network_weight(
     let mut square = &drawn.lambda - &network.lambda;
     square.par_mapv_inplace(|v| v * v);
     let mut weight = mean_around(&square);
-    let (left_bounds, agreed_weight) = match shown_part < 1.0 {
-        true => (BRIGHT_LEFT_DECADES, BRIGHT_AGREED_WEIGHT),
-        false => (LEFT_DECADES, AGREED_WEIGHT),
-    };
-    let unexplained = |left: f32| between(left_bounds, left).max(nowhere);
-    let agreed = |contradiction: f32| agreed_weight + (1.0 - agreed_weight) * contradiction;
+    let shift = if shown_part < 1.0 { BRIGHT_SHIFT_DECADES } else { 0.0 };
+    let unexplained = |left: f32| between(LEFT_DECADES, left - shift).max(nowhere);
+    let agreed = |contradiction: f32| AGREED_WEIGHT + (1.0 - AGREED_WEIGHT) * contradiction;
     match doubt {
         None => Zip::from(&mut weight).and(left_decades).par_for_each(|w, left| *w = unexplained(*left)),
         Some(doubt) => Zip::from(&mut weight).and(left_decades).and(&doubt.lambda).par_for_each(|w, left, doubt| {
@@ -73,19 +67,19 @@ pub fn network_weight(
     weight
 }
 
-/// How much darker than the network's map the search's is in half of all cells, beyond [`SCALE_MARGIN`]; 0 where it is brighter.
-pub fn darker_by(drawn: &RangeAngleMap, network: &RangeAngleMap) -> f32 {
-    let mut differences: Vec<f32> = network.lambda.iter().zip(&drawn.lambda).map(|(n, d)| n - d).collect();
-    let middle = differences.len() / 2;
-    let median = *differences.select_nth_unstable_by(middle, f32::total_cmp).1;
-    (2.0 * (median - SCALE_MARGIN)).clamp(0.0, median.max(0.0))
-}
-
-/// Makes a map brighter by some Lambda.
-pub fn lift(map: &mut RangeAngleMap, by: f32) {
-    if by > 0.0 {
-        map.lambda.par_mapv_inplace(|v| (v + by).min(1.0));
+/// Stretches two maps of one scene, each from its peak downwards, to the geometric mean of their scales, and their thresholds along with them.
+///
+/// Over noise the smallest of all cells sets the scale. It is chance, and what two experts expect of it is nearer in the mean.
+pub fn scales_joined(maps: [&mut RangeAngleMap; 2], etas: [f32; 2]) -> [f32; 2] {
+    let depths = maps[0].lambda.iter().zip(&maps[1].lambda).map(|(a, b)| [1.0 - f64::from(*a), 1.0 - f64::from(*b)]);
+    let [square, product] = depths.fold([0.0; 2], |[square, product], [a, b]| [square + a * a, product + a * b]);
+    let half = if square > 0.0 && product > 0.0 { (product / square).sqrt() as f32 } else { 1.0 };
+    let stretched = |factor: f32, v: f32| (1.0 - factor * (1.0 - v)).clamp(0.0, 1.0);
+    let factors = [half, half.recip()];
+    for (map, factor) in maps.into_iter().zip(factors) {
+        map.lambda.par_mapv_inplace(|v| stretched(factor, v));
     }
+    [0, 1].map(|i| stretched(factors[i], etas[i]))
 }
 
 /// How far between two values another one is, 0 to 1.
@@ -161,13 +155,13 @@ mod tests {
     }
 
     #[test]
-    fn a_map_beside_a_ghost_is_lifted_to_the_networks_scale() {
-        for (median, lifted) in [(-0.1, 0.0), (0.02, 0.0), (0.03, 0.02), (0.05, 0.05)] {
-            assert!((darker_by(&flat(0.3), &flat(0.3 + median)) - lifted).abs() < 1e-6);
+    fn two_scales_become_their_geometric_mean() {
+        let [mut deep, mut shallow] = [flat(0.2), flat(0.8)];
+        let etas = scales_joined([&mut deep, &mut shallow], [0.6, 0.9]);
+        for value in [deep.lambda[[0, 0]], shallow.lambda[[0, 0]]] {
+            assert!((value - 0.6).abs() < 1e-6, "{value}");
         }
-        let mut map = flat(0.95);
-        lift(&mut map, 0.1);
-        assert_eq!(map.lambda[[0, 0]], 1.0);
+        assert!(etas.iter().zip([0.8, 0.8]).all(|(eta, expected)| (eta - expected).abs() < 1e-6), "{etas:?}");
     }
 
     #[test]
@@ -187,7 +181,7 @@ mod tests {
             let left = Array2::from_elem((40, 60), left);
             network_weight(&flat(0.9), &flat(0.95), Some(&flat(0.2)), &left, part)[[20, 30]]
         };
-        assert_eq!([of(-0.5, 1.0), of(-0.5, 0.5), of(1.0, 0.5)], [AGREED_WEIGHT, 0.0, BRIGHT_AGREED_WEIGHT]);
+        assert_eq!([of(-0.5, 1.0), of(-0.5, 0.5), of(2.0, 0.5)], [AGREED_WEIGHT, 0.0, AGREED_WEIGHT]);
     }
 
     #[test]

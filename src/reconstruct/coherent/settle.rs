@@ -4,11 +4,12 @@
 //! estimation with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), by the means of the search.
 
 use super::peaks::{Peak, gains};
+use super::split::MOST_TWOS;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, Samples, Tie, Workbench, distance_bins, rows_of};
-use crate::reconstruct::search::{Detector, Grower, Settings};
+use crate::reconstruct::search::{Detector, Grower, MIN_WORTH_RATIO, Settings, TIED_COST_RATIO};
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
 use crate::task::Task;
@@ -21,9 +22,6 @@ const TIED: Limits = Limits { iterations: 20, least_gain: 1e-4, ridge: 0.0 };
 
 /// Most reflectors whose gains are tied by moving them together.
 const MOST_TIED: usize = 48;
-
-/// Tied gains may leave this many times what each end's own gains leave: a wrong place leaves more.
-const TIED_COST: f64 = 4.0;
 
 /// Of peaks nearer than this in range at either end the strongest is taken first.
 const BESIDE_STRONGER_BINS: f64 = 4.0;
@@ -38,20 +36,11 @@ const ROUNDS_A_LOOK: usize = 8;
 /// are not yet in their places looks like many weak ones.
 const LEAST_OF_STRONGEST: f64 = 0.03;
 
-/// A reflector must explain this many times the energy that noise gives to one more gain.
-const LEAST_GAIN_OVER_NOISE: f64 = 16.0;
-
 /// A peak of which this part is left has been explained by others.
 const LEFT_OF_EXPLAINED: f64 = 0.05;
 
 /// Another look needs that this part of the energy at most is left by the last.
 const WORTH_ANOTHER: f64 = 0.9;
-
-/// Most times that all reflectors are moved after a round.
-const MOST_SWEEPS: usize = 5;
-
-/// Another time needs that this part of the energy at most is left by the last.
-const WORTH_ANOTHER_SWEEP: f64 = 0.3;
 
 /// Part of the energy that may be left unexplained: 130 dB down, above what rounding leaves, which is no white noise.
 const AS_GOOD_AS_NOTHING: f64 = 1e-13;
@@ -65,8 +54,7 @@ const SAME_PLACE: (f64, f64) = (1e-3, 1e-2);
 /// Work granted: about ten microseconds a unit.
 const MOST_WORK: usize = 30_000;
 
-/// Most echoes that are tried as two in one reconstruction, and that may fail so one after another.
-const MOST_TRIALS: usize = 24;
+/// Most echoes that fail to be two, one after another.
 const MOST_FAILURES: usize = 4;
 
 /// A peak that is not yet taken.
@@ -91,7 +79,7 @@ impl Trials {
     }
 
     pub fn are_spent(&self) -> bool {
-        self.done >= MOST_TRIALS || self.failed >= MOST_FAILURES
+        self.done >= MOST_TWOS || self.failed >= MOST_FAILURES
     }
 }
 
@@ -148,7 +136,7 @@ impl<'a> Settled<'a> {
         waiting.iter_mut().zip(first).for_each(|(w, energy)| w.energy = energy);
         for _ in 0..ROUNDS_A_LOOK {
             self.task.check()?;
-            let noise = LEAST_GAIN_OVER_NOISE * self.bench.gain_noise(self.radar, &self.fit);
+            let noise = MIN_WORTH_RATIO * self.bench.gain_noise(self.radar, &self.fit);
             let now = self.heard(&waiting);
             let mut left: Vec<(f64, Waiting)> = now.into_iter().zip(waiting).collect();
             left.retain(|(now, w)| *now > noise.max(LEFT_OF_EXPLAINED * w.energy));
@@ -161,8 +149,7 @@ impl<'a> Settled<'a> {
                 break;
             }
             let grower = self.grower();
-            self.fit = grower.with_points(self.fit.clone(), &taken)?;
-            self.settle()?;
+            self.fit = grower.settled(grower.with_points(self.fit.clone(), &taken)?)?;
             self.split()?;
             waiting = left.into_iter().map(|(_, w)| w).collect();
         }
@@ -174,18 +161,6 @@ impl<'a> Settled<'a> {
             self.fit = before;
         }
         Ok(is_better && !self.is_done())
-    }
-
-    /// All reflectors moved with their neighbours, as long as the energy falls fast: what one group leaves blinds the others.
-    fn settle(&mut self) -> Result<(), ReconstructError> {
-        for _ in 0..MOST_SWEEPS {
-            let before = self.fit.cost();
-            self.fit = self.grower().swept(self.fit.clone())?;
-            if self.fit.cost() > WORTH_ANOTHER_SWEEP * before {
-                break;
-            }
-        }
-        Ok(())
     }
 
     /// Whether nothing is left to be explained, or no work granted.
@@ -210,7 +185,7 @@ impl<'a> Settled<'a> {
         let Settled { radar, task, bench, samples, mut fit, enough, .. } = self;
         if fit.atoms.len() <= MOST_TIED {
             let tied = bench.refine(&samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
-            if tied.cost() <= TIED_COST * fit.cost() {
+            if tied.cost() <= TIED_COST_RATIO * fit.cost() {
                 fit = tied;
             }
         }

@@ -26,14 +26,12 @@ const WORTH_TWO: f64 = 0.2;
 /// Echoes may be one that stand this near: parts of an end's beam, and range bins.
 const MAY_BE_ONE: (f64, f64) = (0.1, 0.5);
 
-/// Most echoes that are taken away so.
-const MOST_MERGED: usize = 24;
-
 /// What is left may grow by this part where one echo does for two.
 const AS_GOOD: f64 = 0.05;
 
-/// Most echoes among which doubtful ones are looked for: rows of reflectors leave something wherever they stand.
-const MOST_DOUBTFUL: usize = 24;
+/// Most echoes among which doubtful ones are looked for, since rows of reflectors leave something wherever they stand; and most that are tried as two
+/// or taken away in one reconstruction.
+pub(super) const MOST_TWOS: usize = 24;
 
 /// An echo that is this much weaker in power than one this near, in parts of an end's beam and in range bins, may be what that one leaves.
 const WEAKER: f64 = 0.1;
@@ -66,7 +64,7 @@ impl Settled<'_> {
     /// one.
     pub fn is_doubtful(&self) -> bool {
         let count = self.fit.atoms.len();
-        (1..=MOST_DOUBTFUL).contains(&count)
+        (1..=MOST_TWOS).contains(&count)
             && !self.is_done()
             && (self.has_companions() || self.grower().in_need(&self.fit).contains(&true))
     }
@@ -160,7 +158,7 @@ impl Settled<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn merge(&mut self) -> Result<(), ReconstructError> {
-        for _ in 0..MOST_MERGED {
+        for _ in 0..MOST_TWOS {
             self.task.check()?;
             if self.bench.work.is_spent() {
                 break;

@@ -17,8 +17,11 @@ const MOST_TRIED: usize = 24;
 /// What a row must explain of the energy in its range bins to be followed to its ends.
 const LEAST_BEGUN: f64 = 0.3;
 
+/// Fewest reflectors of a wall.
+pub const MIN_REFLECTORS: usize = 8;
+
 /// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
-const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (8, 0.97)];
+const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (MIN_REFLECTORS, 0.97)];
 
 /// The same of a long wall: so many reflectors explain nothing that they are not, and much else may stand in their range bins.
 const LEAST_OF_LONG: f64 = 0.6;

@@ -28,9 +28,6 @@ const WORK_SHARE: usize = 4;
 /// Turns of fitting the objects' gains and the elements' in a level.
 const TURNS: usize = 6;
 
-/// Maximum energy that a level leaves, over that of the noise that the search was told of.
-const MAX_LEVEL_RATIO: f64 = 3.0;
-
 /// Maximum energy that a level leaves, as a part of the samples' energy.
 const MAX_LEVEL_ENERGY_RATIO: f64 = 0.3;
 
@@ -41,7 +38,8 @@ const WORTH_ANOTHER_TURN: f64 = 0.5;
 /// Maximum energy that calibrated objects leave over the rounding floor, as a part of the samples' energy. More than that is an echo.
 const MAX_ROUNDING_ENERGY_RATIO: f64 = 1e-6;
 
-/// Noise that the last search is told of, over what the gains leave, as a ratio of powers.
+/// Noise over what is left, as a ratio of powers: a level leaves at most that over the noise that its search was told of, and the last search is told of that
+/// over what the gains leave.
 const NOISE_MARGIN_RATIO: f64 = 3.0;
 
 /// Least gain of an object that elements are fitted to, as a part of the strongest.
@@ -160,7 +158,9 @@ impl Calibration<'_> {
                 gains = turned.gains.clone().normalised(*level >= MIN_ROUGH_LEVEL);
                 last = Some(turned);
             }
-            if last.as_ref().is_some_and(|last| last.left > MAX_LEVEL_ENERGY_RATIO.min(MAX_LEVEL_RATIO * level) + noise)
+            if last
+                .as_ref()
+                .is_some_and(|last| last.left > MAX_LEVEL_ENERGY_RATIO.min(NOISE_MARGIN_RATIO * level) + noise)
             {
                 return Ok(None);
             }

@@ -45,22 +45,21 @@ fn find_with(
     settings: &Settings,
 ) -> Result<Found, ReconstructError> {
     let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
-    let search = |previous: Option<&Found>, ends: &TwoEnds| found_in(previous, radar, ends, request, settings, scale);
+    let search = |previous: Option<&Found>, ends: &TwoEnds, told: &Request, settings: &Settings| {
+        found_in(previous, radar, ends, told, settings, scale)
+    };
     // Gains of the elements outlast a moved object.
     if let Some((previous, gains)) = previous.and_then(|previous| Some((previous, previous.element_gains.clone()?))) {
-        let found = search(Some(previous), &gains.taken_from(&ends))?;
+        let found = search(Some(previous), &gains.taken_from(&ends), request, settings)?;
         if found.complete || found.left_by_search <= previous.left_by_search {
             return Ok(Found { element_gains: Some(gains), ..found });
         }
     }
-    let plain = search(previous.filter(|p| p.element_gains.is_none()), &ends)?;
+    let plain = search(previous.filter(|p| p.element_gains.is_none()), &ends, request, settings)?;
     if !asks_for_gains(&plain) {
         return Ok(plain);
     }
-    let again = |previous: Option<&Found>, ends: &TwoEnds, request: &Request, settings: &Settings| {
-        found_in(previous, radar, ends, request, settings, scale)
-    };
-    let calibration = Calibration { search: &again, radar, ends: &ends, request, settings, plain: &plain };
+    let calibration = Calibration { search: &search, radar, ends: &ends, request, settings, plain: &plain };
     Ok(calibration.found()?.unwrap_or(plain))
 }
 

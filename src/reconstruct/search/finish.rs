@@ -38,8 +38,8 @@ const LOUD_ENERGY_RATIO: f64 = 1.5;
 /// Range bins and columns below which two points over white noise are one.
 const SAME_PLACE: [f64; 2] = [0.25, 1.0];
 
-/// Energy that tied gains may leave over what each end's own leave, as a ratio.
-const TIED_COST_RATIO: f64 = 4.0;
+/// Energy that tied gains may leave over what each end's own leave, as a ratio: at a wrong place they leave more.
+pub const TIED_COST_RATIO: f64 = 4.0;
 
 /// What was found in the samples.
 #[derive(Debug, Clone, PartialEq)]

@@ -16,9 +16,6 @@ use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Of what more is to come beside: one new atom by itself, or walls and points together.
-pub const ROUGHLY: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
-
 /// Of a group while more atoms are to come.
 const GROWING: Limits = Limits { iterations: 12, least_gain: 3e-2, ridge: 0.0 };
 
@@ -30,6 +27,9 @@ const LINK_BINS: f64 = 6.0;
 
 /// Most rounds of refinement where more is left than noise.
 const MOST_SWEEPS: usize = 5;
+
+/// Another round needs that this part of the energy at most is left by the last.
+const WORTH_ANOTHER_SWEEP: f64 = 0.3;
 
 /// A point that both ends see has the same gain at both, within this factor while its neighbours are not known.
 const MOST_UNLIKE: f64 = 3.0;
@@ -155,13 +155,20 @@ impl Grower<'_> {
         Ok(if best.cost() < fit.cost() { best } else { fit })
     }
 
-    /// All atoms refined once, each with its neighbours.
+    /// All atoms refined with their neighbours, as long as the energy falls fast: what one group leaves blinds the others.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn swept(&self, fit: Fit) -> Result<Fit, ReconstructError> {
-        let all = vec![true; fit.atoms.len()];
-        self.refined(fit, &all, LINK_BINS, GROWING)
+    pub fn settled(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        for _ in 0..MOST_SWEEPS {
+            let before = fit.cost();
+            let all = vec![true; fit.atoms.len()];
+            fit = self.refined(fit, &all, LINK_BINS, GROWING)?;
+            if fit.cost() > WORTH_ANOTHER_SWEEP * before {
+                break;
+            }
+        }
+        Ok(fit)
     }
 
     /// `fit` with one more atom for every one of `points` (x and y, metres; the strongest first), each refined alone, then with its
@@ -197,8 +204,9 @@ impl Grower<'_> {
         let own = Atom::Point { x_metres, y_metres };
         let wrap = self.radar.max_range_metres();
         let is_near = x_metres.hypot(y_metres) <= wrap;
-        let alone =
-            |atom: Atom| self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, ROUGHLY);
+        let alone = |atom: Atom| {
+            self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, Limits::ROUGH)
+        };
         let (own, other) = rayon::join(|| alone(own), || alone(wrapped([x_metres, y_metres], wrap)));
         // The nearer one unless the other is clearly better.
         let (near, far) = if is_near { (own, other) } else { (other, own) };
@@ -283,7 +291,7 @@ impl Grower<'_> {
                 marked = marked.iter().filter(|m| **m).count(),
                 "refined where needed"
             );
-            if fit.cost() > 0.3 * before {
+            if fit.cost() > WORTH_ANOTHER_SWEEP * before {
                 break;
             }
         }

@@ -65,9 +65,11 @@ pub use draw::Expected;
 pub use element_gains::ElementGains;
 pub use find::{find, find_from};
 pub use finish::Found;
+pub(super) use finish::TIED_COST_RATIO;
 pub(super) use grow::Grower;
 pub use ladder::{LADDER, Rung};
 pub(super) use propose::peaks::Detector;
+pub(super) use prune::MIN_WORTH_RATIO;
 pub use settings::Settings;
 pub use trace::{CALIBRATION, FOLLOWING, MOST_ATTEMPTS, ORDERING};
 

@@ -2,13 +2,14 @@
 
 use super::finish::are_loud;
 use super::grow::{Grower, tried};
+use super::propose::strides::MAX_RANGES;
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, distance_bins, rows_of};
 
-/// An atom must explain this many times the energy that noise gives to one more gain at each end.
-const LEAST_WORTH: f64 = 16.0;
+/// Energy that an atom must explain over what noise gives to one more gain, as a ratio.
+pub const MIN_WORTH_RATIO: f64 = 16.0;
 
 /// Most rounds of taking away.
 const MOST_ROUNDS: usize = 12;
@@ -32,7 +33,7 @@ impl Grower<'_> {
                 break;
             }
             let rounding = self.bench.worth_of(self.rounding_amplitude(), self.radar);
-            let least = rounding.max(LEAST_WORTH * self.bench.gain_noise(self.radar, &fit));
+            let least = rounding.max(MIN_WORTH_RATIO * self.bench.gain_noise(self.radar, &fit));
             let worth = self.bench.worths(&fit);
             let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
             let is_loud = self.are_loud(&fit);
@@ -73,6 +74,6 @@ impl Grower<'_> {
 
     fn ran_away(&self, atom: &Atom) -> bool {
         let [x, y] = atom.position_metres(0.0);
-        x.hypot(y) > 2.5 * self.radar.max_range_metres()
+        x.hypot(y) > MAX_RANGES * self.radar.max_range_metres()
     }
 }

@@ -1,13 +1,12 @@
 //! What each rung of the search does.
 
-use super::grow::ROUGHLY;
 use super::on_wall::is_on;
 use super::propose::pairs::Pairs;
 use super::state::{Answer, Search, State};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
-use crate::reconstruct::fit::{Atom, Fit, Gains, Tie};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Tie};
 
 /// Most rounds of pairing what is left.
 const MOST_ROUNDS: usize = 3;
@@ -83,7 +82,7 @@ impl Search<'_> {
             }
             fit.gains.extend(vec![Gains::default(); more.len()]);
             fit.atoms.extend(more);
-            fit = self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, ROUGHLY);
+            fit = self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH);
             if self.is_explained(&fit) {
                 break;
             }

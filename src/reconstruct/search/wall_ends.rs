@@ -1,5 +1,6 @@
 //! Where a wall ends: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
 
+use super::begin::MIN_REFLECTORS;
 use super::grow::Grower;
 use super::on_wall::MOST_REFLECTORS;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Narrow, Samples, Spectra, Tie, Workbench, rows_of};
@@ -12,9 +13,6 @@ const BEYOND: usize = 8;
 
 /// Most times reflectors are taken from a wall's ends.
 const MOST_TRIMS: usize = 2;
-
-/// Fewest reflectors of a wall.
-const LEAST_REFLECTORS: usize = 8;
 
 /// Most times a wall is followed further and moved to its best place.
 const MOST_WALKS: usize = 8;
@@ -132,6 +130,6 @@ fn extended(wall: Atom, before: usize, after: usize) -> Option<Atom> {
 fn shortened(wall: Atom, [first, last]: [usize; 2]) -> Option<Atom> {
     let Atom::Segment { dx_metres, dy_metres, count, .. } = wall else { return None };
     let [x_metres, y_metres] = wall.position_metres(first as f64);
-    let count = count.checked_sub(first + last).filter(|count| *count >= LEAST_REFLECTORS)?;
+    let count = count.checked_sub(first + last).filter(|count| *count >= MIN_REFLECTORS)?;
     Some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
 }

@@ -1,8 +1,8 @@
 //! Walls, one after another: each is looked for in what the others leave, and all are followed to their ends again.
 
-use super::grow::{Grower, ROUGHLY};
+use super::grow::Grower;
 use crate::reconstruct::ReconstructError;
-use crate::reconstruct::fit::{Atom, Fit, Samples, Tie};
+use crate::reconstruct::fit::{Atom, Fit, Limits, Samples, Tie};
 
 /// Most walls of one scene.
 const MOST_WALLS: usize = 8;
@@ -46,7 +46,7 @@ impl Grower<'_> {
         for _ in 0..MOST_TURNS {
             self.task.check()?;
             let before = fit.cost();
-            fit = self.bench.refine(samples, fit.atoms, fit.gains, Tie::PerEnd, ROUGHLY);
+            fit = self.bench.refine(samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH);
             let joined = fit.cost();
             for i in 0..fit.atoms.len() {
                 if self.bench.work.is_spent() || !matches!(fit.atoms[i], Atom::Segment { .. }) {

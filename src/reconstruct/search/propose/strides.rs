@@ -54,8 +54,8 @@ const MOVES: usize = 4;
 /// A move that adds less than this part of the power is the last.
 const LEAST_ADDED: f64 = 0.002;
 
-/// Rows that reach farther than this many maximum ranges ran away.
-const MAX_RANGES: f64 = 2.5;
+/// Rows and points that reach farther than this many maximum ranges ran away.
+pub const MAX_RANGES: f64 = 2.5;
 
 /// A row that adds up to less than this part of the most it did has passed its end.
 const PASSED: f64 = 0.4;
