@@ -4,7 +4,6 @@
 //! estimation with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), by the means of the search.
 
 use super::peaks::{Peak, gains};
-use super::split::MOST_TWOS;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
@@ -53,6 +52,10 @@ const SAME_PLACE: (f64, f64) = (1e-3, 1e-2);
 
 /// Work granted: about ten microseconds a unit.
 const MOST_WORK: usize = 30_000;
+
+/// Most echoes among which doubtful ones are looked for, since rows of reflectors leave something wherever they stand; and most that are tried as two
+/// or taken away in one reconstruction.
+pub(super) const MOST_TWOS: usize = 24;
 
 /// Most echoes that fail to be two, one after another.
 const MOST_FAILURES: usize = 4;

@@ -5,7 +5,7 @@
 //! have happened, all is looked for once more, and each echo that leaves something at its own range is tried as two before others are
 //! taken beside it. What needs fewer echoes for as much, or explains more, is the answer.
 
-use super::settle::Settled;
+use super::settle::{MOST_TWOS, Settled};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Profile, Tie, distance_bins, rows_of};
 use num_complex::Complex64;
@@ -28,10 +28,6 @@ const MAY_BE_ONE: (f64, f64) = (0.1, 0.5);
 
 /// What is left may grow by this part where one echo does for two.
 const AS_GOOD: f64 = 0.05;
-
-/// Most echoes among which doubtful ones are looked for, since rows of reflectors leave something wherever they stand; and most that are tried as two
-/// or taken away in one reconstruction.
-pub(super) const MOST_TWOS: usize = 24;
 
 /// An echo that is this much weaker in power than one this near, in parts of an end's beam and in range bins, may be what that one leaves.
 const WEAKER: f64 = 0.1;
