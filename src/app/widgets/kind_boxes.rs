@@ -10,6 +10,11 @@ const SENTENCE_WIDTH: f32 = 420.0;
 /// Least width of a button with such a menu, points.
 const TITLE_WIDTH: f32 = 160.0;
 
+/// Name of a kind in menus.
+fn name(kind: &Kind) -> String {
+    if kind.test_set().is_some() { format!("set {kind}") } else { kind.to_string() }
+}
+
 /// A button with a menu that a click into it leaves open; the button's response.
 pub fn ticking_menu(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) -> Response {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -36,8 +41,7 @@ pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &m
     let room = SENTENCE_WIDTH.min((ui.ctx().content_rect().width() - 220.0).max(120.0));
     Grid::new("kinds").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
         for kind in kinds {
-            let name = if kind.test_set().is_some() { format!("set {kind}") } else { kind.to_string() };
-            member_box(ui, name, kind, chosen);
+            member_box(ui, name(&kind), kind, chosen);
             ui.scope(|ui| {
                 ui.set_width(room);
                 ui.add(Label::new(RichText::new(kind.description()).weak().small()).wrap().selectable(false));
@@ -49,7 +53,7 @@ pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &m
 
 /// The names of `chosen` kinds and of what stands beside them, or how many they are where they are many.
 pub fn kind_names(chosen: &BTreeSet<Kind>, beside: Option<&str>) -> String {
-    let names: Vec<String> = chosen.iter().map(Kind::to_string).chain(beside.map(str::to_owned)).collect();
+    let names: Vec<String> = chosen.iter().map(name).chain(beside.map(str::to_owned)).collect();
     if names.len() > 4 { format!("{} kinds", names.len()) } else { names.join(", ") }
 }
 

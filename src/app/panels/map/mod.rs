@@ -180,10 +180,16 @@ fn taken(input: &Input<'_>, frame: Frame<'_>) -> Vec<Pos2> {
     reflectors.map(|reflector| frame.blob(&reflector)).chain(caption).collect()
 }
 
-/// A line at the foot of a map, left of the button in its corner.
+/// Largest part of a map's height that a caption may cover.
+const MAX_CAPTION_PART: f32 = 0.3;
+
+/// A line at the foot of a map, left of the button in its corner; none where it would cover much of the map.
 fn caption_over(painter: &Painter, rect: Rect, line: &str) {
     let room = (rect.width() - 56.0).max(60.0);
     let galley = painter.layout(line.to_owned(), egui::FontId::proportional(14.0), CAPTION_INK, room);
+    if galley.size().y > MAX_CAPTION_PART * rect.height() {
+        return;
+    }
     let at = rect.left_bottom() + vec2(8.0, -8.0 - galley.size().y);
     painter.rect_filled(Rect::from_min_size(at, galley.size()).expand2(vec2(6.0, 3.0)), 4.0, CAPTION);
     painter.galley(at, galley, CAPTION_INK);
