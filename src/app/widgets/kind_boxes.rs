@@ -53,7 +53,9 @@ pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &m
 
 /// The names of `chosen` kinds and of what stands beside them, or how many they are where they are many.
 pub fn kind_names(chosen: &BTreeSet<Kind>, beside: Option<&str>) -> String {
-    let names: Vec<String> = chosen.iter().map(name).chain(beside.map(str::to_owned)).collect();
+    // A number alone could be a count.
+    let of = |kind: &Kind| if chosen.len() == 1 { name(kind) } else { kind.to_string() };
+    let names: Vec<String> = chosen.iter().map(of).chain(beside.map(str::to_owned)).collect();
     if names.len() > 4 { format!("{} kinds", names.len()) } else { names.join(", ") }
 }
 
