@@ -49,7 +49,7 @@ pub struct Panels<'a> {
     pub colours: ColourMap,
 }
 
-/// The cells that a detector found: 1, the others 0. Both maps are `[range bins, columns]`.
+/// Detected cells of target and output. A detected cell is 1 and any other 0; both maps are `[range bins, columns]`.
 #[derive(Debug, Clone)]
 pub struct DetectedCells {
     /// The detector.
@@ -61,7 +61,7 @@ pub struct DetectedCells {
 }
 
 impl DetectedCells {
-    /// Those of both maps, which `scale` made Lambda of.
+    /// Detects in both maps. `scale` is that of their Lambda.
     /// # Errors
     /// [`Cfar::check_map`].
     pub fn of(

@@ -69,7 +69,7 @@ pub fn network_weight(
 
 /// Stretches two maps of one scene, each from its peak downwards, to the geometric mean of their scales, and their thresholds along with them.
 ///
-/// Over noise the smallest of all cells sets the scale. It is chance, and what two experts expect of it is nearer in the mean.
+/// Over noise the smallest of all cells sets the scale by chance. The mean of two scales is nearer to it than either.
 pub fn scales_joined(maps: [&mut RangeAngleMap; 2], etas: [f32; 2]) -> [f32; 2] {
     let depths = maps[0].lambda.iter().zip(&maps[1].lambda).map(|(a, b)| [1.0 - f64::from(*a), 1.0 - f64::from(*b)]);
     let [square, product] = depths.fold([0.0; 2], |[square, product], [a, b]| [square + a * a, product + a * b]);

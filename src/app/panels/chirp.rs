@@ -33,8 +33,10 @@ const HANDLE: f32 = 5.0;
 const DRAGGED_BANDWIDTH_HZ: [f64; 2] = [1e6, 2e10];
 const DRAGGED_CARRIER_HZ: [f64; 2] = [1e9, 3e11];
 
-/// Height in which the charts can be read, and from which on an axis has its whole title, points.
+/// Least height of a chart whose axis has its whole title, points.
 const MIN_TITLE_HEIGHT_POINTS: f32 = 170.0;
+
+/// Height in which the charts can be read, points.
 const LEAST_CHARTS_HEIGHT: f32 = 230.0;
 
 /// Decibels that the spectrum spans.

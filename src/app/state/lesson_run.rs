@@ -45,7 +45,7 @@ pub struct LessonRun {
     pub gave_up: bool,
     /// The scene as the step set it up.
     pub set_up: Option<Arc<Scene>>,
-    /// Changes that could be undone when the step was set up: those are the learner's own before the lesson.
+    /// Number of changes in the history once the step was set up: undo goes back no farther.
     pub depth: usize,
     /// Panels that the lesson closed, since it doesn't use them, and whether each tab was in front.
     pub closed: Vec<(Panel, bool)>,

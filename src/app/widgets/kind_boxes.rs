@@ -18,7 +18,7 @@ fn name(kind: &Kind) -> String {
 /// A button with a menu that a click into it leaves open; the button's response.
 pub fn ticking_menu(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) -> Response {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    // Such a menu may open beside its button: it must stay where it is while the title grows.
+    // A tall menu opens beside its button. A button of constant width keeps it in place while the title grows.
     let button = Button::new(title).min_size(vec2(TITLE_WIDTH.min(0.2 * ui.available_width()), 0.0));
     MenuButton::from_button(button).config(config).ui(ui, contents).0
 }

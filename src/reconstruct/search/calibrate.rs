@@ -60,7 +60,7 @@ const MIN_ENERGY_RATIO: f64 = 1e-5;
 /// Maximum energy that calibrated objects leave over noise, as a part of the samples' energy.
 const MAX_ENERGY_RATIO: f64 = 1e-2;
 
-/// Maximum energy that calibrated objects leave, as a part of what objects leave without gains.
+/// Maximum residual energy with gains of the elements, relative to the residual energy without them.
 const MAX_PLAIN_RATIO: f64 = 0.1;
 
 /// Whether objects found in samples leave more than elements that are alike would.

@@ -215,8 +215,8 @@ fn echoes_text(count: usize, explained: Option<f64>) -> String {
     format!("{count} echo{plural} found{explained}")
 }
 
-/// What became of the objects in a method's output, as far as that is known of the one on screen: "5 of 5 found, 0 false", and where it
-/// `tells_distance` also "3 cm off (bound 1 cm)".
+/// The verdict on the objects in a method's output, such as "5 of 5 found, 0 false". With `tells_distance` the distance of found points follows:
+/// "3 cm off (bound 1 cm)". `None` until the output on screen is judged.
 pub fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot, tells_distance: bool) -> Option<String> {
     if let Some(found) = echoes_found(state, jobs, slot) {
         return Some(found);
