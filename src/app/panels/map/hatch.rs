@@ -10,6 +10,9 @@ use eframe::egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2
 /// The least height of a cell that hatches are drawn in, points.
 const MIN_CELL_POINTS: f32 = 4.0;
 
+/// By how much a cell of a ghost is drawn larger: a column of a whole map is narrower than a pixel.
+const GHOST_MARGIN_POINTS: f32 = 0.75;
+
 /// Between two lines of a hatch, points.
 const STEP: f32 = 7.0;
 
@@ -58,7 +61,11 @@ impl ToldApart<'_> {
                 continue;
             }
             let first = mesh.vertices.len() as u32;
-            corners.iter().for_each(|corner| mesh.colored_vertex(*corner, Color32::from_rgb(r, g, b)));
+            let middle = corner(0.0, 0.0);
+            for corner in corners {
+                let seen = corner + GHOST_MARGIN_POINTS * (corner - middle).normalized();
+                mesh.colored_vertex(seen, Color32::from_rgb(r, g, b));
+            }
             mesh.add_triangle(first, first + 1, first + 2);
             mesh.add_triangle(first, first + 2, first + 3);
         }
