@@ -13,7 +13,7 @@ pub(super) struct Registration<const COLUMNS: usize> {
 
 #[derive(Debug, Clone, Copy)]
 struct Tap {
-    /// The first of the four; the others are beside it, where angles wrap around, and below.
+    /// The first of the four; the others are beside it and below. Angles wrap around, and so do ranges beyond the last.
     cell: u32,
     /// How far it is to the next row and to the next column, in parts of [`WHOLE_PARTS`].
     part: [u16; 2],
@@ -37,10 +37,10 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
             let distance = (dx * dx + r * r * (1.0 - u * u)).sqrt();
             let there = if distance > 0.0 { dx / distance } else { 0.0 };
             let there = if u == seen { there } else { seen };
-            let (row, column) = ((distance / bin).min((rows - 1) as f64), there / scale * half + half);
-            let (r0, c0) = ((row.floor() as usize).min(rows - 2), column.floor());
-            let part = [row - r0 as f64, column - c0].map(|part| (part as f32 * WHOLE_PARTS).round() as u16);
-            Tap { cell: (r0 * COLUMNS + c0.rem_euclid(COLUMNS as f64) as usize) as u32, part }
+            let (row, column) = (distance / bin, there / scale * half + half);
+            let (r0, c0) = (row.floor(), column.floor());
+            let part = [row - r0, column - c0].map(|part| (part as f32 * WHOLE_PARTS).round() as u16);
+            Tap { cell: (r0 as usize % rows * COLUMNS + c0.rem_euclid(COLUMNS as f64) as usize) as u32, part }
         };
         Registration { taps: (0..rows * COLUMNS).map(tap).collect() }
     }
@@ -55,8 +55,36 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
             let first = tap.cell as usize;
             let beside = (first & !(COLUMNS - 1)) | ((first + 1) & (COLUMNS - 1));
             let [down, right] = tap.part.map(|part| f32::from(part) * (1.0 / WHOLE_PARTS));
-            let line = |below: usize| plane[first + below] * (1.0 - right) + plane[beside + below] * right;
+            let within = |cell: usize| if cell < plane.len() { cell } else { cell - plane.len() };
+            let line = |below: usize| plane[within(first + below)] * (1.0 - right) + plane[within(beside + below)] * right;
             line(0) * (1.0 - down) + line(COLUMNS) * down
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::live::grid::FINE_COLUMNS;
+    use crate::radar::End;
+
+    #[test]
+    fn ranges_beyond_the_last_row_wrap_around() {
+        let radar = Radar::default();
+        let (rows, bin) = (radar.samples, radar.range_resolution_metres());
+        let x = radar.end_centre_metres(End::First);
+        let registration = Registration::<FINE_COLUMNS>::new(&radar, 0.0, x);
+        let row_numbers: Vec<f32> = (0..rows * FINE_COLUMNS).map(|cell| (cell / FINE_COLUMNS) as f32).collect();
+        let seen: Vec<f32> = registration.row(&row_numbers, rows - 1).collect();
+        let r = (rows - 1) as f64 * bin;
+        for column in FINE_COLUMNS / 2 + 1..FINE_COLUMNS {
+            let u = cosine(column, FINE_COLUMNS);
+            let bins = (r * r - 2.0 * r * u * x + x * x).sqrt() / bin;
+            // Between the last row and the first the look-up blends both.
+            if bins > rows as f64 {
+                assert!((f64::from(seen[column]) - (bins - rows as f64)).abs() < 1e-2, "column {column}: {} bins, {}", bins, seen[column]);
+            }
+        }
+        assert!(seen[FINE_COLUMNS - 1] < 30.0, "end-fire is {} bins off", seen[FINE_COLUMNS - 1]);
     }
 }
