@@ -188,7 +188,8 @@ impl View {
     #[cfg(feature = "pictures")]
     pub fn style(&self, method: &str) -> Style {
         let View { floor, normalisation, colours, target_eta, cfar, .. } = *self;
-        Style { floor, normalisation, colours, eta: self.method_eta.get(method).copied(), target_eta, cfar }
+        let (eta, layout) = (self.method_eta.get(method).copied(), self.layout.clone());
+        Style { floor, layout, normalisation, colours, eta, target_eta, cfar }
     }
 }
 

@@ -491,6 +491,7 @@ def robustness(
     seed: int = 0,
     floor: str = "thesis",
     radar: Radar | None = None,
+    layout: Sequence[int] | None = None,
     calibrate: bool = False,
     progress: _Progress | None = None,
 ) -> list[dict[str, Any]]: ...
@@ -504,6 +505,7 @@ def threshold(
     floor: str = "thesis",
     normalisation: str = "min-max",
     radar: Radar | None = None,
+    layout: Sequence[int] | None = None,
     progress: _Progress | None = None,
 ) -> Threshold: ...
 def read_rows(path: _Path) -> list[dict[str, Any]]: ...

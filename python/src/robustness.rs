@@ -1,5 +1,6 @@
 //! What errors of the elements cost.
 
+use crate::arrays::layout_of;
 use crate::errors::{named, value, whole};
 use crate::methods::{caused, methods_of};
 use crate::radar::{Radar, or_default};
@@ -35,6 +36,7 @@ const USUAL_SCALES: [f64; 5] = [0.0, 0.5, 1.0, 2.0, 4.0];
 ///     seed: Seed of scenes and errors.
 ///     floor: What lies beneath the reflectors.
 ///     radar: The radar; that of table 3.1 where none is given.
+///     layout: Numbers of the elements that methods hear in place of the two ends (`layout`).
 ///     calibrate: Whether each array is first calibrated on its scene's strongest reflector.
 ///     progress: Called with the part that is done, 0 to 1.
 ///
@@ -46,7 +48,7 @@ const USUAL_SCALES: [f64; 5] = [0.0, 0.5, 1.0, 2.0, 4.0];
 ///     ValueError: A name is unknown, a number can't be used, the kind finds no room before the radar, or a method can't work on a scene.
 #[pyfunction]
 #[pyo3(signature = (methods, set, *, gain_db=0.5, phase_degrees=10.0, position_millimetres=0.0, scales=None, count=5, seed=0,
-                    floor="thesis", radar=None, calibrate=false, progress=None))]
+                    floor="thesis", radar=None, layout=None, calibrate=false, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn robustness<'py>(
     py: Python<'py>,
@@ -60,6 +62,7 @@ pub fn robustness<'py>(
     seed: i128,
     floor: &str,
     radar: Option<&Radar>,
+    layout: Option<&Bound<'py, PyAny>>,
     calibrate: bool,
     progress: Progress<'_, 'py>,
 ) -> PyResult<Bound<'py, PyList>> {
@@ -77,6 +80,7 @@ pub fn robustness<'py>(
     let methods = methods_of(methods)?;
     let robustness = Robustness {
         radar: or_default(radar),
+        layout: layout_of(layout)?,
         kind: named::<Kind>(&set_name(set)?)?,
         seed,
         count,

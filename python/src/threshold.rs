@@ -1,5 +1,6 @@
 //! The threshold at which a method keeps a rate of false alarms.
 
+use crate::arrays::layout_of;
 use crate::errors::{named, value, whole};
 use crate::methods;
 use crate::radar::{Radar, or_default};
@@ -24,6 +25,7 @@ use pyo3::prelude::*;
 ///     floor: What lies beneath the reflectors.
 ///     normalisation: How every map is normalised.
 ///     radar: The radar; that of table 3.1 where none is given.
+///     layout: Numbers of the elements that the method hears in place of the two ends (`layout`).
 ///     progress: Called with the part that is done, 0 to 1.
 ///
 /// Returns:
@@ -35,7 +37,7 @@ use pyo3::prelude::*;
 ///     ValueError: A name is unknown or given twice, the scenes are too few for the rate, or the method can't work on a scene.
 #[pyfunction]
 #[pyo3(signature = (method=None, *, false_alarm_percent=1.0, sets=None, count=100, seed=0, floor="thesis", normalisation="min-max",
-                    radar=None, progress=None))]
+                    radar=None, layout=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn threshold<'py>(
     py: Python<'py>,
@@ -47,6 +49,7 @@ pub fn threshold<'py>(
     floor: &str,
     normalisation: &str,
     radar: Option<&Radar>,
+    layout: Option<&Bound<'py, PyAny>>,
     progress: Progress<'_, 'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let usual = ThresholdSearch::default();
@@ -56,6 +59,7 @@ pub fn threshold<'py>(
     };
     let search = ThresholdSearch {
         radar: or_default(radar),
+        layout: layout_of(layout)?,
         floor: named(floor)?,
         normalisation: named(normalisation)?,
         kinds,

@@ -39,3 +39,17 @@ def test_ctrl_c_stops_the_search():
     with pytest.raises(KeyboardInterrupt):
         ap.threshold("baseline", sets=["1"], count=100_000)
     timer.join()
+
+
+def test_a_layout_has_a_threshold_of_its_own():
+    of = lambda layout: ap.threshold("matched-filter", false_alarm_percent=50, sets=[1], count=2, layout=layout).eta
+    assert of(ap.layout("nested=12x12")) != of(None)
+    with pytest.raises(ValueError, match="0 to 1023"):
+        of([0, 1024])
+
+
+def test_robustness_hears_a_layout():
+    of = lambda layout: ap.robustness(["matched-filter"], 1, scales=[1], count=1, layout=layout)[0]["squared_error"]
+    assert of(ap.layout("nested=12x12")) != of(None)
+    with pytest.raises(ValueError, match="0 to 1023"):
+        of([0, 1024])

@@ -11,12 +11,16 @@ pub struct LayoutArg {
 }
 
 impl LayoutArg {
+    /// The layout; `None` for the two ends.
+    pub fn other(&self) -> Option<&LayoutKind> {
+        self.layout.as_ref().filter(|layout| **layout != LayoutKind::TwoEnds)
+    }
+
     /// Numbers of the elements; `None` for the two ends.
     /// # Errors
     /// [`CommandError`] where `radar` has no such elements.
     pub fn numbers(&self, radar: &Radar) -> Result<Option<Vec<usize>>, CommandError> {
-        let other = self.layout.as_ref().filter(|layout| **layout != LayoutKind::TwoEnds);
         let wrong = |error| CommandError::Usage(format!("--layout: {error}"));
-        other.map(|layout| layout.numbers(radar).map_err(wrong)).transpose()
+        self.other().map(|layout| layout.numbers(radar).map_err(wrong)).transpose()
     }
 }

@@ -3,6 +3,7 @@
 use super::arguments::{self, FloorArgs};
 use super::frames::Frames;
 use super::input::{ConfigArg, InputArgs};
+use super::layout_arg::LayoutArg;
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print, write_file};
 use crate::files::npz::NpzError;
@@ -16,7 +17,7 @@ use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
 use crate::recording::explain::explain;
 use crate::scene::file::{self, SceneFile};
-use crate::signal::{self, TwoEnds};
+use crate::signal::{self, BeatSignal, LayoutSamples, TwoEnds};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -25,7 +26,8 @@ use std::sync::Arc;
 /// The archive has all_point_x, all_point_y (f64 [L], metres), sub0, sub1 (complex128 [512, 12], the samples of the two ends),
 /// polar_full (f64 [1, 512, 1024], log10 magnitude of the whole array, not normalised) and polar_partial_mag_phase
 /// (f64 [4, 512, 1024], the network's input). These are the keys of the thesis author's program. The archive of a recording has no
-/// positions, and no polar_full where only the two ends were recorded. With --method it also has output (f32 [1, 512, 1024]), the method's
+/// positions, and no polar_full where only the two ends were recorded. With --layout it also has heard (complex128 [elements of the layout, 512]) and
+/// layout (i64, their numbers), and a method hears these. With --method it also has output (f32 [1, 512, 1024]), the method's
 /// estimate of Lambda. The window's "Export maps" writes the same. Over a map of the whole array, a line says how many decibels Lambda spans.
 ///
 /// Further keys are the axes: range_metres (f64 [512]), cos_theta (f64 [1024], 0 straight ahead, 1 along the array to the right),
@@ -65,6 +67,9 @@ pub struct Args {
     /// Reconstruction to show as the output [default: live where it takes the radar, or else iaa]; an archive has an output only with --method
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
+
+    #[command(flatten)]
+    layout: LayoutArg,
 
     #[command(flatten)]
     own: OwnMethodArgs,
@@ -120,15 +125,16 @@ impl Args {
             .map_err(CommandError::on(&self.input))?;
         match output {
             Output::Archive => {
-                let request =
-                    Request { noise: self.floor.floor.into(), normalisation: self.normalisation, ..Request::default() };
+                let heard = self.heard(&radar, Some(&signal))?;
+                let (noise, normalisation) = (self.floor.floor.into(), self.normalisation);
+                let request = Request { noise, normalisation, heard: heard.clone(), ..Request::default() };
                 let output = self.estimate(&radar, &signal.two_ends(&radar), &request)?;
-                let full = write_maps(&self.output, &radar, &scene, &signal, output.as_ref())
+                let full = write_maps(&self.output, &radar, &scene, &signal, heard.as_deref(), output.as_ref())
                     .map_err(CommandError::on(&self.output))?;
                 print(&span(&full))
             }
             Output::Picture(format) => {
-                let method = self.method(|| methods::preferred_for(&radar))?;
+                let method = self.method(&radar)?;
                 let style = Style { floor: self.floor.floor, ..self.style() };
                 let bytes =
                     compose(&radar, &scene, &signal, method.as_ref(), &style, format).map_err(CommandError::failed)?;
@@ -160,7 +166,7 @@ impl Args {
                 write_frames(&self.output, radar, frames.count(), map).map_err(CommandError::on(&self.output))
             }
             Output::Animation => {
-                let method = self.method(|| methods::preferred_for(radar))?;
+                let method = self.method(radar)?;
                 frames.animate(&self.output, |frame| {
                     compose_recording(frame, method.as_ref(), &self.style(), PictureFormat::Png)
                         .map_err(CommandError::on(&self.input))
@@ -188,14 +194,16 @@ impl Args {
                 let (radar, ends) = (&recording.radar, recording.two_ends());
                 let (noise, normalisation) = (NoisePrior::UNKNOWN, self.normalisation);
                 let snapshot_range_metres = recording.range_metres;
-                let request = Request { noise, normalisation, snapshot_range_metres, ..Request::default() };
+                let heard = self.heard(radar, recording.signal())?;
+                let request =
+                    Request { noise, normalisation, snapshot_range_metres, heard: heard.clone(), ..Request::default() };
                 let output = self.estimate(radar, &ends, &request)?;
-                write_recorded_maps(&self.output, radar, &ends, full.as_ref(), output.as_ref())
+                write_recorded_maps(&self.output, radar, &ends, full.as_ref(), heard.as_deref(), output.as_ref())
                     .map_err(CommandError::on(&self.output))?;
                 full.as_ref().map_or(Ok(()), |full| print(&span(full)))
             }
             Output::Picture(format) => {
-                let method = self.method(|| methods::preferred_for(&recording.radar))?;
+                let method = self.method(&recording.radar)?;
                 let bytes = compose_recording(&recording, method.as_ref(), &self.style(), format)
                     .map_err(CommandError::on(&self.input))?;
                 write_file(&self.output, &bytes)
@@ -216,12 +224,25 @@ impl Args {
         Ok(Some(answer.lambda))
     }
 
-    fn method(&self, usual: impl FnOnce() -> Arc<dyn Reconstructor>) -> Result<Arc<dyn Reconstructor>, CommandError> {
-        self.method.as_deref().map_or_else(|| Ok(usual()), |name| methods::by_name(name).map_err(CommandError::failed))
+    /// The method of a picture.
+    fn method(&self, radar: &Radar) -> Result<Arc<dyn Reconstructor>, CommandError> {
+        match (self.method.as_deref(), self.layout.numbers(radar)?) {
+            (Some(name), _) => methods::by_name(name).map_err(CommandError::failed),
+            (None, Some(layout)) => Ok(methods::preferred_hearing(radar, &layout)),
+            (None, None) => Ok(methods::preferred_for(radar)),
+        }
+    }
+
+    /// What the layout's elements hear, where there is one.
+    fn heard(&self, radar: &Radar, signal: Option<&BeatSignal>) -> Result<Option<Arc<LayoutSamples>>, CommandError> {
+        let Some(layout) = self.layout.numbers(radar)? else { return Ok(None) };
+        let alone = || CommandError::Usage(format!("{}: {ENDS_ALONE}, or no --layout", self.input.display()));
+        Ok(Some(Arc::new(signal.ok_or_else(alone)?.of_layout(&layout))))
     }
 
     fn style(&self) -> Style {
-        Style { normalisation: self.normalisation, colours: self.colours, cfar: self.cfar, ..Style::default() }
+        let (normalisation, layout) = (self.normalisation, self.layout.other().cloned());
+        Style { normalisation, layout, colours: self.colours, cfar: self.cfar, ..Style::default() }
     }
 }
 

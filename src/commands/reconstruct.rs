@@ -13,10 +13,10 @@ use crate::maps::archive::{add_columns, read_radar};
 use crate::methods;
 use crate::radar::Radar;
 use crate::reconstruct::found::find;
-use crate::reconstruct::{Detection, LayoutSamples, NoisePrior, ReconstructError, Reconstructor, Request};
+use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstructor, Request};
 use crate::recording::{self, Recording};
 use crate::scene::file;
-use crate::signal::TwoEnds;
+use crate::signal::{LayoutSamples, TwoEnds};
 use ndarray::{Array1, Array2, Array3, Ix2, Ix3, arr0};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -239,7 +239,7 @@ impl Args {
         let alone = "holds the samples of the two ends alone; leave --layout out";
         let alone = || CommandError::Usage(format!("{}: the recording {alone}", self.input.display()));
         let signal = recording.signal().ok_or_else(alone)?;
-        Ok(Heard::layout(&recording.radar, LayoutSamples::of(&signal.samples, &layout)))
+        Ok(Heard::layout(&recording.radar, signal.of_layout(&layout)))
     }
 
     fn answer(

@@ -2,12 +2,13 @@
 
 use super::arguments::{FloorArgs, real, seed, whole};
 use super::figure::{save, save_numbers};
+use super::layout_arg::LayoutArg;
 use super::line_chart::{ChartAxis, ChartLine, LineChart, span, widened};
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print, print_json, write_file};
 use crate::evaluate::{Estimate, Robustness, RobustnessRow};
 use crate::methods;
-use crate::radar::{Decibels, Radar, Tolerances, counted};
+use crate::radar::{Decibels, LayoutKind, Radar, Tolerances, counted};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::Kind;
 use crate::task::Task;
@@ -23,7 +24,7 @@ use std::sync::Arc;
 /// squared_error, squared_error_standard_error, detection, false_alarm. Maps are compared with that of the array without errors.
 /// Every scale has the same scenes, and the same draw of errors times the scale.
 ///
-/// With --json one object is printed: set, count, seed, floor, calibrated, and rows with the columns of the CSV, where squared_error,
+/// With --json one object is printed: set, count, seed, floor, layout (null for the two ends), calibrated, and rows with the columns of the CSV, where squared_error,
 /// detection and false_alarm are objects of mean and standard_error. Rates are fractions, not percent.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -69,6 +70,9 @@ pub struct Args {
     #[command(flatten)]
     floor: FloorArgs,
 
+    #[command(flatten)]
+    layout: LayoutArg,
+
     /// Print one JSON object instead of CSV
     #[arg(long)]
     json: bool,
@@ -91,6 +95,7 @@ impl Args {
             .collect::<Result<_, _>>()?;
         let robustness = Robustness {
             radar: Radar::default(),
+            layout: self.layout.numbers(&Radar::default())?,
             kind: Kind::TEST_SETS[usize::from(self.set) - 1],
             seed: self.seed,
             count: self.count,
@@ -113,6 +118,7 @@ impl Args {
             count: self.count,
             seed: self.seed,
             floor: self.floor.floor.to_string(),
+            layout: self.layout.other().map(LayoutKind::to_string),
             calibrated: self.calibrate,
             rows: &rows,
         };
@@ -135,6 +141,7 @@ struct Report<'a> {
     count: u32,
     seed: u64,
     floor: String,
+    layout: Option<String>,
     calibrated: bool,
     rows: &'a [RobustnessRow],
 }

@@ -1,11 +1,12 @@
 //! `apertura threshold`: the threshold at which a method keeps a rate of false alarms.
 
 use super::arguments::{FloorArgs, real, seed, whole};
+use super::layout_arg::LayoutArg;
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, print, print_json};
 use crate::evaluate::threshold::{KeptThreshold, ThresholdMeans, ThresholdSearch};
 use crate::methods;
-use crate::radar::counted;
+use crate::radar::{LayoutKind, Radar, counted};
 use crate::scene::generate::Kind;
 use crate::task::Task;
 use indicatif::ProgressBar;
@@ -19,7 +20,7 @@ use serde::Serialize;
 /// takes 99 scenes or more, and with few more next to no false alarm is left to the scenes tried: ((n + 1) rate - 1) / n. From 990 scenes on
 /// that is nine tenths of 1 %. --check tries the threshold on further scenes.
 ///
-/// With --json one object is printed: method, sets, floor, seed, wanted, eta, scenes, false_alarm and detection (means over the scenes
+/// With --json one object is printed: method, sets, floor, layout (null for the two ends), seed, wanted, eta, scenes, false_alarm and detection (means over the scenes
 /// tried), left_to_scenes (the most that false_alarm may be), scenes_within_a_tenth (from so many scenes on left_to_scenes is nine tenths of
 /// wanted), and check (null without --check; scenes, false_alarm, detection). Rates are fractions, not percent.
 #[derive(Debug, clap::Args)]
@@ -54,6 +55,9 @@ pub struct Args {
     #[command(flatten)]
     floor: FloorArgs,
 
+    #[command(flatten)]
+    layout: LayoutArg,
+
     /// Print one JSON object instead of text
     #[arg(long)]
     json: bool,
@@ -65,6 +69,7 @@ struct Report {
     method: String,
     sets: Vec<String>,
     floor: String,
+    layout: Option<String>,
     seed: u64,
     wanted: f64,
     eta: f32,
@@ -96,6 +101,7 @@ impl Args {
         self.own.start()?;
         let method = methods::by_name(self.method.trim()).map_err(CommandError::failed)?;
         let search = ThresholdSearch {
+            layout: self.layout.numbers(&Radar::default())?,
             floor: self.floor.floor,
             kinds: self.set.clone(),
             count: self.count,
@@ -115,6 +121,7 @@ impl Args {
             method: method.name().to_owned(),
             sets: self.set.iter().map(Kind::to_string).collect(),
             floor: self.floor.floor.to_string(),
+            layout: self.layout.other().map(LayoutKind::to_string),
             seed: self.seed,
             wanted: self.false_alarm / 100.0,
             eta,
@@ -137,8 +144,15 @@ impl Report {
             let scenes = counted(tried.scenes, "scene", "scenes");
             format!("{what} {scenes}: P_FA {:.3} %, P_D {:.2} %", 100.0 * tried.false_alarm, 100.0 * tried.detection)
         };
+        let heard = self.layout.as_ref().map_or_else(String::new, |layout| format!(", elements {layout} heard"));
         let mut lines = vec![
-            format!("threshold of {} over {}, sets {}: {:.4}", self.method, self.floor, self.sets.join(", "), self.eta),
+            format!(
+                "threshold of {} over {}{heard}, sets {}: {:.4}",
+                self.method,
+                self.floor,
+                self.sets.join(", "),
+                self.eta
+            ),
             tried("on the", &self.tried),
             self.told_left.clone(),
             format!(

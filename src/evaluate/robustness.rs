@@ -5,19 +5,22 @@ use super::estimate::Estimate;
 use super::metrics::Metrics;
 use super::trial::Trial;
 use crate::maps::Normalisation;
-use crate::radar::{Radar, Tolerances};
+use crate::radar::{Radar, Tolerances, check_layout};
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::scene::{Reflector, SceneError};
-use crate::signal::{Floor, TwoEnds, calibrate, simulate_built};
+use crate::signal::{BeatSignal, Floor, calibrate, simulate_built};
 use crate::task::Task;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Which scenes methods are tried on, and how far the elements are off.
 #[derive(Debug, Clone)]
 pub struct Robustness {
     /// The radar, as it should be.
     pub radar: Radar,
+    /// Numbers of the elements that methods hear in place of the two ends.
+    pub layout: Option<Vec<usize>>,
     /// Kind of the test scenes.
     pub kind: Kind,
     /// Seed of the scenes, of their noise and of the elements' errors.
@@ -66,14 +69,19 @@ impl Robustness {
         mut on_map: impl FnMut(),
     ) -> Result<Vec<RobustnessRow>, CampaignError> {
         self.kind.check_room(&self.radar)?;
+        self.layout
+            .iter()
+            .try_for_each(|layout| check_layout(layout, self.radar.elements))
+            .map_err(CampaignError::Layout)?;
         let mut metrics = vec![vec![Vec::new(); self.scales.len()]; methods.len()];
         let request = Request { noise: self.floor.into(), task: task.clone(), ..Request::default() };
         let set = || format!("{:?}", self.kind);
         for index in 0..self.count {
-            let (mut trial, ends) =
+            let (mut trial, signals) =
                 self.trial(index).map_err(|source| CampaignError::Scene { set: set(), index, source })?;
-            for (i, ends) in ends.into_iter().enumerate() {
-                trial.ends = ends;
+            for (i, signal) in signals.into_iter().enumerate() {
+                trial.ends = signal.two_ends(&self.radar);
+                trial.heard = self.layout.as_ref().map(|layout| Arc::new(signal.of_layout(layout)));
                 for (method, metrics) in methods.iter().zip(&mut metrics) {
                     let answer = trial.ask(*method, &request).map_err(|source| CampaignError::Method {
                         method: method.name(),
@@ -108,23 +116,24 @@ impl Robustness {
         }
     }
 
-    fn trial(&self, number: u32) -> Result<(Trial, Vec<TwoEnds>), SceneError> {
+    /// A scene, and the signal that the array hears at each scale.
+    fn trial(&self, number: u32) -> Result<(Trial, Vec<BeatSignal>), SceneError> {
         let radar = &self.radar;
         let scene = Generator::new(radar, Reading::Program, Purpose::Test, self.seed).scene(self.kind, number);
         let trial = Trial::new(radar, &scene, self.floor, Normalisation::MinMax)?;
         let loudness = |r: &Reflector| r.reflectivity.abs() / (r.x_metres.powi(2) + r.y_metres.powi(2));
         let loudest = scene.reflectors().into_iter().max_by(|a, b| loudness(a).total_cmp(&loudness(b)));
-        let ends = |scale: &f64| {
+        let signal = |scale: &f64| {
             let array = self.tolerances.times(*scale).build(radar, self.seed.wrapping_add(u64::from(number)));
             let mut signal = simulate_built(radar, &scene, &array, self.floor, scene.noise_seed)?;
             let on = loudest.filter(|_| self.calibrated).and_then(|r| calibrate(radar, &signal, &r));
             if let Some(calibration) = on {
                 calibration.take_off(&mut signal);
             }
-            Ok(signal.two_ends(radar))
+            Ok(signal)
         };
-        let ends = self.scales.iter().map(ends).collect::<Result<_, SceneError>>()?;
-        Ok((trial, ends))
+        let signals = self.scales.iter().map(signal).collect::<Result<_, SceneError>>()?;
+        Ok((trial, signals))
     }
 }
 
@@ -139,6 +148,7 @@ mod tests {
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 40.0, position_millimetres: 0.0 };
         let robustness = Robustness {
             radar: Radar { elements: 256, samples: 256, ..Radar::default() },
+            layout: None,
             kind: Kind::Set1,
             seed: 3,
             count: 2,

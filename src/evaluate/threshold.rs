@@ -1,9 +1,9 @@
 //! The threshold at which a method keeps a rate of false alarms on further scenes like those that it was tried on.
 
 use super::trial::Trial;
-use super::{Roc, RocPoint, detection_rates};
+use super::{Roc, RocPoint, Target, detection_rates};
 use crate::maps::{Normalisation, RangeAngleMap};
-use crate::radar::{Radar, counted};
+use crate::radar::{Radar, check_layout, counted};
 use crate::reconstruct::{ReconstructError, Reconstructor, Request};
 use crate::scene::SceneError;
 use crate::scene::generate::{Generator, Kind, NoRoom, Purpose, Reading};
@@ -15,6 +15,8 @@ use crate::task::Task;
 pub struct ThresholdSearch {
     /// The radar of the scenes.
     pub radar: Radar,
+    /// Numbers of the elements that the method hears in place of the two ends.
+    pub layout: Option<Vec<usize>>,
     /// Noise of the scenes.
     pub floor: Floor,
     /// How every map is normalised.
@@ -33,6 +35,7 @@ impl Default for ThresholdSearch {
     fn default() -> Self {
         ThresholdSearch {
             radar: Radar::default(),
+            layout: None,
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
             kinds: vec![Kind::Set1, Kind::Set2, Kind::Set3],
@@ -80,6 +83,8 @@ pub enum ThresholdError {
     /// The objects of a kind of scenes find no room before the radar.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
+    #[error("{0}")]
+    Layout(String),
     /// A scene can't be simulated.
     #[error("scene {index} of {kind}: {source}")]
     Scene { kind: Kind, index: u32, source: SceneError },
@@ -174,6 +179,10 @@ impl ThresholdSearch {
         if self.kinds.contains(&Kind::Noise) {
             return Err(ThresholdError::NoEchoes(Kind::Noise));
         }
+        self.layout
+            .iter()
+            .try_for_each(|layout| check_layout(layout, self.radar.elements))
+            .map_err(ThresholdError::Layout)?;
         self.kinds.iter().try_for_each(|kind| kind.check_room(&self.radar))?;
         let twice = self.kinds.iter().enumerate().find(|(i, kind)| self.kinds[..*i].contains(kind));
         if let Some((_, kind)) = twice {
@@ -203,8 +212,10 @@ impl ThresholdSearch {
         for &kind in &self.kinds {
             for index in first..first.saturating_add(count) {
                 let scene = generator.scene(kind, index);
-                let trial = Trial::new(&self.radar, &scene, self.floor, self.normalisation)
-                    .map_err(|source| ThresholdError::Scene { kind, index, source })?;
+                let layout = self.layout.as_deref();
+                let trial =
+                    Trial::against(Target::Measured, layout, &self.radar, &scene, self.floor, self.normalisation)
+                        .map_err(|source| ThresholdError::Scene { kind, index, source })?;
                 let answer = trial.ask(method, &request);
                 let answer = answer.map_err(|source| {
                     let method = method.name();

@@ -8,9 +8,9 @@ use crate::maps::cfar::{Cfar, CfarError, DETECTED};
 use crate::maps::{self, Aperture, LambdaScale, LogMap, Normalisation, RangeAngleMap};
 use crate::platform::Instant;
 use crate::radar::{BuiltArray, Radar};
-use crate::reconstruct::{LayoutSamples, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::scene::{Disturbances, Reflector, Scene, SceneError};
-use crate::signal::{self, Floor, TwoEnds};
+use crate::signal::{self, Floor, LayoutSamples, TwoEnds};
 use std::sync::{Arc, OnceLock};
 
 /// A simulated scene: what methods get, and what they are held against.
@@ -82,7 +82,7 @@ impl Trial {
         };
         let target = full.normalise(normalisation);
         let ends = signal.two_ends(radar);
-        let of_layout = |layout: &[usize]| Arc::new(LayoutSamples::of(&signal.samples, layout));
+        let of_layout = |layout: &[usize]| Arc::new(signal.of_layout(layout));
         let heard = layout.map(of_layout);
         let (radar, scene, scale) = (radar.clone(), scene.clone(), full.scale(normalisation));
         Ok(Trial { radar, ends, heard, target, scene, scale, footprints: OnceLock::new() })

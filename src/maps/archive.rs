@@ -5,7 +5,7 @@ use super::{Aperture, LogMap, RangeAngleMap, channels_map, network_input};
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
 use crate::radar::{Antennas, AntennasError, CHIRP_SECONDS, Carrier, End, LinkBudget, Radar, WindowFunction};
 use crate::scene::{Scene, npz};
-use crate::signal::{BeatSignal, TwoEnds};
+use crate::signal::{BeatSignal, LayoutSamples, TwoEnds};
 use ndarray::{Array1, Axis, Ix0, arr0};
 use std::path::Path;
 
@@ -45,7 +45,8 @@ const VERSION_KEY: &str = "format_version";
 /// places; an element stands halfway between its two antennas. Where some stand off the line, `transmitter_y_metres` and `receiver_y_metres` say
 /// how far; `focus_off_line` (i64) is 1 where `polar_full` is focused ([`super::focus`]). A link budget is `transmit_power_dbm`,
 /// `antenna_gain_dbi`, `noise_figure_db` and, where elements have a pattern, `half_power_width_degrees` (f64). `format_version` is
-/// [`FORMAT_VERSION`], or 2 without such antennas.
+/// [`FORMAT_VERSION`], or 2 without such antennas. What a layout heard is `heard` (complex128 `[elements of the layout, samples]`), and `layout` (i64)
+/// their numbers.
 ///
 /// Returns `polar_full`.
 /// # Errors
@@ -55,12 +56,14 @@ pub fn write_maps(
     radar: &Radar,
     scene: &Scene,
     signal: &BeatSignal,
+    heard: Option<&LayoutSamples>,
     output: Option<&RangeAngleMap>,
 ) -> Result<LogMap, NpzError> {
     let full = map_of(radar, &scene.disturbances.elements, signal, Aperture::Full).log_magnitude();
     write_npz(path, |out| {
         npz::add_positions(out, scene)?;
         add_samples_and_maps(out, radar, &signal.two_ends(radar), Some(&full))?;
+        add_heard(out, heard)?;
         add_output(out, output)?;
         add_axes(out, radar)
     })?;
@@ -75,10 +78,12 @@ pub fn write_recorded_maps(
     radar: &Radar,
     ends: &TwoEnds,
     full: Option<&LogMap>,
+    heard: Option<&LayoutSamples>,
     output: Option<&RangeAngleMap>,
 ) -> Result<(), NpzError> {
     write_npz(path, |out| {
         add_samples_and_maps(out, radar, ends, full)?;
+        add_heard(out, heard)?;
         add_output(out, output)?;
         add_axes(out, radar)
     })
@@ -257,6 +262,12 @@ fn add_output(out: &mut NpzOutput, output: Option<&RangeAngleMap>) -> Result<(),
     output.map_or(Ok(()), |output| out.add("output", &output.lambda.view().insert_axis(Axis(0))))
 }
 
+fn add_heard(out: &mut NpzOutput, heard: Option<&LayoutSamples>) -> Result<(), NpzError> {
+    let Some(LayoutSamples { layout, samples }) = heard else { return Ok(()) };
+    out.add("heard", samples)?;
+    out.add("layout", &layout.iter().map(|number| *number as i64).collect::<Array1<i64>>())
+}
+
 fn add_samples_and_maps(
     out: &mut NpzOutput,
     radar: &Radar,
@@ -292,7 +303,7 @@ mod tests {
         let path = folder.path().join("maps.npz");
         let scene = Scene::of_points([(0.0, 0.5)]);
         let signal = exact::beat_signal(radar, &scene.reflectors());
-        write_maps(&path, radar, &scene, &signal, None).unwrap();
+        write_maps(&path, radar, &scene, &signal, None, None).unwrap();
         let archive = Npz::open(&path).unwrap();
         (folder, archive)
     }

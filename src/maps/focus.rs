@@ -10,7 +10,7 @@
 
 use super::transform::{Aperture, ComplexMap, angle_transform_of, channels_range_transform};
 use crate::radar::{BuiltArray, Radar};
-use crate::signal::BeatSignal;
+use crate::signal::{BeatSignal, LayoutSamples};
 use ndarray::{Array2, ArrayView2, Zip, s};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -53,6 +53,15 @@ pub fn map_of(radar: &Radar, elements: &BuiltArray, signal: &BeatSignal, apertur
         });
     }
     ComplexMap { cells }
+}
+
+/// The map of the array where the elements outside a layout hear nothing; focused like [`map_of`].
+pub fn layout_map(radar: &Radar, elements: &BuiltArray, heard: &LayoutSamples) -> ComplexMap {
+    let mut alone = BeatSignal::silence(radar);
+    for (element, samples) in heard.layout.iter().zip(heard.samples.outer_iter()) {
+        alone.samples.row_mut(*element).assign(&samples);
+    }
+    map_of(radar, elements, &alone, Aperture::Full)
 }
 
 /// Sine of the direction whose blobs stand in `column`: the squint is taken off.

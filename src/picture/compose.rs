@@ -1,11 +1,12 @@
 //! From a signal to a picture's bytes: maps, reconstruction, panels.
 
+use super::inputs::{HeardByLayout, InputMap};
 use super::{ColourMap, DetectedCells, Panels, PictureError, encode_png, render, render_svg};
 use crate::evaluate::TARGET_ETA;
 use crate::evaluate::failure::Footprints;
 use crate::maps::cfar::{Cfar, CfarError, DETECTED};
 use crate::maps::{LogMaps, Normalisation};
-use crate::radar::{Carrier, Radar, counted};
+use crate::radar::{Carrier, LayoutError, LayoutKind, Radar, counted};
 use crate::reconstruct::{ReconstructError, Reconstructor, Request};
 use crate::scene::Scene;
 use crate::signal::{BeatSignal, Floor};
@@ -32,10 +33,12 @@ impl PictureFormat {
 }
 
 /// How the maps are made, judged and painted.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Style {
     /// The floor beneath a scene's signal; a recording has noise of its own.
     pub floor: Floor,
+    /// The elements that the method hears; those of the two ends where `None`.
+    pub layout: Option<LayoutKind>,
     /// How decades become Lambda.
     pub normalisation: Normalisation,
     /// Colours of the maps.
@@ -52,6 +55,7 @@ impl Default for Style {
     fn default() -> Self {
         Style {
             floor: Floor::default(),
+            layout: None,
             normalisation: Normalisation::default(),
             colours: ColourMap::default(),
             eta: None,
@@ -71,6 +75,10 @@ pub enum ComposeError {
     Picture(#[from] PictureError),
     #[error(transparent)]
     Detector(#[from] CfarError),
+    #[error("{0}")]
+    Layout(#[from] LayoutError),
+    #[error("the recording has the samples of the two ends alone; {0} needs those of every element")]
+    EndsAlone(String),
     #[error("the detector needs the power of every cell, which an output has only beside a target")]
     DetectorAlone,
 }
@@ -87,8 +95,14 @@ pub fn compose(
     format: PictureFormat,
 ) -> Result<Vec<u8>, ComposeError> {
     let Style { floor, normalisation, .. } = *style;
-    let maps = LogMaps::heard_by(radar, &scene.disturbances.elements, signal);
-    let request = Request { noise: floor.into(), normalisation, ..Request::default() };
+    let elements = &scene.disturbances.elements;
+    let maps = LogMaps::heard_by(radar, elements, signal);
+    let of_layout = |layout| HeardByLayout::of(radar, elements, Some(signal), layout, normalisation);
+    let (heard, inputs) = match style.layout.as_ref().map(of_layout).transpose()? {
+        Some(HeardByLayout { samples, input }) => (Some(samples), vec![input]),
+        None => (None, InputMap::of_ends(radar, [&maps.first, &maps.last], normalisation)),
+    };
+    let request = Request { noise: floor.into(), normalisation, heard, ..Request::default() };
     let output = method.reconstruct(radar, &signal.two_ends(radar), &request)?;
     let carrier = match radar.carrier {
         Carrier::OneWay => "one-way carrier",
@@ -113,8 +127,7 @@ pub fn compose(
         found: None,
         radar,
         about: &format!("{reflectors}, {carrier}, floor {floor}, normalisation {normalisation}"),
-        first: &maps.first.normalise(normalisation),
-        last: &maps.last.normalise(normalisation),
+        inputs: &inputs,
         target: Some(&target),
         output: &output.lambda,
         method: method.name(),

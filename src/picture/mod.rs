@@ -16,6 +16,8 @@ mod directions;
 #[cfg(feature = "pictures")]
 mod doppler;
 #[cfg(feature = "pictures")]
+mod inputs;
+#[cfg(feature = "pictures")]
 mod lettering;
 #[cfg(feature = "pictures")]
 mod map_panel;
@@ -42,6 +44,8 @@ pub use compose::{ComposeError, PictureFormat, Style, compose};
 pub use directions::{Curve, DirectionAxis, Mark};
 #[cfg(feature = "pictures")]
 pub use doppler::compose_range_doppler;
+#[cfg(feature = "pictures")]
+pub use inputs::InputMap;
 #[cfg(feature = "pictures")]
 pub use panels::{DetectedCells, Panels, render, render_svg};
 #[cfg(feature = "pictures")]

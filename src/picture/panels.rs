@@ -3,6 +3,7 @@
 use super::canvas::{Drawing, FAINT_INK, INK, PAPER, PanelArea, PictureError};
 use super::detections::{CellVerdict, told_apart};
 use super::finer::{finer, in_place};
+use super::inputs::InputMap;
 use super::lettering::Lettered;
 use super::map_panel::{MapCells, MapPanel};
 use super::scene_panel::{self, SceneContent};
@@ -11,7 +12,7 @@ use crate::evaluate::failure::Ghost;
 use crate::evaluate::{Metrics, eta_text, squared_error};
 use crate::maps::cfar::{Cfar, CfarError, DETECTED};
 use crate::maps::{LambdaScale, RangeAngleMap};
-use crate::radar::{End, Radar};
+use crate::radar::Radar;
 use crate::reconstruct::Detection;
 use crate::scene::Scene;
 use image::RgbImage;
@@ -29,10 +30,8 @@ pub struct Panels<'a> {
     pub radar: &'a Radar,
     /// What the maps were made of (reflectors, carrier, floor, normalisation), in words.
     pub about: &'a str,
-    /// Lambda of the first end ("input 0").
-    pub first: &'a RangeAngleMap,
-    /// Lambda of the last end ("input 1").
-    pub last: &'a RangeAngleMap,
+    /// Of both ends, or of a layout alone.
+    pub inputs: &'a [InputMap],
     /// Lambda of the whole array ("target"), where it is known.
     pub target: Option<&'a RangeAngleMap>,
     /// Lambda of a method's output.
@@ -127,7 +126,9 @@ impl Drawing for Panels<'_> {
 
         let (width, height) = ((WIDTH as i32 - LEFT - MARGIN) / 3, (HEIGHT as i32 - HEADER - 16) / 2);
         for (index, panel) in self.map_panels().iter().enumerate() {
-            let (column, row) = (index as i32 % 3, index as i32 / 3);
+            // Without a second input its place stays free.
+            let place = if index == 0 { 0 } else { index as i32 + 2 - self.inputs.len() as i32 };
+            let (column, row) = (place % 3, place / 3);
             let area = root.clone().shrink((LEFT + column * width, HEADER + row * height), (width, height));
             panel.draw(&area, self.radar)?;
         }
@@ -145,20 +146,13 @@ impl<'a> Panels<'a> {
     }
 
     fn map_panels(&self) -> Vec<MapPanel<'a>> {
-        let elements = |end| {
-            let range = self.radar.end_range(end);
-            format!("elements {} to {}", range.start, range.end - 1)
-        };
         let drawn = |map: &'a RangeAngleMap| self.radar.left_to_right(&map.lambda);
         let lambda = |title: String, map| {
             let cells = drawn(map);
             let cells = finer(self.radar, cells).map_or_else(|| CowArray::from(cells), CowArray::from);
             MapPanel { title, cells: MapCells::Lambda(cells, self.colours) }
         };
-        let mut panels = vec![
-            lambda(format!("Input 0: {}", elements(End::First)), self.first),
-            lambda(format!("Input 1: {}", elements(End::Last)), self.last),
-        ];
+        let mut panels: Vec<_> = self.inputs.iter().map(|input| lambda(input.title.clone(), &input.lambda)).collect();
         let above = |title: String, map, eta| {
             let cells = drawn(map);
             let cells = in_place(self.radar, cells).map_or_else(|| CowArray::from(cells), CowArray::from);
@@ -264,13 +258,13 @@ mod tests {
         let maps = LogMaps::of_signal(&radar, &BeatSignal::silence(&radar));
         let flat = maps.full.normalise(Normalisation::MinMax);
         let file = presets::default_scene();
+        let inputs = InputMap::of_ends(&radar, [&maps.first, &maps.last], Normalisation::MinMax);
         let panels = Panels {
             scene: &file.scene,
             radar: &radar,
             found: None,
             about: "exact floor",
-            first: &flat,
-            last: &flat,
+            inputs: &inputs,
             target: Some(&flat),
             output: &flat,
             method: "baseline",

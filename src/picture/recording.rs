@@ -3,16 +3,19 @@
 use super::canvas::Drawing;
 use super::compose::{ComposeError, PictureFormat, Style};
 use super::directions::{Curve, DirectionAxis, Mark};
+use super::inputs::{HeardByLayout, InputMap};
 use super::{DetectedCells, Panels, encode_png, render, render_svg};
 use crate::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap, Spectrum, channels_map};
-use crate::radar::{Carrier, Decibels, End, Radar};
+use crate::radar::{BuiltArray, Carrier, Decibels, End, Radar};
 use crate::reconstruct::found::reconstruct_and_find;
 use crate::reconstruct::{Detection, NoisePrior, Reconstructor, Request};
 use crate::recording::{Recorded, Recording};
 use crate::scene::{Object, Point, Reflector, Scene};
+use crate::signal::LayoutSamples;
 use ndarray::{ArrayView1, Axis};
 use num_complex::Complex64;
 use plotters::style::RGBColor;
+use std::sync::Arc;
 
 /// Largest number of detections that are drawn.
 const MAX_DRAWN_DETECTIONS: usize = 64;
@@ -62,14 +65,23 @@ fn bytes_of(drawing: &impl Drawing, format: PictureFormat) -> Result<Vec<u8>, Co
     })
 }
 
-fn request(recording: &Recording, style: &Style) -> Request {
+fn request(recording: &Recording, style: &Style, heard: Option<Arc<LayoutSamples>>) -> Request {
     let snapshot_range_metres = recording.range_metres;
     Request {
         noise: NoisePrior::UNKNOWN,
         normalisation: style.normalisation,
         snapshot_range_metres,
+        heard,
         ..Request::default()
     }
+}
+
+/// What a layout hears of a recording, where `style` has one.
+fn heard_by_layout(recording: &Recording, style: &Style) -> Result<Option<HeardByLayout>, ComposeError> {
+    let of_layout = |layout| {
+        HeardByLayout::of(&recording.radar, &BuiltArray::default(), recording.signal(), layout, style.normalisation)
+    };
+    style.layout.as_ref().map(of_layout).transpose()
 }
 
 fn panels(
@@ -80,7 +92,12 @@ fn panels(
 ) -> Result<Vec<u8>, ComposeError> {
     let radar = &recording.radar;
     let ([first, last], full) = maps_of(recording);
-    let (output, found) = reconstruct_and_find(method, radar, &recording.two_ends(), &request(recording, style))?;
+    let (heard, inputs) = match heard_by_layout(recording, style)? {
+        Some(HeardByLayout { samples, input }) => (Some(samples), vec![input]),
+        None => (None, InputMap::of_ends(radar, [&first, &last], style.normalisation)),
+    };
+    let request = request(recording, style, heard);
+    let (output, found) = reconstruct_and_find(method, radar, &recording.two_ends(), &request)?;
     let lambda = |map: &LogMap| -> RangeAngleMap { map.normalise(style.normalisation) };
     let target = full.as_ref().map(lambda);
     let detect = |cfar| {
@@ -109,8 +126,7 @@ fn panels(
         found: Some(&found),
         radar,
         about: &about,
-        first: &lambda(&first),
-        last: &lambda(&last),
+        inputs: &inputs,
         target: target.as_ref(),
         output: &output.lambda,
         method: method.name(),
@@ -135,8 +151,10 @@ fn curves(
 ) -> Result<Vec<u8>, ComposeError> {
     let radar = &recording.radar;
     let ends = recording.two_ends();
-    let in_decibels = Style { normalisation: Normalisation::DynamicRange(CURVE_RANGE), ..*style };
-    let (output, found) = reconstruct_and_find(method, radar, &ends, &request(recording, &in_decibels))?;
+    let in_decibels = Style { normalisation: Normalisation::DynamicRange(CURVE_RANGE), ..style.clone() };
+    let heard = heard_by_layout(recording, &in_decibels)?.map(|heard| heard.samples);
+    let request = request(recording, &in_decibels, heard);
+    let (output, found) = reconstruct_and_find(method, radar, &ends, &request)?;
     let mut curves = Vec::new();
     if let Some(signal) = recording.signal() {
         let name = format!("all {} elements", radar.elements);

@@ -5,10 +5,9 @@ use super::prior::NoisePrior;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
-use crate::signal::TwoEnds;
+use crate::signal::{LayoutSamples, TwoEnds};
 use crate::task::Task;
-use ndarray::{Array2, Axis};
-use num_complex::Complex64;
+use ndarray::Array2;
 use std::sync::Arc;
 
 /// What a reconstruction is told beside the samples.
@@ -30,26 +29,12 @@ pub struct Request {
     pub task: Task,
 }
 
-/// Samples of some elements.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LayoutSamples {
-    /// Their numbers.
-    pub layout: Vec<usize>,
-    /// `[elements of the layout, samples]`.
-    pub samples: Array2<Complex64>,
-}
-
 /// The radar whose ends are the halves of the array. Of an odd number of elements the middle one belongs to both.
 pub(super) fn halves(radar: &Radar) -> Radar {
     Radar { end_elements: radar.elements.div_ceil(2), ..radar.clone() }
 }
 
 impl LayoutSamples {
-    /// Those of `samples`, `[elements of the array, samples]`.
-    pub fn of(samples: &Array2<Complex64>, layout: &[usize]) -> Self {
-        LayoutSamples { layout: layout.to_vec(), samples: samples.select(Axis(0), layout) }
-    }
-
     /// The [`halves`] of the array and their samples: zeros where an element is not heard. What belongs to both halves is heard in the first.
     pub(super) fn as_halves(&self, radar: &Radar) -> (Radar, TwoEnds) {
         let radar = halves(radar);

@@ -1,6 +1,6 @@
 //! Methods on the samples of other elements than the two ends.
 
-use super::{Baseline, Fista, IAA, LayoutSamples, Omp, ReconstructError, Reconstructor, Request, SBL};
+use super::{Baseline, Fista, IAA, Omp, ReconstructError, Reconstructor, Request, SBL};
 use crate::maps::focus::map_of;
 use crate::maps::{Aperture, Normalisation};
 use crate::radar::{BuiltArray, Radar};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 fn of_layout(method: &dyn Reconstructor, radar: &Radar, layout: &[usize]) -> Result<(f64, f64), ReconstructError> {
     let scene = Scene::of_points([(2.0, 6.0), (-3.0, 4.0)]);
     let signal = simulate(radar, &scene, Floor::Thesis, 0).unwrap();
-    let heard = LayoutSamples::of(&signal.samples, layout);
+    let heard = signal.of_layout(layout);
     let request = Request { heard: Some(Arc::new(heard)), ..Request::default() };
     let found = method.reconstruct(radar, &BeatSignal::silence(radar).two_ends(radar), &request)?;
     let target = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full).log_magnitude();

@@ -41,7 +41,7 @@ mod significance;
 mod trained;
 mod untrained;
 
-pub use answer::{Detection, LayoutSamples, Reconstruction, Request};
+pub use answer::{Detection, Reconstruction, Request};
 pub use attempt::{Attempt, Refusal, Tried, Verdict};
 pub use baseline::Baseline;
 pub use coherent::{CoherentMethod, IAA, SBL};

@@ -1,13 +1,13 @@
 //! What every method is, and what is done once for all of them.
 
-use super::answer::{LayoutSamples, Reconstruction, Request, halves};
+use super::answer::{Reconstruction, Request, halves};
 use super::error::ReconstructError;
 use super::family::Family;
 use super::hearing::ends_noise_variance;
 use super::significance::tested;
 use super::trained::TrainedNoise;
 use crate::radar::{End, Radar, check_layout};
-use crate::signal::TwoEnds;
+use crate::signal::{LayoutSamples, TwoEnds};
 use ndarray::{Array2, Array3};
 use num_complex::Complex64;
 use std::sync::Arc;

@@ -55,6 +55,6 @@ pub use interference::add_interference;
 pub use plan::Plan;
 pub use rows::Rows;
 pub use run::beat_signal;
-pub use samples::{BeatSignal, TwoEnds};
+pub use samples::{BeatSignal, LayoutSamples, TwoEnds};
 pub use simulate::{simulate, simulate_ends, simulate_ends_for, simulate_for};
 pub use unfinished::Unfinished;

@@ -1,7 +1,7 @@
 //! The beat signal of the whole array, and of the two ends alone.
 
 use crate::radar::{End, Radar};
-use ndarray::{Array2, ArrayView2, s};
+use ndarray::{Array2, ArrayView2, Axis, s};
 use num_complex::Complex64;
 
 /// Sampled beat signal: complex, `[elements, samples]`, one row an element.
@@ -28,10 +28,24 @@ impl BeatSignal {
         TwoEnds { first: self.end(radar, End::First).to_owned(), last: self.end(radar, End::Last).to_owned() }
     }
 
+    /// The samples of the elements with the numbers in `layout`.
+    pub fn of_layout(&self, layout: &[usize]) -> LayoutSamples {
+        LayoutSamples { layout: layout.to_vec(), samples: self.samples.select(Axis(0), layout) }
+    }
+
     /// Largest magnitude of any sample; 0 for silence.
     pub fn peak(&self) -> f64 {
         self.samples.iter().fold(0.0, |m: f64, v| m.max(v.norm()))
     }
+}
+
+/// Beat signal of the elements of a layout.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayoutSamples {
+    /// Numbers of the elements.
+    pub layout: Vec<usize>,
+    /// `[elements of the layout, samples]`.
+    pub samples: Array2<Complex64>,
 }
 
 /// Beat signal of the two ends alone: all that a reconstruction may look at.

@@ -8,8 +8,8 @@ use apertura::app::{
 use apertura::engine::{StageOutcome, StageReport};
 use apertura::evaluate::threshold::ThresholdSearch;
 use apertura::files::npz::Npz;
-use apertura::radar::{Carrier, Radar};
-use apertura::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Reconstructor, Request};
+use apertura::radar::{Carrier, LayoutKind, Radar};
+use apertura::reconstruct::{About, Baseline, MatchedFilter, ReconstructError, Reconstruction, Reconstructor, Request};
 use apertura::scene::generate::Kind;
 use apertura::signal::TwoEnds;
 use apertura::task::Task;
@@ -296,13 +296,25 @@ fn exported_maps_hold_the_output() {
 
 #[test]
 fn the_window_exports_what_apertura_maps_writes() {
-    let mut s = Session::start();
+    exports_agree(Session::start(), &["--method", "baseline"]);
+}
+
+#[test]
+fn an_export_of_a_layout_is_what_apertura_maps_writes() {
+    let mut s = Session::with_methods(vec![Arc::new(MatchedFilter::Coherent)]);
+    s.ask(ViewCommand::Hear(Some(LayoutKind::Thinned { step: 9 })));
+    let keys = exports_agree(s, &["--method", "matched-filter", "--layout", "thinned=9"]);
+    assert!(keys.contains("heard") && keys.contains("layout"), "{keys:?}");
+}
+
+/// The window and `apertura maps` with `arguments` write the same archive; its keys.
+fn exports_agree(mut s: Session, arguments: &[&str]) -> BTreeSet<String> {
     let [by_window, by_command] = ["window.npz", "command.npz"].map(|name| s.folder.path().join(name));
     s.ask(ExportCommand::MapsTo(by_window.clone()));
     step_until(&mut s, "it is written", |_| by_window.exists());
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_apertura"));
     command.arg("maps").arg(s.folder.path().join("scene.toml")).arg("-o").arg(&by_command);
-    assert!(command.args(["--method", "baseline"]).status().unwrap().success());
+    assert!(command.args(arguments).status().unwrap().success());
     let [mut window, mut command] = [by_window, by_command].map(|path| Npz::open(&path).unwrap());
     let keys = |archive: &Npz| archive.keys().iter().cloned().collect::<BTreeSet<_>>();
     assert_eq!(keys(&window), keys(&command));
@@ -316,6 +328,7 @@ fn the_window_exports_what_apertura_maps_writes() {
         }
     }
     assert!(keys(&window).contains("cos_theta") && keys(&window).contains("output"));
+    keys(&window)
 }
 
 #[test]

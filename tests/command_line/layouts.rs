@@ -1,7 +1,8 @@
 //! `--layout`: other elements than those of the two ends are heard.
 
 use super::cli::program;
-use ndarray::Array2;
+use assert_cmd::assert::Assert;
+use ndarray::{Array1, Array2, Array3, Axis};
 use ndarray_npy::{NpzReader, NpzWriter};
 use num_complex::Complex64;
 use predicates::str::contains;
@@ -69,6 +70,48 @@ fn samples_of_a_layout_are_reconstructed() {
     assert_eq!(map.dim(), (64, 64));
     reconstruct("nested=6x8", &["--method", "nomp"]).failure().stderr(contains("it hears the two ends of an array"));
     reconstruct("thinned=8", &[]).failure().stderr(contains("samples of the layout"));
+}
+
+#[test]
+fn maps_of_a_layout_are_what_reconstruct_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let text = "[[object]]\nkind = \"point\"\nx_metres = 0.2\ny_metres = 2.0\n";
+    write(&scene, read_to_string(radar(folder.path())).unwrap() + text).unwrap();
+    let maps = |output: &Path, layout: &str| {
+        program(&["maps", "--layout", layout, "--method", "iaa"]).arg(&scene).arg("-o").arg(output).assert()
+    };
+    let (archive, again) = (folder.path().join("maps.npz"), folder.path().join("again.npz"));
+    maps(&archive, "nested=6x8").success();
+    let read = |path: &Path| NpzReader::new(File::open(path).unwrap()).unwrap();
+    let numbers: Array1<i64> = read(&archive).by_name("layout").unwrap();
+    assert_eq!(numbers.to_vec(), [0, 1, 2, 3, 4, 5, 6, 13, 20, 27, 34, 41, 48, 55]);
+    let mut command = program(&["reconstruct", "--layout", "nested=6x8", "--method", "iaa"]);
+    command.arg(&archive).arg("-o").arg(&again).assert().success();
+    let output: Array3<f32> = read(&archive).by_name("output").unwrap();
+    let reconstructed: Array2<f32> = read(&again).by_name("net_output").unwrap();
+    assert_eq!(output.index_axis(Axis(0), 0), reconstructed);
+    let picture = folder.path().join("maps.svg");
+    maps(&picture, "nested=6x8").success();
+    let svg = read_to_string(&picture).unwrap();
+    assert!(svg.contains("Input: 14 elements of nested=6x8") && !svg.contains("Input 1"));
+    maps(&picture, "nested=40x40").failure().stderr(contains("the radar has elements 0 to 63"));
+}
+
+#[test]
+fn thresholds_and_robustness_are_those_of_a_layout() {
+    let threshold = ["threshold", "--set", "1", "--count", "2", "--false-alarm", "50", "--json", "--method"];
+    let found = |method: &str, layout: &str| program(&threshold).arg(method).args(["--layout", layout]).assert();
+    let report = |run: Assert| serde_json::from_slice::<Value>(&run.get_output().stdout).unwrap();
+    let [ends, nested] = ["two-ends", "nested=12x12"].map(|layout| report(found("matched-filter", layout).success()));
+    assert_eq!((&ends["layout"], &nested["layout"]), (&Value::Null, &"nested=12x12".into()));
+    assert_ne!(ends["eta"], nested["eta"]);
+    found("capon", "nested=12x12").failure().stderr(contains("it hears the two ends of an array"));
+    let robustness = ["robustness", "--method", "matched-filter", "--count", "1", "--scale", "1", "--json", "--layout"];
+    let robustness = |layout: &str| report(program(&robustness).arg(layout).assert().success());
+    let [ends, nested] = ["two-ends", "nested=12x12"].map(robustness);
+    assert_eq!(nested["layout"], "nested=12x12");
+    assert_ne!(ends["rows"][0]["squared_error"], nested["rows"][0]["squared_error"]);
 }
 
 #[test]

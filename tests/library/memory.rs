@@ -37,7 +37,7 @@ fn child() {
         "export" => {
             let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
             let folder = tempfile::tempdir().unwrap();
-            write_maps(&folder.path().join("maps.npz"), &radar, &scene, &signal, None).unwrap();
+            write_maps(&folder.path().join("maps.npz"), &radar, &scene, &signal, None, None).unwrap();
         }
         "engine" => {
             let mut engine = Engine::new(radar.clone());

@@ -155,7 +155,7 @@ fn child_exports() {
     for number in 1.. {
         let scene = numbered(number % 30).scene;
         let signal = simulate(&radar, &scene, Floor::Exact, 0).unwrap();
-        write_maps(&folder.join("maps.npz"), &radar, &scene, &signal, None).unwrap();
+        write_maps(&folder.join("maps.npz"), &radar, &scene, &signal, None, None).unwrap();
         safe(number);
     }
 }

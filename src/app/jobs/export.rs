@@ -6,14 +6,14 @@ use super::pipeline::Pipeline;
 use super::recorded::seen_by;
 use crate::app::state::{MethodSlot, Purpose, State};
 use crate::files::write_bytes;
-use crate::maps::Normalisation;
 use crate::maps::archive::{write_maps, write_recorded_maps};
 use crate::picture::{PictureFormat, compose, compose_recording, maps_of};
 use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
-use crate::signal;
+use crate::signal::{self, BeatSignal};
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// What came of an export.
 pub struct Export {
@@ -57,7 +57,6 @@ impl Exports {
     /// Why it could not be begun.
     pub fn picture(&self, state: &State, path: PathBuf) -> Result<String, String> {
         let format = PictureFormat::of_path(&path).ok_or_else(|| Purpose::ExportPicture.unknown_ending(&path))?;
-        check_two_ends(state)?;
         let Some(method) = state.method().cloned() else {
             return Err("There is no method to draw the output of.".to_owned());
         };
@@ -82,19 +81,25 @@ impl Exports {
     /// # Errors
     /// Why it could not be begun.
     pub fn maps(&self, state: &State, path: PathBuf) -> Result<String, String> {
-        check_two_ends(state)?;
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
         let (floor, normalisation) = (state.settings.floor, state.settings.normalisation);
         let method = state.method().cloned();
+        let layout = state.settings.heard(&radar);
+        let hear = move |signal: &BeatSignal| layout.map(|layout| Arc::new(signal.of_layout(&layout)));
         if let Some(recording) = seen_recording(state) {
-            return self.begin(path, move |path| write_recording(path, &recording, method.as_deref(), normalisation));
+            let heard = recording.signal().and_then(hear);
+            let noise = NoisePrior::UNKNOWN;
+            let snapshot_range_metres = recording.range_metres;
+            let request = Request { noise, normalisation, snapshot_range_metres, heard, ..Request::default() };
+            return self.begin(path, move |path| write_recording(path, &recording, method.as_deref(), &request));
         }
         self.begin(path, move |path| {
             let signal = signal::simulate(&radar, &scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
-            let request = Request { noise: floor.into(), normalisation, ..Request::default() };
+            let heard = hear(&signal);
+            let request = Request { noise: floor.into(), normalisation, heard: heard.clone(), ..Request::default() };
             let found = method.map(|m| m.reconstruct(&radar, &signal.two_ends(&radar), &request)).transpose();
             let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
-            write_maps(path, &radar, &scene, &signal, output).map_err(|e| e.to_string())?;
+            write_maps(path, &radar, &scene, &signal, heard.as_deref(), output).map_err(|e| e.to_string())?;
             Ok(found.err().map(|why| format!("without the output: {why}")))
         })
     }
@@ -139,12 +144,6 @@ impl Exports {
     }
 }
 
-/// Pictures and archives have the samples and maps of the two ends.
-fn check_two_ends(state: &State) -> Result<(), String> {
-    let Some(layout) = &state.settings.layout else { return Ok(()) };
-    Err(format!("{layout} is heard, and exports show what the two ends hear: choose the two ends in Elements first."))
-}
-
 /// The recording on screen as its radar takes it now.
 fn seen_recording(state: &State) -> Option<Recording> {
     let document = state.editor.document();
@@ -156,15 +155,14 @@ fn write_recording(
     path: &Path,
     recording: &Recording,
     method: Option<&dyn Reconstructor>,
-    normalisation: Normalisation,
+    request: &Request,
 ) -> Result<Option<String>, String> {
     let (_, full) = maps_of(recording);
     let ends = recording.two_ends();
-    let snapshot_range_metres = recording.range_metres;
-    let request = Request { noise: NoisePrior::UNKNOWN, normalisation, snapshot_range_metres, ..Request::default() };
-    let found = method.map(|m| m.reconstruct(&recording.radar, &ends, &request)).transpose();
+    let found = method.map(|m| m.reconstruct(&recording.radar, &ends, request)).transpose();
     let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
-    write_recorded_maps(path, &recording.radar, &ends, full.as_ref(), output).map_err(|e| e.to_string())?;
+    let heard = request.heard.as_deref();
+    write_recorded_maps(path, &recording.radar, &ends, full.as_ref(), heard, output).map_err(|e| e.to_string())?;
     Ok(found.err().map(|why| format!("without the output: {why}")))
 }
 

@@ -5,11 +5,9 @@ use super::recorded::{ready, seen_by};
 use super::source::Source;
 use crate::app::shared::Shared;
 use crate::engine::ReadyMap;
-use crate::maps::focus::map_of;
-use crate::maps::{Aperture, LogMap, Normalisation};
-use crate::radar::{BuiltArray, Radar};
-use crate::reconstruct::LayoutSamples;
-use crate::signal::{self, BeatSignal, Unfinished};
+use crate::maps::focus::layout_map;
+use crate::maps::{LogMap, Normalisation};
+use crate::signal::{self, BeatSignal, LayoutSamples, Unfinished};
 use crate::task::Task;
 
 /// What the elements of a layout hear.
@@ -28,8 +26,8 @@ impl Heard {
         let Source { radar, scene, recording, floor } = source;
         let elements = &scene.disturbances.elements;
         let heard = |signal: &BeatSignal| {
-            let samples = LayoutSamples::of(&signal.samples, layout);
-            let log = log_map(radar, elements, &samples);
+            let samples = signal.of_layout(layout);
+            let log = layout_map(radar, elements, &samples).log_magnitude();
             Heard { samples: Shared::new(samples), log, shown: Memo::default() }
         };
         Ok(match recording {
@@ -44,18 +42,12 @@ impl Heard {
     }
 }
 
-/// The map of the array where the other elements hear nothing.
-pub fn log_map(radar: &Radar, elements: &BuiltArray, heard: &LayoutSamples) -> LogMap {
-    let mut alone = BeatSignal::silence(radar);
-    for (element, samples) in heard.layout.iter().zip(heard.samples.outer_iter()) {
-        alone.samples.row_mut(*element).assign(&samples);
-    }
-    map_of(radar, elements, &alone, Aperture::Full).log_magnitude()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::maps::Aperture;
+    use crate::maps::focus::map_of;
+    use crate::radar::{BuiltArray, Radar};
     use crate::recording::{Recorded, Recording};
     use crate::scene::Scene;
     use crate::signal::Floor;

@@ -9,11 +9,9 @@ use crate::platform::{self, Instant};
 use crate::radar::Radar;
 use crate::reconstruct::Attempt;
 use crate::reconstruct::found::find;
-use crate::reconstruct::{
-    Detection, LayoutSamples, NoisePrior, ReconstructError, Reconstruction, Reconstructor, Request,
-};
+use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::scene::Reflector;
-use crate::signal::TwoEnds;
+use crate::signal::{LayoutSamples, TwoEnds};
 use crate::task::{Reply, Task, Worker};
 use std::sync::Arc;
 use std::time::Duration;

@@ -1,15 +1,14 @@
 //! One map several times, off the UI thread: the latest request wins, and each map is shown as soon as it is there.
 
-use super::heard::log_map;
 use super::painter::Painter;
 use super::subject::{Paint, Subject};
 use crate::app::shared::Shared;
 use crate::app::state::{MapKind, Panel, Projection, State, Variant};
-use crate::maps::focus::map_of;
+use crate::maps::focus::{layout_map, map_of};
 use crate::maps::{Aperture, Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::{End, LayoutKind};
-use crate::reconstruct::{LayoutSamples, Request as MethodRequest};
+use crate::reconstruct::Request as MethodRequest;
 use crate::scene::Scene;
 use crate::signal;
 use crate::task::{Reply, Task, Worker};
@@ -166,10 +165,10 @@ fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMa
     let normalisation = request.normalisation;
     let elements = &request.scene.disturbances.elements;
     let numbers = request.layout.as_ref().map(|layout| layout.numbers(radar).map_err(|e| e.to_string())).transpose()?;
-    let heard = numbers.map(|numbers| Arc::new(LayoutSamples::of(&signal.samples, &numbers)));
+    let heard = numbers.map(|numbers| Arc::new(signal.of_layout(&numbers)));
     let aperture = match request.map {
         MapKind::Input0 if let Some(heard) = &heard => {
-            return Ok(log_map(radar, elements, heard).normalise(normalisation));
+            return Ok(layout_map(radar, elements, heard).log_magnitude().normalise(normalisation));
         }
         MapKind::Input0 => Aperture::End(End::First),
         MapKind::Input1 => Aperture::End(End::Last),

@@ -31,6 +31,7 @@ impl ThresholdPlan {
         let ThresholdChoice { false_alarm_percent, kinds, count } = choice;
         let search = ThresholdSearch {
             radar: state.radar().clone(),
+            layout: state.settings.heard(state.radar()),
             floor: state.settings.floor,
             normalisation: state.settings.normalisation,
             kinds,
