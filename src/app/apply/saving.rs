@@ -13,7 +13,7 @@ pub fn save_again(state: &mut State, jobs: &mut Jobs) {
     match document.path().map(Path::to_owned) {
         Some(path) => save(state, path),
         None if is_bare => {
-            let advice = "What you draw over it is saved as a scene of its own.";
+            let advice = "Objects drawn over it are saved as a scene of their own.";
             state.notices.info(format!("Nothing to save: {} stays as it was measured. {advice}", document.name()));
         }
         None => jobs.choose_file(state, Purpose::SaveScene),

@@ -37,7 +37,7 @@ const FIGURES: &[[&str; 2]] = &[
         "Target",
         "The map of all elements: samples simulated from the scene, Hann window, two transforms (README, ARCHITECTURE).",
     ],
-    ["Output", "What the chosen method makes of the samples of the two ends alone. It never sees the target."],
+    ["Output", "The chosen method's map, from the samples of the two ends alone. It never sees the target."],
     [
         "P_D, P_FA, SE",
         "Cells of the target above η' are to be detected. P_D is the part of them where the output exceeds η, P_FA the part of all others, \

@@ -23,7 +23,7 @@ fn draw(ui: &mut Ui, question: &SaveQuestion) -> Option<SaveAnswer> {
     let [elsewhere, tip, anyway] = match &question.doubt {
         Doubt::Losses(losses) => {
             ui.strong(format!("{name} can't hold all of this scene"));
-            ui.label("What would be lost in it:");
+            ui.label("These changes would be lost:");
             for loss in losses {
                 ui.label(format!("•  {loss}"));
             }

@@ -102,7 +102,7 @@ fn choices(ui: &mut Ui, settings: &mut BoundsSettings, most: usize) {
         let snr = NumberField::new(&mut settings.snr.0).range(-40.0..=120.0).speed(0.5).suffix(" dB");
         labelled(ui, "SNR", "Of one sample, averaged over the elements", snr);
         let columns = NumberField::new(&mut settings.columns).range(1.0..=512.0).speed(0.2).suffix(" columns");
-        let columns = labelled(ui, "±", "What the picture spans around the reflector", columns);
+        let columns = labelled(ui, "±", "Width of the picture around the reflector", columns);
         let bins = NumberField::new(&mut settings.bins).range(0.5..=64.0).speed(0.1).suffix(" bins");
         ui.add(bins).labelled_by(columns.id);
     });

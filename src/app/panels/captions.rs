@@ -38,7 +38,7 @@ fn text(kind: MapKind, radar: &Radar, layout: Option<&LayoutKind>, method: &str)
         MapKind::OutputAbove | MapKind::SecondAbove => "Output > η: what it finds in the output".to_owned(),
         MapKind::Difference | MapKind::SecondDifference => "Difference: output minus target".to_owned(),
         MapKind::Doubt => format!("Doubt: how far off {method} expects to be"),
-        MapKind::Unexplained => "What reflectors leave unexplained of the recording".to_owned(),
+        MapKind::Unexplained => "The part of the recording that reflectors leave unexplained".to_owned(),
     }
 }
 

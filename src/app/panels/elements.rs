@@ -199,7 +199,7 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         let unexplained = format!("{:.1} % of the power comes from elsewhere", 100.0 * found.calibration.unexplained);
         let rows = [
             ("found", told(&found.calibration.array), "Gain and phase that the reflector's echo tells of each element"),
-            ("left", told(&found.left), "What is wrong with the elements once that is taken off: places can't be"),
+            ("left", told(&found.left), "Errors of the elements that stay once that is taken off: places can't be"),
             ("residual", unexplained, "Other reflectors, noise, and errors that are no gain and no phase"),
         ];
         for (name, text, tooltip) in rows {

@@ -52,13 +52,13 @@ const SHARED: [SharedTile; 5] = [
         tile: Panel::Chirp,
         title: "Waveform",
         view: "Chirp",
-        help: "What is sent and what returns, the beat, and range against radial velocity",
+        help: "The chirp sent and its echoes, the beat signal, and range against radial velocity",
     },
     SharedTile {
         tile: Panel::Compare,
         title: "Compare",
         view: "Methods",
-        help: "What two methods make of this scene, or what a window, a floor or a radar does to its maps",
+        help: "Two methods on this scene, or its maps with another window, floor or radar",
     },
     SharedTile {
         tile: Panel::Failures,
@@ -234,17 +234,17 @@ macro_rules! map_kinds {
 }
 
 map_kinds! {
-    Input0, "Input 0", "What the elements at the left end of the array see";
-    Input1, "Input 1", "What the elements at the right end of the array see";
-    Target, "Target", "What all elements see: the map that a reconstruction aims for";
-    Output, "Output", "What the chosen method makes of the two ends";
+    Input0, "Input 0", "The map of the elements at the left end of the array";
+    Input1, "Input 1", "The map of the elements at the right end of the array";
+    Target, "Target", "The map of all elements: a reconstruction aims for it";
+    Output, "Output", "The chosen method's map, from the two ends";
     TargetAbove, "Target > η'", "Cells where the target exceeds η'";
     OutputAbove, "Output > η", "Cells where the output exceeds η: hits, false alarms, and what it misses of the target";
     Difference, "Difference", "Output minus target: red where the output is too bright, blue where it is too dark";
-    Unexplained, "Unexplained", "What reflectors laid over a recording leave of it: their echoes are fitted and taken off";
+    Unexplained, "Unexplained", "The rest of a recording, once the echoes of the reflectors laid over it are fitted and taken off";
     Doubt, "Doubt", "How far off the method expects its output to be: nine of ten cells are nearer to the target than this, on scenes and over \
         noise like those it was trained on";
-    Second, "Second output", "What the second method makes of the two ends";
+    Second, "Second output", "The second method's map, from the two ends";
     SecondAbove, "Second output > η", "Cells where the second output exceeds its η";
     SecondDifference, "Second difference", "Second output minus target";
 }

@@ -8,7 +8,7 @@ use eframe::egui::{Response, Ui};
 
 /// Which detects.
 pub fn choice(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
-    let tooltip = "What says which cells are detections in the panels Target > η' and Output > η";
+    let tooltip = "The rule for detected cells in the panels Target > η' and Output > η";
     row_of(ui, "Detect", tooltip, |ui| {
         let of = [
             (None, "Global", "One threshold for the whole map"),

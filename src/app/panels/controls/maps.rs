@@ -23,7 +23,7 @@ pub(super) fn show(
 ) {
     normalisation(ui, settings, asked);
     match is_recorded {
-        true => row(ui, "Floor", "What lies beneath the echoes", |ui| ui.weak("as it was recorded")),
+        true => row(ui, "Floor", "Noise beneath the echoes", |ui| ui.weak("as it was recorded")),
         false => floor(ui, settings, asked),
     }
     window(ui, radar.window, asked);
@@ -62,7 +62,7 @@ const LEVEL: &str = "Thermal noise of this level in every sample, for any scene:
 const RECEIVER: &str = "The noise of the radar's receivers, kTBF, by its link budget in the panel Radar; by the usual one where it has none";
 
 fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
-    row_of(ui, "Floor", "What lies beneath the reflectors", |ui| {
+    row_of(ui, "Floor", "Noise beneath the echoes", |ui| {
         let of = [
             (Floor::Thesis, "Thesis", "The rounding noise of the thesis' f64 evaluation"),
             (Floor::Exact, "Exact", "No noise at all"),

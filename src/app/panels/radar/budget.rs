@@ -45,11 +45,11 @@ const WITHOUT: &str = "None: the thesis' convention. A sample's amplitude is P Ï
                        isotropic. The floor Receiver takes the usual budget: 12 dBm, 10 dBi, 12 dB.";
 
 /// What the figures leave out.
-const LEFT_OUT: &str = "Ends and array add their elements in phase, as a map does beyond the far field. What is lost between two cells is left out.";
+const LEFT_OUT: &str = "Ends and array add their elements in phase, as a map does beyond the far field. The loss of an echo between two cells is left out.";
 
 const TRANSMIT_POWER: Quantity = Quantity::metres(
     "transmit power",
-    "What a transmitter sends. No sample depends on it: it says how strong the noise beneath them is",
+    "Power that a transmitter sends. No sample depends on it: it sets the noise beneath them",
 )
 .with(" dBm", [-100.0, 150.0], 0.2, 1);
 const ANTENNA_GAIN: Quantity = Quantity::metres(
@@ -59,7 +59,7 @@ const ANTENNA_GAIN: Quantity = Quantity::metres(
 .with(" dBi", [-50.0, 100.0], 0.1, 1);
 const NOISE_FIGURE: Quantity = Quantity::metres(
     "noise figure",
-    "What a receiver adds to the noise that it is given. Below 0 dB it would take some away",
+    "Noise that a receiver adds to that of its input. Below 0 dB it would take some away",
 )
 .with(" dB", [0.0, 100.0], 0.1, 1);
 const CHIRP: Quantity = Quantity::metres(
