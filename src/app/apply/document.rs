@@ -155,7 +155,7 @@ fn preset(state: &mut State, index: usize) {
     let Some(preset) = presets::ALL.get(index) else { return };
     match preset.load() {
         Ok(file) => {
-            // A preset of failures sets its method before its radar.
+            // A preset of failures needs its own radar: its method fails with that one.
             let keeps_radar = !preset.has_radar() && !preset.is_failure();
             let before = state.setup();
             preset.failing_method().into_iter().for_each(|name| state.settings.method = name.to_owned());

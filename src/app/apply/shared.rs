@@ -73,7 +73,7 @@ fn part(view: MapView) -> VisiblePart {
     VisiblePart { left, bottom, right, top }
 }
 
-/// Mirrors a visible part where columns fall from left to right: shared texts count from the first column.
+/// Mirrors a visible part where cos(theta) falls from column to column: shared texts count from the first column.
 fn by_column(radar: &Radar, part: VisiblePart) -> VisiblePart {
     if radar.columns_fall() { VisiblePart { left: 1.0 - part.right, right: 1.0 - part.left, ..part } } else { part }
 }

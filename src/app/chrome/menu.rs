@@ -39,7 +39,7 @@ pub struct Input<'a> {
     pub recent: &'a [PathBuf],
     /// Whether the method in use finds places of echoes.
     pub finds_reflectors: bool,
-    /// Whether a recording stands in the place of the scene.
+    /// Whether a recording is on screen in place of a simulated scene.
     pub has_recording: bool,
     /// Unsaved scenes replaced by another, the latest last.
     pub left: &'a [Document],

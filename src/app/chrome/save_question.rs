@@ -92,7 +92,7 @@ mod tests {
         }
     }
 
-    /// What a key answers.
+    /// The command that a key sends.
     fn answer_by(key: Key) -> Option<Command> {
         let mut question = asked();
         question.key_press(key);

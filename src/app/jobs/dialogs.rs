@@ -80,7 +80,7 @@ pub struct Dialogs {
     told: Option<&'static str>,
 }
 
-/// Message, told once, where the system has no dialogs.
+/// Message where the system has no dialogs, shown once.
 const APOLOGY: &str = "This system shows no file dialog (no portal, no zenity), so the window shows its own.";
 
 impl Dialogs {

@@ -133,7 +133,7 @@ type MethodReply = (MethodRequest, Result<Answer, ReconstructError>);
 struct MethodWorker {
     /// Threads of its own: on shared ones the maps would wait for a slow reconstruction.
     threads: Option<rayon::ThreadPool>,
-    /// The method of the last request, in the form that follows a moving scene where it has one.
+    /// The method of the last request, with a memory where it has such a form.
     follower: Memo<Shared<dyn Reconstructor>, Option<Arc<dyn Reconstructor>>>,
 }
 
@@ -208,7 +208,7 @@ impl MethodJob {
         latest: Option<&MapsResult>,
     ) {
         let MethodRequest { document, source, basis, target, method, at_rest, .. } = request;
-        // A method that follows is faster than from scratch; users choose methods by the time from scratch.
+        // A method with a memory is faster than from scratch; users choose methods by the time from scratch.
         if at_rest || method.following().is_none() {
             self.time = Some((basis.radar.clone(), method.name(), took));
         }

@@ -98,7 +98,7 @@ pub struct Jobs {
     pub several: SeveralMaps,
     /// The fate of every object in the outputs.
     pub kinds: Derived<KindsQuery>,
-    /// Blob and bound of one reflector by formulas.
+    /// Predictions and position bound of one reflector by formulas.
     pub theory: Derived<TheoryRequest>,
     /// Predictions and challenges being judged.
     pub lessons: Lessons,

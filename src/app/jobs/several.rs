@@ -17,7 +17,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
-/// Longest time for maps of an earlier request; later ones are cancelled. During a drag all are finished, so that the user sees the movement.
+/// Longest time for maps of an earlier request; slower ones are cancelled. During a drag all are finished, so that the user sees the movement.
 const PATIENCE: Duration = Duration::from_millis(100);
 
 /// A request for one map with several variants.

@@ -1,4 +1,4 @@
-//! Blob and position bound of one reflector by formulas, drawn over the maps.
+//! Predictions and position bound of one reflector by formulas, drawn over the maps.
 
 use super::bounds::subject;
 use super::derived::{Failure, Query};
@@ -25,7 +25,7 @@ pub struct TheoryRequest {
     pub snr: Decibels,
 }
 
-/// Blob and position bound of a reflector.
+/// Predictions and position bound of a reflector.
 pub struct TheoryResult {
     /// The query.
     pub request: TheoryRequest,

@@ -100,7 +100,7 @@ pub fn method_list(
     }
 }
 
-/// Whether a popup was opened in this frame or the last: its size is known in the second.
+/// Whether a popup was opened within the last two passes: its size is known in the second.
 fn has_opened(ui: &Ui) -> bool {
     let (id, now) = (ui.scope_id().with("opened"), ui.ctx().cumulative_pass_nr());
     let (first, last) =

@@ -179,7 +179,7 @@ impl Failures {
         self.run.progress()
     }
 
-    /// Methods that the last run left out, with the scenes in question.
+    /// Methods that failed on scenes of the last run, which have no rows of these methods.
     pub fn unfit(&self) -> &[Unfit] {
         self.run.end().map_or(&[], Vec::as_slice)
     }

@@ -87,7 +87,7 @@ fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
             radar.carrier = carrier;
         }
         let floor = match &found {
-            // A set with its own floor has it whatever floor the others have.
+            // A set with its own floor doesn't depend on the others' floor.
             Some(found) if row.has_own_floor() => found.floor,
             _ => floor,
         };
