@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// A painted map; row 0 is range (or y) 0, and the first pixel of a row its leftmost direction.
 #[derive(Debug, Clone)]
 pub struct Picture {
-    /// A pixel per cell.
+    /// Pixels: one per cell, or interpolated columns between cells.
     pub image: Arc<ColorImage>,
     /// End of the scale: 1, except for differences and doubt.
     pub end: f32,

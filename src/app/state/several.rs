@@ -56,7 +56,7 @@ impl Parameter {
         }
     }
 
-    /// First and last value at first, around the radar's own.
+    /// Default first and last value, around the radar's own.
     pub fn usual(self, radar: &Radar) -> [f64; 2] {
         let spacing = radar.element_spacing_metres / radar.wavelength_metres();
         match self {
