@@ -1,9 +1,9 @@
-//! The one list of panels. A new panel is a file in `panels` and a line here.
+//! The list of panels. A new panel is a file in `panels` and a line here.
 
-/// Hands the list to the macro `$with`. A line has the panel's name, the type that draws it ([`crate::app::content::Content`]), its place,
-/// its key, its title and what it is for.
+/// Hands the list to the macro `$with`. A line has the panel's name, the type that draws it ([`crate::app::content::Content`]), its place, its key, its title
+/// and its purpose.
 ///
-/// Places: `editing` and `result` have a tile at first, `tool` and `developer` where they are opened; `view of` another panel shares its tile.
+/// Places: `editing` and `result` panels have a tile at first, `tool` and `developer` panels once opened. A `view of` another panel shares its tile.
 macro_rules! every_panel {
     ($with:ident) => {
         $with! {
