@@ -12,19 +12,19 @@ use crate::app::widgets::padded::padded;
 use crate::app::widgets::progress::progress;
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 
-/// A map, and what stands above it.
+/// A map and its title.
 pub struct Titled<'a> {
-    /// Whose it is, and how good.
+    /// The method and its figures.
     pub title: String,
     pub map: map::Input<'a>,
 }
 
-/// What is compared.
+/// The compared maps, and the methods to choose from.
 pub struct Input<'a> {
-    /// What was chosen.
+    /// The chosen second method, layout and maps to flip.
     pub compare: &'a Compare,
     pub methods: Offered<'a>,
-    /// Names of the first and of the second.
+    /// Names of the first and of the second method.
     pub chosen: [&'static str; 2],
     /// The maps of [`Compare::maps`].
     pub maps: Vec<Titled<'a>>,
@@ -32,7 +32,7 @@ pub struct Input<'a> {
     pub progress: Option<f32>,
 }
 
-/// Height of what stands above a map, points.
+/// Height of a map's title, points.
 const TITLE: f32 = 18.0;
 
 pub struct ComparePanel;
@@ -68,7 +68,7 @@ impl Content for ComparePanel {
     }
 }
 
-/// What stands above a compared map: whose it is, and how good.
+/// The title of a compared map: method, verdict and figures.
 fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     let method = kind.slot().and_then(|slot| state.method_in(slot)).map_or("", |m| m.name());
     let shown = kind.slot().and_then(|slot| jobs.pipeline.method(slot).of_another_method());
@@ -160,7 +160,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             }
         }
         button(ui, "Flip maps", ViewCommand::Flip, true, asked);
-        // Its room is kept: what stands below must not jump when a reconstruction begins.
+        // The room is kept, so that the maps below don't jump when a reconstruction begins.
         let room = vec2(170.0, ui.spacing().interact_size.y);
         ui.allocate_ui(room, |ui| {
             ui.set_min_size(room);
@@ -176,7 +176,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     }
 }
 
-/// A method to choose.
+/// Draws the list of methods.
 fn method(
     ui: &mut Ui,
     label: &str,

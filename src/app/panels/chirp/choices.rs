@@ -9,7 +9,7 @@ use eframe::egui::Ui;
 /// Shortest and longest chirp that is dragged to, seconds.
 pub const DRAGGED_SECONDS: [f64; 2] = [1e-6, 1e-2];
 
-/// Draws the numbers; what is asked of settings and radar. `element` is the one that is drawn.
+/// Draws the fields of element and chirp duration. `element` is the one on screen.
 pub fn show(ui: &mut Ui, radar: &Radar, element: usize, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let mut settings = ChirpSettings { element };

@@ -1,18 +1,18 @@
-//! What markers measure on a line of decibels: levels, and how wide a peak is.
+//! Measurements on a line of decibels: levels and widths of peaks.
 
-/// How far below a peak its width is measured, decibels.
+/// Drop below a peak at which its width is measured, decibels.
 const DROP_DB: f64 = 3.0;
 
-/// Where a peak has fallen by 3 dB, on both sides.
+/// The 3 dB width of a peak.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Width {
-    /// On the near side, on the axis.
+    /// Place on the axis where the near side has fallen by 3 dB.
     pub low: f64,
-    /// On the far side.
+    /// Place on the axis where the far side has fallen by 3 dB.
     pub high: f64,
-    /// Level there, decibels.
+    /// Level at both places, decibels.
     pub level_db: f64,
-    /// What is between them, cells.
+    /// Width between both places, cells.
     pub cells: f64,
 }
 

@@ -85,7 +85,7 @@ fn the_target_is_read_without_a_choice() {
     assert_eq!(cuts.state().memory.read.map(|line| line.kind), Some(MapKind::Target));
 }
 
-/// Where a part of the width of a chart is.
+/// Place at a part of the width of a chart.
 fn at(part: f32, rect: Rect) -> Pos2 {
     pos2(rect.left() + part * rect.width(), rect.center().y)
 }
