@@ -87,7 +87,7 @@ fn every_button_is_one_command() {
     assert_eq!(panel.state().asked, asked);
 }
 
-/// Fifty rows, and which of them has the largest squared error; its title was clicked.
+/// Fifty rows sorted by squared error, and the index of the largest.
 fn by_squared_error() -> (Harness<'static, Drawn>, usize) {
     let mut panel = panel(50);
     click(&mut panel, "Squared error");
