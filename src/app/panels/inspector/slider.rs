@@ -9,7 +9,7 @@ const MOST_RADIUS_METRES: f64 = 5.0;
 /// Largest roughness on the slider, millimetres: 2 mm already take 43 dB from a glint.
 const MOST_ROUGHNESS_MILLIMETRES: f64 = 2.0;
 
-/// Draws the slider of a number that has one; what becomes of the number.
+/// Draws the slider, if the field has one. Returns the change of the number.
 pub fn show(ui: &mut Ui, shared: &SharedField) -> Option<FieldChange> {
     let (name, range, is_logarithmic) = match shared.field {
         Field::Radius => ("radius slider", 0.01..=MOST_RADIUS_METRES, true),

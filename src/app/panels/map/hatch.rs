@@ -1,4 +1,4 @@
-//! Hatches over hits, misses and false alarms, where a cell is large enough on screen: they tell kinds apart without any colour.
+//! Hatches over hits, misses and false alarms, where a cell is large enough on screen: the kinds differ without any colour.
 
 use super::frame::Frame;
 use crate::evaluate::failure::Ghost;
@@ -10,27 +10,27 @@ use eframe::egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2
 /// The least height of a cell that hatches are drawn in, points.
 const MIN_CELL_POINTS: f32 = 4.0;
 
-/// By how much a cell of a ghost is drawn larger: a column of a whole map is narrower than a pixel.
+/// Margin around the drawn cell of a ghost, points: a column of a whole map is narrower than a pixel.
 const GHOST_MARGIN_POINTS: f32 = 0.75;
 
-/// Between two lines of a hatch, points.
+/// Distance between two lines of a hatch, points.
 const STEP: f32 = 7.0;
 
-/// What tells hits, misses and false alarms apart.
+/// Maps and thresholds that separate hits, misses and false alarms.
 #[derive(Clone, Copy)]
 pub struct ToldApart<'a> {
-    /// Lambda of the output, or what a detector made of it.
+    /// Lambda of the output, or a detector's result for the output.
     pub output: &'a RangeAngleMap,
     /// Lambda of the target.
     pub target: &'a RangeAngleMap,
-    /// Their thresholds.
+    /// Thresholds of output and target.
     pub etas: [f32; 2],
-    /// Blobs of the output where the scene has nothing, once it is judged.
+    /// Blobs of the output where the scene has nothing, once the output is judged.
     pub ghosts: &'a [Ghost],
 }
 
 impl ToldApart<'_> {
-    /// What the cell at a place on screen is.
+    /// Verdict on the cell at a place on screen.
     fn at(&self, frame: Frame<'_>, pos: Pos2) -> CellVerdict {
         let (radar, polar) = (frame.radar, frame.polar(pos));
         let bin = radar.bin_of_range(polar.range_metres).round();
