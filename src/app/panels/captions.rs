@@ -25,7 +25,7 @@ pub fn of_map(state: &State, kind: MapKind) -> Option<String> {
 
 fn text(kind: MapKind, radar: &Radar, layout: Option<&LayoutKind>, method: &str) -> String {
     let [first, last] = End::BOTH.map(|end| radar.end_range(end).len());
-    // The middle one of three elements is of both ends.
+    // The middle one of three elements belongs to both ends.
     let (all, ends) = (radar.elements, radar.elements.min(first + last));
     match kind {
         MapKind::Input0 if let Some(layout) = layout => format!("Input 0: the elements of {layout}"),
@@ -64,7 +64,7 @@ pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
 /// Least dip of Lambda between two blobs that separates them.
 const SEEN_DIP: f32 = 0.05;
 
-/// Post and wall differ by at most this in range, metres, as long as the post is on its ring.
+/// Largest difference in range between post and wall while the post is on its ring, metres.
 const SAME_RANGE_METRES: f64 = 0.5;
 
 /// The hint after the post was dragged off its ring.
@@ -111,7 +111,7 @@ fn post_and_wall(scene: &Scene) -> Option<Option<[[f64; 2]; 2]>> {
     Some(Some([post, nearest]).filter(|_| off(&nearest) <= SAME_RANGE_METRES))
 }
 
-/// Places on a ring around the array, from one direction to another.
+/// Places on a ring around the array, from the direction of `from` to that of `to`.
 fn along_the_ring([from, to]: [[f64; 2]; 2]) -> Vec<Place> {
     const STEPS: usize = 48;
     let range = from[0].hypot(from[1]);

@@ -29,7 +29,7 @@ const LABEL_PLACES: [f64; 2] = [0.2, 0.65];
 /// Radius of a handle, points.
 const HANDLE: f32 = 5.0;
 
-/// Least and largest bandwidth and carrier that are dragged to, hertz.
+/// Least and largest bandwidth and carrier that dragging reaches, hertz.
 const DRAGGED_BANDWIDTH_HZ: [f64; 2] = [1e6, 2e10];
 const DRAGGED_CARRIER_HZ: [f64; 2] = [1e9, 3e11];
 

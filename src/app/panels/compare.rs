@@ -1,4 +1,4 @@
-//! Two methods on the scene on screen: side by side, or flipped in place.
+//! The panel that compares two methods on the scene on screen: side by side, or flipped in place.
 
 use super::map::{self, MapMemory, caption_of as caption, is_updating, map_input, marks_of, verdict};
 use crate::app::content::{Content, Cx, Nothing, offered};
@@ -116,7 +116,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map:
             let (above, below) = place.split_top_bottom_at_y(place.top() + TITLE);
             ui.scope_builder(UiBuilder::new().max_rect(above).id_salt(("title", index)), |ui| {
                 let title = RichText::new(title).size(12.0);
-                // As dim as the map beneath it.
+                // With the opacity of the map below.
                 let title =
                     if is_old { title.color(ui.visuals().weak_text_color().gamma_multiply(0.55)) } else { title };
                 ui.add(Label::new(title).truncate().selectable(false));
@@ -128,7 +128,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map:
     })
 }
 
-/// Two columns of maps, as many rows as it takes.
+/// Rectangles of the maps, in two columns.
 fn grid(area: Rect, count: usize) -> Vec<Rect> {
     let size: Vec2 = vec2(area.width() / 2.0, area.height() / count.div_ceil(2).max(1) as f32);
     let corner = |i: usize| area.min + vec2((i % 2) as f32 * size.x, (i / 2) as f32 * size.y);
@@ -266,7 +266,7 @@ mod tests {
         assert!(panel.query_by_label("Output map").is_none());
     }
 
-    /// The comparison that was asked for last.
+    /// The comparison of the last command.
     fn asked_for(panel: &Harness<'_, Held>) -> Compare {
         match panel.state().asked.last() {
             Some(Command::View(ViewCommand::SetCompare(compare))) => Compare::clone(compare),

@@ -1,4 +1,4 @@
-//! Settings: radar and floor, display, reconstruction with its live figures.
+//! The settings panel: reconstruction with its current figures, maps, and display.
 
 mod choices;
 mod detector;
@@ -60,7 +60,7 @@ pub struct Run<'a> {
     pub progress: Option<f32>,
     /// The method's refusal, the reason for a missing output.
     pub refusal: Option<&'a Refusal>,
-    /// The method whose output is shown, and its time.
+    /// The method whose output is shown, and its run time.
     pub output: Option<(&'static str, Duration)>,
     /// Figures of that output against the target of the same scene.
     pub scores: Option<Scores>,

@@ -22,7 +22,7 @@ struct Step {
     commands: fn() -> Vec<Command>,
 }
 
-/// The buttons beneath each chapter of the text.
+/// The buttons below each chapter of the text.
 const CHAPTERS: &[&[Step]] = &[
     &[Step { label: "Open the street", commands: || scene("street", thesis()) }],
     &[
@@ -180,7 +180,7 @@ fn heading(chapter: &str) -> &str {
 #[derive(Default)]
 pub struct GuideMemory {
     cache: CommonMarkCache,
-    /// The chapter that is open, from 0.
+    /// Index of the open chapter.
     open: usize,
 }
 

@@ -162,7 +162,7 @@ fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command
         }
         let leave = if is_last { "Finish" } else { "Exit lesson" };
         press(ui, leave, "Your scene, settings, panels and zoom come back", || LessonCommand::Leave, asked);
-        // The bar at the top ends a presentation.
+        // In a presentation the button is in the bar at the top.
         if !presenting {
             whole_screen(ui, presenting, asked);
         }

@@ -166,7 +166,7 @@ fn tile(
     }
 }
 
-/// The command that gives the scene's radar, floor or method this value.
+/// The command that sets the scene's radar, floor or method to this value.
 fn take(variant: &Variant, parameter: Parameter) -> Option<Command> {
     Some(match parameter {
         Parameter::Window => Command::Radar(RadarCommand::SetWindow(variant.radar.window)),

@@ -21,7 +21,7 @@ pub struct Update<'a> {
     pub took: Duration,
     /// Pictures painted since the start.
     pub painted: u64,
-    /// The method whose output is shown, and its time.
+    /// The method whose output is shown, and its run time.
     pub output: Option<(&'static str, Duration)>,
     /// Whether that output is of an earlier scene or of another method.
     pub outdated: bool,

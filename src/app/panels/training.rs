@@ -57,7 +57,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
 /// Text in place of the curve, while there is none.
 fn waiting(input: &Input<'_>) -> String {
     match input.path {
-        // A log that can't be read is not waited for.
+        // There is no waiting for a log that can't be read.
         Some(path) if input.note.is_none() => format!("Waiting for the first line of {}…", path.display()),
         Some(path) => format!("{} has no line.", path.display()),
         None => "Open the log.csv of a training (apertura train), and watch its loss while it learns.".to_owned(),

@@ -26,7 +26,7 @@ pub const LISTED: [MapKind; 9] = [
 /// A map whose values are listed.
 pub struct Row<'a> {
     pub kind: MapKind,
-    /// The method that made it, if one did.
+    /// The method that made the map, if one did.
     pub method: Option<&'static str>,
     /// Values of the map's cells.
     pub cells: Cells<'a>,

@@ -1,4 +1,4 @@
-//! Choices beside each other, of which one is chosen.
+//! A row of choices, of which one is chosen.
 
 use crate::app::state::Command;
 use crate::app::widgets::entry::tipped;

@@ -12,7 +12,7 @@ use eframe::egui::Ui;
 /// Largest seed that a scene file holds: TOML knows no larger whole number.
 const MAX_NOISE_SEED: u64 = i64::MAX as u64;
 
-/// Draws the group's rows; `is_recorded` where a recording stands in the place of the scene.
+/// Draws the group's rows; `is_recorded` where a recording takes the place of the scene.
 pub(super) fn show(
     ui: &mut Ui,
     is_recorded: bool,

@@ -21,7 +21,7 @@ pub const NAMES: [&str; 2] = ["A", "B"];
 /// Places on the axis of a cut.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Markers {
-    /// A and B, where they are placed.
+    /// Places of A and B; `None` for one that is not placed.
     pub places: [Option<f64>; 2],
     /// Index of the marker that is being dragged.
     held: Option<usize>,

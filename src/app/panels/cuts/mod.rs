@@ -1,4 +1,4 @@
-//! Range profile and angle cut of all maps through the cursor, with cuts that were pinned, and markers to measure between.
+//! The cuts panel: range profile and angle cut of all maps through the cursor, with pinned cuts, and markers to measure between.
 
 mod markers;
 mod measure;
@@ -260,7 +260,7 @@ fn traces(input: &Input<'_>, hidden: &BTreeSet<MapKind>, cut: Cut) -> Vec<Trace>
     pinned.chain(live).collect()
 }
 
-/// The cells of a line that are in sight, and one beyond on either side.
+/// The visible cells of a line, and one beyond on either side.
 fn in_sight(points: &[[f64; 2]], span: Span) -> Vec<[f64; 2]> {
     let first = points.partition_point(|[x, _]| *x < span.low).saturating_sub(1);
     let last = (points.partition_point(|[x, _]| *x <= span.high) + 1).min(points.len());

@@ -102,7 +102,7 @@ fn clicks_place_markers() {
     assert!((a / extent - 0.25).abs() < 5e-3 && (b / extent - 0.5).abs() < 5e-3, "{a} {b}");
 }
 
-/// The panel with markers at a quarter of the maximum range, and at this part of it.
+/// The panel with markers at a quarter of the maximum range, and at `part` of it.
 fn marked(part: f64) -> Harness<'static, Held> {
     let mut cuts = panel([700.0, 600.0]);
     let places = [0.25, part].map(|part| Some(part * Radar::default().max_range_metres()));

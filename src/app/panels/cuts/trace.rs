@@ -79,7 +79,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// The line through a map; `None` where the map is of another radar that doesn't reach there.
+    /// The line through a map; `None` where the map is of another radar and has no such cell.
     pub fn of(radar: &Radar, cursor: &Cursor, map: &CutMap, cut: Cut, pin: Option<usize>) -> Option<Trace> {
         let (bin, column) = cursor.cell(radar)?;
         let (rows, columns) = map.map.lambda.dim();

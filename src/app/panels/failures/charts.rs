@@ -228,7 +228,7 @@ fn bars(ui: &Ui, chart: &mut Chart<'_>, points: &Points, boxed: Option<&Boxed>) 
     let Some(bars) = &points.bars else { return };
     let wide = (bars.high - bars.low).max(f64::MIN_POSITIVE) / bars.counts.len() as f64;
     let place = |dot: &Dot| (((dot.at[0] - bars.low) / wide) as usize).min(bars.counts.len() - 1);
-    // Each group's part of a bar stands on those before it.
+    // The bar of each group is stacked on those of the groups before it.
     let mut below = vec![0usize; bars.counts.len()];
     for group in 0..points.groups.len() {
         let colour = colour_of(ui, group, points.groups.len());

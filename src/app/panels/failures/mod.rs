@@ -185,7 +185,7 @@ fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory, asked: &mu
     let answer = charts::show(ui, &of, memory.boxed.as_ref(), &mut memory.charts);
     asked.extend(answer.open.map(|v| Command::Rows(RowsCommand::Show(v))));
     if let Some(boxed) = answer.boxed {
-        // An empty box selects all.
+        // An empty box selects all rows.
         memory.boxed = Some(boxed).filter(|boxed| !boxed.rows.is_empty());
         ui.request_repaint();
     }

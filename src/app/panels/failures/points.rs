@@ -54,7 +54,7 @@ impl Grouping {
 pub struct Dot {
     /// Place in the chart, (x, y).
     pub at: [f64; 2],
-    /// Index of its group in [`Points::groups`].
+    /// Index of the dot's group in [`Points::groups`].
     pub group: usize,
     /// Indices of the row to open and of the second method's row; both the same where there is one row.
     pub rows: [usize; 2],
@@ -63,7 +63,7 @@ pub struct Dot {
 /// Content of a chart.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Points {
-    /// The dots of a scatter plot; of a histogram, one a row that lies on the axis.
+    /// The dots of a scatter plot; for a histogram, one dot on the axis for each row.
     pub dots: Vec<Dot>,
     /// The bars of a histogram.
     pub bars: Option<Histogram>,

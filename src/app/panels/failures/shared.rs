@@ -50,7 +50,7 @@ impl SharedRulesMemory {
 /// All rows, or those of evenly chosen scenes where there are more than [`MOST_ROWS`].
 fn chosen(rows: &[Row]) -> Vec<Row> {
     let every = rows.len().div_ceil(MOST_ROWS).max(1) as u32;
-    // Two neighbours at a time: one half of the scenes has even numbers.
+    // Scenes are taken in pairs, so that half of them have even numbers.
     rows.iter().filter(|row| (row.index / 2).is_multiple_of(every)).cloned().collect()
 }
 

@@ -58,7 +58,7 @@ pub struct TableMemory {
     pictures: HashMap<(u64, usize), Picture>,
     /// The row that was opened last, at the last drawing.
     latest: Option<usize>,
-    /// Whether the opened row was in sight.
+    /// Whether the opened row was in sight at the last drawing.
     is_opened_in_sight: bool,
     /// Whether a row was clicked, so that the table takes the keyboard focus.
     was_clicked: bool,
@@ -199,7 +199,7 @@ fn texture(
         }
     }
     let mut picture = memory.pictures.get_mut(&key).filter(|_| matches!(made, Some(Ok(_))));
-    // Row 0 is range 0, which hangs lowest.
+    // Row 0 of the picture is range 0, at the lower end.
     for low in [0.0, 0.5] {
         drawn.col(|ui| {
             let place = Rect::from_center_size(ui.max_rect().center(), MAP);

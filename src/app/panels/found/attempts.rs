@@ -61,7 +61,7 @@ fn line(ui: &mut Ui, attempt: &Attempt, objects: &[Object]) -> Option<Command> {
     place.filter(|_| clicked).map(selected)
 }
 
-/// The object that has a reflector nearest to a place; `None` where none stands near. Samples do not tell y from -y.
+/// The object that has a reflector nearest to a place; `None` where none is near. Samples do not distinguish y from -y.
 fn nearest(objects: &[Object], [x, y]: [f64; 2]) -> Option<usize> {
     let apart = |object: &Object| {
         let to = |r: &crate::scene::Reflector| (r.x_metres - x).hypot(r.y_metres.abs() - y.abs());

@@ -18,7 +18,7 @@ pub fn number(ui: &mut Ui, shared: &SharedField, metres_per_point: f64) -> Optio
     };
     let label = ui.label(look.name).on_hover_text(&tooltip);
     let entered = ui.scope_id().with(look.name);
-    // A range read back from x and y differs in its last bits from the one that was entered; that mustn't disturb the typing.
+    // A range computed from x and y differs in its last bits from the entered one. The difference must not change the text that is being typed.
     let before: Option<f64> = ui.data(|d| d.get_temp(entered));
     let base = before.filter(|v| (v - shared.first).abs() < 1e-9 * v.abs().max(1.0)).unwrap_or(shared.first);
     let mut asked = None;

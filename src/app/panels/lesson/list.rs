@@ -88,7 +88,7 @@ fn listed(ui: &mut Ui, lesson: &Lesson, done: usize) -> bool {
         let clicked = button.on_hover_text("Begin this lesson").clicked();
         let text = format!("{done} of {}", counted(steps, "step", "steps"));
         let bar = ProgressBar::new(done as f32 / steps.max(1) as f32).desired_width(bar).text(text);
-        // A bar of nothing would still be drawn as a dot.
+        // A bar of no progress would be drawn as a dot.
         ui.add(if done == 0 { bar.fill(Color32::TRANSPARENT) } else { bar });
         clicked
     });

@@ -53,7 +53,7 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, places: &Places) {
     label(painter, guess, guess_is_above, "your guess");
     label(painter, truth, !guess_is_above, "truth");
     let middle = guess + (truth - guess) / 2.0;
-    // On the side of the line where neither of its ends is; above the marks and their names where the line is level.
+    // The text is on the free side of the line; above the marks and their names where the line is level.
     if apart > 5.0 * REACH {
         let along = if truth.x < guess.x { guess - truth } else { truth - guess };
         let (off, align) = match along.y {

@@ -1,4 +1,4 @@
-//! Figures for a map's title bar.
+//! Text in the title bar of a map's panel.
 
 use crate::app::state::{MapKind, Units};
 use crate::app::widgets::levels::{level, with_unit};

@@ -19,7 +19,7 @@ pub struct Frame<'a> {
     pub radar: &'a Radar,
     /// Projection of the map.
     pub projection: Projection,
-    /// Middle of the elements that the map is of, metres along the array.
+    /// Middle of the map's elements, metres along the array.
     pub centre_x_metres: f64,
     /// The start of the animation, while the map changes from another projection.
     pub morph: Option<Morph>,
@@ -49,7 +49,7 @@ impl<'a> Frame<'a> {
         Frame { rect, view, radar, projection, centre_x_metres, morph: None }
     }
 
-    /// Height of a range bin on screen, points; in a Cartesian map that of one straight ahead.
+    /// Height of a range bin on screen, points; in a Cartesian map that of a bin straight ahead.
     pub fn cell_height(&self) -> f32 {
         self.rect.height() / (self.view.high.y - self.view.low.y) / self.radar.samples as f32
     }
@@ -217,7 +217,7 @@ pub struct Marked {
 
 /// Reflectors drawn over a map.
 pub struct Marks<'a> {
-    /// True ones, object by object: as rings, or as the outline of a line.
+    /// True reflectors, object by object: as rings, or as the outline of a line.
     pub objects: &'a [Marked],
     /// Reflectors that the method found, as crosses.
     pub found: &'a [Reflector],

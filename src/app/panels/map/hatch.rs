@@ -72,7 +72,7 @@ impl ToldApart<'_> {
         painter.add(mesh);
     }
 
-    /// Draws ghosts and hatches over what is shown of the map: misses lean to the right, false alarms to the left, hits have none.
+    /// Draws ghosts and hatches over the visible part of the map: misses lean to the right, false alarms to the left, hits have none.
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>, dark: bool) {
         self.fill(painter, frame, dark);
         let rect = frame.rect.intersect(painter.clip_rect());
@@ -80,7 +80,7 @@ impl ToldApart<'_> {
             return;
         }
         let [across, up] = [rect.width(), rect.height()].map(|side| (side / STEP).ceil() as usize);
-        // On a grid that stays where it is on screen, so that lines of neighbouring cells meet.
+        // The grid stays in place on screen, so that lines of neighbouring cells meet.
         let squares = (0..up).flat_map(|row| (0..across).map(move |column| (row, column)));
         let lines = squares.filter_map(|(row, column)| {
             let square = Rect::from_min_size(rect.min + STEP * vec2(column as f32, row as f32), vec2(STEP, STEP));
@@ -124,7 +124,7 @@ mod tests {
         harness.output().shapes.iter().filter(|s| matches!(s.shape, Shape::LineSegment { .. })).count()
     }
 
-    /// A small part of the map, from this part of its height upwards.
+    /// A small part of the map, from the part `low` of its height upwards.
     fn zoomed(low: f32) -> MapView {
         MapView { low: pos2(0.4, low), high: pos2(0.43, low + 0.04) }
     }

@@ -229,7 +229,7 @@ pub mod tests {
     use crate::scene::Scene;
     use eframe::egui::{Rect, pos2};
 
-    /// One object of every fate and a ghost.
+    /// Objects with one of each verdict, and a ghost.
     pub fn fates() -> Fates {
         let scene = Scene::of_points([(-8.0, 12.0), (-4.0, 16.0), (0.0, 20.0), (3.0, 24.0), (6.0, 28.0)]);
         let objects =

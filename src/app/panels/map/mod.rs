@@ -253,7 +253,7 @@ fn aperture(input: &Input<'_>) -> Option<Aperture> {
     }
 }
 
-/// Middle of the elements that a map is of.
+/// Middle of a map's elements, metres along the array.
 fn centre_x_metres(kind: MapKind, radar: &Radar) -> f64 {
     match kind {
         MapKind::Input0 => radar.end_centre_metres(End::First),

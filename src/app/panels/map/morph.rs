@@ -29,7 +29,7 @@ pub fn picture(painter: &Painter, frame: Frame<'_>, texture: TextureId, own: Pro
     for (row, column) in (0..=up).flat_map(|row| (0..=across).map(move |column| (row, column))) {
         let fraction = pos2(column as f32 / across as f32, row as f32 / up as f32);
         let polar = frame.polar_of_cell(fraction);
-        // Row 0 of a picture is range 0, as fractions count.
+        // Row 0 of a picture is range 0, the lower end of the fractions.
         let uv = frame.fraction_in(own, polar, fraction);
         mesh.vertices.push(eframe::egui::epaint::Vertex { pos: frame.at_fraction(polar, fraction), uv, color: tint });
         if row < up && column < across {

@@ -9,7 +9,7 @@ const HALF_CIRCLE_CORNERS: usize = 8;
 /// Outline at a distance `radius` around a path, round at the ends.
 pub fn outline(path: &[Pos2], radius: f32) -> Vec<Pos2> {
     let (Some(first), Some(last)) = (path.first(), path.last()) else { return Vec::new() };
-    // The direction at a place is that between its neighbours; along the screen where they all coincide.
+    // The direction at a place is that between its neighbours, or along the screen where all of them coincide.
     let direction = |i: usize| {
         let (before, after) = (path[i.saturating_sub(1)], path[(i + 1).min(path.len() - 1)]);
         let way = (after - before).normalized();

@@ -42,7 +42,7 @@ const ALIAS: Color32 = Color32::from_rgb(205, 190, 255);
 const TICK: f32 = 7.0;
 /// Least size of the drawn ellipse, points.
 const ELLIPSE: f32 = 9.0;
-/// Least size of a map that has room for the numbers.
+/// Least size of a map that has room for the numbers, points.
 const ROOM: Vec2 = vec2(250.0, 130.0);
 
 impl Theory<'_> {

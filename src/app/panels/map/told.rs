@@ -35,7 +35,7 @@ impl MapMemory {
     }
 }
 
-/// A map in a panel of its own.
+/// Panel of one map.
 pub struct MapPanel;
 
 impl Content for MapPanel {
@@ -191,8 +191,8 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     })
 }
 
-/// Figures of a method's output against the target. There are none before an open question is answered, and none of a recording: its target is
-/// the recording itself.
+/// Figures of a method's output against the target. There are none while a lesson's question is open, and none for a recording, whose target
+/// is the recording itself.
 pub fn scores(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<Scores> {
     let is_shown = !state.is_predicting() && state.editor.document().recording().is_none();
     jobs.pipeline.scores_in(slot).filter(|_| is_shown)
@@ -305,7 +305,7 @@ fn places(state: &State, kind: MapKind) -> Option<Places> {
     Some(Places { guess, truth, distance: judged.distance.clone() })
 }
 
-/// The method that is at work where another one's output of the same scene is shown.
+/// The running method, while another method's output of the same scene is shown.
 fn running(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<&'static str> {
     jobs.pipeline.method(slot).of_another_method()?;
     state.method_in(slot).map(|method| method.name())

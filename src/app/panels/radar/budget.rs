@@ -11,7 +11,7 @@ use crate::radar::{LinkBudget, Radar};
 use eframe::egui::{CollapsingHeader, Grid, Label, Sense, Stroke, Ui, vec2};
 use egui_plot::{HLine, LineStyle};
 
-/// An object whose SNR the link budget tells.
+/// An object whose SNR is computed by the link budget.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selected {
     /// Name of the object.
@@ -37,7 +37,7 @@ const LEAST_DB: f64 = -30.0;
 /// Points of a curve.
 const POINTS: u32 = 120;
 
-/// Width of an element's pattern where one is chosen, degrees.
+/// Width of an element's pattern when one is switched on, degrees.
 const USUAL_WIDTH_DEGREES: f64 = 80.0;
 
 /// Text in place of the numbers, without a link budget.

@@ -16,7 +16,7 @@ const TOOLTIPS: [&str; 2] = [
 /// Digits of a place after the point, millimetres.
 const DECIMALS: usize = 4;
 
-/// Most letters that a list may have.
+/// Maximum length of a list, characters.
 const MOST_LETTERS: usize = 100_000;
 
 /// A text typed into one of the lists.
@@ -93,7 +93,7 @@ fn field(ui: &mut Ui, id: Id, (name, tooltip): (&str, &str), own: &[f64], is_fre
     }
 }
 
-/// Places in metres as a list in millimetres.
+/// Text of places in metres, as a list in millimetres.
 fn listed(x_metres: &[f64]) -> String {
     let one = |x: &f64| {
         let text = format!("{:.DECIMALS$}", x * 1e3);
@@ -102,7 +102,7 @@ fn listed(x_metres: &[f64]) -> String {
     x_metres.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// Places in metres that a list in millimetres says.
+/// The places in metres of a list in millimetres.
 fn places(text: &str) -> Result<Vec<f64>, String> {
     let cells = text.split([',', ';', ' ', '\t', '\n', '\r']).filter(|cell| !cell.is_empty());
     let place = |(i, cell): (usize, &str)| match cell.parse::<f64>().ok().filter(|v| v.is_finite()) {

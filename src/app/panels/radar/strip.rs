@@ -36,7 +36,7 @@ const ROWS: [&str; 3] = ["transmitters", "receivers", "elements"];
 /// One antenna: a row, 0 the transmitters and 1 the receivers, and its number there.
 type One = (usize, usize);
 
-/// Places of the antennas in metres, and how the drawing shows them.
+/// Places of the antennas, and the part of the line that is drawn.
 #[derive(Clone)]
 struct Drawn {
     /// Places of transmitters and receivers along the line.
@@ -76,7 +76,7 @@ impl Drawn {
             *x += along;
         }
         if let Some(y) = moved.y_metres[row].get_mut(number).filter(|_| forward != 0.0) {
-            // Whole steps: an antenna that is put back stands on the line again, to the bit.
+            // Whole steps bring an antenna back to the line exactly, to the bit.
             *y = ((*y + forward) / FORWARD_STEP_METRES).round() * FORWARD_STEP_METRES;
         }
         moved

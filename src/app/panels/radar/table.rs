@@ -9,7 +9,7 @@ pub(super) const GAP: f32 = 12.0;
 /// Width of the widest value, two names of windows beside each other, points.
 const VALUE_WIDTH: f32 = 170.0;
 
-/// The least width of a column of consequences, points: in less, a sentence is torn into single words.
+/// Least width of a column of consequences, points: in a narrower one, sentences break into single words.
 const LEAST_CONSEQUENCE_WIDTH: f32 = 150.0;
 
 /// Layout of the rows.
@@ -17,7 +17,7 @@ const LEAST_CONSEQUENCE_WIDTH: f32 = 150.0;
 pub(super) struct Table {
     /// Width of the longest name of a constant, points.
     pub name_width: f32,
-    /// Width of the column of consequences; `None` where there is no room for one: then each stands below its constant.
+    /// Width of the column of consequences; `None` where it has no room, and each consequence stands below its constant.
     pub consequence_width: Option<f32>,
 }
 

@@ -99,7 +99,7 @@ fn ghosts_stand_where_the_radar_hears_them() {
 
 #[test]
 fn labels_stand_around_the_half_disc() {
-    // The last also shows what stands far behind the array: the half disc is small.
+    // The last case also shows a point far behind the array, so that the half disc is small.
     for (size, y_metres) in
         [([280.0, 170.0], 20.0), ([480.0, 300.0], 20.0), ([1400.0, 800.0], 20.0), ([490.0, 170.0], -30.0)]
     {
