@@ -1,4 +1,4 @@
-//! How maps and the scene are drawn: what axes and scales count, colours, and where dragged objects come to rest.
+//! Display settings: units of axes and scales, colours, and snapping of dragged objects.
 
 use super::choices::choices;
 use crate::app::state::{Command, Directions, EditCommand, Settings, Units, ViewCommand};
