@@ -1,4 +1,4 @@
-//! Where a wall ends: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
+//! The ends of a wall: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
 
 use super::begin::MIN_REFLECTORS;
 use super::grow::Grower;
@@ -78,7 +78,7 @@ impl Narrow<'_> {
     }
 }
 
-/// `seed` without the reflectors at its ends that the samples are better explained without.
+/// `seed` without the reflectors at its ends whose absence explains the samples better.
 fn trimmed(near: &Narrow, mut seed: Atom) -> Atom {
     for _ in 0..MOST_TRIMS {
         let wall = near.bench.solve_alone(&near.samples, seed);
@@ -92,7 +92,7 @@ fn trimmed(near: &Narrow, mut seed: Atom) -> Atom {
     seed
 }
 
-/// How many reflectors at the wall's last end, or at its first, leave less when they are taken away.
+/// Number of reflectors at the wall's last end, or at its first, whose removal leaves less.
 fn fewer_reflectors(bench: &Workbench, wall: &Fit, at_last: bool) -> usize {
     let Some(atom) = wall.atoms.first() else { return 0 };
     let count = atom.reflector_count();
@@ -101,7 +101,7 @@ fn fewer_reflectors(bench: &Workbench, wall: &Fit, at_last: bool) -> usize {
     how_many(bench, wall, &back, (1..=count / 2).map(next))
 }
 
-/// How many of `places`, one after the other, leave least of what `wall` leaves when reflectors of these gains are taken off there.
+/// Number of successive `places` at which reflectors of these gains, subtracted from the residual of `wall`, leave least.
 fn how_many(bench: &Workbench, wall: &Fit, gains: &[Gains], places: impl Iterator<Item = [f64; 2]>) -> usize {
     let (mut best, mut least) = (0, wall.cost());
     let mut residual = wall.residual.clone();
