@@ -48,11 +48,11 @@ pub struct Campaign {
     pub normalisation: Normalisation,
     /// A detector that is tried on every output beside the method's threshold, if there is one.
     pub cfar: Option<Cfar>,
-    /// The elements that hear the scenes.
+    /// The elements that measure the scenes.
     pub elements: Elements,
     /// The map of the whole array against which outputs are compared.
     pub target: Target,
-    /// Numbers of the elements that methods hear, in place of the two ends.
+    /// Numbers of the elements whose samples methods get, in place of the two ends.
     pub layout: Option<Vec<usize>>,
 }
 

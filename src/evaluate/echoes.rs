@@ -53,7 +53,7 @@ impl FromStr for EchoCounts {
 pub struct EchoTally {
     /// Echoes that stand out in the target, one number a class.
     pub there: [usize; CLASSES],
-    /// Those of them that the output shows.
+    /// Echoes among them that the output shows.
     pub found: [usize; CLASSES],
 }
 

@@ -76,7 +76,7 @@ impl Fate {
 /// A blob of the output where the scene has nothing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ghost {
-    /// Its cells.
+    /// Cells of the blob.
     pub cells: Vec<CellIndex>,
 }
 

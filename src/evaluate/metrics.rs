@@ -23,7 +23,7 @@ impl Metrics {
         Metrics { squared_error: squared_error(target, output), detection, false_alarm }
     }
 
-    /// The same of a scene in which nothing reflects. Its target holds noise, or nothing: cells above 0.9 are no echoes, so that there is
+    /// The figures of a scene in which nothing reflects. Its target holds noise, or nothing: cells above 0.9 are no echoes, so that there is
     /// nothing to detect, and every cell of the output above eta is a false alarm.
     pub fn of_silence(target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Metrics {
         let alarms = output.above(eta).count() as f64;
@@ -46,7 +46,7 @@ pub fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
 /// sum of its squares over every cell. On scenes and over noise like those of the training nine of ten cells are nearer, so that it is mostly
 /// larger than SE.
 ///
-/// It ranks scenes by their SE as well as the mean of doubt does, and has the unit of SE.
+/// The sum ranks scenes by their SE as well as the mean of doubt does, and has the unit of SE.
 pub fn squared_doubt(doubt: &RangeAngleMap) -> f64 {
     doubt.lambda.iter().map(|v| f64::from(*v).powi(2)).sum()
 }

@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub struct Robustness {
     /// The radar with exact elements.
     pub radar: Radar,
-    /// Numbers of the elements that methods hear in place of the two ends.
+    /// Numbers of the elements whose samples methods get in place of the two ends.
     pub layout: Option<Vec<usize>>,
     /// Kind of the test scenes.
     pub kind: Kind,

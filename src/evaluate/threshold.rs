@@ -15,7 +15,7 @@ use crate::task::Task;
 pub struct ThresholdSearch {
     /// The radar of the scenes.
     pub radar: Radar,
-    /// Numbers of the elements that the method hears in place of the two ends.
+    /// Numbers of the elements whose samples the method gets in place of the two ends.
     pub layout: Option<Vec<usize>>,
     /// Noise of the scenes.
     pub floor: Floor,

@@ -1,6 +1,6 @@
 //! Neural networks: the thesis' own encoder-decoder and its failing U-Net on burn, and the live network.
 //!
-//! | file | what |
+//! | file | content |
 //! |---|---|
 //! | [`live`] | the live network: features, examples to train on, an engine without a framework |
 //! | [`kernels`] | convolutions of both engines without a framework |

@@ -1,9 +1,9 @@
-//! The elements that hear the scenes of a campaign.
+//! The elements that measure the scenes of a campaign.
 
 use crate::files::sha256;
 use crate::radar::{BuiltArray, Radar, Tolerances};
 
-/// The elements that hear the scenes of a campaign.
+/// The elements that measure the scenes of a campaign.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Elements {
     /// The elements that each scene names.

@@ -85,7 +85,7 @@ columns! {
         /// Echoes that stand out in the target, by their strength; `None` for scenes without bodies, and in tables from before they were counted.
         #[serde(with = "by_text")]
         echoes: Option<EchoCounts> = Echoes,
-        /// Those of the echoes that the method shows.
+        /// Echoes among them that the method shows.
         #[serde(with = "by_text")]
         echoes_found: Option<EchoCounts> = EchoesFound,
         /// SE if every cell were off by its doubt ([`squared_doubt`](super::squared_doubt)); `None` for methods without doubt, and in tables
@@ -135,12 +135,12 @@ columns! {
         methods: Text = Methods,
         /// The detector of constant false-alarm rate that was tried on every output; empty where none was.
         cfar: Text = Cfar,
-        /// The elements that heard the scenes in place of the scenes' own; empty where those did.
+        /// The elements that measured the scenes in place of the scenes' own; empty where those did.
         elements: Text = Elements,
         /// The map that outputs were held against: measured, calibrated or ideal ([`Target`](super::Target)); empty in tables from before targets
         /// had names, where it is the measured one.
         target: Text = Target,
-        /// Numbers of the elements that methods heard; empty where they heard the two ends.
+        /// Numbers of the elements whose samples methods got; empty where methods got the two ends.
         layout: Text = Layout,
     }
 }
@@ -274,7 +274,7 @@ pub(super) mod tests {
         }
     }
 
-    /// The row of [`Row::row`] with the origin of a usual run of four scenes.
+    /// The row of [`row`] with the origin of a usual run of four scenes.
     pub(in crate::evaluate) fn made(set: &str, index: u32, method: &str) -> Row {
         Row {
             version: Some(FORMAT),

@@ -68,7 +68,7 @@ pub struct WorseningSearch {
     pub floor: Floor,
     /// Normalisation of maps.
     pub normalisation: Normalisation,
-    /// Numbers of the elements that the method hears in place of the two ends.
+    /// Numbers of the elements whose samples the method gets in place of the two ends.
     pub layout: Option<Vec<usize>>,
     /// The aim.
     pub aim: Aim,

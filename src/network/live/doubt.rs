@@ -105,7 +105,7 @@ mod tests {
     // `training/reference.py` writes these files.
     /// Weights of a tiny network that has the head.
     const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/doubt_reference_weights.safetensors");
-    /// The same network without it.
+    /// Weights of the same network without the head.
     const WITHOUT: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
     /// Three reflectors, and PyTorch's results for them.
     const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");

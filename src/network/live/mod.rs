@@ -9,7 +9,7 @@
 //!
 //! `python/apertura/live.py` is the network in PyTorch, with the same names and shapes, for training.
 //!
-//! | file | what |
+//! | file | content |
 //! |---|---|
 //! | [`grid`], [`features`], [`constants`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
 //! | [`examples`], [`arrays`], [`radars`] | inputs and targets of random scenes |

@@ -1,7 +1,7 @@
 //! The forward pass of the thesis' network without a framework: channels-last, buffers kept, the same weights as [`super::thesis`], which is
 //! trained and which tests compare it with.
 //!
-//! | file | what |
+//! | file | content |
 //! |---|---|
 //! | `layers` | weights with each batch norm folded into its convolution |
 //! | `pictures` | pictures with circular margins and with borders of zeros |

@@ -9,7 +9,7 @@ const MOST_MIGRATION_BINS: f64 = 0.5;
 /// Directions of a model for each period of the fringes between the two ends, where there are many sectors.
 const PER_FRINGE: f64 = 4.0;
 
-/// The same where one model serves all directions.
+/// Directions of a model for each of these periods where one model serves all directions.
 const PER_FRINGE_ALONE: f64 = 12.0;
 
 /// Most directions of one model, beyond which the grid gets coarser.

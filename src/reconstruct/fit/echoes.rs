@@ -20,7 +20,7 @@ pub struct Samples {
 pub struct Products {
     /// `sum w^2 conj(echo) residual`.
     pub zeroth: Vec<Complex64>,
-    /// The same times `tau = (t - middle) / samples`.
+    /// `zeroth` with a factor `tau = (t - middle) / samples` in the sum.
     pub first: Vec<Complex64>,
 }
 

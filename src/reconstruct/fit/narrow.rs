@@ -73,7 +73,7 @@ impl<'a> Spectra<'a> {
         self.kept(rows, all / part)
     }
 
-    /// So many range bins of each end around the middle of `rows`.
+    /// A fit within `bins` range bins of each end around the middle of `rows`.
     fn kept(&self, rows: &Rows, bins: usize) -> Narrow<'a> {
         let (all, every) = (self.radar.samples as f64, (self.radar.samples / bins) as f64);
         // Sampled evenly about the middle of the chirp.

@@ -331,7 +331,7 @@ impl<'a> Workbench<'a> {
 /// Largest ratio of a step to the maximum range.
 const MAX_STEP_RATIO: f64 = 26.0;
 
-/// The same for the square of a distance, relative to that of the maximum range.
+/// Largest change of the square of a distance in a step, relative to the square of the maximum range.
 const FARTHEST_SQUARE: f64 = 0.68;
 
 /// The reflectors of `atoms` with their gains.

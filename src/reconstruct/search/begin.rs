@@ -23,7 +23,7 @@ pub const MIN_REFLECTORS: usize = 8;
 /// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
 const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (MIN_REFLECTORS, 0.97)];
 
-/// The same of a long wall: so many reflectors explain nothing that they are not, and much else may stand in their range bins.
+/// This part for a long wall: a wrong row of so many reflectors explains little, and other objects may stand in its range bins.
 const LEAST_OF_LONG: f64 = 0.6;
 
 /// Fewest reflectors of a long wall, and fewest range bins that it goes through.

@@ -38,7 +38,7 @@ pub enum Noise {
 pub struct Weighted {
     /// The atom.
     pub atom: Atom,
-    /// Its reflectivity.
+    /// Reflectivity of the atom.
     pub reflectivity: f64,
 }
 

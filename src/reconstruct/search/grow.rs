@@ -16,10 +16,10 @@ use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Of a group while more atoms are to come.
+/// Limits of the refinement of a group while more atoms are to come.
 const GROWING: Limits = Limits { iterations: 12, least_gain: 3e-2, ridge: 0.0 };
 
-/// Of a group once all atoms are there.
+/// Limits of the refinement of a group once all atoms are there.
 const POLISH: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
 
 /// Atoms this many bins apart at either end are refined together.
@@ -43,10 +43,10 @@ const SIDE_LOBE: f64 = 1e-4;
 /// Echoes that a look at the residual takes as long as.
 pub const LOOK_ECHOES: usize = 200;
 
-/// Work after which it is seen whether growing is worth while.
+/// Work after which growing is checked for its worth.
 const LOOK_BACK: usize = 3000;
 
-/// It is if this part of the energy at most is left since.
+/// Largest part of the energy that this work may leave for growing to continue.
 const WORTH_GOING_ON: f64 = 1.0 / 3.0;
 
 /// Most atoms refined together.

@@ -104,7 +104,7 @@ pub struct Nomp {
 }
 
 impl Nomp {
-    /// With other limits than the default ones.
+    /// The method with other limits than the default ones.
     pub fn with_settings(settings: Settings) -> Self {
         Nomp { settings }
     }

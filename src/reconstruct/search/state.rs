@@ -40,7 +40,7 @@ pub struct State {
 }
 
 impl State {
-    /// With nothing found yet.
+    /// The state without any object.
     pub fn start(search: &Search) -> Self {
         let nothing = search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0);
         let flat = nothing.residual.flat(&search.bench.sensor);
@@ -48,12 +48,12 @@ impl State {
         State { is_long, ..State::of(nothing) }
     }
 
-    /// With `fit` found.
+    /// The state with the objects of `fit`.
     pub fn of(fit: Fit) -> Self {
         State { fit, is_sure: false, pairs: None, is_long: false }
     }
 
-    /// With `answer` found.
+    /// Sets the state to `answer`.
     pub fn reach(&mut self, answer: Answer) {
         (self.fit, self.is_sure) = (answer.fit, answer.is_sure);
     }
@@ -158,7 +158,7 @@ impl Search<'_> {
     }
 
     /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
-    /// They are moved to their best places only if that is asked for.
+    /// Only with `polished` are they moved to their best places.
     pub fn paired(&self, known: Fit, pairs: &Pairs, polished: bool) -> Result<Fit, ReconstructError> {
         let mut atoms = known.atoms.clone();
         atoms.extend(pairs.points.iter().map(|point| point.atom));

@@ -5,7 +5,7 @@ use super::grow::Grower;
 use super::on_wall::MOST_REFLECTORS;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Narrow, Samples, Spectra, Tie, Workbench, rows_of};
 
-/// Of a wall by itself.
+/// Limits of the refinement of a wall by itself.
 const ALONE: Limits = Limits { iterations: 8, least_gain: 1e-2, ridge: 0.0 };
 
 /// Reflectors beyond the best end of a wall that are tried.
@@ -58,7 +58,7 @@ impl Grower<'_> {
         spectra.around(&rows, ROOM_BINS.max(ROOM * longest))
     }
 
-    /// By how many reflectors the wall is too short at its last end, or at its first: as many more as leave least. No more than it
+    /// Number of reflectors that the wall lacks at its last end, or at its first: as many more as leave least. No more than it
     /// already has, as far as its direction can be trusted.
     fn more_reflectors(&self, near: &Narrow, wall: &Fit, at_last: bool) -> usize {
         let Some(atom) = wall.atoms.first() else { return 0 };

@@ -264,7 +264,7 @@ impl Climbed {
         self.added / f64::max(self.all, f64::MIN_POSITIVE)
     }
 
-    /// Its first `count` reflectors, over which it was moved.
+    /// The row's first `count` reflectors, over which it was moved.
     fn stride(&self, count: usize) -> Stride {
         let [x_metres, y_metres] = self.row.first_metres;
         let [dx_metres, dy_metres] = self.row.step_metres;
