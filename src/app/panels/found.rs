@@ -84,7 +84,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             return;
         };
         if input.stale {
-            ui.weak("of an earlier scene; updating…");
+            ui.weak("out of date; updating…");
             ui.set_opacity(OLD_OPACITY);
         }
         let more = found.len().saturating_sub(LINES);

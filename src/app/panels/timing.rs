@@ -90,7 +90,7 @@ fn table(ui: &mut Ui, update: &Update<'_>) {
     if let Some((method, took)) = update.output {
         ui.label(method);
         ui.monospace(milliseconds(took));
-        ui.add(Label::new(if update.outdated { "of an earlier scene" } else { "on a thread of its own" }).wrap());
+        ui.add(Label::new(if update.outdated { "out of date" } else { "on a thread of its own" }).wrap());
         ui.end_row();
     }
 }
