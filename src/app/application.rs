@@ -196,7 +196,7 @@ impl App {
         let kept = match &mut self.jobs.autosave {
             _ if !is_unsaved => Ok(()),
             Some(autosave) => autosave.keep_now(editor),
-            None => Err("it has no place to be kept in".to_owned()),
+            None => Err("this program has no settings folder".to_owned()),
         };
         match kept {
             Err(reason) if !self.close_refused => {

@@ -17,7 +17,7 @@ macro_rules! every_panel {
             Roc roc::RocPanel, result, F6, "ROC", "Detection against false alarm of this scene, over every threshold";
             Guide guide::GuidePanel, tool, F1, "Guide", "The contents of the maps and their reasons, with something to try";
             Lesson lesson::LessonPanel, tool, F5, "Lessons",
-                "Questions to answer before the maps are shown, and things to bring about";
+                "Questions to answer before the maps are shown, and challenges to meet in a scene";
             Failures failures::FailuresPanel, tool, E, "Failures",
                 "Every scene that methods were tried on, row by row: sort, filter, open, make worse, keep";
             Evaluation evaluation::EvaluationPanel, view of Failures, F9, "Evaluation",
@@ -32,9 +32,9 @@ macro_rules! every_panel {
                 "An unsynchronised radar, and a wall that mirrors";
             Found found::FoundPanel, tool, none, "Found", "The method's detections: angle, range and strength";
             Recording recording::RecordingPanel, tool, none, "Recording",
-                "How the file of a recording was read, other ways to read it, its frames, and what is doubtful";
+                "How the file of a recording was read, other ways to read it, its frames, and the doubts";
             Bounds bounds::BoundsPanel, tool, F8, "Bounds",
-                "How well any method could place a reflector, and what looks like it to chosen elements";
+                "The least error with which any method could place a reflector, and the places that chosen elements confuse with it";
             Phasors phasors::PhasorsPanel, tool, A, "Phasors",
                 "The contribution of each element to the cell under the cursor, added head to tail";
             Chirp chirp::ChirpPanel, tool, U, "Chirp",

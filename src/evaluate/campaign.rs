@@ -262,7 +262,7 @@ impl Campaign {
             let (name, all) = (set_name(set), self.shard.size(count));
             told.extend(said.into_iter().filter_map(|(scenes, why)| {
                 Some(format!(
-                    "{scenes} of {all} scenes of {name} lie over noise that was not trained on, the first: {}",
+                    "{scenes} of {all} scenes of {name} lie over noise outside the training's, the first: {}",
                     why?
                 ))
             }));

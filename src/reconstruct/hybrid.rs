@@ -13,7 +13,7 @@ use crate::signal::TwoEnds;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The method's knowledge beside the samples, [`About::told`].
-const TOLD_TO_HYBRID: &str = "what nomp is told; and by its network, what live was trained on";
+const TOLD_TO_HYBRID: &str = "the same as nomp; and by its network, the training scenes of live";
 
 /// [`super::search::Nomp`], and a network for scenes that the search can't explain, or not in time.
 #[derive(Clone)]

@@ -29,11 +29,11 @@ fn text(kind: MapKind, radar: &Radar, layout: Option<&LayoutKind>, method: &str)
     let (all, ends) = (radar.elements, radar.elements.min(first + last));
     match kind {
         MapKind::Input0 if let Some(layout) = layout => format!("Input 0: the elements of {layout}"),
-        MapKind::Output | MapKind::Second if layout.is_some() => format!("Output: what {method} makes of them"),
+        MapKind::Output | MapKind::Second if layout.is_some() => format!("Output: {method}'s map from these elements"),
         MapKind::Input0 => format!("Input 0: the first {first} elements"),
         MapKind::Input1 => format!("Input 1: the last {last} elements"),
         MapKind::Target => format!("Target: all {all} elements"),
-        MapKind::Output | MapKind::Second => format!("Output: what {method} makes of the {ends}"),
+        MapKind::Output | MapKind::Second => format!("Output: {method}'s map from the {ends}"),
         MapKind::TargetAbove => "Target > η': what a detector finds in the target".to_owned(),
         MapKind::OutputAbove | MapKind::SecondAbove => "Output > η: what it finds in the output".to_owned(),
         MapKind::Difference | MapKind::SecondDifference => "Difference: output minus target".to_owned(),

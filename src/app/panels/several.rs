@@ -161,7 +161,7 @@ fn tile(
             _ = painter.text(picture.center(), Align2::CENTER_CENTER, "computing…", FontId::proportional(11.0), ink)
         }
     }
-    if response.on_hover_text("Put this value before the scene").clicked() {
+    if response.on_hover_text("Use this value for the scene").clicked() {
         asked.extend(take(&small.variant, parameter));
     }
 }

@@ -242,7 +242,7 @@ map_kinds! {
     OutputAbove, "Output > η", "Cells where the output exceeds η: hits, false alarms, and what it misses of the target";
     Difference, "Difference", "Output minus target: red where the output is too bright, blue where it is too dark";
     Unexplained, "Unexplained", "The rest of a recording, once the echoes of the reflectors laid over it are fitted and taken off";
-    Doubt, "Doubt", "How far off the method expects its output to be: nine of ten cells are nearer to the target than this, on scenes and over \
+    Doubt, "Doubt", "The error that the method expects of its output: nine of ten cells are nearer to the target than this, on scenes and over \
         noise like those it was trained on";
     Second, "Second output", "The second method's map, from the two ends";
     SecondAbove, "Second output > η", "Cells where the second output exceeds its η";

@@ -34,12 +34,12 @@ pub enum View {
 impl View {
     const ALL: [(View, &'static str, &'static str); 5] = [
         (View::None, "Table", "The table alone"),
-        (View::Histogram, "Histogram", "How often the figures of a column fall where"),
+        (View::Histogram, "Histogram", "Rows counted by their figure in a column"),
         (View::Columns, "Scatter", "One column against another"),
         (View::Methods, "A against B", "One column for one method against the same for another, scene by scene"),
         (
             View::Shared,
-            "What do the bad ones share?",
+            "Conditions that the bad rows share",
             "Rules that tell bad rows from others, tested on scenes that did not suggest them",
         ),
     ];

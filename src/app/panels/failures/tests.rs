@@ -239,7 +239,7 @@ fn two_methods_are_compared_in_a_sentence() {
 #[test]
 fn a_rule_of_the_bad_rows_is_applied_by_a_click() {
     let mut panel = panel_of(by_two_methods(), vec2(900.0, 700.0));
-    click(&mut panel, "What do the bad ones share?");
+    click(&mut panel, "Conditions that the bad rows share");
     let _said = panel.get_by_label_contains("24 of 160 rows are bad.");
     click(&mut panel, "nearest_pair_columns < 3");
     assert_eq!(panel.state().memory.order.shown().len(), 48);

@@ -81,7 +81,7 @@ pub(super) const COMMANDS: &[Entry] = {
         View(ViewCommand::ToggleFound), "Mark found reflectors", "Draw the reflectors that the method found", None;
         View(ViewCommand::ToggleFieldsOfView), "Fields of view", "Draw what each end can see in the scene", key(Key::V);
         View(ViewCommand::ToggleTheory), "Theory on the maps",
-            "Draw what the formulas say of the selected reflector: beam, lobes, streak, comb, bound, what wraps and folds", key(Key::T);
+            "Draw the formulas' figures of the selected reflector: beam, lobes, streak, comb, bound, wraps and folds", key(Key::T);
         View(ViewCommand::ToggleKinds), "Mark kinds of failure",
             "Mark in the maps which objects are found, missed, merged or on the wrong tooth, and ghosts", key(Key::H);
         View(ViewCommand::ToggleDeveloper), "Developer",
