@@ -10,7 +10,7 @@ use std::fmt;
 /// Most numbers whose chirps are joined.
 const MOST_JOINED: usize = 1 << 23;
 
-/// What an axis of an array counts.
+/// The quantity that an axis of an array counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum AxisKind {
@@ -44,7 +44,7 @@ impl fmt::Display for AxisKind {
     }
 }
 
-/// Which of several chirps or loops are looked at.
+/// The chirp or loop that is taken of several, or the way to join them all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(untagged, expecting = "expected a number from 0, \"mean\" or \"strongest\"")]
 pub enum Chirp {
@@ -60,17 +60,17 @@ impl Default for Chirp {
     }
 }
 
-/// How chirps are joined.
+/// A way to join chirps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Join {
-    /// Their complex mean: what stands still stays, what moves fades.
+    /// Their complex mean: echoes that stand still stay, moving ones fade.
     Mean,
     /// Of each range bin the strongest Doppler cell and those that stand out beside it, transmitters in turn compensated for their velocities.
     Strongest,
 }
 
-/// Why an array is not what its axes say.
+/// An array that doesn't fit its axes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AxesError {
     /// Another number of axes.
@@ -103,7 +103,7 @@ pub enum AxesError {
     /// The axis of real and imaginary part is none.
     #[error("axis \"iq\" has length {0}; expected 2, real and imaginary part")]
     Iq(usize),
-    /// Which chirp was not said.
+    /// An array of several chirps without a choice of one.
     #[error("the array has {0} chirps; expected recording.chirp = 0 to {last}, \"mean\" or \"strongest\"", last = .0.saturating_sub(1))]
     ChirpUnsaid(usize),
     /// There is no such chirp.
@@ -281,7 +281,7 @@ fn one_chirp(
     kinds.remove(place);
     let chirps = values.shape()[place];
     let number = match chirp {
-        // Where no loops are joined, the strongest cell is that of what stands still.
+        // Where no loops are joined, the strongest cell is that of the echoes that stand still: the mean.
         Some(Chirp::Joined(Join::Mean | Join::Strongest)) => {
             return values.mean_axis(Axis(place)).ok_or(AxesError::NoChirp { asked: 0, chirps });
         }

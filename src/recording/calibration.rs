@@ -8,9 +8,9 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Calibration {
-    /// What each element amplifies by, decibels.
+    /// Gain of each element, decibels.
     pub gain_db: Vec<f64>,
-    /// What each element turns the phase by, degrees.
+    /// Phase shift of each element, degrees.
     pub phase_degrees: Vec<f64>,
 }
 
@@ -34,7 +34,7 @@ pub enum CalibrationError {
     Value {
         /// Name of the list.
         list: &'static str,
-        /// Which element.
+        /// Index of the element.
         element: usize,
         /// The number.
         value: f64,

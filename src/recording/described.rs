@@ -82,7 +82,7 @@ fn check_format(text: &str) -> Result<(), Fault> {
     }
 }
 
-/// What a recording's text says, before its samples are read.
+/// The parts of a recording's text, before its samples are read.
 pub(super) struct Parts {
     pub format: u32,
     pub name: String,
@@ -156,7 +156,8 @@ pub(super) fn from_parts(
     Ok(Recording { name, notes, radar, samples, missing, range_metres, doubts, origin: None })
 }
 
-/// How many whole frames the recording of a text has, and which of them the text says; `None` where it counts neither frames nor loops.
+/// Number of whole frames in the recording of a text, and the number of the frame that the text takes; `None` where the text counts neither frames
+/// nor loops.
 pub(super) fn frames_of(text: &str, path: &Path, open: Open<'_>) -> Result<Option<[u64; 2]>, RecordingError> {
     let Parts { table, profile, .. } = parts(text, path, open)?;
     let counted = || -> Result<u64, Fault> {

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// Most reflectors that a recording is explained with: their gains are fitted together.
 pub const MAX_EXPLAINING: usize = 512;
 
-/// What is added to the diagonal of the fit, relative to it: reflectors that no element distinguishes share their gain.
+/// Ridge on the diagonal of the fit, relative to it: reflectors that no element distinguishes share their gain.
 const SHARED_GAIN_RIDGE: f64 = 1e-10;
 
 /// A recording explained by reflectors.
@@ -30,7 +30,7 @@ pub struct Explanation {
     pub residual: Recording,
 }
 
-/// Why reflectors can't explain a recording.
+/// A reason for which reflectors can't explain a recording.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExplainError {
     /// The recording's radar can't see the scene.

@@ -69,31 +69,31 @@ use std::sync::Arc;
 /// Samples of a radar's elements, and the radar.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// What it is called, if it has a name.
+    /// The recording's name; empty for none.
     pub name: String,
-    /// Where it comes from and what to look for.
+    /// The recording's source, and hints on its echoes.
     pub notes: String,
     /// The radar that measured it. Its carrier is the one that the maps' formula needs for these samples, which is not always the
     /// one that the text says.
     pub radar: Radar,
-    /// What its elements measured.
+    /// The measured samples.
     pub samples: Recorded,
     /// Elements of the whole array that measured nothing, in rising order; their samples are silence.
     pub missing: Vec<usize>,
     /// Range of everything in a snapshot (`radar.samples` = 1), metres: its one sample cannot tell.
     pub range_metres: Option<f64>,
-    /// What looks wrong and can't be known from the samples, a sentence each.
+    /// Doubts that the samples can't settle, a sentence each.
     pub doubts: Vec<String>,
-    /// Where it comes from, where no text of its user's describes it: other ways to read the same file.
+    /// The file, and other ways to read it, where no text of the user's describes it.
     pub origin: Option<Arc<Origin>>,
 }
 
 /// Whose samples a recording holds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Recorded {
-    /// Those of every element: the whole array's map is known.
+    /// Samples of every element: the whole array's map is known.
     All(BeatSignal),
-    /// Those of the two ends alone.
+    /// Samples of the two ends alone.
     Ends(TwoEnds),
 }
 

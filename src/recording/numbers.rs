@@ -50,7 +50,7 @@ impl Numbers {
     }
 }
 
-/// How many numbers an array of `shape` holds; `None` where they are more than [`MAX_NUMBERS`].
+/// Number of numbers in an array of `shape`; `None` above [`MAX_NUMBERS`].
 pub(super) fn bounded_count(shape: &[usize]) -> Option<usize> {
     shape.iter().try_fold(1usize, |n, len| n.checked_mul(*len)).filter(|n| *n <= MAX_NUMBERS)
 }

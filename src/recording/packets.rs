@@ -22,11 +22,11 @@ pub struct CardFrame {
     pub number: u64,
     /// Its bytes; those that are lost are zeros.
     pub bytes: Vec<u8>,
-    /// How many of them are lost.
+    /// Number of lost bytes.
     pub lost_bytes: u64,
 }
 
-/// What became of the packets.
+/// Counts of packets, of losses and of new beginnings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PacketCounts {
     /// Packets that were taken.
@@ -64,7 +64,7 @@ impl Packets {
         Packets { frame_bytes: frame_bytes.max(1), open: VecDeque::new(), next: None, counts: PacketCounts::default() }
     }
 
-    /// What became of the packets so far.
+    /// Counts so far.
     pub fn counts(&self) -> PacketCounts {
         self.counts
     }
@@ -89,7 +89,7 @@ impl Packets {
         }
         let into = at % self.frame_bytes as u64;
         if self.next.is_none() && self.open.is_empty() && into > REORDERED_BYTES {
-            // What came before this packet was never listened to: the next frame is the first.
+            // Packets before this one were never listened to: the next frame is the first.
             self.next = Some(number + 1);
         }
         self.place(at, data, &mut done);

@@ -6,7 +6,7 @@ use crate::radar::{End, Radar};
 use serde::Deserialize;
 use std::path::Path;
 
-/// What the table says; `check` holds it to the radar.
+/// The keys of the table; `check` holds them to the radar.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Table {
@@ -17,9 +17,9 @@ pub(super) struct Table {
     pub axes: Option<Vec<AxisKind>>,
     pub chirp: Option<Chirp>,
     pub frame: Option<usize>,
-    /// How many transmitters send in turn along the axis of chirps.
+    /// Number of transmitters that send in turn along the axis of chirps.
     pub transmitters_in_turn: Option<usize>,
-    /// Which transmitters and receivers form the line of elements; all where nothing is said.
+    /// Transmitters and receivers that form the line of elements; all where nothing is said.
     pub transmitters_taken: Option<Vec<usize>>,
     pub receivers_taken: Option<Vec<usize>>,
     #[serde(default)]
@@ -51,7 +51,7 @@ pub(super) enum Covers {
 }
 
 impl Table {
-    /// What the TOML says must make sense by itself.
+    /// Checks that the keys of the TOML agree with each other and with `radar`.
     pub fn check(&self, radar: &Radar) -> Result<(), Fault> {
         match (radar.samples, self.range_metres) {
             (1, Some(range)) if range.is_finite() && range > 0.0 => {}
@@ -79,7 +79,7 @@ impl Table {
         Ok(())
     }
 
-    /// What is done about signs and the carrier; the carrier of a `.cfg` is that in the middle of the samples.
+    /// The changes that signs and carrier ask of the samples. The carrier of a `.cfg` is that in the middle of the samples.
     pub fn signs(&self, format: u32, radar: &Radar, has_profile: bool) -> Result<Signs, Fault> {
         let Table { carrier_at, beat_sign, sweep, conjugate, .. } = *self;
         let carrier_at = match carrier_at {
@@ -130,7 +130,7 @@ impl Table {
         self.has_places && (self.capture.is_some() || in_turn || self.axes.as_ref().is_some_and(has_both))
     }
 
-    /// How the name of the data file ends, in small letters.
+    /// Ending of the data file's name, in small letters, without the dot.
     pub fn extension(&self) -> String {
         Path::new(&self.file).extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
     }

@@ -147,7 +147,7 @@ fn array_loops(table: &Table, open: Open<'_>) -> Result<Array3<Complex64>, Fault
     Ok(rows.select(Axis(1), &places))
 }
 
-/// How many frames the arrays of a table have.
+/// Number of frames in the arrays of a table.
 pub(super) fn count_frames(table: &Table, open: Open<'_>) -> Result<u64, Fault> {
     let place = table.axes.iter().flatten().position(|kind| *kind == AxisKind::Frame);
     let Some(place) = place else { return Ok(1) };
@@ -288,7 +288,7 @@ fn no_such(key: &str, taken: &[usize], count: usize) -> Fault {
     Fault::key(key, format!("is {taken:?}"), format!("numbers from 0 to {}, each once", count.saturating_sub(1)))
 }
 
-/// What real samples are taken for, and complex ones that are real.
+/// A note on real samples, or on complex ones whose imaginary parts are zero.
 fn told_of_real(numbers: &Numbers, kinds: &[AxisKind]) -> Option<String> {
     let stored = match numbers {
         Numbers::Real(_) if !kinds.contains(&AxisKind::Iq) => {

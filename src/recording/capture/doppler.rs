@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 
 /// Cosines at which the spectrum over the array is looked at.
 const COSINES: usize = 129;
-/// How much sharper the spectrum must be for another whole number of turns to be taken than none.
+/// Least sharpness of the spectrum at another whole number of turns over its sharpness at none, for the other number to be taken.
 const SHARPER: f64 = 1.15;
 /// A cell counts for itself from so much above the middle of its bin's cells on, as a ratio of powers.
 const STANDS_OUT: f64 = 10.0;
@@ -213,7 +213,7 @@ fn turns_at(powers: &[f64], top: usize) -> f64 {
     turns - turns.round()
 }
 
-/// Where the parabola through three logarithms has its top, -0.5 to 0.5 of a cell from the middle one.
+/// Top of the parabola through three logarithms, -0.5 to 0.5 of a cell from the middle one.
 fn vertex(powers: [f64; 3]) -> f64 {
     let [a, b, c] = powers.map(|p| p.max(f64::MIN_POSITIVE).ln());
     let bend = a - 2.0 * b + c;

@@ -1,9 +1,9 @@
-//! Why a capture could not be read.
+//! Errors of reading a capture.
 
 use crate::recording::numbers::MAX_NUMBERS;
 use std::io;
 
-/// Why a capture could not be read.
+/// An error of reading a capture.
 #[derive(Debug, thiserror::Error)]
 pub enum CaptureError {
     /// The system could not read.
@@ -30,9 +30,9 @@ pub enum CaptureError {
     Count {
         /// The key.
         key: &'static str,
-        /// What it says, or that it is missing.
+        /// The value found, or that the key is missing.
         found: String,
-        /// What would do.
+        /// The values allowed.
         expected: &'static str,
     },
     /// The chirps were not said, or are none of the loop's.
@@ -40,7 +40,7 @@ pub enum CaptureError {
         "recording.capture.chirps is {found}; expected some of 0 to {last}, each once: the chirps of a loop that form the line of elements, in order"
     )]
     Chirps {
-        /// What was said.
+        /// The value found.
         found: String,
         /// Last chirp of the loop.
         last: usize,

@@ -36,7 +36,7 @@ use num_complex::Complex64;
 use quality::Quality;
 use std::io::{Read, Seek};
 
-/// What the samples of a capture mean.
+/// The radar and the array of a capture's samples.
 pub(super) struct Meaning<'a> {
     /// The `.cfg`, where there is one.
     pub profile: Option<&'a RadarProfile>,

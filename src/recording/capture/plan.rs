@@ -1,4 +1,4 @@
-//! What stands where in a capture: counts, sizes, and how many frames there are.
+//! Counts, sizes and byte offsets of a capture, and its number of whole frames.
 
 use super::error::CaptureError;
 use super::table::Capture;
@@ -70,7 +70,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Which loops are read of the frame asked for.
+    /// Chooses the loops that are read of the frame asked for.
     fn take_frame(&mut self, capture: &Capture, bytes: u64, sizes: [u64; 3]) -> Result<(), CaptureError> {
         let [loop_bytes, frame_bytes, before] = sizes;
         let there = bytes.saturating_sub(before) / loop_bytes.max(1);

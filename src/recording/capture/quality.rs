@@ -1,4 +1,4 @@
-//! What is doubtful about a frame: zeros of lost packets, saturation, constant parts, real samples stored as complex.
+//! Doubts about a frame: zeros of lost packets, saturation, constant parts, real samples stored as complex.
 
 use super::plan::Plan;
 use crate::recording::layout::{Layout, Parts};
@@ -12,10 +12,10 @@ const SATURATED: f64 = 1e-4;
 /// A constant part is told from so many decibels over the rest on.
 const CONSTANT_DB: f64 = 0.0;
 
-/// What was seen of a frame.
+/// Faults that were counted in the samples of a frame.
 #[derive(Debug, Clone)]
 pub(in crate::recording) struct Quality {
-    /// Which chirps have runs of zeros.
+    /// Whether each chirp has runs of zeros.
     zeros: Vec<bool>,
     numbers: u64,
     at_ends: u64,
@@ -74,7 +74,7 @@ impl Quality {
         self.complex && !self.imaginary
     }
 
-    /// What is doubtful, a sentence each.
+    /// Doubts about the frame, a sentence each.
     pub fn sentences(&self, plan: &Plan, is_out: bool) -> Vec<String> {
         let mut all = Vec::new();
         let spoilt: Vec<usize> = (0..self.zeros.len()).filter(|n| self.zeros[*n]).collect();

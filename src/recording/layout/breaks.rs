@@ -1,4 +1,4 @@
-//! Where a stream of samples breaks: at the beginnings of rows, which linear prediction from the samples before does not foretell.
+//! Breaks of a stream of samples: the beginnings of rows, which linear prediction from the samples before does not foretell.
 
 use super::evidence::OF_LEVEL;
 use super::spectrum::ROUNDING;
@@ -13,7 +13,7 @@ const ALMOST_DIVIDES: f64 = 1.1;
 /// So little more at its other beginnings leaves a length a part of a longer one.
 const WHOLE: f64 = 1.15;
 
-/// Where numbers don't follow from those before: sums of squares of what linear prediction leaves, from the first number on.
+/// Residuals of linear prediction along the numbers: sums of their squares from the first number on.
 pub(super) struct Breaks {
     sums: Vec<f64>,
     /// Numbers behind a break that are predicted across it.
@@ -72,7 +72,8 @@ impl Breaks {
         -OF_LEVEL * (part * variance(first, part) + (1.0 - part) * variance(all - first, 1.0 - part))
     }
 
-    /// How much less the beginnings of rows of this length follow than all else, of those that don't begin rows of a longer one.
+    /// Ratio of the residuals at the beginnings of rows of `length`, those that begin no row of `longer` numbers, to the residuals elsewhere in the
+    /// rows.
     fn broken_within(&self, length: usize, longer: usize) -> f64 {
         if self.numbers() < 3 * length {
             return 0.0;

@@ -57,20 +57,20 @@ const MOST_TRANSMITTERS: usize = 3;
 /// Most loops that are taken for a frame where nothing says how many there are.
 const MOST_LOOPS: usize = 64;
 
-/// What is told where no text says counts.
+/// Note where no text says counts.
 pub(super) const NOTE: &str = "No .cfg says samples and receivers: they are those that make the sharpest spectrum and repeat, which is right \
     for four captures of five. Carrier, slope and rate are not known: a bin of range is shown as one metre, and directions \
     are those of elements half a wavelength apart.";
 
-/// What is told beside it where rows don't repeat.
+/// Note where rows don't repeat.
 const GUESSED_NOTE: &str =
     "No rows of samples are the same again: how many receivers and chirps of a loop there are is a guess.";
 
-/// What is told beside it where all rows are the same.
+/// Note where all rows are the same.
 const ALIKE_NOTE: &str = "All rows of samples are alike, as of one receiver, or of echoes straight ahead of several: how many receivers and \
     chirps of a loop there are is a guess.";
 
-/// What is told beside it where the search is not to be trusted.
+/// Note where saturation makes the search unsure.
 pub(super) const CLIPPED_NOTE: &str = "Many samples stand at the ends of their type, so echoes have harmonics that look like receivers and rows: \
     samples and receivers may be others.";
 
@@ -79,7 +79,7 @@ pub(super) struct LikelyCounts {
     /// The order of parts that they are counts of; `None` where any may be.
     pub parts: Option<Parts>,
     pub counts: Counts,
-    /// Why receivers and chirps are a guess, where they are.
+    /// Note on the reason where receivers and chirps are a guess.
     pub guessed: Option<&'static str>,
     /// Log-odds of the rows that repeat, and of how usual the receivers are.
     pub odds: [f64; 2],
@@ -182,8 +182,8 @@ fn row_level(numbers: &[Complex64], length: usize, is_real: bool) -> f64 {
     if is_real { spectrum.of_real().level } else { spectrum.level }
 }
 
-/// How low the spectra of rows of a few lengths lie, all together; real numbers in rows of twice as many, which hold as much. `None` where
-/// they are too few.
+/// Sum of the levels of the spectra of rows of a few lengths. Rows of real numbers are twice as long and hold as much. `None` where there are too few
+/// numbers.
 fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
     let mut sum = 0.0;
     for length in LEVEL_LENGTHS {
@@ -196,7 +196,7 @@ fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
     (numbers.len() >= 4 * LEVEL_LENGTHS[0]).then_some(sum)
 }
 
-/// How many receivers stand sample by sample in rows of this length: their spectrum repeats as often.
+/// Number of receivers that stand sample by sample in rows of this length: the spectrum repeats as often.
 fn interleaved(numbers: &[Complex64], length: usize) -> usize {
     let power = Spectrum::of(&rows(numbers, length, 1), 1).power;
     let logs: Vec<f64> = power.iter().map(|p| p.ln()).collect();
@@ -302,8 +302,8 @@ fn likely_words(bytes: &[u8]) -> Words {
     }
 }
 
-/// What is doubtful of counts that a `.cfg` says, where the samples of `bytes`, whole chirps of a file of so many bytes, begin anew at other
-/// distances or its rows repeat after others.
+/// A doubt about the counts of a `.cfg`, where the samples of `bytes` begin anew at other distances or their rows repeat after another number.
+/// `bytes` are whole chirps of a file of `of_file` bytes.
 pub(super) fn doubted(layout: &Layout, counts: Counts, bytes: &[u8], of_file: u64) -> Option<String> {
     let stride = if layout.receivers == ReceiverOrder::Interleaved { counts.receivers } else { 1 };
     let said = counts.samples * stride;

@@ -7,7 +7,7 @@ use super::spectrum::Spectrum;
 use super::{Counts, Layout, Parts, ReceiverOrder, Words};
 use crate::recording::RadarProfile;
 
-/// Which kind of evidence it is.
+/// A kind of evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// Echoes stand in few bins over a low floor, without images.
@@ -22,9 +22,9 @@ pub enum Kind {
     Half,
     /// Echoes have images, as of real samples.
     Images,
-    /// What the `.cfg` says of the data.
+    /// Orders of samples that the `.cfg` says.
     Config,
-    /// How usual a layout is.
+    /// Frequency of the layout among captures.
     Usual,
 }
 
@@ -35,7 +35,7 @@ pub struct Evidence {
     pub kind: Kind,
     /// Natural logarithm of the odds that it gives the layout.
     pub log_odds: f64,
-    /// What was found.
+    /// The finding, as a part of a sentence.
     pub sentence: String,
 }
 
@@ -59,7 +59,7 @@ const OF_REAL: f64 = 40.0;
 /// Log-odds against receivers one after another on four lanes, of which each carries a receiver: at broadside both orders have one spectrum.
 const OF_LANES: f64 = 20.0;
 
-/// What is known of a file beside its samples.
+/// The `.cfg` and the size of a capture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Known<'a> {
     pub profile: Option<&'a RadarProfile>,
@@ -160,7 +160,7 @@ fn config(layout: &Layout, profile: &RadarProfile) -> Evidence {
     Evidence { kind: Kind::Config, log_odds, sentence }
 }
 
-/// What a `.cfg` says of the order of samples, and what a layout has.
+/// A property of the order of samples, in words: by the `.cfg`, and by a layout.
 pub(in crate::recording) struct Said {
     /// As the `.cfg` has it.
     pub said: &'static str,
@@ -169,7 +169,7 @@ pub(in crate::recording) struct Said {
     log_odds: f64,
 }
 
-/// What the `.cfg` says of data in this layout.
+/// The orders that the `.cfg` says, beside those of `layout`.
 pub(in crate::recording) fn said(layout: &Layout, profile: &RadarProfile) -> Vec<Said> {
     let real = (Some(profile.real), layout.parts == Parts::Real, OF_REAL, ["complex samples", "real samples"]);
     let order = (profile.q_first, layout.q_first, OF_ORDER, ["I first", "Q first"]);

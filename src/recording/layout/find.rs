@@ -27,7 +27,7 @@ pub struct Candidate {
     pub layout: Layout,
     /// Samples, receivers, chirps and loops.
     pub counts: Counts,
-    /// What speaks for it, and against it.
+    /// Evidence for and against the layout.
     pub evidence: Vec<Evidence>,
     /// Mean power of each range bin, in the square of the file's unit.
     pub power: Vec<f64>,
@@ -47,7 +47,7 @@ impl Candidate {
     }
 }
 
-/// What was found of a file.
+/// The layouts that were found for a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
     /// The candidates, the best first; there is one at least.
@@ -58,7 +58,7 @@ pub struct Found {
     pub hides_counts: bool,
 }
 
-/// Why a file has no layout.
+/// A reason for which no layout was found.
 #[derive(Debug, thiserror::Error)]
 pub enum LayoutError {
     /// The system could not read.
@@ -71,7 +71,7 @@ pub enum LayoutError {
         bytes: u64,
         /// Bytes of a chirp.
         expected: u64,
-        /// Who says so.
+        /// A clause with the source of the count, or nothing.
         whose: &'static str,
     },
     /// The bytes make no echo in any layout.
@@ -80,7 +80,7 @@ pub enum LayoutError {
          16-bit samples, with the .cfg that set the radar up beside them where there is one"
     )]
     NoEcho {
-        /// How many layouts were tried.
+        /// Number of layouts that were tried.
         tried: usize,
     },
     /// Every sample that was looked at is zero.

@@ -1,4 +1,4 @@
-//! How the bytes of a raw capture stand for samples, and which of many ways is the right one, by evidence.
+//! Layouts: samples from the bytes of a raw capture, and the choice of the right layout by evidence.
 //!
 //! | file | what it is |
 //! |---|---|

@@ -20,7 +20,7 @@ impl Parts {
     /// All of them.
     pub const ALL: [Parts; 4] = [Parts::Pairs, Parts::TwoLanes, Parts::FourLanes, Parts::Real];
 
-    /// How many parts of one kind stand together.
+    /// Number of real or imaginary parts that stand together.
     pub fn group(self) -> usize {
         match self {
             Parts::Pairs | Parts::Real => 1,
@@ -58,7 +58,7 @@ impl Parts {
     }
 }
 
-/// How the receivers of a chirp follow one another.
+/// Order of the receivers in a chirp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ReceiverOrder {

@@ -42,7 +42,7 @@ pub(super) fn period(rows: &Array2<Complex64>, mixed: usize, is_real: bool) -> O
         row.mapv_inplace(|v| v - mean);
     }
     let power: Vec<f64> = centred.outer_iter().map(|row| row.iter().map(Complex64::norm_sqr).sum()).collect();
-    // How alike they are, and how much of that turns alike.
+    // Likeness of all rows `lag` apart.
     let alike = |lag: usize| {
         let (mut sum, mut moduli, mut all) = (Complex64::default(), 0.0, f64::MIN_POSITIVE);
         for (a, b) in (0..centred.nrows() - lag).map(|n| (n, n + lag)) {
@@ -65,7 +65,8 @@ pub(super) fn period(rows: &Array2<Complex64>, mixed: usize, is_real: bool) -> O
     Some(Period { rows: found.rows, next: other_period(found, &all) })
 }
 
-/// How much rows so far apart are alike, and how much of that turns alike.
+/// Likeness of rows that stand `rows` apart: the part of their power that correlates, `alike`, and the part of the correlation that has one phase,
+/// `steady`.
 struct Likeness {
     rows: usize,
     alike: f64,

@@ -3,7 +3,7 @@
 use super::parts::{Parts, ReceiverOrder};
 use super::words::Words;
 
-/// How the bytes of a chirp stand for samples of its receivers.
+/// The layout of a chirp's bytes as samples of its receivers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Layout {
     /// 16 bits to a number.
@@ -20,7 +20,7 @@ pub struct Layout {
     pub packets: bool,
 }
 
-/// How many of each a capture holds.
+/// Counts of samples, receivers, chirps and loops of a capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Counts {
     /// Samples of a chirp, as the converter takes them.

@@ -1,4 +1,4 @@
-//! What a layout makes of the bytes: range profiles of many chirps and receivers, and figures on them.
+//! Spectra of a layout: range profiles of many chirps and receivers, and figures on them.
 
 use crate::maps::windowed_range_transform;
 use crate::radar::{Radar, WindowFunction};
@@ -31,11 +31,11 @@ pub(in crate::recording) struct Spectrum {
     pub alike: f64,
     /// Power of the near half of the bins less that of the far half, over both: -1 to 1.
     pub near: f64,
-    /// How many echoes stand out in the near half of the bins, and in the far half.
+    /// Number of echoes that stand out in the near half of the bins, and in the far half.
     pub echoes: [usize; 2],
-    /// How many echoes of the near half have an image as far into the far half: those of real samples do.
+    /// Number of echoes of the near half with an image as far into the far half: those of real samples have one.
     pub images: usize,
-    /// How many profiles it is the mean of.
+    /// Number of profiles in the mean.
     pub rows: usize,
 }
 
@@ -94,7 +94,7 @@ impl Spectrum {
         Spectrum { near: 0.0, level, rows: self.rows, ..Spectrum::of_power(power, self.alike, 0) }
     }
 
-    /// How far the mean level lies below that of a flat spectrum of the same power, decibels.
+    /// Mean level below that of a flat spectrum of the same power, decibels.
     pub fn flatness_db(&self) -> f64 {
         let mean = self.power.iter().sum::<f64>() / self.power.len().max(1) as f64;
         10.0 * (mean.ln() - self.level) / std::f64::consts::LN_10
@@ -129,8 +129,8 @@ fn images(power: &[f64], is_coherent: impl Fn(usize) -> bool) -> usize {
     (NEAR_CONSTANT..(bins / 2).saturating_sub(1)).filter(is_image).count()
 }
 
-/// How alike a bin's values are to the conjugates of those as far into the far half, up to one factor, over all profiles: 1 for an image. The
-/// phases of two echoes turn each by its own direction and speed.
+/// Correlation of a bin's values with the conjugates of those as far into the far half, over all profiles: 1 for an image. The phases of two echoes
+/// turn each by its own direction and speed.
 fn coherence(profiles: ArrayView2<'_, Complex64>, bin: usize) -> f64 {
     let [near, far] = [bin, profiles.ncols() - bin].map(|n| profiles.column(n));
     let power = |of: &ArrayView1<'_, Complex64>| of.iter().map(|v| v.norm_sqr()).sum::<f64>();

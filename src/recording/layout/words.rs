@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-/// How 16 bits stand for a number.
+/// The encoding of a number in 16 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Deserialize)]
 pub enum Words {
     /// Two's complement, the low byte first.
@@ -49,7 +49,7 @@ impl Words {
         }
     }
 
-    /// What it is in a sentence.
+    /// The encoding in a sentence's words.
     pub fn described(self) -> &'static str {
         match self {
             Words::Int16 => "16-bit integers, low byte first",

@@ -4,16 +4,16 @@ use super::error::{MOST_CHIRPS, ProfileError};
 use super::lines::{Line, lines};
 use std::collections::BTreeMap;
 
-/// What one chirp is.
+/// A chirp of a `chirpCfg`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ChirpLine {
     /// Number of its profile.
     pub profile: usize,
     /// Its transmitters, as bits.
     pub transmitters: u32,
-    /// Line that says so.
+    /// Line of the file that defines the chirp.
     pub line: usize,
-    /// What is not 0 of its changes of frequency, slope and start.
+    /// The name of its first change of frequency, slope or start that is not 0.
     pub differs: Option<&'static str>,
 }
 

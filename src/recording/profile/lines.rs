@@ -5,7 +5,7 @@ use super::error::ProfileError;
 /// Numbers of one command, and where it stands.
 #[derive(Debug, Clone)]
 pub(super) struct Line<'a> {
-    /// Which line of the text, from 1.
+    /// Number of the line in the text, from 1.
     pub number: usize,
     /// Its name.
     pub command: &'a str,

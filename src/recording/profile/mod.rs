@@ -18,7 +18,7 @@ use frames::{Frame, frames};
 use lines::Line;
 use num_complex::Complex64;
 
-/// What a `.cfg` says of the radar and of the data it sends.
+/// The radar and the data format that a `.cfg` sets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RadarProfile {
     /// Frequency at the start of the ramp, hertz.
@@ -53,9 +53,9 @@ pub struct RadarProfile {
     pub headers: bool,
     /// Whether the two chirps of a loop are sent by both transmitters, S1 + S2 and then S1 - S2 (`bpmCfg`).
     pub both_transmitters: bool,
-    /// What ranges are too long by, metres (`compRangeBiasAndRxChanPhase`).
+    /// Bias of the ranges, metres: measured ranges are too long by it (`compRangeBiasAndRxChanPhase`).
     pub range_bias_metres: f64,
-    /// What channels are multiplied with, transmitter by transmitter; empty where nothing is said.
+    /// Factors of the channels, transmitter by transmitter; empty where nothing is said.
     pub channel_factors: Vec<Complex64>,
     /// Places of the virtual elements in half wavelengths, across and up (`antGeometry0`, `antGeometry1`); empty where nothing is said.
     pub element_places: [Vec<f64>; 2],
@@ -153,7 +153,7 @@ impl RadarProfile {
         self
     }
 
-    /// What other commands say of the data.
+    /// Takes the commands on the data format and on corrections.
     fn said_of_data(&mut self, commands: &Commands<'_>) -> Result<(), ProfileError> {
         if let Some(adc) = &commands.adc {
             adc.count(0, "the number of bits", 2)?;

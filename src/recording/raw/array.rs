@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Readings that are offered.
 const OFFERED: usize = 4;
 
-/// How files of arrays end.
+/// Endings of the names of array files.
 pub(super) const ENDINGS: [&str; 5] = ["npy", "npz", "mat", "h5", "hdf5"];
 
 /// Finds out what the array in `data` holds.
@@ -116,7 +116,7 @@ pub(super) fn has_samples(path: &Path) -> bool {
     all.iter().all(|(key, _)| !OTHERS.contains(&key.as_str())) && all.iter().any(|(_, shape)| shape.len() > 1)
 }
 
-/// How many transmitters send in turn along the axis of chirps: those of the `.cfg`, where no axis counts them.
+/// Number of transmitters that send in turn along the axis of chirps: those of the `.cfg`, where no axis counts them.
 fn in_turn(reading: &Reading, shape: &[usize], profile: Option<&RadarProfile>) -> Option<usize> {
     let profile = profile?;
     let (transmitters, chirps) = (profile.chirp_transmitters.len(), reading.len(AxisKind::Chirp, shape));

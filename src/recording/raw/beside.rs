@@ -44,7 +44,7 @@ fn ends(path: &Path, end: &str) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end))
 }
 
-/// What the files of a cascade's chips are called by, in the order of TI's capture program.
+/// Words in the file names of a cascade's chips, in the order of TI's capture program.
 const CHIPS: [&str; 4] = ["master", "slave1", "slave2", "slave3"];
 
 /// The files of the chips of a cascade in their order, and names of those that are not there, where the capture is one chip's.

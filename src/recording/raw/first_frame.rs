@@ -1,4 +1,4 @@
-//! What the first frame of a capture tells beside its layout.
+//! The first frame of a capture: figures on it that its layout doesn't tell.
 
 use super::boards::{self, Board};
 use crate::recording::capture::{Capture, Frame, Plan};
@@ -16,12 +16,12 @@ const DIRECTIONS: i32 = 128;
 const WHOLE_BEAM: f64 = 0.9;
 const MORE_BEAM: f64 = 1.03;
 
-/// What the first frame tells.
+/// Figures on the first frame.
 #[derive(Default)]
 pub(super) struct FirstFrame {
-    /// How far the constant part stands above all else, decibels, where it does.
+    /// Power of the constant part over that of the rest, decibels, where it stands out.
     pub constant_db: Option<f64>,
-    /// How many whole frames there are.
+    /// Number of whole frames in the file.
     pub frames: u64,
     /// The first chirp, `[receivers, samples]`.
     chirp: Array2<Complex64>,

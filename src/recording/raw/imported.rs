@@ -1,9 +1,9 @@
-//! What was found of a file, and how sure it is.
+//! The ways to read a file, and the certainty of their choice.
 
 use crate::recording::layout::{Certainty, Found};
 use crate::recording::{Origin, Recording, RecordingError};
 
-/// What was found of a file, and the texts that describe it.
+/// The ways to read a file, and the texts that describe it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
     /// The file, and the ways to read it.
@@ -13,7 +13,7 @@ pub struct Imported {
 }
 
 impl Imported {
-    /// How sure the choice is.
+    /// Certainty of the choice.
     pub fn certainty(&self) -> Certainty {
         self.found.as_ref().map_or_else(|| Certainty::of(self.margin()), Found::certainty)
     }

@@ -20,7 +20,7 @@ pub(super) struct Line {
     pub receiver_x_metres: Vec<f64>,
     /// The board whose antennas they are, where one was taken.
     pub board: Option<&'static str>,
-    /// What was taken for granted or left out.
+    /// Assumptions, and antennas that were left out, a sentence each.
     pub doubts: Vec<String>,
 }
 
@@ -110,7 +110,7 @@ fn metres(
     }
 }
 
-/// Who sends each chirp of a loop: where several send at once and nothing tells them apart, their middle.
+/// The sender of each chirp of a loop. Several transmitters that send at once and can't be told apart are taken for one in their middle.
 fn senders(profile: &RadarProfile, board: &Board) -> Vec<Sender> {
     let place = |bit: usize| board.transmitters.get(bit).copied().unwrap_or([4.0 * bit as f64, 0.0]);
     let bits = |mask: u32| (0..32usize).filter(move |bit| mask >> bit & 1 == 1);

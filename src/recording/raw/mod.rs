@@ -96,7 +96,7 @@ pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) ->
     )
 }
 
-/// Where the data of such a frame would stand; there is no such file.
+/// Path that the data of a frame in memory would have; there is no such file.
 pub fn frame_path(config: &Path) -> PathBuf {
     config.with_file_name("frame.bin")
 }
@@ -151,7 +151,7 @@ impl Files {
         })
     }
 
-    /// What is told of them.
+    /// A note on files that are read as one, or on chips whose files are missing.
     fn told(&self) -> Option<String> {
         let (_, lacking) = beside::chips(&self.data);
         if !self.chips.is_empty() {
@@ -227,7 +227,7 @@ pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
     read().map_err(|fault| fault.of(path))
 }
 
-/// What is doubtful of the layout.
+/// Doubts about the layout, a sentence each.
 fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     let mut doubts = found.notes.clone();
     let rivals: Vec<String> = found.rivals().into_iter().map(Candidate::described).collect();
@@ -252,7 +252,7 @@ fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     doubts
 }
 
-/// What the `.cfg` said, a sentence each.
+/// The radar and the counts of the `.cfg`, a sentence each.
 fn said(profile: &RadarProfile) -> Vec<String> {
     let RadarProfile { samples, receivers, loops, frames, .. } = *profile;
     let frames = if frames == 0 { "frames until stopped".to_owned() } else { format!("{frames} frames") };
