@@ -1,9 +1,9 @@
-//! What makes a command fail.
+//! Errors of commands.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Why a command failed. Every message names the file or argument, what is wrong with it and what was expected.
+/// An error of a command. Every message names the file or argument, the fault and the expected value.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs)] // The messages name every field.

@@ -8,7 +8,7 @@ use plotters::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
-/// What a figure's drawing gives back.
+/// The result of drawing a figure.
 pub type DrawingResult<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
 /// Something that can be drawn on any of plotters' areas.

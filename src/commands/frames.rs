@@ -24,7 +24,7 @@ impl Frames {
         &self.0
     }
 
-    /// How many there are; 1 where the file counts none.
+    /// Number of frames; 1 where the file counts none.
     pub fn count(&self) -> usize {
         self.0.origin.as_ref().map_or(1, |origin| origin.frames.max(1) as usize)
     }

@@ -1,4 +1,4 @@
-//! What a subcommand looks at: a scene that is simulated, or a recording.
+//! The input of a subcommand: a scene that is simulated, or a recording.
 
 use super::CommandError;
 use crate::recording::raw::boards::{self, Board};

@@ -67,7 +67,7 @@ const ENVIRONMENT: &str = "Environment:
                  least squares and burn choose for themselves
   APERTURA_LOG   messages on standard error, such as debug (default: warnings)";
 
-/// What the program can do beside opening its window.
+/// Subcommands of the program.
 #[derive(Debug, Subcommand)]
 enum Command {
     Bench(bench::Args),

@@ -111,7 +111,7 @@ fn shortened(message: &str) -> String {
     plain.as_deref().unwrap_or(message).trim_end_matches('.').to_owned()
 }
 
-/// Why the app did not open.
+/// A reason for which the window did not open.
 enum WindowError {
     NoWindow(String),
     #[cfg(feature = "app")]

@@ -134,7 +134,7 @@ impl Args {
     }
 }
 
-/// What was measured, and on what; its JSON is documented in the command's help.
+/// The report, with the settings of its measurements; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     set: u8,

@@ -50,7 +50,7 @@ pub fn header_bytes(file: &mut impl Read) -> io::Result<Vec<u8>> {
 
 /// Checks that an array's file (`.npy`: header, numbers) is as long as its header says, so that reading it allocates no more.
 /// # Errors
-/// What is wrong with it.
+/// The fault of the file.
 pub fn check(file: &[u8]) -> Result<(), String> {
     let mut numbers = file;
     let header = header_bytes(&mut numbers).map_err(|e| e.to_string())?;

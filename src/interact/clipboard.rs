@@ -3,7 +3,7 @@
 use crate::radar::Radar;
 use crate::scene::{Object, Scene, SceneError};
 
-/// Why text can't be pasted.
+/// A reason for which text can't be pasted.
 #[derive(Debug, thiserror::Error)]
 pub enum PasteError {
     /// The text is not a scene.

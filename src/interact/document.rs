@@ -36,7 +36,7 @@ pub struct Document {
     id: u64,
     content: Content,
     path: Option<Arc<Path>>,
-    /// What is on disk, or can be had again as easily; `None` where it is nowhere.
+    /// The content on disk, or one that can be made again as easily; `None` for none.
     saved: Option<Content>,
     measured: Option<Measured>,
 }
@@ -139,7 +139,7 @@ impl Document {
         losses
     }
 
-    /// Where it is kept, or where its user would look for it: beside the recording that it is laid over.
+    /// The document's path, or the path of a scene beside the recording that it is laid over.
     pub fn likely_path(&self) -> Option<PathBuf> {
         let beside = |recording: &str| {
             let recording = Path::new(recording);
@@ -149,13 +149,13 @@ impl Document {
         self.path().map(Path::to_path_buf).or_else(|| self.recording_source().map(beside))
     }
 
-    /// What was read from `path`, a whole path without links.
+    /// A document that was read from `path`, a whole path without links.
     pub fn opened(path: &Path, file: SceneFile) -> Self {
         let content = Content::of(file);
         Document::new(content.clone(), Some(path.into()), Some(content))
     }
 
-    /// What an autosave kept of the document at `path`: not what that file holds.
+    /// A document at `path` from an autosave's copy, which differs from the file.
     pub fn unsaved(path: Option<&Path>, file: SceneFile) -> Self {
         Document::new(Content::of(file), path.map(Arc::from), None)
     }
@@ -213,7 +213,7 @@ impl Document {
         self.measured.as_ref().map(|m| &*m.source)
     }
 
-    /// Which document it is, through all its edits.
+    /// Number of the document, the same through all its edits.
     pub fn id(&self) -> u64 {
         self.id
     }
@@ -303,7 +303,7 @@ impl Document {
     }
 }
 
-/// What a dead window left.
+/// The documents that a dead window left.
 #[derive(Debug, Default)]
 pub struct Restored {
     /// The document that was on screen, if it was unsaved.

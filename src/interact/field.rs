@@ -31,7 +31,7 @@ pub enum Field {
     AngleDegrees,
     /// Distance between a line's neighbouring reflectors, metres.
     Spacing,
-    /// Where a line leads, degrees: 0 straight ahead, 90 along the array to the right.
+    /// Direction of a line, degrees: 0 straight ahead, 90 along the array to the right.
     Direction,
     /// Standard deviation of a cluster along x, metres.
     SpreadX,
@@ -64,17 +64,17 @@ pub enum Field {
 /// The cross section of what reflects nothing, dBsm.
 const MIN_DBSM: f64 = -300.0;
 
-/// What happens to a number.
+/// A change of a field's value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FieldChange {
-    /// It becomes this.
+    /// A new value.
     To(f64),
-    /// It grows by this.
+    /// A step that is added to the value.
     By(f64),
 }
 
 impl FieldChange {
-    /// What becomes of `value`.
+    /// The value after the change.
     pub fn of(self, value: f64) -> f64 {
         match self {
             FieldChange::To(new) => new,
@@ -86,7 +86,7 @@ impl FieldChange {
 /// A field that several objects have, and its value in them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SharedField {
-    /// Which.
+    /// The field.
     pub field: Field,
     /// Its value in the first of the objects.
     pub first: f64,

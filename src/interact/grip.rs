@@ -20,7 +20,7 @@ pub const MAX_LINE_COUNT: usize = 2000;
 
 const SPACING_GRIP_OFFSET_POINTS: f64 = 16.0;
 
-/// How far beyond the far end the grip lies that turns a line, in points of the view.
+/// Distance of the grip that turns a line from the line's far end, in points of the view.
 const TURN_GRIP_OFFSET_POINTS: f64 = 26.0;
 
 /// The grips of `object`, [`Grip::Body`] last, in a view where one point covers `metres_per_point`.
@@ -96,7 +96,7 @@ fn along(line: &Line) -> [f64; 2] {
     Line { spacing_metres: sign, ..line.clone() }.step_metres()
 }
 
-/// How far `to` is from `from` along the line, metres; negative against it.
+/// Length from `from` to `to` along the line, metres; negative against it.
 fn length_along(line: &Line, from: Place, to: Place) -> f64 {
     let [x, y] = along(line);
     (to.x_metres - from.x_metres) * x + (to.y_metres - from.y_metres) * y

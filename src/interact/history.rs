@@ -24,7 +24,7 @@ struct Step {
     before: Snapshot,
 }
 
-/// What was done, and what was undone.
+/// Steps that were done, and steps that were undone.
 #[derive(Debug, Clone, Default)]
 pub struct History {
     done: Vec<Step>,
@@ -52,12 +52,12 @@ impl History {
         self.sealed = true;
     }
 
-    /// What undo would undo.
+    /// The label of the step that undo takes back.
     pub fn undo_label(&self) -> Option<&str> {
         self.done.last().map(|s| s.label.as_str())
     }
 
-    /// What redo would redo.
+    /// The label of the step that redo does again.
     pub fn redo_label(&self) -> Option<&str> {
         self.undone.last().map(|s| s.label.as_str())
     }
@@ -86,7 +86,7 @@ impl History {
     }
 }
 
-/// How many of the newest steps to keep: at most `steps`, with at most `objects` in all their scenes; the last one always.
+/// Number of the newest steps to keep: at most `steps`, with at most `objects` in all their scenes; the last one always.
 fn newest(done: &[Step], steps: usize, objects: usize) -> usize {
     let (mut held, mut kept) = (0, 0);
     let mut later: Option<&Arc<Scene>> = None;

@@ -13,7 +13,7 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Challenge {
-    /// What is asked for.
+    /// The task, in words for the learner.
     pub ask: String,
     /// Every one must hold.
     #[serde(rename = "require")]
@@ -41,7 +41,7 @@ pub struct Solution {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Requirement {
-    /// What is measured.
+    /// The measured quantity.
     pub measure: Measure,
     /// Lower bound.
     #[serde(default)]
@@ -61,7 +61,7 @@ pub enum Measure {
         map: MapName,
         object: ObjectNumber,
     },
-    /// How far Lambda falls between two objects' blobs, below the weaker of the two.
+    /// Fall of Lambda between two objects' blobs, below the weaker of the two.
     Dip {
         map: MapName,
         objects: [ObjectNumber; 2],
@@ -70,7 +70,7 @@ pub enum Measure {
     SquaredError,
     /// SE of the learner's whole-array map against that of the hidden objects.
     Unexplained,
-    /// That SE, over the SE of what the method makes of both ends of the hidden objects: below 1 the learner is nearer than the method.
+    /// `Unexplained` over the SE of the method's output on both ends of the hidden objects: below 1 the learner is nearer than the method.
     UnexplainedOverMethod,
     /// Number of objects.
     Objects,

@@ -8,9 +8,9 @@ use crate::scene::Scene;
 /// A requirement, measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
-    /// What is wanted, as a sentence without its full stop.
+    /// The wanted value, as a sentence without its full stop.
     pub wanted: String,
-    /// What there is, with its unit.
+    /// The present value, with its unit.
     pub found: String,
     /// Whether it holds.
     pub holds: bool,

@@ -3,7 +3,7 @@
 /// A mistake in a step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
-    /// What the line begins with; empty for the step's first line.
+    /// Beginning of the line; empty for the step's first line.
     key: &'static str,
     /// Number of the line among those that begin so, from 0.
     number: usize,

@@ -16,7 +16,7 @@ pub enum Quantity {
     MaximumRangeMetres,
     /// Length of the whole array, metres.
     ApertureMetres,
-    /// Where the whole array's far field begins ([`Radar::far_field_metres`]), metres.
+    /// Least range of the whole array's far field ([`Radar::far_field_metres`]), metres.
     FarFieldMetres,
     /// Columns of one beam of an end: the map's columns over the end's elements.
     EndBeamColumns,

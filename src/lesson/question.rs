@@ -13,7 +13,7 @@ use serde::Deserialize;
 pub struct Question {
     /// The question.
     pub ask: String,
-    /// How it is answered.
+    /// The form of the answer, and the truth.
     pub answer: Answer,
     /// Reply to a right guess, one sentence.
     pub right: String,
@@ -47,7 +47,7 @@ pub enum Answer {
         within_percent: f64,
     },
     Choice {
-        /// What can be chosen.
+        /// The options.
         options: Vec<String>,
         /// The right one, from 1.
         right: usize,
@@ -62,7 +62,7 @@ pub enum Answer {
     },
 }
 
-/// What a learner answered.
+/// A learner's answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // Names and messages say it.
 pub enum Guess {
@@ -92,7 +92,7 @@ pub enum Truth {
 pub struct Judgement {
     /// Whether it is close enough.
     pub is_right: bool,
-    /// How far off, in the question's own terms.
+    /// The distance from the truth, in the question's own terms.
     pub distance: String,
     /// The question's sentence on it.
     pub sentence: String,
@@ -169,7 +169,7 @@ impl Question {
         })
     }
 
-    /// What `guess` is worth.
+    /// Judges `guess`.
     /// # Errors
     /// A sentence when the truth can't be had, or the guess is of another kind than the question.
     pub fn judge(&self, stage: &Stage, guess: Guess) -> Result<Judgement, String> {

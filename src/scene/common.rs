@@ -1,4 +1,4 @@
-//! What all kinds of objects have: fields of files, and a match over the kinds.
+//! Parts common to all kinds of objects: fields of files, and a match over the kinds.
 
 /// An object: what is its own, then what every object has.
 macro_rules! moving {
@@ -7,7 +7,7 @@ macro_rules! moving {
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct $name {
-            /// What the object is called, where it has a name; at most [`MAX_NAME_CHARACTERS`](super::MAX_NAME_CHARACTERS).
+            /// Name of the object, empty for none; at most [`MAX_NAME_CHARACTERS`](super::MAX_NAME_CHARACTERS).
             #[serde(default, skip_serializing_if = "String::is_empty")]
             pub name: String,
             $($fields)*

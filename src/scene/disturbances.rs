@@ -87,7 +87,7 @@ impl Mirror {
         self.distance_metres(0.0, 0.0) * self.distance_metres(x_metres, y_metres) > 0.0
     }
 
-    /// Where the mirror image of a place stands, (x, y) in metres.
+    /// Mirror image of a place, (x, y) in metres.
     pub fn image_metres(&self, x_metres: f64, y_metres: f64) -> [f64; 2] {
         let (sin, cos) = self.direction_degrees.to_radians().sin_cos();
         let twice = 2.0 * self.distance_metres(x_metres, y_metres);

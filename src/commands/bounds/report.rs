@@ -1,4 +1,4 @@
-//! What `apertura bounds` says.
+//! The report of `apertura bounds`.
 
 use crate::bounds::{Lobes, PositionBound};
 use crate::commands::{CommandError, print};

@@ -1,4 +1,4 @@
-//! Whether the doubt of a method is as large as its errors, and finds its failures.
+//! Figures on a method's doubt: its ratio to the errors, and the failures that it finds.
 
 use super::percent::percent_of;
 use crate::evaluate::Estimate;

@@ -1,4 +1,4 @@
-//! Detection by echo, for scenes with bodies: what P_D, which counts cells near the strongest, doesn't see.
+//! Detection by echo, for scenes with bodies: P_D counts cells near the strongest echo only.
 
 use crate::evaluate::echoes::{CLASSES, EchoTally};
 use serde::Serialize;
@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 #[derive(Debug, Serialize)]
 pub struct EchoReport {
-    /// Where each class begins, dB below the scene's strongest echo; the last one has no end.
+    /// Level at which each class begins, dB below the scene's strongest echo; the last class has no end.
     below_db: [usize; CLASSES],
     there: [usize; CLASSES],
     found: [usize; CLASSES],

@@ -1,4 +1,4 @@
-//! How far an evaluation is: a bar on a terminal, now and then a line elsewhere.
+//! The progress of an evaluation: a bar on a terminal, now and then a line elsewhere.
 
 use crate::evaluate::rows::Row;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};

@@ -15,7 +15,7 @@ use crate::scene::generate::{Kind, Reading};
 use serde::{Serialize, Serializer};
 use std::fmt::Write;
 
-/// What the command found; its JSON is documented in the command's help.
+/// The report of an evaluation; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
 pub struct EvaluationReport {
     count: usize,
@@ -106,7 +106,7 @@ struct AtPrinted {
     median: f64,
 }
 
-/// What stands for the description of scenes that are files.
+/// Description of scenes that are read from files.
 const OF_A_FOLDER: &str = "scenes of a folder";
 
 const LABEL: usize = 26;

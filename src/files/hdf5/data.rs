@@ -13,7 +13,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
         match &object.place {
             Some(Storage::Here(bytes)) if bytes.len() >= all => Ok(bytes[..all].to_vec()),
             Some(Storage::Whole(Some(address))) => self.at(*address, all as u64),
-            // What was never written is zero.
+            // Numbers that were never written are zero.
             Some(Storage::Whole(None) | Storage::Chunks { tree: None, .. }) => Ok(vec![0; all]),
             Some(Storage::Chunks { tree: Some(tree), shape }) => {
                 let count = shape.iter().try_fold(1usize, |n, len| n.checked_mul(*len));
@@ -67,7 +67,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
     }
 }
 
-/// What deflate left: no more than a chunk and the sums that filters before number `n` have put behind it.
+/// The inflated bytes of a chunk: at most those of a `whole` chunk and of the sums that filters before number `n` have put behind it.
 fn inflated(bytes: &[u8], n: usize, whole: usize) -> Result<Vec<u8>, Hdf5Error> {
     let mut out = Vec::new();
     ZlibDecoder::new(bytes)

@@ -1,4 +1,4 @@
-//! What the numbers of an array are.
+//! Types of an array's numbers.
 
 /// One number as it stands in the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +42,7 @@ pub fn half_value(word: u16) -> f64 {
     }
 }
 
-/// What a number of an array is.
+/// The type of an array's numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Member {
     One(NumberKind),

@@ -13,7 +13,7 @@ const MOST_PARTS: usize = 256;
 /// Most axes of an array.
 const MOST_AXES: usize = 32;
 
-/// What was done to the bytes of a chunk.
+/// A filter that a chunk's bytes passed through.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ChunkFilter {
     Deflate,
@@ -24,7 +24,7 @@ pub(super) enum ChunkFilter {
     Unread,
 }
 
-/// Where an array's numbers are.
+/// Storage of an array's numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Storage {
     /// In its header.
@@ -41,7 +41,7 @@ pub(super) enum Storage {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Hdf5Object {
     pub shape: Vec<usize>,
-    /// What its numbers are; nothing where they are something else.
+    /// Type of the numbers; `None` for a type that is not read.
     pub number: Option<Member>,
     pub place: Option<Storage>,
     pub filters: Vec<ChunkFilter>,

@@ -2,7 +2,7 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// Why an array could not be read.
+/// An error of reading an array.
 #[derive(Debug, thiserror::Error)]
 pub enum Hdf5Error {
     /// The system could not read.
@@ -43,7 +43,7 @@ pub struct Hdf5Bytes<R> {
     file: R,
     /// Bytes of the file.
     pub bytes: u64,
-    /// Where addresses count from.
+    /// Byte from which addresses count.
     pub base: u64,
     /// Bytes of an address.
     pub offset_bytes: usize,

@@ -32,7 +32,7 @@ type Answer = Result<(), String>;
 /// The copies of one window.
 pub struct Autosave {
     store: AutosaveStore,
-    /// Where files are written on a thread of their own.
+    /// Sender of copies to the thread that writes their files.
     jobs: Option<Sender<StartPlan>>,
     answers: (Sender<Answer>, Receiver<Answer>),
     pending: usize,
@@ -87,7 +87,7 @@ impl Autosave {
 
     /// Keeps copies at once and waits until they are on disk: the window is closing.
     /// # Errors
-    /// Which file could not be written, and why.
+    /// Name of a file that could not be written, and the reason.
     pub fn keep_now(&mut self, editor: &Editor) -> Result<(), String> {
         self.ask(StartPlan::of(editor));
         let mut result = Ok(());
@@ -103,7 +103,7 @@ impl Autosave {
         !self.is_busy() && self.last.as_ref().is_some_and(|(last, _)| last.is_same(&StartPlan::of(editor)))
     }
 
-    /// What went wrong since the last call.
+    /// Errors since the last call.
     pub fn poll(&mut self) -> Vec<String> {
         let mut problems = Vec::new();
         while let Ok(answer) = self.answers.1.try_recv() {

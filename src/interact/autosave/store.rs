@@ -23,7 +23,7 @@ struct Kept {
     recording: Option<String>,
 }
 
-/// What the files are to hold: the document on screen where it is unsaved, and unsaved ones before it.
+/// The documents that the files are to hold: the one on screen where it is unsaved, and unsaved ones before it.
 #[derive(Debug, Clone)]
 pub(super) struct StartPlan {
     on_screen: Option<Document>,

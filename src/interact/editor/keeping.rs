@@ -9,21 +9,20 @@ use std::path::Path;
 /// Unsaved documents that are kept after another took their place; the oldest make room.
 const MAX_LEFT: usize = 64;
 
-/// What became of a document that was written to a file.
+/// The outcome of writing a document to a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Saved {
     /// The file holds all of it and is its own from now on.
     Whole,
-    /// The file holds a copy without these; the document stays where it was, as unsaved as it was.
+    /// The file holds a copy without the named losses; the document keeps its path, as unsaved as it was.
     Copy(Vec<FileLoss>),
 }
 
 impl Editor {
-    /// What a window starts with: the document `asked` for by name, else the one that was on screen and unsaved when the last window
+    /// The editor of a new window. Its document is the one `asked` for by name, else the one that was on screen and unsaved when the last window
     /// died, else `otherwise`.
     ///
-    /// Where both of the first are there, the unsaved one lies one undo step behind. Nothing that was restored is lost: it stays in
-    /// [`Editor::left`].
+    /// Where both of the first are there, the unsaved one lies one undo step behind. Nothing that was restored is lost: it stays in [`Editor::left`].
     pub fn start(restored: Restored, asked: Option<Document>, otherwise: Document) -> Self {
         let Restored { on_screen, left, .. } = restored;
         let mut editor = match (on_screen, asked) {
@@ -45,7 +44,7 @@ impl Editor {
         &self.left
     }
 
-    /// What writing the document to `path` would lose; empty where it loses nothing.
+    /// The losses of writing the document to `path`; empty for none.
     /// # Errors
     /// [`SceneFileError::Extension`] for a name that says no format.
     pub fn losses(&self, path: &Path) -> Result<Vec<FileLoss>, SceneFileError> {
@@ -58,8 +57,8 @@ impl Editor {
         self.document.path() == Some(&*document::whole_path(path)) && self.document.is_outdated()
     }
 
-    /// Writes the document to `path`, which is its own file from then on; where the format can't hold all of it, a copy only. What is
-    /// laid over a recording is a scene of its own: the recording stays as it is.
+    /// Writes the document to `path`, which is its own file from then on; where the format can't hold all of it, a copy only. A scene over a
+    /// recording is written alone: the recording stays as it is.
     ///
     /// Not a step of the history: undo changes the document, not where it is kept.
     /// # Errors

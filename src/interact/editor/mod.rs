@@ -15,7 +15,7 @@ use crate::scene::file::SceneFile;
 use crate::scene::{Object, Scene, SceneError};
 use std::sync::Arc;
 
-/// How far pasted and duplicated objects land from their originals, metres.
+/// Distance of pasted and duplicated objects from their originals, metres.
 const COPY_OFFSET_METRES: f64 = 1.0;
 
 #[derive(Debug, Clone)]
@@ -65,12 +65,12 @@ impl Editor {
         self.document.radar()
     }
 
-    /// What is selected.
+    /// The selected objects.
     pub fn selection(&self) -> &Selection {
         &self.selection
     }
 
-    /// What can be undone and redone.
+    /// The steps that can be undone and redone.
     pub fn history(&self) -> &History {
         &self.history
     }
@@ -248,7 +248,7 @@ impl Editor {
         }
     }
 
-    /// What is being dragged.
+    /// The part of an object that is being dragged.
     pub fn dragged(&self) -> Option<Hit> {
         self.drag.as_ref().map(|d| d.hit)
     }

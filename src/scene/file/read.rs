@@ -143,7 +143,7 @@ fn check_format(text: &str, document: &DeTable<'_>) -> Result<(), SceneTextError
     Err(SceneTextError::at(text, format.span().start, message))
 }
 
-/// Where object `index` stands in a text that was read before. Looked up when something is wrong with it only.
+/// Places of object `index` and of its fields in a text that was read before. They are looked up for errors only.
 fn object_spans(text: &str, index: usize) -> Spans {
     let document = table(text).ok();
     let entries = document.as_ref().and_then(|d| d.get_ref().get("object")).and_then(|e| e.get_ref().as_array());

@@ -36,7 +36,7 @@ pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
     toml::to_string_pretty(&Document { format, name, notes, noise_seed, shadows, radar, disturbances, object: objects })
 }
 
-/// What differs from table 3.1. The physical convention is said by its name where the spacing is its own.
+/// The keys that differ from table 3.1. The physical convention is written by its name where the spacing is its own.
 fn radar_table(radar: &Radar) -> Result<toml::Table, toml::ser::Error> {
     let usual = toml::Table::try_from(Radar::default())?;
     let mut table = toml::Table::try_from(radar)?;

@@ -120,7 +120,7 @@ impl Kind {
         }
     }
 
-    /// What such a scene holds, in a few words.
+    /// The objects of such a scene, in a few words.
     pub fn description(self) -> &'static str {
         match self {
             Kind::Set1 => "one point",
@@ -148,7 +148,7 @@ impl Kind {
         }
     }
 
-    /// What its scene of a seed and a number is called: "Test set 3, seed 0, scene 7".
+    /// Name of the scene of a seed and a number: "Test set 3, seed 0, scene 7".
     pub fn scene_name(self, seed: u64, number: u32) -> String {
         let kind = match self.test_set() {
             Some(set) => format!("Test set {set}"),
