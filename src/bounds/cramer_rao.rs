@@ -56,7 +56,7 @@ impl PositionBound {
     }
 }
 
-/// Why there is no bound.
+/// A reason for which there is no bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum BoundsError {
@@ -177,7 +177,7 @@ impl PlacedEcho {
 struct Model {
     /// `[reflectors][elements]`.
     echoes: Vec<Vec<PlacedEcho>>,
-    /// Which gain each element has, from 0.
+    /// Index of each element's gain, from 0.
     group: Vec<usize>,
     groups: usize,
     /// Mean relative change by range and by cos(theta), `[reflectors][gains]`: what belongs to the gains.

@@ -27,7 +27,7 @@ pub struct Figure {
     /// Its number in the thesis, as `4-7`.
     pub number: &'static str,
     pub shows: &'static str,
-    /// What differs from the printed one, and why.
+    /// The differences from the printed figure, and their reasons.
     pub differs: &'static str,
     /// Whether it takes less than a second.
     pub cheap: bool,

@@ -92,7 +92,7 @@ pub fn write_recorded_maps(
 /// Writes the maps of a recording's frames: `polar_full` (f64 `[frames, samples, elements]`), with the axes of [`write_maps`]. `next` makes
 /// the map of each frame in order, and one is held at a time.
 /// # Errors
-/// What `next` returns, or [`NpzError::Io`].
+/// The error of `next`, or [`NpzError::Io`].
 pub fn write_frames(
     path: &Path,
     radar: &Radar,
@@ -200,7 +200,7 @@ fn expected(key: &str, found: f64, expected: String) -> NpzError {
     NpzError::Damaged { key: key.to_owned(), reason: format!("it is {found}; expected {expected}") }
 }
 
-/// Which directions the columns of a map stand for (`cos_theta`), and how they run (`columns_left_to_right`).
+/// Adds the directions of the columns of a map (`cos_theta`), and their order (`columns_left_to_right`).
 /// # Errors
 /// As [`NpzOutput::add`].
 pub fn add_columns(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {

@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Which elements a map is made of.
+/// The elements that a map is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Aperture {
     /// Every element.
@@ -112,7 +112,7 @@ pub fn angle_transform(radar: &Radar, profiles: &RangeProfiles, aperture: Apertu
 
 /// Range-angle map of the raw samples of a few neighbouring channels, `[channels, samples]`.
 ///
-/// This is what a reconstruction does with one end: it has no other elements.
+/// A reconstruction makes this map of one end: it has no other elements.
 pub fn channels_map(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> ComplexMap {
     angle_transform_of(radar, channels_range_transform(radar, samples).profiles.view())
 }

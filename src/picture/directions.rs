@@ -8,7 +8,7 @@ use plotters::prelude::*;
 /// Power over direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// What it is called.
+    /// The curve's name in the legend.
     pub name: String,
     /// Angle from broadside in degrees, positive towards +x, rising; and decibels below the curve's own strongest.
     pub points: Vec<(f64, f64)>,

@@ -17,7 +17,7 @@ pub struct InputMap {
 }
 
 impl InputMap {
-    /// Those of both ends.
+    /// The input maps of both ends.
     pub(super) fn of_ends(radar: &Radar, ends: [&LogMap; 2], normalisation: Normalisation) -> Vec<InputMap> {
         let of_end = |(number, (end, map)): (usize, (End, &LogMap))| {
             let elements = radar.end_range(end);
@@ -28,7 +28,7 @@ impl InputMap {
     }
 }
 
-/// What the elements of a layout hear of a signal.
+/// Samples and map of a layout's elements.
 pub(super) struct HeardByLayout {
     pub(super) samples: Arc<LayoutSamples>,
     pub(super) input: InputMap,

@@ -8,7 +8,7 @@ use crate::radar::{FEW_COLUMNS, Radar};
 use ndarray::{Array2, CowArray, Ix2};
 use plotters::prelude::*;
 
-/// What a panel paints: cells `[range bins, columns]` as they are drawn, the leftmost column first.
+/// The cells of a panel, `[range bins, columns]` as they are drawn, the leftmost column first.
 #[derive(Debug, Clone)]
 pub(super) enum MapCells<'a> {
     Lambda(CowArray<'a, f32, Ix2>, ColourMap),
@@ -36,7 +36,7 @@ pub(super) struct MapAxes {
     /// To the right, rising.
     pub x: [f64; 2],
     pub y: [f64; 2],
-    /// What is counted to the right.
+    /// Title of the axis to the right.
     pub x_title: &'static str,
     /// Digits of its labels after the point.
     pub x_digits: usize,

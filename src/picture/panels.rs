@@ -28,7 +28,7 @@ pub struct Panels<'a> {
     pub found: Option<&'a [Detection]>,
     /// The radar that looks at it.
     pub radar: &'a Radar,
-    /// What the maps were made of (reflectors, carrier, floor, normalisation), in words.
+    /// The maps' settings (reflectors, carrier, floor, normalisation), in words.
     pub about: &'a str,
     /// Of both ends, or of a layout alone.
     pub inputs: &'a [InputMap],
@@ -235,7 +235,7 @@ fn short(eta: f32) -> String {
     if exact.len() > "0.000".len() { format!("{eta:.3}") } else { exact }
 }
 
-/// How many echoes were found, and where the strongest is.
+/// The sentence on the number of echoes and the place of the strongest.
 fn strongest_of(found: &[Detection]) -> String {
     let Some(strongest) = found.first() else { return "no echo found".to_owned() };
     let Detection { range_metres, cos_theta, .. } = strongest;

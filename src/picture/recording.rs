@@ -76,7 +76,7 @@ fn request(recording: &Recording, style: &Style, heard: Option<Arc<LayoutSamples
     }
 }
 
-/// What a layout hears of a recording, where `style` has one.
+/// Samples and map of a layout on a recording, where `style` has one.
 fn heard_by_layout(recording: &Recording, style: &Style) -> Result<Option<HeardByLayout>, ComposeError> {
     let of_layout = |layout| {
         HeardByLayout::of(&recording.radar, &BuiltArray::default(), recording.signal(), layout, style.normalisation)

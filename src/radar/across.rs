@@ -11,7 +11,7 @@ use ndarray::{Array2, ArrayView2, Axis};
 pub const FEW_COLUMNS: usize = 128;
 
 impl Radar {
-    /// How far from the map's edge column 0 has its middle, columns.
+    /// Distance of the middle of column 0 from the map's edge, columns.
     fn middle_of_first_column(&self) -> f64 {
         let is_halved = self.elements < FEW_COLUMNS && self.elements.is_multiple_of(2);
         if is_halved { 0.0 } else { 0.5 }

@@ -26,7 +26,7 @@ pub const NOISE_TEMPERATURE_KELVIN: f64 = 290.0;
 /// SNR at which a single pulse detects a steady target with P_D 0.9 and P_FA 1e-6 (Skolnik, figure 2.6: 13.2 dB).
 pub const DETECTION_SNR: Decibels = Decibels(13.0);
 
-/// What the radar equation needs beside the radar's other constants.
+/// Figures of the radar equation beside the radar's other constants.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LinkBudget {
@@ -196,8 +196,8 @@ impl Radar {
         gain(&self.window.weights(elements))
     }
 
-    /// The echo of an object at a range, in a direction given by the cosine of its angle off broadside. What is lost between two cells is
-    /// left out, and so is that a map doesn't focus nearer than the far field.
+    /// The echo of an object at a range, in a direction given by the cosine of its angle off broadside. The loss between two cells is left out, and
+    /// so is the loss of a map that doesn't focus nearer than the far field.
     pub fn link(&self, cross_section_dbsm: f64, range_metres: f64, cos_off_broadside: f64) -> LinkFigures {
         let pattern = self.pattern().map_or(0.0, |p| 40.0 * p.amplitude(cos_off_broadside).log10());
         let received = DecibelMilliwatts(self.received(cross_section_dbsm, range_metres).0 + pattern);

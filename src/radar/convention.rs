@@ -16,7 +16,7 @@
 use super::{Carrier, Radar, SPEED_OF_LIGHT};
 use serde::{Deserialize, Serialize};
 
-/// Which convention the samples of a radar follow.
+/// The convention of a radar's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Convention {
@@ -44,7 +44,7 @@ impl Convention {
         Convention::ALL.into_iter().find(|c| c.name() == name)
     }
 
-    /// How the carrier's phase depends on the distance.
+    /// Dependence of the carrier's phase on the distance.
     pub fn carrier(self) -> Carrier {
         match self {
             Convention::Thesis => Carrier::OneWay,

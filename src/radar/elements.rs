@@ -37,7 +37,7 @@ impl Default for ElementError {
 }
 
 impl ElementError {
-    /// What its samples are multiplied with: gain and phase, 0 for a dead element.
+    /// Factor of the element's samples: gain and phase, 0 for a dead element.
     pub fn response(&self) -> Complex64 {
         if self.dead {
             return Complex64::default();
@@ -50,9 +50,9 @@ impl ElementError {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerances {
-    /// What it amplifies by.
+    /// Of the gain.
     pub gain: Decibels,
-    /// What it turns the phase by, degrees.
+    /// Of the phase, degrees.
     pub phase_degrees: f64,
     /// Of the position along the array, millimetres.
     pub position_millimetres: f64,
@@ -177,7 +177,7 @@ impl TryFrom<Lists> for BuiltArray {
 
 const MAX_ELEMENTS: usize = 65536;
 
-/// Why a list of element errors is refused.
+/// A reason for which a list of element errors is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum BuiltArrayError {

@@ -146,7 +146,7 @@ pub struct VirtualElement {
     pub transmitter: usize,
     /// Index of the receiver.
     pub receiver: usize,
-    /// Where the virtual element stands, metres.
+    /// Place of the virtual element, metres.
     pub x_metres: f64,
 }
 

@@ -38,12 +38,12 @@ const MAX_CHANNELS: usize = 64;
 const MAX_LISTED_ELEMENTS: usize = 65_536;
 
 impl LayoutKind {
-    /// How layouts are named.
+    /// Names of layouts, for messages and help.
     pub const NAMES: &str = "full, two-ends, one-end, nested=AxB (A neighbours and B elements A + 1 apart), coprime=MxN (N elements M apart and 2 M elements N apart), \
                              thinned=K (every K-th element), random=N or random=N:SEED (the outermost two among them), mimo=TxR (up to 64 each), or numbers of \
                              elements as 0-11 1012-1023";
 
-    /// Where the elements stand on `radar`.
+    /// The layout's elements on `radar`.
     /// # Errors
     /// [`LayoutError`] for elements that `radar` has not.
     pub fn layout(&self, radar: &Radar) -> Result<Layout, LayoutError> {

@@ -47,7 +47,7 @@ pub const CHIRP_SECONDS: f64 = 25.6e-6;
 /// Most chirps that a radar may send one after another.
 pub const MAX_CHIRPS: usize = 4096;
 
-/// How the carrier's phase depends on the distance to a reflector.
+/// Dependence of the carrier's phase on the distance to a reflector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Carrier {
@@ -107,7 +107,7 @@ pub struct Radar {
     /// Time that the samples of a chirp span, in seconds: they are taken at `samples / chirp_seconds` hertz. Echoes at rest don't depend on
     /// it, since a beat turns `2 R B / c` times in a chirp of any length; table 3.1 says none, and [`CHIRP_SECONDS`] stands for it.
     pub chirp_seconds: f64,
-    /// Which way the carrier's phase is read.
+    /// Dependence of the carrier's phase on the distance.
     pub carrier: Carrier,
     /// Weights of the samples and of the elements in the two transforms that make a map.
     pub window: WindowFunction,
@@ -121,12 +121,11 @@ pub struct Radar {
     pub chirps: usize,
     /// From the beginning of a chirp to that of the next, seconds: at least [`Radar::chirp_seconds`] where there are several.
     pub chirp_interval_seconds: f64,
-    /// What the radar equation needs ([`budget`]); `None` in the thesis' convention, where levels are those of samples and elements are
-    /// isotropic.
+    /// Figures of the radar equation ([`budget`]); `None` in the thesis' convention, where levels are those of samples and elements are isotropic.
     pub budget: Option<LinkBudget>,
 }
 
-/// What is wrong with a [`Radar`].
+/// A fault of a [`Radar`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum RadarError {

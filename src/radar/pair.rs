@@ -9,9 +9,9 @@ pub struct Pair {
     pub transmitter_x_metres: f64,
     /// x of the receiver, metres.
     pub receiver_x_metres: f64,
-    /// How far the transmitter stands off the array's line, towards the scene, metres.
+    /// Distance of the transmitter from the array's line, towards the scene, metres.
     pub transmitter_y_metres: f64,
-    /// How far the receiver stands off the array's line, towards the scene, metres.
+    /// Distance of the receiver from the array's line, towards the scene, metres.
     pub receiver_y_metres: f64,
 }
 
@@ -42,7 +42,7 @@ impl Pair {
         transmitter == receiver
     }
 
-    /// How far the middle between both antennas stands off the array's line, metres.
+    /// Distance of the middle between both antennas from the array's line, towards the scene, metres.
     pub fn forward_metres(&self) -> f64 {
         (self.transmitter_y_metres + self.receiver_y_metres) / 2.0
     }

@@ -10,7 +10,7 @@ pub struct RadarPreset {
     pub id: &'static str,
     /// Name for menus.
     pub name: &'static str,
-    /// What it is, and what its maps show.
+    /// A description of the radar and of its maps.
     pub about: &'static str,
     /// The radar.
     pub radar: Radar,

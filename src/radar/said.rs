@@ -43,7 +43,7 @@ pub(super) struct Said {
     budget: Option<LinkBudget>,
 }
 
-/// How far a spacing may lie from that of the pairs beside which it is said, as a part of it.
+/// Largest relative difference between a spacing and that of the pairs beside it in a text.
 const SAME_SPACING: f64 = 1e-3;
 
 impl From<Radar> for Said {

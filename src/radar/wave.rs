@@ -1,4 +1,4 @@
-//! How the phase of an echo grows with its range.
+//! Growth of an echo's phase with its range.
 //!
 //! Equation 3.1 turns the carrier's phase `s q / lambda` a metre of range, and the beat's phase `n1 / (N dR)` a metre at sample `n1` of
 //! `N`, where `dR` is the range resolution. Both together are the echo's wave number, in turns: [`Radar::turns_per_metre`].

@@ -44,7 +44,7 @@ impl Bodies {
         Bodies { array, screens, strips }
     }
 
-    /// Those that may hide a part of object `index`. With a mirror, all.
+    /// Bodies that may hide a part of object `index`; with a mirror, all other bodies.
     fn hiding(&self, index: usize, object: &Object, all: bool) -> Arc<[Arc<Object>]> {
         let is_other = |(other, ..): &&(usize, Arc<Object>, Screen)| *other != index;
         if all {
@@ -81,7 +81,7 @@ impl SeenObject {
         scene.objects.par_iter().enumerate().with_min_len(MIN_PARALLEL_OBJECTS).map(seen).collect()
     }
 
-    /// It made ready, before `radar`.
+    /// The object's scatterer before `radar`.
     pub fn scatterer(&self, radar: &Radar) -> Scatterer {
         Scatterer::new(radar, &self.object, self.hidden_by.iter().map(Arc::as_ref))
     }
@@ -156,7 +156,7 @@ pub fn heard_in_the_middle(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho
     all
 }
 
-/// What echoes, as the algorithms for samples take it.
+/// Echoing objects, as the algorithms for samples take them.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a> {
     /// Reflectors that nothing hides.

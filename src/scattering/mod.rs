@@ -95,7 +95,7 @@ impl Wave {
     }
 }
 
-/// What kind of echo it is.
+/// The kind of an echo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EchoKind {
     /// A point's.
@@ -133,11 +133,11 @@ pub struct PathEcho {
     pub range_metres: f64,
     /// Its amplitude in the middle of the chirp; 0 where there is no such echo.
     pub amplitude: Complex64,
-    /// Where it comes from, (x, y) in metres.
+    /// Place of the reflection, (x, y) in metres.
     pub place_metres: [f64; 2],
     /// Cosine of the angle of incidence there.
     pub cos_incidence: f64,
-    /// What kind of echo it is.
+    /// Kind of the echo.
     pub kind: EchoKind,
     /// Whether it is reflected as by a mirror, so that its way goes on straight behind the face.
     pub is_mirrored: bool,

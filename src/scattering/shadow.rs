@@ -36,9 +36,9 @@ enum Convex {
 pub struct Passage {
     /// Factor of the field, but for the phase of the detour.
     pub factor: Complex64,
-    /// How much longer the way over the nearer edge is, metres; 0 where the way is clear.
+    /// Length of the way over the nearer edge above that of the straight way, metres; 0 where the straight way is clear.
     pub detour_metres: f64,
-    /// Where the edge stands: its distance from the antenna over the rest of the way.
+    /// Place of the edge: its distance from the antenna over the rest of the way.
     pub part: f64,
 }
 
@@ -189,7 +189,7 @@ impl Edges {
         }
         let part = l / (ray.whole - l).max(1e-9);
         if top > 0.0 && low < 0.0 {
-            // What passes both edges, turned back by the phase of the shorter detour.
+            // The fields past both edges, the farther one turned by the phase between the two detours.
             let (shorter, longer) = (top.min(-low), top.max(-low));
             let turn = Complex64::cis((shorter - longer) * (shorter + longer));
             let detour_metres = shorter * shorter / ray.half_kappa;

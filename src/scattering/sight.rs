@@ -1,4 +1,4 @@
-//! Which bodies can shadow an object at all: those near enough to the paths between the array and the object to change its echoes.
+//! Choice of the bodies that can shadow an object at all: those near enough to the paths between the array and the object to change its echoes.
 //!
 //! All ways together are the convex hull of the array and of the object. A body has no effect on a way, to the last bit, where the detour over
 //! each of its corners is so long that its ripple has faded ([`FADED`]). A detour of a given length is an ellipse around the ends of the way, so
@@ -10,7 +10,7 @@ use super::shadow::FADED;
 use crate::radar::{BuiltArray, Radar};
 use crate::scene::{Object, Shape};
 
-/// Where the antennas stand.
+/// The rectangle around all antennas.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Array {
     /// Corners of the rectangle around all antennas, metres.
@@ -23,7 +23,7 @@ pub(super) struct Array {
 #[derive(Debug, Clone)]
 pub(super) struct Screen {
     corners: Vec<V>,
-    /// How far it reaches beyond its corners, metres.
+    /// Radius of a post around its corner, metres; 0 for other bodies.
     radius: f64,
     /// Greatest distance of any of it from an antenna, metres.
     farthest: f64,
@@ -33,7 +33,7 @@ pub(super) struct Screen {
 #[derive(Debug, Clone)]
 pub(super) struct Ways {
     hull: Vec<V>,
-    /// How far the object reaches beyond its corner, metres; 0 for all but posts.
+    /// Radius of a post around its corner, metres; 0 for other objects.
     radius: f64,
     /// The longest way, and on in the mirror of a face, metres.
     longest: f64,
@@ -120,7 +120,7 @@ impl Ways {
         !(apart(&self.hull) || apart(&screen.corners))
     }
 
-    /// How far beside a way nothing has an effect any more that stands at most so far along it, metres.
+    /// Distance from a way beyond which bodies at most `along` metres along it have no effect, metres.
     fn margin(&self, along: f64) -> f64 {
         // The ellipse of all places over which a detour is twice `faded`, widest in the middle of the way.
         let (half, faded) = (self.longest / 2.0, self.faded);

@@ -24,7 +24,7 @@ impl Rows {
         self.bins.get(bin).copied().unwrap_or(false)
     }
 
-    /// How many it has.
+    /// Number of its bins.
     pub fn count(&self) -> usize {
         self.bins.iter().filter(|b| **b).count()
     }

@@ -216,7 +216,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         move |lane| self.array.pair(&self.radar, first_element + lane)
     }
 
-    /// What was prepared.
+    /// The plan of the synthesis.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }

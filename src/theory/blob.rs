@@ -136,7 +136,7 @@ fn bins_heard(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> (f64,
     elements.map(bin).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
 }
 
-/// Where `f` is largest between `low` and `high`, by golden sections.
+/// Place of the maximum of `f` between `low` and `high`, by golden sections.
 fn maximum(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..14 {
         let (a, b) = (low + GOLDEN_SECTION * (high - low), high - GOLDEN_SECTION * (high - low));

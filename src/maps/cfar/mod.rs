@@ -80,7 +80,7 @@ impl Default for Cfar {
     }
 }
 
-/// Why a detector can't work.
+/// A reason for which a detector can't work.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum CfarError {
@@ -129,7 +129,7 @@ pub fn relative_power(map: &RangeAngleMap, scale: LambdaScale) -> Array2<f64> {
 }
 
 impl Cfar {
-    /// Whether it can work on some map.
+    /// Checks the detector's rate and cells.
     /// # Errors
     /// [`CfarError`] says what is wrong and what was expected.
     pub fn check(&self) -> Result<(), CfarError> {
@@ -147,7 +147,7 @@ impl Cfar {
         Ok(())
     }
 
-    /// Whether it can work on a map of `[range bins, columns]`.
+    /// Checks that the detector can work on a map of `[range bins, columns]`.
     /// # Errors
     /// [`CfarError`] says what is wrong and what was expected.
     pub fn check_map(&self, [bins, columns]: [usize; 2]) -> Result<(), CfarError> {
@@ -204,7 +204,7 @@ impl Cfar {
 
     /// The verdict on the cell `[bin, column]` alone.
     /// # Errors
-    /// [`Cfar::check_map`].
+    /// As [`Cfar::check_map`].
     /// # Panics
     /// Where the map has no such cell.
     pub fn level(

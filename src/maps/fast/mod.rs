@@ -57,7 +57,7 @@ impl FastLogMap {
         }
     }
 
-    /// How the decades become Lambda.
+    /// The scale from this map's decades to Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
         // Cells that differ by the rounding of their logarithms alone are flat.
         let is_flat = self.max - self.min < ROUNDING_DECADES;
