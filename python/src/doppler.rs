@@ -11,7 +11,7 @@ use num_complex::Complex64;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 
-/// What chirps are simulated of.
+/// Scene, radar and noise of a simulation of chirps.
 struct Chirps {
     scene: apertura::scene::Scene,
     radar: apertura::radar::Radar,

@@ -140,7 +140,7 @@ pub fn evaluate<'py>(
 /// Set, number of the scene, method.
 type Key = (String, u32, String);
 
-/// What an evaluation is asked for.
+/// The scenes, methods and rows of an evaluation.
 struct Run {
     campaign: Campaign,
     sets: Vec<SceneSet>,

@@ -23,11 +23,11 @@ pub struct Function {
     is_decades: bool,
     /// `apertura.serve.called` with the function bound to it.
     called: Py<PyAny>,
-    /// What it raised last.
+    /// The exception that the function raised last.
     raised: Mutex<Option<PyErr>>,
 }
 
-/// What is said of a function beside itself.
+/// Name, description and settings of a function.
 pub struct Said<'a> {
     pub name: &'a str,
     pub description: &'a str,
@@ -77,7 +77,7 @@ impl Function {
         Ok(Function { about, weights, is_decades: answers == "decades", called, raised: Mutex::new(None) })
     }
 
-    /// What the function raised, once.
+    /// The exception that the function raised last, taken.
     pub fn take_raised(&self) -> Option<PyErr> {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

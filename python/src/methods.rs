@@ -24,7 +24,7 @@ pub struct Method {
     made_of: MadeOf,
 }
 
-/// What makes a method again in another process.
+/// The source from which a method is made again in another process.
 enum MadeOf {
     /// Its name.
     Name,
@@ -225,7 +225,7 @@ impl Method {
         self.inner.description()
     }
 
-    /// What it knows beside samples and radar.
+    /// The method's knowledge beside samples and radar.
     #[getter]
     fn told(&self) -> &'static str {
         self.inner.about().told
@@ -243,7 +243,7 @@ impl Method {
         self.inner.eta()
     }
 
-    /// Why the method can't work on samples of a radar, or None where it can.
+    /// The reason for which the method can't work on samples of a radar, or None where it can.
     ///
     /// Args:
     ///     radar: The radar; that of table 3.1 where none is given.

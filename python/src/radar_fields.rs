@@ -56,7 +56,7 @@ pub fn antennas_of(along: [Option<Vec<f64>>; 2], off: [Option<Vec<f64>>; 2]) -> 
     antennas.off_line(&of_transmitters, &of_receivers).map(Some).map_err(value)
 }
 
-/// What the constructor makes the radar of again: a dict of its arguments.
+/// The constructor's arguments for this radar, as a dict.
 pub fn fields_of<'py>(radar: &radar::Radar, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
     let fields = PyDict::new(py);
     fields.set_item("transmit_power_watts", radar.transmit_power_watts)?;

@@ -8,10 +8,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-/// How often signals and progress are looked at.
+/// Time between two looks at signals and progress.
 const TICK: Duration = Duration::from_millis(30);
 
-/// Who is told the part that is done.
+/// A Python function that takes the part that is done.
 pub type Progress<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 enum Event<E, T> {

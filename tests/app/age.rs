@@ -1,4 +1,4 @@
-//! What is drawn is of the scene on screen, or is marked as old.
+//! The pictures on screen are of the scene on screen, or are marked as old.
 
 use crate::session::Session;
 use apertura::app::{Command, EditCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand};
@@ -55,7 +55,7 @@ const PANELS: [Panel; 18] = [
     Panel::Found,
 ];
 
-/// What a user may do at random, with anything shown and any number of times.
+/// A user's command, at random, with anything shown and any number of times.
 fn action() -> impl Strategy<Value = Command> {
     let window = prop_oneof![Just(WindowFunction::Hann), Just(WindowFunction::Hamming)];
     let floor = prop_oneof![Just(Floor::Thesis), Just(Floor::Exact)];
@@ -112,7 +112,7 @@ proptest! {
     }
 }
 
-/// Where the output is closed, places that were found are still marked in the scene.
+/// Places that were found are still marked in the scene where the output is closed.
 #[test]
 fn found_places_follow_the_scene_while_the_output_is_closed() {
     let mut s = Session::with_methods(vec![Arc::new(apertura::reconstruct::Omp::default())]);

@@ -24,7 +24,7 @@ fn trial(s: &Session) -> Trial {
     Trial::new(s.state().radar(), s.state().editor().scene(), Floor::Thesis, Normalisation::MinMax).unwrap()
 }
 
-/// What a label says.
+/// The text of a label.
 fn text_of(node: &Node<'_>) -> String {
     let node = node.accesskit_node();
     node.label().or(node.value()).unwrap_or_default()

@@ -7,7 +7,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 
-/// What a person works with, and what has to be told in words.
+/// Whether an element of this role is used or has to be read out, so that it needs a name.
 fn has_to_be_named(role: Role) -> bool {
     matches!(
         role,

@@ -1,4 +1,4 @@
-//! What is shown to many people, or taken to their slides.
+//! The presentation, and pictures for slides.
 
 use crate::session::{Session, step_until};
 use apertura::app::{ExportCommand, MapKind, Panel, WindowCommand};

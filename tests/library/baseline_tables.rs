@@ -12,7 +12,7 @@ use apertura::scene::generate::Kind;
 use apertura::signal::Floor;
 use apertura::task::Task;
 
-/// How far a mean may lie from the printed one: SE as a part of it, P_D and P_FA in percentage points.
+/// Largest difference of a mean from the printed one: SE as a part of it, P_D and P_FA in percentage points.
 #[derive(Debug, Clone, Copy)]
 struct Allowed {
     squared_error: f64,

@@ -1,4 +1,4 @@
-//! Which way is up: where a reflector appears, what mirrors, what folds, and what strange scenes give.
+//! Signs and sides: the place of a reflector in the maps, mirrored and folded directions, and maps of strange scenes.
 
 use apertura::evaluate::Metrics;
 use apertura::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap};
@@ -18,7 +18,7 @@ fn peak(map: &LogMap) -> [usize; 2] {
     [index.0, index.1]
 }
 
-/// How far two columns are apart around the circle of columns.
+/// Distance of two columns around the circle of columns.
 fn columns_apart(radar: &Radar, a: f64, b: f64) -> f64 {
     let n = radar.elements as f64;
     let d = (a - b).rem_euclid(n);

@@ -1,4 +1,4 @@
-//! What an interferer does to the maps.
+//! Effects of an interferer on the maps.
 
 use apertura::maps::LogMaps;
 use apertura::radar::Radar;

@@ -67,7 +67,7 @@ fn two_to_five_elements_are_answered_or_refused() {
                 }
             }
         }
-        // Those that take both ends as one aperture; baseline and powers need two elements of an end.
+        // Methods that take both ends as one aperture answer; baseline and powers need two elements of an end.
         assert_eq!(answers, if elements == 2 { 3 } else { 5 }, "{elements} elements");
     }
 }

@@ -1,4 +1,4 @@
-//! What a radar asks for stays below what `Radar::memory_bytes` counts, by any method.
+//! The memory of every method stays below `Radar::memory_bytes`.
 //!
 //! Each measurement has a process of its own: this test program again, asked for the test called `child`.
 
@@ -12,10 +12,10 @@ use apertura::scene::Scene;
 use apertura::signal::{Floor, simulate};
 use std::process::Command;
 
-/// What the child is asked to do: `WORK ELEMENTS SAMPLES END`.
+/// Variable with the child's work: `WORK ELEMENTS SAMPLES END`.
 const CHILD_VARIABLE: &str = "APERTURA_TEST_MEMORY";
 
-/// What the program and its threads hold beside the maps, bytes.
+/// Memory of the program and its threads beside the maps, bytes.
 const OVERHEAD: u64 = 32 << 20;
 
 #[test]

@@ -1,5 +1,5 @@
-//! What every reconstruction method promises, of any kind: shape, range, determinism, independence of gain, an answer
-//! to degenerate samples, and an end when asked to stop. New methods are held to it by being in the list.
+//! Properties of every reconstruction method, of any kind: shape, range, determinism, independence of gain, an answer to degenerate samples, and an
+//! end when asked to stop. New methods are held to them by being in the list.
 
 use apertura::evaluate::detection_rates;
 use apertura::maps::{LogMaps, Normalisation};
@@ -108,7 +108,7 @@ fn a_single_sample_has_an_answer() {
     // An end that heard nothing at all is refused.
     single.last[[3, 100]] = Complex64::new(0.0, 1e-9);
     for method in methods::all() {
-        // Such a sample is alike at all ranges: its map is undefined.
+        // A single sample is alike at all ranges: its map is undefined.
         run(&*method, &single, "a single sample");
     }
 }

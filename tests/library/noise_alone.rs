@@ -1,4 +1,4 @@
-//! What methods say of samples that hold noise alone, or an echo at the edge of what a radar sees.
+//! Answers of methods to samples that hold noise alone, or an echo at the edge of the radar's map.
 
 use apertura::evaluate::sets::NOISE_LEVEL;
 use apertura::evaluate::trial::Trial;

@@ -35,12 +35,12 @@ fn radar() -> Radar {
     usual.in_convention(Convention::Physical)
 }
 
-/// Where element `n` stands, metres: a quarter of the wavelength in the middle of the chirp from the next.
+/// Place of element `n`, metres: a quarter of the wavelength in the middle of the chirp from the next.
 fn element_x(n: usize) -> f64 {
     (n as f64 - (ELEMENTS as f64 - 1.0) / 2.0) * C / (FIRST_HZ + BANDWIDTH_HZ / 2.0) / 4.0
 }
 
-/// What an antenna at `antenna` hears of a point of reflectivity 1 in sample `n`, for each watt.
+/// Sample `n` at an antenna at `antenna` of a point of reflectivity 1, for each watt.
 fn sample(antenna: f64, [x, y]: [f64; 2], n: usize) -> Complex64 {
     let hz = FIRST_HZ + BANDWIDTH_HZ * n as f64 / SAMPLES as f64;
     let range = (x - antenna).hypot(y);

@@ -139,7 +139,7 @@ proptest! {
     }
 }
 
-/// What `method` finds of points at these ranges (metres) and cosines, over 40 dB.
+/// Echoes that `method` finds of points at these ranges (metres) and cosines, over 40 dB.
 fn found(method: &str, radar: &Radar, places: &[(f64, f64)]) -> Result<Vec<Detection>, ReconstructError> {
     let scene = Scene::of_points(places.iter().map(|(range, cos)| (range * cos, range * (1.0 - cos * cos).sqrt())));
     let floor = Floor::Snr(Decibels(40.0));

@@ -18,9 +18,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Where the child works.
+/// Variable with the child's folder.
 const FOLDER: &str = "APERTURA_TEST_FOLDER";
-/// How often each child is killed.
+/// Number of times that each child is killed.
 const KILLS: u64 = 12;
 
 /// A scene that says how many points it has: whole, or found out.

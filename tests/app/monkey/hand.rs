@@ -1,4 +1,4 @@
-//! What a hand may do to the window, at random.
+//! Random actions of a hand on the window.
 
 use super::{FILES, Monkey};
 use apertura::app::{

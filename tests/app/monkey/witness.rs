@@ -1,4 +1,4 @@
-//! What was unsaved, and what must still be there after a kill.
+//! The unsaved documents, and those that must still be there after a kill.
 
 use super::FILES;
 use apertura::app::App;
@@ -56,8 +56,8 @@ impl Witness {
         }
     }
 
-    /// Whether a window that was started after a kill has all that was unsaved at one of the moments; what is missing of the latest
-    /// otherwise.
+    /// Checks that a window that was started after a kill has all documents that were unsaved at one of the moments. The error names those missing of
+    /// the latest moment.
     pub fn compare(&self, app: &App) -> Result<(), String> {
         let editor = app.editor();
         let back = |kept: &Kept| editor.left().iter().chain([editor.document()]).any(|d| kept.is(d));

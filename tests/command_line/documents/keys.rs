@@ -7,10 +7,10 @@ use apertura::app::{Entry, listed, listed_on_a_page};
 const OF_THE_WINDOW: [&str; 6] =
     ["README.md", "assets/guide.md", "docs/window.md", "docs/first-minutes.md", "docs/failures.md", "docs/words.md"];
 
-/// How the sentence begins that lists keys which are no program's in a page.
+/// Beginning of the sentence with the keys that a browser keeps from the program.
 const OF_THE_BROWSER: &str = "the browser keeps";
 
-/// How pages write a command's key.
+/// A command's key, as pages write it.
 fn written(entry: &Entry) -> Option<String> {
     let key = entry.key?;
     let (m, name) = (key.modifiers, key.logical_key.name());

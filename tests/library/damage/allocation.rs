@@ -8,7 +8,7 @@ use std::cell::Cell;
 thread_local! {
     static HELD_BYTES: Cell<isize> = const { Cell::new(0) };
     static PEAK_BYTES: Cell<isize> = const { Cell::new(0) };
-    /// What the thread is at, told where it asks for more than can be had.
+    /// Name and number of the case that the thread is at, printed where it asks for too much memory.
     static PEAK_PLACE: Cell<(&'static str, u64)> = const { Cell::new(("", 0)) };
 }
 

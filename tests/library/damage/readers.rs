@@ -57,7 +57,7 @@ fn scenes() -> Reader {
         read: |_, bytes| {
             let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
             let file = file::from_toml(text).map_err(|e| e.to_string())?;
-            // What was accepted can be written and read again.
+            // An accepted text can be written and read again.
             let again = file::to_toml(&file).map_err(|e| e.to_string())?;
             assert_eq!(file::from_toml(&again), Ok(file));
             Ok(())
@@ -109,7 +109,7 @@ fn shared() -> Reader {
             let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
             SharedScene::from_text(text).map(|_| ()).map_err(|e| e.to_string())
         },
-        // What a text may unpack to.
+        // Most bytes that a text may unpack to.
         bound: |length| (12 << 20) + 1024 * length,
         slow: 1,
     }

@@ -1,4 +1,4 @@
-//! Which file imports which, and which room which.
+//! Imports of files and of rooms.
 
 use super::source::Source;
 use std::collections::{BTreeMap, BTreeSet};
@@ -112,7 +112,7 @@ impl House {
         self.modules.get(&at).cloned()
     }
 
-    /// Where a path starts: the module, and what is left of the path.
+    /// Start of a path: its module, and the rest of the path.
     fn start<'a>(&self, module: &[String], path: &'a [String], depth: usize) -> Option<(Module, &'a [String])> {
         let (first, mut rest) = path.split_first().filter(|_| depth <= MAX_IMPORT_DEPTH)?;
         let mut at = module.to_vec();

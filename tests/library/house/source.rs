@@ -1,4 +1,4 @@
-//! What one Rust file imports, which paths its code names, and how long its functions are.
+//! Imports of one Rust file, the paths that its code names, and the lengths of its functions.
 
 use proc_macro2::Span;
 use syn::punctuated::Punctuated;
@@ -12,7 +12,7 @@ pub type Path = Vec<String>;
 /// An imported name.
 #[derive(Debug, PartialEq)]
 pub struct Use {
-    /// Where it comes from.
+    /// Path of the name's origin.
     pub path: Path,
     /// The name it is known by here; "*" for a glob.
     pub name: String,
@@ -122,7 +122,7 @@ impl<'ast> Visit<'ast> for Source {
         visit::visit_path(self, path);
     }
 
-    /// What stands in a macro's brackets counts where it reads as expressions, as that of `assert!` does.
+    /// The paths in a macro's brackets count where they read as expressions, as those of `assert!` do.
     fn visit_macro(&mut self, call: &'ast syn::Macro) {
         visit::visit_macro(self, call);
         if let Ok(arguments) = call.parse_body_with(Punctuated::<Expr, Token![,]>::parse_terminated) {
