@@ -48,7 +48,7 @@ impl fmt::Display for AxisKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(untagged, expecting = "expected a number from 0, \"mean\" or \"strongest\"")]
 pub enum Chirp {
-    /// One, from 0.
+    /// The chirp or loop of this number, from 0.
     Number(usize),
     /// A way to join them all.
     Joined(Join),
@@ -73,7 +73,7 @@ pub enum Join {
 /// An array that doesn't fit its axes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AxesError {
-    /// Another number of axes.
+    /// The text names another number of axes than the array has.
     #[error("recording.axes names {named} axes, but the array has shape {shape:?}")]
     Count {
         /// Axes named.
@@ -81,10 +81,10 @@ pub enum AxesError {
         /// Shape found.
         shape: Vec<usize>,
     },
-    /// An axis stands twice, or too many or too few say what the elements are.
+    /// An axis is named twice, or too many or too few axes count the elements.
     #[error("recording.axes: {0}")]
     Kinds(String),
-    /// The numbers are real and no chirps.
+    /// The numbers are real, and no axis counts samples.
     #[error(
         "the array holds real numbers; expected complex ones, an axis \"iq\" of length 2, or real samples of an axis \"sample\""
     )]
@@ -100,7 +100,7 @@ pub enum AxesError {
     /// The numbers are complex already.
     #[error("the array holds complex numbers; expected no axis \"iq\"")]
     Complex,
-    /// The axis of real and imaginary part is none.
+    /// The axis of real and imaginary part has another length than 2.
     #[error("axis \"iq\" has length {0}; expected 2, real and imaginary part")]
     Iq(usize),
     /// An array of several chirps without a choice of one.
@@ -173,8 +173,8 @@ pub(super) fn in_turn(
     })
 }
 
-/// Sorts `numbers` into `[loops, transmitters, receivers, samples]`, where there are chirps to join; at most so many numbers that they are
-/// held several times.
+/// Sorts `numbers` into `[loops, transmitters, receivers, samples]`, where there are chirps to join. At most [`MOST_JOINED`] numbers are
+/// taken, since they are held several times: further chirps are left out.
 ///
 /// # Errors
 /// [`AxesError`] where `kinds` are not the array's axes.

@@ -22,7 +22,7 @@ pub enum Handed {
     Taken,
     /// The frame, or one before it, is never looked at: the one before was still at work.
     Dropped,
-    /// No more are wanted.
+    /// No more frames are wanted.
     Ended,
 }
 
@@ -38,7 +38,7 @@ pub struct CardSummary {
 }
 
 impl CardSummary {
-    /// All of it in a sentence.
+    /// All counts in a sentence.
     pub fn sentence(&self) -> String {
         let PacketCounts { packets, strange, late, lost_bytes, lost_frames, restarts } = self.packets;
         format!(
@@ -82,7 +82,7 @@ impl Card {
         self.socket.local_addr().map(|address| address.port())
     }
 
-    /// Receives until it is to end: hands whole frames to `frames`, and asks `goes_on` with what came, ten times a second or more.
+    /// Receives packets until the end: hands whole frames to `frames`, and asks `goes_on` with the counts so far, ten times a second or more.
     ///
     /// # Errors
     /// An error of the socket or of the log file.

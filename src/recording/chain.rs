@@ -1,8 +1,8 @@
-//! Files that are read as one: those that go on from one to the next, and those of the chips of a cascade.
+//! Several files that are read as one: continued files of a capture, and files of the chips of a cascade.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// Something to read a data file from.
+/// A source of a data file's bytes.
 pub(super) trait Source: Read + Seek {}
 
 impl<T: Read + Seek> Source for T {}
@@ -71,7 +71,7 @@ pub(super) struct Chips {
 }
 
 impl Chips {
-    /// The files in the order of the receivers; what one has more than another is left out.
+    /// The files in the order of the receivers. All are cut to the length of the shortest.
     ///
     /// # Errors
     /// The error of a file whose size can't be read.

@@ -27,7 +27,7 @@ pub enum Fault {
     /// The TOML can't be understood.
     #[error("{0}")]
     Text(#[from] SceneTextError),
-    /// A key says something that can't be.
+    /// A key has a value that can't be used, or is missing.
     #[error("{key} {found}; expected {expected}")]
     Key {
         /// The key.
@@ -37,7 +37,7 @@ pub enum Fault {
         /// The values allowed.
         expected: String,
     },
-    /// The radar can't be.
+    /// The radar is invalid.
     #[error("{0}")]
     Radar(#[from] RadarError),
     /// The array can't be read.

@@ -21,12 +21,12 @@ const SHARED_GAIN_RIDGE: f64 = 1e-10;
 /// A recording explained by reflectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Explanation {
-    /// Complex gain of each reflector: what the echo of reflectivity 1 at its place is multiplied with. Its magnitude is the reflectivity
-    /// in the recording's own unit.
+    /// Complex gain of each reflector: a factor of the echo of reflectivity 1 at its place. Its magnitude is the reflectivity in the recording's own
+    /// unit.
     pub gains: Vec<Complex64>,
-    /// Part of the recording's power that they explain, 0 to 1.
+    /// Part of the recording's power that the reflectors explain, 0 to 1.
     pub explained: f64,
-    /// The recording less their echoes.
+    /// The recording less the reflectors' echoes.
     pub residual: Recording,
 }
 
@@ -36,7 +36,7 @@ pub enum ExplainError {
     /// The recording's radar can't see the scene.
     #[error("{0}")]
     Scene(#[from] SceneError),
-    /// Too many gains to fit.
+    /// The scene has too many reflectors.
     #[error("the scene has {0} reflectors; at most {MAX_EXPLAINING} are fitted to a recording")]
     TooMany(usize),
     /// The gains can't be told from each other at all.

@@ -2,25 +2,25 @@
 //!
 //! A recording is a data file and a TOML beside it that says what the data are. Of a raw capture without one the layout is found by evidence.
 //!
-//! | file | what it reads |
+//! | file | content |
 //! |---|---|
 //! | [`file`], `described`, `said_radar`, `said_recording` | the TOML: `[radar]` and `[recording]` |
-//! | `samples` | what the data files hold, in the order of the elements |
+//! | `samples` | samples of the data files, in the order of the elements |
 //! | `chain` | files that go on from one to the next |
 //! | `numpy` | `.npy` and `.npz` |
 //! | `matlab` | `.mat`, versions 5 and 7 |
 //! | `hdf5` | `.h5`, and `.mat` of version 7.3 |
 //! | `capture`, `profile` | samples of a capture card, and the `.cfg` that set the radar up |
-//! | [`layout`] | how the bytes of a raw capture stand for samples, by evidence |
+//! | [`layout`] | layouts of a raw capture's bytes, by evidence |
 //! | [`raw`] | raw captures and arrays as they are: the text that describes them is made |
-//! | `origin`, `reread` | where a recording comes from, what else its bytes could be, its frames, and reading them |
+//! | `origin`, `reread` | the file of a recording, its frames and other ways to read it |
 //! | [`packets`], [`card`] | packets that a capture card sends, to frames; listening to them |
 //! | `axes`, `analytic` | an array of any shape, of real samples too, to `[elements, samples]` |
-//! | `calibration` | what is taken off each element |
-//! | `signs` | which way phases turn, and where on the chirp the carrier lies |
-//! | `doubts` | what looks wrong and can't be known from the samples |
+//! | `calibration` | gains and phases that are taken off each element |
+//! | `signs` | the sign of the phases, and the place of the carrier on the chirp |
+//! | `doubts` | warnings that the samples can't settle |
 //!
-//! [`presets`] come with the program. [`explain`] tells what reflectors leave unexplained.
+//! [`presets`] come with the program. [`explain`] fits reflectors to a recording and returns the residual.
 
 mod analytic;
 mod axes;
@@ -80,7 +80,7 @@ pub struct Recording {
     pub samples: Recorded,
     /// Elements of the whole array that measured nothing, in rising order; their samples are silence.
     pub missing: Vec<usize>,
-    /// Range of everything in a snapshot (`radar.samples` = 1), metres: its one sample cannot tell.
+    /// Range of all echoes of a snapshot (`radar.samples` = 1), metres: its one sample cannot tell.
     pub range_metres: Option<f64>,
     /// Doubts that the samples can't settle, a sentence each.
     pub doubts: Vec<String>,
@@ -88,7 +88,7 @@ pub struct Recording {
     pub origin: Option<Arc<Origin>>,
 }
 
-/// Whose samples a recording holds.
+/// The elements whose samples a recording holds, with the samples.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Recorded {
     /// Samples of every element: the whole array's map is known.

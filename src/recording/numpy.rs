@@ -1,4 +1,4 @@
-//! NumPy's `.npy` and `.npz` files: what the header says is checked before any memory is asked for.
+//! NumPy's `.npy` and `.npz` files. The header's sizes are checked before any memory is asked for.
 
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
 use crate::files::hdf5::half_value;
@@ -13,7 +13,7 @@ use std::io::{Cursor, Read, Seek};
 /// An error of reading an array.
 #[derive(Debug, thiserror::Error)]
 pub enum NumpyError {
-    /// The archive, or one of its keys.
+    /// The archive, or one of its keys, can't be read.
     #[error("{0}")]
     Archive(#[from] NpzError),
     /// The header is none of NumPy's.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// One way to read a file: a layout of a raw capture, or what the axes of an array count.
+/// One way to read a file: a layout of a raw capture, or kinds of an array's axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Offer {
     /// The layout in a sentence's words.

@@ -36,12 +36,12 @@ pub(super) struct Table {
     #[serde(default)]
     pub calibration: Calibration,
     pub capture: Option<Capture>,
-    /// Whether the text says places of antennas.
+    /// Whether the text gives places of antennas.
     #[serde(skip)]
     pub has_places: bool,
 }
 
-/// Whose samples a file holds.
+/// The elements whose samples a file holds.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Covers {
@@ -93,7 +93,7 @@ impl Table {
         Said { format, carrier_at, beat_sign, sweep, conjugate }.signs(radar)
     }
 
-    /// Looks at another frame than the text says.
+    /// Chooses another frame than the text's.
     pub fn look_at(&mut self, frame: Option<u64>) {
         match (&mut self.capture, frame) {
             (_, None) => {}
@@ -110,7 +110,7 @@ impl Table {
         self.beat_sign != Some(BeatSign::Negative)
     }
 
-    /// Elements of the whole array that the file is to hold, in its order.
+    /// Elements of the whole array that the file should hold, in its order.
     pub fn covered(&self, radar: &Radar) -> Vec<usize> {
         match self.covers() {
             Covers::All => (0..radar.elements).collect(),
@@ -118,12 +118,12 @@ impl Table {
         }
     }
 
-    /// Whose samples the file holds.
+    /// The elements whose samples the file holds.
     pub fn covers(&self) -> Covers {
         if self.first.is_some() { Covers::Ends } else { self.elements }
     }
 
-    /// Whether the file counts transmitters and receivers whose places the text says: then those say which element is which.
+    /// Whether the file counts transmitters and receivers whose places the text gives: the places then give each element's pair.
     pub fn counts_pairs(&self) -> bool {
         let has_both = |axes: &Vec<AxisKind>| axes.contains(&AxisKind::Transmitter);
         let in_turn = self.transmitters_in_turn.is_some();

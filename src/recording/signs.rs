@@ -16,7 +16,7 @@ use super::Fault;
 use crate::radar::{Carrier, Radar};
 use serde::Deserialize;
 
-/// The format that is written down today; texts that name none are of format 1.
+/// The format of today's texts; texts that name none are of format 1.
 pub const FORMAT: u32 = 3;
 
 /// The format of a text that names none.

@@ -14,7 +14,7 @@ pub(super) struct Channels {
     both: bool,
     /// Factor of each chirp's receivers, `[chirps][receivers]`; empty where none is said.
     factors: Vec<Vec<Complex64>>,
-    /// Chirps of a loop that several transmitters send, not told apart.
+    /// Number of chirps of a loop that several transmitters send and that can't be told apart.
     together: usize,
     unfitting: Option<(usize, usize)>,
 }

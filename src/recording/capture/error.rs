@@ -9,10 +9,10 @@ pub enum CaptureError {
     /// The system could not read.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// No radar has so many lanes.
+    /// The number of lanes is none that a radar has.
     #[error("recording.capture.lanes is {0}; expected 2 or 4")]
     Lanes(usize),
-    /// The order of real and imaginary parts is not said once.
+    /// The order of real and imaginary parts is given twice or not at all.
     #[error("recording.capture.{0}; expected one of lanes and parts")]
     Parts(&'static str),
     /// Samples of all receivers don't fill the lanes.
@@ -35,7 +35,7 @@ pub enum CaptureError {
         /// The values allowed.
         expected: &'static str,
     },
-    /// The chirps were not said, or are none of the loop's.
+    /// The chirps are missing, or are none of the loop's.
     #[error(
         "recording.capture.chirps is {found}; expected some of 0 to {last}, each once: the chirps of a loop that form the line of elements, in order"
     )]

@@ -21,7 +21,7 @@ pub(in crate::recording) struct Frame {
 }
 
 impl Frame {
-    /// Reads the loops of the plan; what the capture says is taken out is out.
+    /// Reads the loops of the plan, and takes out the parts that `capture` leaves out.
     pub fn read<R: Read + Seek>(stream: &mut Stream<R>, capture: &Capture, plan: &Plan) -> Result<Frame, CaptureError> {
         let Plan { samples, receivers, chirps, loops, layout, .. } = *plan;
         let size = layout.chirp_bytes(samples, receivers);

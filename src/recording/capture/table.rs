@@ -8,17 +8,17 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Capture {
-    /// Name of the `.cfg`, beside the TOML; without one the counts are said here.
+    /// Name of the `.cfg`, beside the TOML; without one the counts stand in this table.
     pub config: Option<String>,
     /// Number of the sub-frame of an advanced frame, from 0.
     pub sub_frame: Option<usize>,
-    /// Files that go on from the first, in order.
+    /// Names of the files that continue the first, in order.
     #[serde(default)]
     pub more_files: Vec<String>,
     /// Files of the other chips of a cascade, in the order of their receivers; each holds four receivers sample by sample, in pairs.
     #[serde(default)]
     pub chips: Vec<String>,
-    /// 16 bits to a number.
+    /// Encoding of numbers in 16 bits.
     #[serde(default)]
     pub words: Words,
     /// Order of real and imaginary parts.

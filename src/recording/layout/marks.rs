@@ -1,4 +1,4 @@
-//! Headers before chirps, found by the bytes that each begins with.
+//! Headers before chirps, found by their first bytes.
 
 use super::stream::Stream;
 use std::io::{self, Read, Seek};

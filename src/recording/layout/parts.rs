@@ -1,8 +1,8 @@
-//! Real and imaginary parts of samples, and whose samples they are.
+//! Orders of real and imaginary parts, and of receivers.
 
 use serde::Deserialize;
 
-/// In which order real and imaginary parts stand.
+/// Order of real and imaginary parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Parts {

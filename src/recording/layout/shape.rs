@@ -1,4 +1,4 @@
-//! A layout: how bytes stand for samples; and how many of each there are.
+//! Layouts and counts of a capture.
 
 use super::parts::{Parts, ReceiverOrder};
 use super::words::Words;
@@ -6,7 +6,7 @@ use super::words::Words;
 /// The layout of a chirp's bytes as samples of its receivers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Layout {
-    /// 16 bits to a number.
+    /// Encoding of numbers in 16 bits.
     pub words: Words,
     /// Order of real and imaginary parts.
     pub parts: Parts,

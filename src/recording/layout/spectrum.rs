@@ -8,12 +8,11 @@ use num_complex::Complex64;
 /// Power that rounding to whole numbers leaves in a bin: a twelfth for each part.
 pub(super) const ROUNDING: f64 = 1.0 / 6.0;
 
-/// An echo has so many times the power of the middle of all bins (15 dB), and stands no farther below the strongest, decibels.
+/// Least power of an echo over the middle of all bins (15 dB), and most decibels below the strongest echo.
 const ABOVE_MEDIAN: f64 = 31.6;
 const BELOW_PEAK_DB: f64 = 40.0;
 
-/// An image stands at most so far from its echo, decibels, and an echo that may have one so far below the strongest: those of unequal
-/// converters stand farther below.
+/// Most decibels of an image below its echo, and of an echo with an image below the strongest echo: images of unequal converters lie farther below.
 const IMAGE_DB: f64 = 20.0;
 /// Least coherence of an echo with its image.
 const COHERENT: f64 = 0.5;
@@ -40,7 +39,7 @@ pub(in crate::recording) struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of rows of `receivers` in turn, `[chirps * receivers, samples]`. The mean of each row is taken out.
+    /// Spectrum of rows of `receivers` in turn, `[chirps * receivers, samples]`. The mean of each row is taken out.
     pub fn of(rows: &Array2<Complex64>, receivers: usize) -> Spectrum {
         let (count, samples) = rows.dim();
         let mut centred = rows.clone();
@@ -86,7 +85,7 @@ impl Spectrum {
         Spectrum { power, near: -self.near, echoes: [far, near], ..self.clone() }
     }
 
-    /// Of real samples: the half of it that tells, at twice the power, as complex samples of the same words would have it.
+    /// The spectrum of real samples: its near half at twice the power, as complex samples of the same words would have it.
     pub fn of_real(self) -> Spectrum {
         let bins = self.power.len();
         let power: Vec<f64> = self.power[..bins.div_ceil(2)].iter().map(|p| 2.0 * p).collect();
@@ -113,8 +112,8 @@ fn echoes(power: &[f64]) -> [usize; 2] {
     [0..bins / 2, bins / 2..bins].map(|mut half| half.by_ref().filter(is_peak).count())
 }
 
-/// Echoes of the near half, away from a constant part, that stand as far into the far half, but not to the last digit: those are real samples
-/// that are stored as complex ones.
+/// Number of echoes of the near half, away from the constant part, with an image as far into the far half that is not equal to the last digit: equal
+/// images are those of real samples stored as complex ones.
 fn images(power: &[f64], is_coherent: impl Fn(usize) -> bool) -> usize {
     let bins = power.len();
     let Some((peak, median)) = peak_and_median(power) else { return 0 };

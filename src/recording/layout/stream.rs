@@ -1,4 +1,4 @@
-//! The bytes of a capture by seeking: where it holds network packets, without their headers, and with zeros for those that are lost.
+//! The bytes of a capture, read by seeking. Headers of network packets are left out, and lost packets are zeros.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -68,7 +68,7 @@ impl<R: Read + Seek> Stream<R> {
         self.packets.map_or(0, |p| p.bytes.div_ceil(DATA_BYTES).saturating_sub(p.count))
     }
 
-    /// Reads `buffer.len()` bytes from `offset` on. Lost packets, and what lies behind the end, are zeros.
+    /// Reads `buffer.len()` bytes from `offset` on. Lost packets and bytes behind the end are zeros.
     ///
     /// # Errors
     /// The error of the read or the seek.
@@ -89,7 +89,7 @@ impl<R: Read + Seek> Stream<R> {
         Ok(())
     }
 
-    /// Number and count of bytes before of packet `index` of the file.
+    /// Number of packet `index` of the file, and its count of bytes before.
     fn header(&mut self, index: u64) -> io::Result<Option<(u64, u64)>> {
         if (index * PACKET_BYTES).saturating_add(HEADER_BYTES) >= self.file_bytes {
             return Ok(None);

@@ -19,7 +19,7 @@ const SURE: f64 = 5.0;
 const LIKELY: f64 = 1.0;
 
 impl Certainty {
-    /// By how much the best has more log-odds than the next.
+    /// The certainty of a choice by its margin: its log-odds above those of the next; `None` where there is no next.
     pub fn of(margin: Option<f64>) -> Certainty {
         match margin {
             Some(margin) if margin < LIKELY => Certainty::Open,
@@ -35,7 +35,7 @@ impl Found {
         &self.candidates[0]
     }
 
-    /// By how much the best has more log-odds than the next; none where there is no other.
+    /// Log-odds of the best above those of the next; `None` where there is no next.
     pub fn margin(&self) -> Option<f64> {
         Some(self.best().log_odds() - self.candidates.get(1)?.log_odds())
     }

@@ -1,4 +1,4 @@
-//! 16 bits of a capture to a number.
+//! Encodings of a capture's numbers in 16 bits.
 
 use serde::Deserialize;
 
@@ -9,7 +9,7 @@ pub enum Words {
     #[default]
     #[serde(rename = "int16")]
     Int16,
-    /// The same with bit 15 flipped.
+    /// Two's complement with bit 15 flipped, the low byte first.
     #[serde(rename = "offset-binary")]
     OffsetBinary,
     /// Two's complement, the high byte first.

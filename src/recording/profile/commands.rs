@@ -1,4 +1,4 @@
-//! The commands of a `.cfg` that matter. A command that stands twice holds as it stands last, as on the radar's command line.
+//! The commands of a `.cfg` that are read. The last of several equal commands holds, as on the radar's command line.
 
 use super::error::{MOST_CHIRPS, ProfileError};
 use super::lines::{Line, lines};
@@ -17,7 +17,7 @@ pub(super) struct ChirpLine {
     pub differs: Option<&'static str>,
 }
 
-/// The commands that matter, as they stand in the file.
+/// The commands that are read, as they stand in the file.
 #[derive(Default)]
 pub(super) struct Commands<'a> {
     pub profiles: BTreeMap<usize, Line<'a>>,

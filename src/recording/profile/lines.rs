@@ -9,9 +9,9 @@ pub(super) struct Line<'a> {
     pub number: usize,
     /// Its name.
     pub command: &'a str,
-    /// The numbers behind it, up to the first word that is none.
+    /// The numbers behind the command, up to the first word that is no number.
     pub values: Vec<f64>,
-    /// The word that is none.
+    /// The first word that is no number.
     bad: Option<&'a str>,
 }
 

@@ -1,4 +1,4 @@
-//! Arrays without a text: what their axes count by evidence, and the TOML that says so.
+//! Arrays without a text: the kinds of their axes by evidence, and the TOML that names them.
 
 use super::axes::{Reading, readings};
 use super::boards::Board;
@@ -14,7 +14,7 @@ use crate::scene::npz::X_KEY;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Readings that are offered.
+/// Most readings that are offered.
 const OFFERED: usize = 4;
 
 /// Endings of the names of array files.
@@ -106,7 +106,7 @@ fn largest(data: &Path) -> Result<(Option<String>, Numbers), Fault> {
     Ok((Some(key), numbers))
 }
 
-/// Arrays of an `.npz` that is a scene, or what the program itself wrote.
+/// Keys of an `.npz` that is a scene, or that the program itself wrote.
 const OTHERS: [&str; 7] =
     [X_KEY, "format_version", "heard", "net_output", "polar_full", "polar_partial_mag_phase", "sub0"];
 

@@ -22,7 +22,7 @@ const MOST_SHARP_DB: f64 = 12.0;
 /// Log-odds of an axis of two real numbers that they are real and imaginary part.
 const OF_PARTS: f64 = 5.0;
 
-/// Kinds that the axes of an array may count together, by how many axes there are.
+/// Kinds of axes that an array may have, by the number of axes.
 const TOGETHER: [&[AxisKind]; 6] = [
     &[Element, Sample],
     &[Chirp, Element, Sample],
@@ -182,7 +182,7 @@ fn order(kinds: &[AxisKind]) -> f64 {
     last + first + several + 0.5 * (before(Chirp, Element) + before(Chirp, Receiver) + before(Transmitter, Receiver))
 }
 
-/// Whether the `.cfg` says this count; nothing where it says none.
+/// Whether the `.cfg` gives this count; `None` where it gives none.
 fn said(kind: AxisKind, len: usize, profile: &RadarProfile, has_transmitters: bool) -> Option<bool> {
     let transmitters = profile.chirp_transmitters.len();
     Some(match kind {

@@ -9,7 +9,7 @@ const MOST_FILES: usize = 10_000;
 /// Most files that a capture goes on in.
 const MOST_PARTS: usize = 64;
 
-/// The capture itself: `path`, or where that is a `.cfg`, what lies beside it.
+/// The capture: `path`, or where that is a `.cfg`, the data file beside it.
 pub(super) fn data_of(path: &Path) -> Result<PathBuf, RecordingError> {
     if !ends(path, "cfg") {
         return Ok(path.to_owned());

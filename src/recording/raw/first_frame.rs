@@ -11,8 +11,8 @@ use std::io::{Read, Seek};
 
 /// Directions in which a beam is looked for: half of the beam of 54 half wavelengths apart.
 const DIRECTIONS: i32 = 128;
-/// The receivers of a cascade stand from left to right in the file where one beam of them holds such a part of all power, and so many times
-/// more than where they stand by chips: chips that are not calibrated make no such beam in any order.
+/// Least part of all power in one beam of the receivers from left to right for which they stand so in the file, and least ratio to the beam by chips:
+/// chips that are not calibrated make no such beam in any order.
 const WHOLE_BEAM: f64 = 0.9;
 const MORE_BEAM: f64 = 1.03;
 
@@ -28,7 +28,7 @@ pub(super) struct FirstFrame {
 }
 
 impl FirstFrame {
-    /// Reads it as `capture` says; what can't be read tells nothing.
+    /// Reads the frame as `capture` says. Without a readable frame all figures are empty.
     pub fn read<R: Read + Seek>(
         stream: &mut Stream<R>,
         capture: &Capture,
@@ -51,7 +51,7 @@ impl FirstFrame {
         if beam > WHOLE_BEAM && beam > MORE_BEAM * self.beam(by_chip) { from_left } else { by_chip }
     }
 
-    /// Part of the power, without what is constant, that the strongest beam of receivers that stand as on the board holds.
+    /// Part of the power, without the constant part, in the strongest beam of receivers that stand as on the board.
     fn beam(&self, board: &Board) -> f64 {
         let mean = |row: ArrayView1<'_, Complex64>| row.sum() / row.len().max(1) as f64;
         let centred: Vec<_> = self.chirp.outer_iter().map(|row| row.mapv(|v| v - mean(row))).collect();

@@ -18,7 +18,7 @@ impl Imported {
         self.found.as_ref().map_or_else(|| Certainty::of(self.margin()), Found::certainty)
     }
 
-    /// By how much the best has more log-odds than the next; none where there is no other.
+    /// Log-odds of the best above those of the next; `None` where there is no next.
     pub fn margin(&self) -> Option<f64> {
         let offers = &self.origin.offers;
         Some(offers.first()?.log_odds - offers.get(1)?.log_odds)

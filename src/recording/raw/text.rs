@@ -101,7 +101,7 @@ fn signs(out: &mut String, profile: Option<&RadarProfile>, says_carrier: bool) {
     }
 }
 
-/// The table `[radar]`; `said` are carrier, bandwidth and seconds of the samples where the `.cfg` is not named in the text.
+/// Writes the table `[radar]`; `said` are carrier, bandwidth and seconds of the samples where the `.cfg` is not named in the text.
 fn radar(out: &mut String, said: Option<[f64; 3]>, samples: usize, about: &About<'_>) {
     out.push_str("\n[radar]\nconvention = \"physical\"\n");
     if let Some([carrier, bandwidth, seconds]) = said {
