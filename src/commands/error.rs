@@ -13,10 +13,10 @@ pub enum CommandError {
     /// The arguments make no sense together.
     #[error("{0}")]
     Usage(String),
-    /// The error of a subcommand's own room.
+    /// An error of the room that the subcommand uses.
     #[error("{0}")]
     Failed(Box<dyn Error + Send + Sync>),
-    /// The same, about a file.
+    /// An error of the room that the subcommand uses, about a file.
     #[error("{}: {source}", path.display())]
     FailedOn { path: PathBuf, source: Box<dyn Error + Send + Sync> },
 }

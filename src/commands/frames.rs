@@ -32,7 +32,7 @@ impl Frames {
     /// Frame `n`, read as the one that was opened.
     ///
     /// # Errors
-    /// [`CommandError`] names the file and what is wrong with the frame.
+    /// [`CommandError`] names the file and the fault of the frame.
     pub fn at(&self, n: usize) -> Result<Recording, CommandError> {
         let Some(origin) = &self.0.origin else { return Ok(self.0.clone()) };
         let frame = origin.with(origin.taken, n as u64).map_err(CommandError::failed)?;

@@ -96,7 +96,7 @@ impl Args {
     }
 }
 
-/// The window library's message without the place in its own source that it names, and without all that it looked for.
+/// The window library's message without the line of its source and the list of backends that it tried.
 fn shortened(message: &str) -> String {
     let plain = message.split_once("os error at ").and_then(|(before, after)| {
         let (_, place_and_reason) = after.split_once(".rs:")?;

@@ -75,7 +75,7 @@ impl Args {
             return Err(CommandError::Usage(format!("{name}: an archive is written; expected a name ending in .npz")));
         }
         let own = self.network.start_own()?;
-        // A name that is wrong is told before anything is read.
+        // A wrong name is reported before any file is read.
         let asked = self.method.as_deref().or(own.first().copied()).map(|name| self.method(name)).transpose()?;
         if self.all_frames {
             return self.of_frames(asked);
@@ -225,7 +225,7 @@ impl Args {
         Ok(TwoEnds { first, last: last.map_err(CommandError::on(&self.input))? })
     }
 
-    /// The method of an input that is not told another.
+    /// The method for an input where none is named.
     fn usual(&self, radar: &Radar) -> Result<Arc<dyn Reconstructor>, CommandError> {
         let layout = self.layout.numbers(radar)?;
         let usual =
@@ -271,7 +271,7 @@ impl Args {
     }
 }
 
-/// Adds what was found, a list of each figure.
+/// Adds the echoes found, an array for each figure.
 fn add_found<'a>(
     out: &mut NpzOutput<'_>,
     found: &(impl Iterator<Item = &'a Detection> + Clone),

@@ -1,4 +1,4 @@
-//! `apertura worsen`: near a scene, one on which a method does worse; or the smallest move after which it is right.
+//! `apertura worsen`: a search near a scene for one on which a method does worse, or for the smallest move after which it is right.
 
 use super::arguments::{FloorArgs, chosen, real, seed, whole};
 use super::network_args::NetworkArgs;
@@ -62,7 +62,7 @@ pub struct Args {
     floor: FloorArgs,
 }
 
-/// Metres; a move below it changes nothing that a map shows.
+/// Smallest reach of a search, metres: smaller moves change no visible cell of a map.
 const MIN_REACH_METRES: f64 = 1e-6;
 
 /// A year.

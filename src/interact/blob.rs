@@ -1,4 +1,4 @@
-//! Blobs of a map as handles: whose blob is under the pointer, and where a reflector goes when its blob is moved.
+//! Blobs of a map as handles: the blob under the pointer, and the place of a reflector after its blob is moved.
 
 use super::{Grip, Place, hit::Hit};
 use crate::radar::{Polar, Radar};
@@ -17,14 +17,14 @@ pub struct BlobHit {
 }
 
 impl BlobHit {
-    /// The same as a hit of the object in the scene.
+    /// The blob as a hit of its object in the scene.
     pub fn as_hit(&self, scene: &Scene) -> Option<Hit> {
         let place = scene.objects.get(self.object)?.centre_metres().into();
         Some(Hit { object: self.object, grip: Grip::Body, place })
     }
 }
 
-/// The reflector whose blob is nearest to the pointer; `distance_points` tells how far from it a reflector's blob is drawn.
+/// The reflector whose blob is nearest to the pointer; `distance_points` gives the distance of a reflector's blob, points of the view.
 pub fn nearest(scene: &Scene, distance_points: impl Fn(&Reflector) -> f64) -> Option<BlobHit> {
     let mut best: Option<(f64, BlobHit)> = None;
     for (object, o) in scene.objects.iter().enumerate() {

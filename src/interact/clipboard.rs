@@ -1,4 +1,4 @@
-//! Objects as text: the same TOML as a scene file, so that what is copied can be pasted into one.
+//! Objects as text: the same TOML as a scene file, so that a copy can be pasted into one.
 
 use crate::radar::Radar;
 use crate::scene::{Object, Scene, SceneError};

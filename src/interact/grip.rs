@@ -1,4 +1,4 @@
-//! The parts of an object that can be grabbed, and what dragging each of them means. Those of bodies are in [`super::body_grip`].
+//! The parts of an object that can be grabbed, and the effect of dragging each. Those of bodies are in [`super::body_grip`].
 //!
 //! ```text
 //!     ↻  turn: the line turns about its middle; length and number kept
@@ -57,7 +57,7 @@ pub fn grips(object: &Object, metres_per_point: f64) -> Vec<GripPlace> {
     }
 }
 
-/// `before` with `grip` moved from where it was to `to`.
+/// `before` after `grip` is dragged to `to`.
 pub fn move_grip(before: &Object, grip: Grip, to: Place) -> Object {
     let mut after = before.clone();
     match (&mut after, grip) {

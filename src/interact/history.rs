@@ -1,4 +1,4 @@
-//! Undo and redo: whole documents, shared, with what was done to them.
+//! Undo and redo: whole documents, shared, with labels of the steps.
 
 use super::document::Document;
 use super::selection::Selection;
@@ -33,7 +33,7 @@ pub struct History {
 }
 
 impl History {
-    /// Records that `label` happened to `before`.
+    /// Records a step: `before` is the state before it, `label` its name.
     pub(super) fn push(&mut self, label: &str, merge_key: Option<&str>, before: Snapshot) {
         self.undone.clear();
         let merges = !self.sealed

@@ -1,8 +1,8 @@
 //! MATLAB's `.mat` files, versions 5 and 7 ("MAT-File Format", The MathWorks): numeric arrays, real or complex, compressed or not,
 //! by themselves, in structs or in cells.
-//! The crates that read them know no complex numbers (`mat5`) or inflate without a bound (`matfile`), so this reader is the program's own. It reads
-//! forward only. Before it asks for memory, it compares a size with other sizes in the file.
-//! program's own. It reads forward only, and asks for no memory before the size was compared with what the file says elsewhere.
+//!
+//! The crates that read them know no complex numbers (`mat5`) or inflate without a bound (`matfile`), so this reader is the
+//! program's own. It reads forward only. Before it asks for memory, it compares a size with the file's other sizes.
 
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
 use flate2::read::ZlibDecoder;

@@ -54,7 +54,7 @@ body! {
         pub x_metres: f64,
         /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
-        /// From end to end, metres.
+        /// Length from end to end, metres.
         pub length_metres: f64,
         /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
         #[serde(default, skip_serializing_if = "is_zero")]
@@ -262,7 +262,7 @@ impl Body<'_> {
         }
     }
 
-    /// Points that its roughness scatters from; 0 for a smooth one and for posts.
+    /// Points that the body's roughness scatters from; 0 for a smooth body and for posts.
     pub fn diffuse_count(&self) -> usize {
         if self.surface().roughness_millimetres == 0.0 {
             return 0;

@@ -1,6 +1,6 @@
 //! Parts common to all kinds of objects: fields of files, and a match over the kinds.
 
-/// An object: what is its own, then what every object has.
+/// An object: its own fields, then the fields of every object.
 macro_rules! moving {
     ($(#[$about:meta])* pub struct $name:ident { $($fields:tt)* }) => {
         $(#[$about])*
@@ -22,7 +22,7 @@ macro_rules! moving {
 }
 pub(super) use moving;
 
-/// The same of an object of any kind.
+/// One expression for an object of any kind.
 macro_rules! of_each {
     ($object:expr, $one:ident => $what:expr) => {
         match $object {

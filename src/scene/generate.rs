@@ -101,7 +101,7 @@ impl Generator {
     /// Seed of the noise beneath a scene, below 2^53.
     fn noise_seed(&self, kind: Kind, number: u32) -> u64 {
         let mut rng = self.rng(kind, number);
-        // Far beyond the scene's own draws from the stream.
+        // This position lies far beyond the scene's own draws from the stream.
         rng.set_word_pos(1 << 40);
         rng.random::<u64>() >> 11
     }

@@ -123,7 +123,7 @@ impl Scene {
         self.objects.iter().flat_map(Object::reflectors).collect()
     }
 
-    /// Whether nothing in it reflects, so that its samples are noise alone, or zero.
+    /// Whether no object reflects, so that the samples are noise alone, or zero.
     pub fn is_silent(&self) -> bool {
         self.objects.iter().all(|object| object.reflectivity() == 0.0 || object.echo_count() == 0)
     }
@@ -143,7 +143,7 @@ impl Scene {
         self.objects.iter().fold(0, |n, o| n.saturating_add(o.reflector_count()))
     }
 
-    /// Most echoes that it gives one element, without making them.
+    /// Most echoes of the scene at one element, without making them.
     pub fn echo_count(&self) -> usize {
         self.objects.iter().fold(0, |n, o| n.saturating_add(o.echo_count()))
     }

@@ -10,7 +10,7 @@ pub struct EchoReport {
     below_db: [usize; CLASSES],
     there: [usize; CLASSES],
     found: [usize; CLASSES],
-    /// Part of all that are there; `None` where none is.
+    /// Part of all echoes that were found; `None` without echoes.
     detection: Option<f64>,
 }
 
@@ -25,7 +25,7 @@ impl EchoReport {
     }
 }
 
-/// Adds what each method found to a set's table; nothing for no method. `width` is that of the names.
+/// Adds the echoes that each method found to a set's table; no effect without methods. `width` is that of the names.
 pub fn write(methods: &[(&str, &EchoReport)], width: usize, text: &mut String) {
     let Some((_, first)) = methods.first() else { return };
     let title = "echoes found, by dB below the";

@@ -43,14 +43,14 @@ pub enum SceneFileError {
 /// The two kinds of scene file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SceneFormat {
-    /// Everything, readable.
+    /// The whole scene, readable.
     Toml,
     /// Positions only, as the thesis author's program reads and writes them.
     Npz,
 }
 
 impl SceneFormat {
-    /// The format that a file's name asks for.
+    /// The format by the ending of a file's name.
     /// # Errors
     /// [`SceneFileError::Extension`] for any ending but `.toml` and `.npz`.
     pub fn of_path(path: &Path) -> Result<SceneFormat, SceneFileError> {

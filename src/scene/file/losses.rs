@@ -5,7 +5,7 @@ use crate::radar::Radar;
 use crate::scene::{Object, Scene};
 use std::fmt;
 
-/// Something of a scene that a file would not give back.
+/// A property of a scene that a file would not give back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)] // Names of fields say what is in them.
 pub enum FileLoss {
