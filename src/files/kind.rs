@@ -3,7 +3,7 @@
 use super::read_start;
 use std::path::Path;
 
-/// As much of a file as its kind is told by.
+/// Bytes of the beginning of a file by which its kind is found.
 const START_BYTES: u64 = 1 << 16;
 
 /// The kind of the file at `path`, as a noun for a message: "an ONNX model"; `None` where no kind is recognised or the file can't be read.
@@ -11,7 +11,7 @@ pub fn kind_at(path: &Path) -> Option<&'static str> {
     kind_of(&read_start(path, START_BYTES).ok()?)
 }
 
-/// The same of a file that begins with `bytes`.
+/// The kind of a file that begins with `bytes`.
 pub fn kind_of(bytes: &[u8]) -> Option<&'static str> {
     let begins = |start: &[u8]| bytes.starts_with(start);
     Some(match bytes {

@@ -40,7 +40,7 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_atomically(path, |out| out.write_all(bytes))
 }
 
-/// The error of a folder that takes no file; the temporary file's name in the system's message would lead nowhere.
+/// The error of a folder that takes no file. The system's message would name the temporary file.
 fn unwritable(folder: &Path, error: &io::Error) -> io::Error {
     io::Error::new(
         error.kind(),

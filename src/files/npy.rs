@@ -1,6 +1,6 @@
-//! NumPy's single arrays (`.npy`): a look at the header before anything is allocated for what it promises.
+//! NumPy's single arrays (`.npy`): the header is checked before memory is reserved by its sizes.
 //!
-//! `ndarray_npy` takes the header's word for the number of elements, and for its own length; a damaged one may say anything.
+//! `ndarray_npy` trusts the header's number of elements, and its own length. A damaged header may give any.
 
 use ndarray_npy::npy::header::Header;
 use std::io::{self, Read};

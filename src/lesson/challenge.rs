@@ -15,13 +15,13 @@ use serde::Deserialize;
 pub struct Challenge {
     /// The task, in words for the learner.
     pub ask: String,
-    /// Every one must hold.
+    /// Requirements, all of which must hold.
     #[serde(rename = "require")]
     pub requirements: Vec<Requirement>,
     /// Objects visible only in the maps, which the learner's objects should reproduce.
     #[serde(default)]
     pub hidden: Vec<Object>,
-    /// One that meets it: checked before the lesson begins, and shown on request.
+    /// A state that meets the challenge: checked before the lesson begins, and shown on request.
     pub solution: Solution,
 }
 
@@ -133,7 +133,7 @@ impl Challenge {
 }
 
 impl Requirement {
-    /// Checks that it can be measured on a scene of `objects` objects, and met by some number.
+    /// Checks that the requirement can be measured on a scene of `objects` objects, and met by some number.
     fn check(&self, objects: usize, hides: bool) -> Result<(), String> {
         match (self.at_least, self.at_most) {
             (None, None) => return Err("a requirement has no bound; expected at_least or at_most".to_owned()),

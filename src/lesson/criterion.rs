@@ -12,14 +12,14 @@ pub struct Measured {
     pub wanted: String,
     /// The present value, with its unit.
     pub found: String,
-    /// Whether it holds.
+    /// Whether the requirement holds.
     pub holds: bool,
 }
 
 impl Challenge {
     /// Measures every requirement on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
     /// # Errors
-    /// A sentence when something can't be measured: an object is gone, the method refuses.
+    /// A sentence for a value that can't be measured: an object is gone, the method refuses.
     pub fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Vec<Measured>, String> {
         self.requirements.iter().map(|r| r.measure(stage, hidden)).collect()
     }

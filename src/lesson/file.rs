@@ -18,7 +18,7 @@ pub const FORMAT: u32 = 1;
 /// Largest lesson file that is read, bytes: sixty times the longest shipped one.
 pub const MAX_LESSON_BYTES: u64 = 1 << 20;
 
-/// A lesson: a few steps, each a text, a scene, a prediction and something to change.
+/// A lesson: a few steps, each with a text, a scene, a prediction and a task.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lesson {
@@ -127,7 +127,7 @@ impl Lesson {
 }
 
 impl Step {
-    /// The scene the learner sees, or places things into.
+    /// The scene that the learner sees, or places objects into.
     pub fn scene(&self) -> Scene {
         let preset = self.preset.as_deref().and_then(Preset::by_id).and_then(|p| p.load().ok());
         preset.map_or_else(|| Scene { objects: self.objects.clone(), ..Scene::default() }, |file| file.scene)

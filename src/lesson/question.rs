@@ -7,7 +7,7 @@ use super::stage::{Cell, MapName, Stage};
 use crate::evaluate::{TARGET_ETA, detection_rates, eta_text};
 use serde::Deserialize;
 
-/// A question with what is said of a right and of a wrong answer.
+/// A question with the replies to a right and to a wrong answer.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Question {
@@ -26,7 +26,7 @@ pub struct Question {
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[allow(missing_docs)] // Names and messages say it.
 pub enum Answer {
-    /// By clicking where a peak will be in a map.
+    /// A click at the place of a peak in a map.
     Click {
         map: MapName,
         /// The object whose blob is meant; without one, the brightest cell of the map.
@@ -43,7 +43,7 @@ pub enum Answer {
         object: Option<ObjectNumber>,
         /// Its unit, beside the field.
         unit: String,
-        /// Percent a right guess may be off.
+        /// Most percent that a right guess may be off.
         within_percent: f64,
     },
     Choice {
@@ -52,7 +52,7 @@ pub enum Answer {
         /// The right one, from 1.
         right: usize,
     },
-    /// By setting a threshold that keeps objects and lets few other cells through.
+    /// A threshold that keeps objects and lets few other cells through.
     Threshold {
         map: MapName,
         /// Objects whose blobs must exceed it.
@@ -171,7 +171,7 @@ impl Question {
 
     /// Judges `guess`.
     /// # Errors
-    /// A sentence when the truth can't be had, or the guess is of another kind than the question.
+    /// A sentence when the truth can't be computed, or the guess is of another kind than the question.
     pub fn judge(&self, stage: &Stage, guess: Guess) -> Result<Judgement, String> {
         let truth = self.truth(stage)?;
         let (is_right, distance) = match (&self.answer, guess, truth) {

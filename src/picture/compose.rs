@@ -1,4 +1,4 @@
-//! From a signal to a picture's bytes: maps, reconstruction, panels.
+//! The bytes of a picture from a signal: maps, reconstruction, panels.
 
 use super::inputs::{HeardByLayout, InputMap};
 use super::{ColourMap, DetectedCells, Panels, PictureError, encode_png, render, render_svg};
@@ -22,7 +22,7 @@ pub enum PictureFormat {
 }
 
 impl PictureFormat {
-    /// The kind that a file's name says, if it is one of these.
+    /// The format by the ending of a file's name, if it is one of these.
     pub fn of_path(path: &Path) -> Option<PictureFormat> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "png" => Some(PictureFormat::Png),

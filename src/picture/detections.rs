@@ -23,7 +23,7 @@ impl CellVerdict {
     /// The visible verdicts, in the order of a legend.
     pub const SEEN: [CellVerdict; 4] = [CellVerdict::Hit, CellVerdict::Rim, CellVerdict::FalseAlarm, CellVerdict::Miss];
 
-    /// Of a cell that the `target` has or not, and the `output`; a rim is a false alarm by itself.
+    /// The verdict on a cell, by whether the `target` and the `output` exceed their thresholds there; a rim counts as a false alarm.
     pub fn of(target: bool, output: bool) -> CellVerdict {
         match (target, output) {
             (true, true) => CellVerdict::Hit,
@@ -49,7 +49,7 @@ impl CellVerdict {
     pub fn fill(self, dark: bool) -> Rgb {
         match (self, dark) {
             (CellVerdict::Nothing, true) => [18, 22, 30],
-            // As the line around hits, so that both are one quiet band.
+            // The fill of a rim is the line around hits, so that both are one quiet band.
             (CellVerdict::Rim, _) => CellVerdict::Hit.outline(dark),
             (CellVerdict::Miss, true) => [40, 92, 176],
             (CellVerdict::FalseAlarm, true) => [232, 152, 40],

@@ -35,7 +35,7 @@ pub(super) struct HeardByLayout {
 }
 
 impl HeardByLayout {
-    /// Of the samples of every element; `signal` is `None` where the two ends alone were recorded.
+    /// The samples and the map of `layout`, from the samples of every element; `signal` is `None` where the two ends alone were recorded.
     /// # Errors
     /// [`ComposeError`] where `radar` has no such elements, or their samples are missing.
     pub(super) fn of(

@@ -7,7 +7,7 @@
 use super::Radar;
 use ndarray::{Array2, ArrayView2, Axis};
 
-/// A map of so many columns is fine enough for the eye, and half a column counts for nothing.
+/// Number of columns from which a map is fine enough for the eye, and half a column is neglected.
 pub const FEW_COLUMNS: usize = 128;
 
 impl Radar {
@@ -35,7 +35,7 @@ impl Radar {
         from_first * self.elements as f64 - self.middle_of_first_column()
     }
 
-    /// The same among the columns of [`Radar::left_to_right`].
+    /// [`Radar::column_across`] among the columns of [`Radar::left_to_right`].
     pub fn drawn_column_across(&self, across: f64) -> f64 {
         let column = self.column_across(across);
         if self.columns_fall() { self.elements as f64 - 1.0 - column } else { column }

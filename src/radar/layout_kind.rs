@@ -21,7 +21,7 @@ pub enum LayoutKind {
     Nested { neighbours: usize, apart: usize },
     /// `many` elements `step` apart, and twice `step` elements `many` apart (Vaidyanathan and Pal 2011).
     Coprime { step: usize, many: usize },
-    /// Every so many-th element.
+    /// Every `step`-th element.
     Thinned { step: usize },
     /// Elements at random places of the whole aperture.
     Random { elements: usize, seed: u64 },
@@ -47,7 +47,7 @@ impl LayoutKind {
     /// # Errors
     /// [`LayoutError`] for elements that `radar` has not.
     pub fn layout(&self, radar: &Radar) -> Result<Layout, LayoutError> {
-        // One element too many is enough to be refused.
+        // One element too many is enough for an error.
         let steps = |count: usize, step: usize| (0..count.min(radar.elements + 1)).map(move |k| k.saturating_mul(step));
         let numbers: Vec<usize> = match self {
             LayoutKind::Full => return Ok(Layout::uniform(radar)),
@@ -106,7 +106,7 @@ pub fn ranges(numbers: &[usize]) -> String {
     runs.map(text).collect::<Vec<_>>().join(" ")
 }
 
-/// The numbers that [`ranges`] writes; commas may stand between them too.
+/// The numbers in a text of [`ranges`]; commas may stand between them too.
 fn listed(text: &str) -> Option<Vec<usize>> {
     let mut numbers = Vec::new();
     for run in text.split([' ', ',']).filter(|run| !run.is_empty()) {

@@ -1,6 +1,6 @@
 //! The radar: every constant of the thesis' table 3.1 as one validated value.
 //!
-//! Nothing else in the crate knows a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
+//! No other code in the crate has a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
 
 mod across;
 mod antennas;
@@ -41,7 +41,7 @@ use std::ops::Range;
 /// Speed of light in vacuum, metres per second.
 pub const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
-/// Duration of a chirp where none is said, seconds: 512 samples at 20 MHz.
+/// Duration of a chirp where a text gives none, seconds: 512 samples at 20 MHz.
 pub const CHIRP_SECONDS: f64 = 25.6e-6;
 
 /// Most chirps that a radar may send one after another.
@@ -119,7 +119,7 @@ pub struct Radar {
     pub focus_off_line: bool,
     /// Chirps that are sent one after another: 1 as in the thesis. A map of ranges and directions is made of the first.
     pub chirps: usize,
-    /// From the beginning of a chirp to that of the next, seconds: at least [`Radar::chirp_seconds`] where there are several.
+    /// Time from the beginning of a chirp to that of the next, seconds: at least [`Radar::chirp_seconds`] where there are several.
     pub chirp_interval_seconds: f64,
     /// Figures of the radar equation ([`budget`]); `None` in the thesis' convention, where levels are those of samples and elements are isotropic.
     pub budget: Option<LinkBudget>,

@@ -3,7 +3,7 @@
 use super::{AntennasError, CHIRP_SECONDS, Carrier, Radar, SPEED_OF_LIGHT, WindowFunction};
 use std::sync::LazyLock;
 
-/// A radar ready to look with.
+/// A radar that comes with the program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RadarPreset {
     /// Short name.

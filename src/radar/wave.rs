@@ -12,7 +12,7 @@ impl Radar {
         self.carrier.turns_per_wavelength() / self.wavelength_metres()
     }
 
-    /// The same in radians.
+    /// Radians of the carrier's phase for each metre of range, signed.
     pub fn carrier_radians_per_metre(&self) -> f64 {
         TAU * self.carrier.turns_per_wavelength() / self.wavelength_metres()
     }
@@ -32,7 +32,7 @@ impl Radar {
         (self.samples as f64 - 1.0) / 2.0
     }
 
-    /// Turns of an echo's phase in the middle of the chirp for each metre of range, signed: what decides the column of a blob.
+    /// Turns of an echo's phase in the middle of the chirp for each metre of range, signed: they decide the column of a blob.
     pub fn middle_turns_per_metre(&self) -> f64 {
         self.turns_per_metre(self.middle_sample())
     }

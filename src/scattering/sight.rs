@@ -15,7 +15,7 @@ use crate::scene::{Object, Shape};
 pub(super) struct Array {
     /// Corners of the rectangle around all antennas, metres.
     corners: [V; 4],
-    /// Half a detour over which everything has faded, metres.
+    /// Half a detour over which every effect has faded, metres.
     faded: f64,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct Screen {
     corners: Vec<V>,
     /// Radius of a post around its corner, metres; 0 for other bodies.
     radius: f64,
-    /// Greatest distance of any of it from an antenna, metres.
+    /// Greatest distance of any of its points from an antenna, metres.
     farthest: f64,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Ways {
     hull: Vec<V>,
     /// Radius of a post around its corner, metres; 0 for other objects.
     radius: f64,
-    /// The longest way, and on in the mirror of a face, metres.
+    /// Length of the longest way, with its way on in the mirror of a face, metres.
     longest: f64,
     faded: f64,
 }
@@ -59,7 +59,7 @@ impl Array {
         self.corners.into_iter().flat_map(far).fold(0.0, f64::max)
     }
 
-    /// A body, as what may hide something.
+    /// A body as an obstacle.
     pub fn screen(&self, shape: &Shape) -> Screen {
         let (corners, radius) = corners_of(shape);
         let corners = hull(corners);
@@ -102,12 +102,12 @@ impl Screen {
 }
 
 impl Ways {
-    /// The convex hull of all ways, counter-clockwise, but for what a post's radius adds.
+    /// The convex hull of all ways, counter-clockwise, without a post's radius.
     pub fn hull(&self) -> &[V] {
         &self.hull
     }
 
-    /// From this distance on, metres, nothing beside the hull has an effect on a way.
+    /// Distance from the hull, metres, beyond which no body has an effect on a way.
     pub fn widest(&self) -> f64 {
         self.margin(f64::INFINITY) + self.radius
     }

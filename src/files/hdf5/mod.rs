@@ -4,7 +4,7 @@
 //! Features of newer writers (version 4 of chunks, dense groups, other filters) are refused by name. A file is read by seeking, and no
 //! memory is asked for before the size was compared with the file's or with the bound.
 //!
-//! `source` reads bytes, `object` headers of objects, `data` numbers, each of a kind of `number`.
+//! `source` reads bytes, `object` headers of objects, `data` numbers; `number` has the types of numbers.
 
 mod data;
 mod number;
@@ -115,7 +115,7 @@ impl<R: Read + Seek> Hdf5<R> {
             let mut object = self.source.object(address)?;
             let named = |child: &str| if name.is_empty() { child.to_owned() } else { format!("{name}.{child}") };
             if depth < MOST_DEPTH {
-                // MATLAB keeps what cells hold in a group of its own.
+                // MATLAB keeps the contents of cells in a group of its own.
                 let children = std::mem::take(&mut object.children);
                 let told = children.into_iter().filter(|(child, _)| child != "#refs#" && child != "#subsystem#");
                 waiting.extend(told.map(|(child, address)| (named(&child), address, depth + 1)));
@@ -129,7 +129,7 @@ impl<R: Read + Seek> Hdf5<R> {
     }
 }
 
-/// Reads the superblock at `place`: where addresses count from and how long they are. The address of the root group.
+/// Reads the superblock at `place`: the base of addresses, and the sizes of addresses and lengths. Returns the address of the root group.
 fn superblock<R: Read + Seek>(source: &mut Hdf5Bytes<R>, place: u64) -> Result<u64, Hdf5Error> {
     let block = source.read(place, 128.min(source.bytes - place))?;
     let mut part = HeaderBytes::new(&block[8..]);

@@ -11,7 +11,7 @@ pub(super) struct NumberKind {
 }
 
 impl NumberKind {
-    /// Its value; `bytes` are as many as it has.
+    /// The number in `bytes`, of as many bytes as the type has.
     pub fn value(&self, bytes: &[u8]) -> f64 {
         let word = match self.is_big {
             false => bytes.iter().rev().fold(0u64, |n, b| n << 8 | u64::from(*b)),
@@ -46,7 +46,7 @@ pub fn half_value(word: u16) -> f64 {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Member {
     One(NumberKind),
-    /// A compound of two: real and imaginary part, where they stand in it.
+    /// A compound of two: the offsets and types of real and imaginary part.
     Two {
         bytes: usize,
         parts: [(usize, NumberKind); 2],

@@ -1,4 +1,4 @@
-//! The formulas against vectors, quadrature and series, and what must hold of them for any scene.
+//! The formulas against vectors, quadrature and series, and laws that hold for any scene.
 
 mod hiding;
 mod laws;
