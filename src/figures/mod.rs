@@ -1,7 +1,7 @@
 //! Every figure of the thesis, drawn from this program's data.
 //!
-//! A figure is a function from a [`SceneSource`] of simulated data to a [`Sheet`](sheet::Sheet) of panels; [`draw`] makes files of sheets,
-//! [`pages`] the page that shows them beside one another. [`ALL`] lists them with what each shows and what differs from the printed one.
+//! A figure is a function from a [`SceneSource`] of simulated data to a [`Sheet`](sheet::Sheet) of panels; [`draw`] makes files of sheets, [`pages`]
+//! the page of all figures. [`ALL`] lists the figures with their subjects and their differences from the printed ones.
 
 mod canvas;
 mod diagrams;

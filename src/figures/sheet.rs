@@ -34,7 +34,7 @@ pub enum PanelContent {
 pub struct SheetAxis {
     /// Quantity and unit.
     pub label: &'static str,
-    /// From and to, in that unit; from may be the larger.
+    /// The ends of the axis in that unit; the first may be the larger.
     pub span: Range<f64>,
 }
 
@@ -150,7 +150,7 @@ impl Series {
         Series { name, stroke: Stroke::Solid, points: points.into_iter().collect() }
     }
 
-    /// The same points drawn otherwise.
+    /// The series with another stroke.
     pub fn with(self, stroke: Stroke) -> Self {
         Series { stroke, ..self }
     }

@@ -56,7 +56,7 @@ pub struct LambdaScale {
 }
 
 impl LambdaScale {
-    /// The scale for a map whose cells lie between `min` and `max` decades. A map that is flat has no range: nothing in it is a peak.
+    /// The scale for a map whose cells lie between `min` and `max` decades. A flat map has no range, and no cell of it is a peak.
     pub fn new(min: f64, max: f64, normalisation: Normalisation) -> Self {
         let floor = match normalisation {
             Normalisation::MinMax => min,

@@ -143,7 +143,7 @@ impl ComplexMap {
     /// `log10(|Y| + guard)` of every cell, the [`guard`] that of the largest.
     pub fn log_magnitude(&self) -> LogMap {
         let largest = self.cells.iter().map(Complex64::norm_sqr).filter(|v| v.is_finite()).fold(0.0, f64::max);
-        // Squares of what is smaller than 1e-160 are zero.
+        // Squares of magnitudes below 1e-160 are zero.
         let guard = if largest > 0.0 { guard(largest.sqrt()) } else { LOG_GUARD };
         LogMap::new(Zip::from(&self.cells).par_map_collect(|v| (v.norm() + guard).log10()))
     }

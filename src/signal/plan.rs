@@ -61,7 +61,7 @@ impl Plan {
         }
     }
 
-    /// This plan for range profiles of `count` reflectors without a floor: the closed form where few cells exceed the tolerance.
+    /// The plan for range profiles of `count` reflectors without a floor: the closed form where few cells exceed the tolerance.
     pub fn on_few_rows(self, radar: &Radar, count: usize) -> Plan {
         let cells = count.saturating_mul(2 * closed_form::reach(self.tolerance));
         let holds = self.precision == Precision::F64 || count <= most_in_f32(Algorithm::ClosedForm);
@@ -72,7 +72,7 @@ impl Plan {
         }
     }
 
-    /// This plan with another algorithm.
+    /// The plan with another algorithm.
     pub fn with_algorithm(self, algorithm: Algorithm) -> Plan {
         Plan { algorithm, ..self }
     }

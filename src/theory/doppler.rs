@@ -32,7 +32,7 @@ impl DopplerBlob {
         }
     }
 
-    /// Whether the map shows another velocity than it has.
+    /// Whether the map shows another velocity than the object's.
     pub fn is_folded(&self) -> bool {
         (self.velocity_metres_per_second - self.apparent_velocity_metres_per_second).abs()
             > 1e-9 * self.velocity_metres_per_second.abs()

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A method that is slower than what may be drawn as fresh.
+/// A method that takes longer than an old picture may be drawn as fresh.
 struct Slow;
 
 impl Reconstructor for Slow {
@@ -77,7 +77,7 @@ fn action() -> impl Strategy<Value = Command> {
     ]
 }
 
-/// Longer than what is old may be drawn as fresh, and a few frames.
+/// Longer than an old picture may be drawn as fresh, and a few frames.
 const GRACE: Duration = Duration::from_millis(600);
 
 proptest! {

@@ -35,7 +35,7 @@ fn name(row: &Row) -> String {
     format!("set {}, scene {}, {}", row.set, row.index, row.method)
 }
 
-/// The rows in sight, from top to bottom, as they are called.
+/// Names of the rows in sight, from top to bottom.
 fn listed(s: &Session) -> Vec<String> {
     let mut rows: Vec<(f32, String)> = s
         .state()

@@ -95,7 +95,7 @@ fn the_noise_belongs_to_the_scene() {
     assert_eq!((s.state().editor().scene().noise_seed, on_screen(&s)), (0, before));
 }
 
-/// Counts how often it is asked.
+/// A method that counts its calls.
 struct Counted(Arc<AtomicU32>);
 
 impl Reconstructor for Counted {

@@ -15,7 +15,7 @@ use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The point that is to be seen on the left.
+/// The point that must be seen on the left.
 const POINT: [f64; 2] = [-8.0, 12.0];
 
 const KINDS: [MapKind; 6] =

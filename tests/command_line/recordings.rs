@@ -1,4 +1,4 @@
-//! Recordings on the command line: maps, pictures, reconstructions, and what is refused.
+//! Recordings on the command line: maps, pictures, reconstructions, and refusals.
 
 use super::cli::{apertura, folder};
 use apertura::files::npz::{Npz, write_npz};

@@ -1,4 +1,4 @@
-//! Raw captures, written by the physics of a stretch receiver: each opened as it is, its echo stands where it was put.
+//! Raw captures, written by the physics of a stretch receiver: each is opened as it is, and its echo stands at the true place.
 
 use apertura::reconstruct::found::reconstruct_and_find;
 use apertura::reconstruct::{NoisePrior, Request};

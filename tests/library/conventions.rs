@@ -12,7 +12,7 @@ fn maps_of(radar: &Radar, scene: &Scene) -> LogMaps {
     LogMaps::of_signal(radar, &simulate(radar, scene, Floor::Exact, 0).unwrap())
 }
 
-/// [range bin, column] of the largest cell.
+/// `[range bin, column]` of the largest cell.
 fn peak(map: &LogMap) -> [usize; 2] {
     let (index, _) = map.decades().indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
     [index.0, index.1]

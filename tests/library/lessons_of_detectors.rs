@@ -10,7 +10,7 @@ fn detected(step: usize, cfar: Option<&str>) -> (Mask, RangeAngleMap) {
     detected_in_noise(step, cfar, 0)
 }
 
-/// The same, in the noise of another seed.
+/// [`detected`] in the noise of another seed.
 fn detected_in_noise(step: usize, cfar: Option<&str>, seed: u64) -> (Mask, RangeAngleMap) {
     let step = &lesson("a-threshold-that-follows-the-noise").steps[step - 1];
     let cfar = cfar.map_or_else(|| step.view.cfar.unwrap(), |text| text.parse().unwrap());

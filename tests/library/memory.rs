@@ -62,7 +62,7 @@ fn child() {
     }
 }
 
-/// Bytes that `work` for `radar` held at most; `None` where the system tells no peaks.
+/// Most bytes that `work` for `radar` held; `None` where the system reports no peaks.
 fn held(work: &str, radar: &Radar) -> Option<u64> {
     let mut child = Command::new(std::env::current_exe().unwrap());
     child.args(["--exact", "memory::child", "--ignored", "--nocapture"]);
@@ -73,7 +73,7 @@ fn held(work: &str, radar: &Radar) -> Option<u64> {
     said.lines().find_map(|l| l.strip_prefix("held ")?.parse().ok())
 }
 
-/// Holds `work` to what is counted, and to `least` bytes: a measurement that sees no memory proves nothing.
+/// Compares the memory of `work` with its bound, and with `least` bytes: a measurement that sees no memory proves nothing.
 fn check(work: &str, radar: &Radar, least: u64) {
     let Some(held) = held(work, radar) else {
         assert_ne!(std::env::consts::OS, "linux", "{work}: the peak was not told");

@@ -74,7 +74,7 @@ fn the_scale_of_the_samples_does_not_change_the_answer() {
     for method in methods::all() {
         let name = method.name();
         let plain = run(&*method, &ends, "two points");
-        // The U-Net is there to show how the thesis' first attempt collapsed to nothing.
+        // The U-Net is there to show the collapse of the thesis' first attempt.
         assert!(name == "unet" || plain.lambda.lambda.iter().any(|v| *v > 0.9), "{name} sees nothing");
         assert_eq!(plain, run(&*method, &ends, "two points again"), "{name} does not repeat");
         // Powers of two keep every bit of the samples, so that the rounding floor beneath them stays the same too.
@@ -146,7 +146,7 @@ fn a_crowded_scene_is_told_from_its_surroundings_in_time() {
     let signal = simulate(&radar(), &crowded, Floor::Thesis, 1).unwrap();
     let target = LogMaps::of_signal(&radar(), &signal).full.normalise(Normalisation::MinMax);
     let ends = signal.two_ends(&radar());
-    // The U-Net is there to show how the thesis' first attempt collapsed to nothing.
+    // The U-Net is there to show the collapse of the thesis' first attempt.
     for method in methods::all().into_iter().filter(|method| method.name() != "unet") {
         let answer = run(&*method, &ends, "a crowded scene");
         let (detection, false_alarm) = detection_rates(&target, &answer.lambda, method.eta_of(&answer));

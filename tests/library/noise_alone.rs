@@ -10,7 +10,7 @@ use apertura::scene::Scene;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
 
-/// A trial of `scene`, and what a method is told of it.
+/// A trial of `scene`, and the request for a method.
 fn trial(scene: &Scene, floor: Floor, normalisation: Normalisation) -> (Trial, Request) {
     let request = Request { noise: floor.into(), normalisation, ..Request::default() };
     (Trial::new(&Radar::default(), scene, floor, normalisation).unwrap(), request)

@@ -1,4 +1,4 @@
-//! Transmitters and receivers on a bumper that is bent: samples held to sums of their own, focused maps, methods, and mirrored captures.
+//! Transmitters and receivers on a bent bumper: samples compared with sums of their own, focused maps, methods, and mirrored captures.
 
 use super::pairs::with_gaps;
 use apertura::engine::{Engine, MapRequest};
@@ -25,7 +25,7 @@ pub fn straight(transmitters: usize, receivers: usize) -> Radar {
     usual.of_pairs(transmitters, receivers).unwrap()
 }
 
-/// The same on a bumper whose ends stand back by `back_metres`: each antenna stands on one parabola.
+/// The radar on a bumper whose ends stand back by `back_metres`: each antenna stands on one parabola.
 fn bent(radar: &Radar, back_metres: f64) -> Radar {
     let antennas = radar.antennas.clone().unwrap();
     let [low, high] = antennas.span_metres();

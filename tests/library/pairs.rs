@@ -1,4 +1,4 @@
-//! Transmitters apart from receivers, held to sums of their own: samples, maps, bounds, recordings, methods.
+//! Transmitters apart from receivers, compared with sums of their own: samples, maps, bounds, recordings, methods.
 
 use super::off_line::{largest_difference, sample, straight as small};
 use apertura::bounds::cramer_rao;

@@ -22,8 +22,8 @@ const TRANSMITTERS: usize = 4;
 const PLACES: [(f64, f64); 3] = [(6.0, -0.4), (9.0, 0.1), (12.0, 0.7)];
 /// Largest error of a direction that iaa finds in a monostatic capture, degrees.
 const DEGREES: f64 = 0.1;
-/// The same where transmitter and receiver of an element stand apart. No reading knows that the path to a pair `a` apart is longer by
-/// `a² sin²θ / 4R`; it differs from pair to pair, and at 6 m it turns the two ends against each other.
+/// `DEGREES` where transmitter and receiver of an element stand apart. No reading knows that the path to a pair `a` apart is longer by `a² sin²θ /
+/// 4R`; it differs from pair to pair, and at 6 m it turns the two ends against each other.
 const DEGREES_OF_PAIRS: f64 = 0.6;
 /// Largest error of the map's peak between two columns, columns.
 const COLUMNS: f64 = 0.25;

@@ -6,7 +6,7 @@ use apertura::radar::Radar;
 use apertura::scene::{Object, presets};
 use apertura::signal::{Floor, simulate};
 
-/// A dip of this much of Lambda parts two blobs.
+/// Least dip of Lambda between two blobs that count as two.
 const PARTS: f32 = 0.05;
 
 /// Number of blobs of post and wall in either input and in the target, with the post on its ring at an angle from straight ahead.

@@ -64,7 +64,7 @@ impl Monkey {
         self.witness.look(self.s.state());
     }
 
-    /// Answers what would lead out of the monkey's folder, starts programs, or grows without bound.
+    /// Answers dialogs that would lead out of the monkey's folder, start programs, or grow without bound.
     fn stay_at_home(&mut self) {
         let app = &mut self.s.app;
         if app.query_by_label_contains("can't hold all of this scene").is_some() {
@@ -104,7 +104,7 @@ impl Monkey {
         witness::files_are_whole(self.s.folder.path(), self.s.state());
     }
 
-    /// Kills the window and starts another: what is on disk at this moment is all that it finds.
+    /// Kills the window and starts another, which finds the files on disk at this moment alone.
     fn kill(&mut self) {
         self.kills += 1;
         if self.rng.random_bool(0.5) {

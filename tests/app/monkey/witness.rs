@@ -44,7 +44,7 @@ fn unsaved(app: &App) -> Moment {
 }
 
 impl Witness {
-    /// Takes note of the window after a step.
+    /// Records the window's unsaved documents after a step.
     pub fn look(&mut self, app: &App) {
         let now = unsaved(app);
         if app.is_kept() {
@@ -70,7 +70,7 @@ impl Witness {
     }
 }
 
-/// Every file is a whole scene, and that of the document on screen holds what is on screen, if it is said to be saved.
+/// Asserts that every file is a whole scene, and that a saved document's file holds the scene on screen.
 pub fn files_are_whole(folder: &Path, app: &App) {
     for name in FILES {
         Document::read(&folder.join(name)).unwrap_or_else(|error| panic!("{error}"));

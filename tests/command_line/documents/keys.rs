@@ -39,7 +39,7 @@ fn keys(sentence: &str, is_of_the_window: bool) -> Vec<String> {
     found
 }
 
-/// Whether the sentence speaks of what the command does: a word of its name or tooltip begins like one of the sentence.
+/// Whether the sentence is about the command: a word of its name or tooltip begins like one of the sentence.
 fn speaks_of(sentence: &str, entry: &Entry) -> bool {
     let about = format!("{} {}", entry.name, entry.tooltip).to_lowercase();
     let words = about.split(|c: char| !c.is_alphanumeric()).filter(|w| w.chars().count() >= 4);

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// A module's path, without `crate`; empty for the root.
 type Module = Vec<String>;
 
-/// Names are followed through so many others; `use a::a` would lead round for ever.
+/// Most names that a path is followed through; `use a::a` would lead round for ever.
 const MAX_IMPORT_DEPTH: usize = 8;
 
 /// One file of `src`.
@@ -73,7 +73,7 @@ impl House {
         }
         rooms.remove("lib");
         rooms.remove("main");
-        // Programs of their own, as `main` is that of the desktop: the page, and what writes man pages.
+        // The page, and the program that writes man pages, are programs of their own, as `main` is that of the desktop.
         rooms.remove("page");
         rooms.remove("manual");
         rooms.remove("console");

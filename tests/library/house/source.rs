@@ -14,7 +14,7 @@ pub type Path = Vec<String>;
 pub struct Use {
     /// Path of the name's origin.
     pub path: Path,
-    /// The name it is known by here; "*" for a glob.
+    /// The name in this file; "*" for a glob.
     pub name: String,
     /// Whether other files may import it from here.
     pub public: bool,
@@ -53,7 +53,7 @@ impl Source {
         self.functions.push((signature.ident.to_string(), lines));
     }
 
-    /// Walks a tree of imports.
+    /// Adds the imports of a `use` tree.
     fn add_uses(&mut self, tree: &UseTree, before: &[String], public: bool) {
         let joined = |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect::<Path>();
         let whole = |name: &syn::Ident| if name == "self" { before.to_vec() } else { joined(name) };
