@@ -19,7 +19,7 @@ pub fn named<T: FromStr<Err: Display>>(name: &str) -> PyResult<T> {
     name.parse().map_err(value)
 }
 
-/// Something that should not happen.
+/// A RuntimeError: a fault of the library itself.
 pub fn runtime(error: impl Display) -> PyErr {
     PyRuntimeError::new_err(error.to_string())
 }

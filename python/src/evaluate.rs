@@ -259,7 +259,7 @@ fn kept(error: KeptError) -> PyErr {
     }
 }
 
-/// Rows that are asked for and can't be.
+/// Refuses rows that are asked for and that the run doesn't have.
 fn check_only(
     only: Option<&HashSet<Key>>,
     sets: &[SceneSet],

@@ -13,7 +13,7 @@ use std::sync::{Mutex, PoisonError};
 /// Longest name, characters.
 const MAX_NAME: usize = 40;
 
-/// Lambda outside of these is taken for something else.
+/// Range of values outside which a map can't be Lambda.
 const LAMBDA: [f64; 2] = [-1.0, 2.0];
 
 /// A Python function that makes maps of the samples of two ends.
@@ -119,7 +119,7 @@ impl Function {
     }
 }
 
-/// Whether a method may be called so.
+/// Whether `name` is a valid name of a method.
 pub fn is_name(name: &str) -> bool {
     (1..=MAX_NAME).contains(&name.len()) && name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c))
 }
