@@ -1,4 +1,4 @@
-//! Every reconstruction method by name: the one list behind the command line, the tables and the app.
+//! Every reconstruction method by name: the list behind the command line, the tables and the app.
 
 use crate::radar::Radar;
 use crate::reconstruct::search::Nomp;
@@ -10,14 +10,14 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 static ADDED: RwLock<Vec<Arc<dyn Reconstructor>>> = RwLock::new(Vec::new());
 
-/// Every method this build knows and every added one, in the order they are shown.
+/// Every method of this build and every added one, in the order of menus and tables.
 pub fn all() -> Vec<Arc<dyn Reconstructor>> {
     let mut methods = shipped();
     methods.extend(ADDED.read().unwrap_or_else(PoisonError::into_inner).iter().cloned());
     methods
 }
 
-/// Adds a method to [`all`], in place of one that was added under this name before.
+/// Adds a method to [`all`], in place of an added one of the same name.
 /// # Errors
 /// [`NameTaken`] where a method of this build has the name.
 pub fn add(method: Arc<dyn Reconstructor>) -> Result<(), NameTaken> {
@@ -31,9 +31,9 @@ pub fn add(method: Arc<dyn Reconstructor>) -> Result<(), NameTaken> {
     Ok(())
 }
 
-/// Adds the live network with the weights of the file at `path` to [`all`], under a name of its own.
+/// Adds the live network with the weights of the file at `path` to [`all`], under a name made of the file's.
 /// # Errors
-/// A sentence with the file: it can't be read, is damaged or another network's, or its name is another method's.
+/// A sentence that names the file: it can't be read, is damaged or another network's, or its name is another method's.
 #[cfg(feature = "live")]
 pub fn add_weights(path: &std::path::Path) -> Result<Arc<dyn Reconstructor>, String> {
     let name = crate::network::name_of_weights(path);
@@ -96,7 +96,7 @@ pub fn preferred_for(radar: &Radar) -> Arc<dyn Reconstructor> {
     by_name("iaa").unwrap_or_else(|_| Arc::new(MatchedFilter::Incoherent))
 }
 
-/// The method whose output is shown of what the elements of `layout` hear by default.
+/// The method whose output is shown by default for samples of the elements of `layout`.
 pub fn preferred_hearing(radar: &Radar, layout: &[usize]) -> Arc<dyn Reconstructor> {
     let iaa: Arc<dyn Reconstructor> = Arc::new(IAA);
     let hears = iaa.check_elements(radar, layout).is_ok();

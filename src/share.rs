@@ -1,7 +1,7 @@
-//! What is on screen as one line of text that can be pasted anywhere and opened by another copy of the program.
+//! Sharing of a scene with radar and view as one line of text, which can be pasted anywhere and opened by another copy of the program.
 //!
-//! `apertura:1:` and then, in the alphabet of URLs (RFC 4648, section 5), a zlib stream of TOML: a scene file with a table `[shared]` after
-//! it. The stream's checksum tells a line that lost a letter. Line breaks within it, as mails put there, don't matter.
+//! The text is `apertura:1:` and a zlib stream of TOML in the alphabet of URLs (RFC 4648, section 5). The TOML is a scene file followed by a table `[shared]`.
+//! The stream's checksum reveals a line that lost a letter. Line breaks within it, as in mails, don't matter.
 
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
@@ -19,33 +19,33 @@ use flate2::write::ZlibEncoder;
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Write};
 
-/// What every such text begins with.
+/// The beginning of every shared text.
 pub const PREFIX: &str = "apertura:";
-/// The version this program writes and reads.
+/// The version that this program writes and reads.
 pub const VERSION: &str = "1";
-/// Most bytes of TOML within: a scene of some fifty thousand objects.
+/// Largest TOML within a text, bytes: a scene of some fifty thousand objects.
 pub const MAX_TOML_BYTES: usize = 4 << 20;
-/// Most letters that are looked at: TOML that can't be packed at all.
+/// Longest text that is read, letters: the largest TOML without any compression.
 pub const MAX_LINK_LETTERS: usize = 6 << 20;
 const KEY: &str = "shared";
 const MIN_EXTENT_PART: f32 = 0.005;
 
-/// A scene, its radar, and how they are looked at.
+/// A scene with its radar and its view.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SharedScene {
     /// The scene and the radar.
     pub file: SceneFile,
-    /// How they are looked at.
+    /// View of the scene.
     pub view: SharedView,
 }
 
-/// How a scene is looked at.
+/// View of a shared scene: conditions, method and visible parts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SharedView {
-    /// What lies beneath the reflectors.
+    /// The floor beneath the reflectors.
     pub floor: Floor,
-    /// How maps are normalised.
+    /// Normalisation of the maps.
     pub normalisation: Normalisation,
     /// Colours of the maps.
     pub colours: ColourMap,
@@ -57,7 +57,7 @@ pub struct SharedView {
     pub cartesian_part: VisiblePart,
     /// eta', the threshold of the target.
     pub target_eta: f32,
-    /// The detector in the place of the thresholds, if one is in use.
+    /// The detector in place of the thresholds, if one is in use.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cfar: Option<Cfar>,
     /// eta of the method, where it isn't the method's own.
@@ -65,12 +65,12 @@ pub struct SharedView {
     pub eta: Option<f32>,
     /// Name of the reconstruction method.
     pub method: String,
-    /// The elements that methods hear; `None` for the two ends.
+    /// The elements that methods use; `None` for the two ends.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<LayoutKind>,
-    /// Whether true reflectors are marked.
+    /// Whether the true reflectors are drawn over the maps.
     pub marks: bool,
-    /// Whether what the formulas say is drawn over the maps.
+    /// Whether the theory of the selected reflector is drawn over the maps.
     pub theory: bool,
     /// The step of a lesson that comes with the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -107,7 +107,7 @@ pub struct LessonPlace {
     pub step: usize,
 }
 
-/// Why a text can't be opened, or something not be written as one.
+/// The reason why a text can't be opened, or a scene not be written as text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ShareError {
@@ -126,20 +126,20 @@ pub enum ShareError {
     /// The scene can't be simulated.
     #[error("the text's {0}")]
     Unusable(#[from] SceneError),
-    /// Something it says of the view can't be.
+    /// A value of the view is invalid.
     #[error("the text's {field} {problem}")]
     View { field: &'static str, problem: String },
     #[error("the scene can't be written as text: {0}")]
     Unwritable(String),
 }
 
-/// Whether a text means to be one of these.
+/// Whether a text begins as a shared one.
 pub fn is_shared(text: &str) -> bool {
     text.trim_start().starts_with(PREFIX)
 }
 
 impl SharedScene {
-    /// The text.
+    /// The scene as text.
     /// # Errors
     /// [`ShareError::Large`] and [`ShareError::Unwritable`] for a scene with more than fits, or a number that TOML can't hold.
     pub fn to_text(&self) -> Result<String, ShareError> {
@@ -156,7 +156,7 @@ impl SharedScene {
 
     /// Reads a text, in bounded memory.
     /// # Errors
-    /// [`ShareError`] says what is wrong and what was expected.
+    /// [`ShareError`] with the error and the expected text.
     pub fn from_text(text: &str) -> Result<SharedScene, ShareError> {
         if text.len() > MAX_LINK_LETTERS {
             return Err(ShareError::Large);
@@ -180,7 +180,7 @@ impl SharedScene {
     }
 }
 
-/// What a zlib stream holds, at most [`MAX_TOML_BYTES`] of it.
+/// The text of a zlib stream; an error beyond [`MAX_TOML_BYTES`].
 fn unpack(packed: &[u8]) -> Result<String, ShareError> {
     let damaged = |e: std::io::Error| ShareError::Damaged(e.to_string());
     let mut stream = ZlibDecoder::new(packed);
@@ -196,7 +196,7 @@ fn unpack(packed: &[u8]) -> Result<String, ShareError> {
 }
 
 impl SharedView {
-    /// What a text tells of a view: its colours, conditions and method, the visible parts of maps over either coordinates, and a lesson.
+    /// The shared part of a view: colours, conditions and method, the visible parts of maps over either coordinates, and a lesson.
     pub fn of(view: &View, parts: [VisiblePart; 2], lesson: Option<LessonPlace>) -> SharedView {
         let View { floor, normalisation, colours, projection, target_eta, cfar, .. } = *view;
         let [range_angle_part, cartesian_part] = parts;
@@ -218,7 +218,7 @@ impl SharedView {
         }
     }
 
-    /// Puts what the text tells into a view; the rest of it stays.
+    /// Sets the shared values in a view; the others stay.
     pub fn show_in(self, view: &mut View) {
         view.set_method_eta(&self.method, self.eta);
         view.detect_by(self.cfar);
@@ -228,10 +228,10 @@ impl SharedView {
         (view.method, view.layout) = (self.method, self.layout);
     }
 
-    /// Holds what comes from outside to what the app can show.
+    /// Checks values from outside against the ranges that the app can show.
     fn check(&self) -> Result<(), ShareError> {
         let wrong = |field, problem: String| Err(ShareError::View { field, problem });
-        // Both read their own names with the bounds of what they can be.
+        // Both types check their bounds when they read their own names.
         if let Err(error) = self.floor.to_string().parse::<Floor>() {
             return wrong("floor", format!("can't be: {error}"));
         }
@@ -291,7 +291,7 @@ mod tests {
         }
     }
 
-    /// A text around any bytes that claim to be TOML.
+    /// A text around any bytes in place of TOML.
     fn pack(toml: &[u8]) -> String {
         let mut packed = ZlibEncoder::new(Vec::new(), Compression::best());
         packed.write_all(toml).unwrap();
@@ -325,8 +325,8 @@ mod tests {
             prop_assert_eq!(SharedScene::from_text(&text), Ok(shared));
         }
 
-        /// A changed, lost or doubled letter is reported. The compressed bytes begin with some bits that change nothing: a letter that differs in
-        /// those alone is accepted.
+        /// A changed, lost or doubled letter is reported. Some bits at the beginning of the compressed bytes have no meaning: a letter that differs only in
+        /// those is accepted.
         #[test]
         fn a_damaged_letter_is_told(at in 11..10_000usize, letter in "[A-Za-z0-9_-]") {
             let text = shared().to_text().unwrap();

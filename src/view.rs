@@ -1,4 +1,4 @@
-//! How a scene is looked at: one value that settings keep, links and lessons change, and campaigns, pictures and undo read.
+//! The view of a scene, which settings keep, links and lessons change, and campaigns, pictures and undo read.
 
 use crate::evaluate::campaign::Campaign;
 use crate::maps::Normalisation;
@@ -22,7 +22,7 @@ pub enum Projection {
 }
 
 impl Projection {
-    /// The other one.
+    /// The other projection.
     pub fn other(self) -> Projection {
         match self {
             Projection::RangeAngle => Projection::Cartesian,
@@ -31,7 +31,7 @@ impl Projection {
     }
 }
 
-/// What the scale of a map or a cut counts.
+/// Units of the scale of a map or a cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Units {
     /// Lambda, 0 to 1.
@@ -42,7 +42,7 @@ pub enum Units {
 }
 
 impl Units {
-    /// The other one.
+    /// The other units.
     pub fn other(self) -> Units {
         match self {
             Units::Lambda => Units::Decibels,
@@ -51,7 +51,7 @@ impl Units {
     }
 }
 
-/// What the axis of directions counts, in every map.
+/// Units of the axis of directions, in every map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Directions {
     /// cos θ, which the columns divide evenly.
@@ -61,20 +61,20 @@ pub enum Directions {
     Degrees,
 }
 
-/// How the difference of output and target is drawn.
+/// Sign and scale of the difference of output and target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DifferenceView {
-    /// Its absolute value; output minus target where not.
+    /// Whether the absolute value is drawn, in place of output minus target.
     pub absolute: bool,
-    /// On a scale that reaches 1 for any difference; one that just holds it where not.
+    /// Whether the scale reaches 1 for any difference, in place of the smallest that holds it.
     pub whole: bool,
 }
 
-/// What a view consists of, once: the struct, and how a change of it is taken back.
+/// The struct of the view, and its undo field by field.
 macro_rules! view {
     ($($(#[$meta:meta])* $field:ident: $type:ty = $default:expr,)*) => {
-        /// How a scene is looked at.
+        /// The view of a scene: conditions, method and marks.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
         #[serde(default)]
         pub struct View {
@@ -88,7 +88,7 @@ macro_rules! view {
         }
 
         impl View {
-            /// Where something was changed from `before` to `after` and not since, puts back what it was.
+            /// Restores `before` in every field that was changed to `after` and not since.
             pub fn take_back(&mut self, before: &View, after: &View) {
                 $(if self.$field == after.$field {
                     self.$field.clone_from(&before.$field);
@@ -99,41 +99,41 @@ macro_rules! view {
 }
 
 view! {
-    /// What lies beneath the reflectors.
+    /// The floor beneath the reflectors.
     floor: Floor = Floor::Thesis,
     /// The ratio last used with [`Floor::Snr`].
     snr: Decibels = Decibels(20.0),
     /// The level last used with [`Floor::Level`].
     level: DecibelMilliwatts = DecibelMilliwatts(-20.0),
-    /// How the maps are normalised.
+    /// Normalisation of the maps.
     normalisation: Normalisation = Normalisation::MinMax,
     /// Colours of the maps.
     colours: ColourMap = ColourMap::default(),
     /// Coordinates of the maps.
     projection: Projection = Projection::default(),
-    /// What colour bars and cuts count.
+    /// Units of colour bars and cuts.
     units: Units = Units::default(),
-    /// What the axis of directions counts.
+    /// Units of the axis of directions.
     directions: Directions = Directions::default(),
     /// Whether inputs, target and output are drawn on one scale; each on its own where not.
     one_scale: bool = false,
     /// Whether maps of fewer than 128 elements are drawn on 256 columns or more; on as many as they have where not.
     fine_columns: bool = true,
-    /// Whether range-Doppler maps of recordings leave out what stands still, the mean over the loops.
+    /// Whether range-Doppler maps of recordings leave out static clutter, the mean over the loops.
     static_clutter_out: bool = false,
-    /// How the difference is drawn.
+    /// Sign and scale of the difference.
     difference: DifferenceView = DifferenceView::default(),
     /// eta', the threshold of the target.
     target_eta: f32 = crate::evaluate::TARGET_ETA,
-    /// The detector in the place of the thresholds, if one is in use.
+    /// The detector in place of the thresholds, if one is in use.
     cfar: Option<Cfar> = None,
-    /// The detector that was used last.
+    /// The last detector in use.
     last_cfar: Cfar = Cfar::default(),
     /// eta for each method, where it differs from the method's own.
     method_eta: BTreeMap<String, f32> = BTreeMap::new(),
     /// Name of the reconstruction method.
     method: String = String::new(),
-    /// The elements that methods hear; the two ends where there is none.
+    /// The elements that methods use; `None` for the two ends.
     layout: Option<LayoutKind> = None,
     /// Whether true reflectors are drawn over the maps.
     show_reflectors: bool = false,
@@ -141,20 +141,20 @@ view! {
     show_found: bool = false,
     /// Whether the ends' fields of view are drawn in the scene.
     show_fields_of_view: bool = false,
-    /// Whether what the formulas say of the selected reflector is drawn over the maps.
+    /// Whether the theory of the selected reflector is drawn over the maps.
     show_theory: bool = false,
-    /// Whether every object is marked by what became of it in the output.
+    /// Whether every object is marked by its fate in the output.
     show_kinds: bool = false,
 }
 
 impl View {
-    /// Takes a detector into use, or thresholds where there is none; the detector's cells are kept for the next time.
+    /// Selects a detector, or thresholds where `None`; keeps the detector's cells for the next time.
     pub fn detect_by(&mut self, cfar: Option<Cfar>) {
         self.cfar = cfar;
         self.last_cfar = cfar.unwrap_or(self.last_cfar);
     }
 
-    /// Puts another floor below scenes; the level of each kind is kept for the next time.
+    /// Sets the floor beneath scenes; keeps the level of each kind for the next time.
     pub fn set_floor(&mut self, floor: Floor) {
         self.floor = floor;
         match floor {
@@ -164,7 +164,7 @@ impl View {
         }
     }
 
-    /// Judges the method of this name by a threshold of the user's, or by the method's own.
+    /// Sets the user's threshold of the method called `method`; its own where `None`.
     pub fn set_method_eta(&mut self, method: &str, eta: Option<f32>) {
         match eta {
             Some(eta) => _ = self.method_eta.insert(method.to_owned(), eta),
@@ -172,8 +172,7 @@ impl View {
         }
     }
 
-    /// Numbers of the elements of `radar` that methods hear in place of the two ends; `None` where they hear those, as where `radar` has not the
-    /// elements of the layout.
+    /// Numbers of the elements of `radar` that methods use in place of the two ends. `None` for the two ends, also where `radar` lacks elements of the layout.
     pub fn heard(&self, radar: &Radar) -> Option<Vec<usize>> {
         self.layout.as_ref()?.numbers(radar).ok()
     }
@@ -184,7 +183,7 @@ impl View {
         Campaign { radar: radar.clone(), floor, normalisation, cfar, layout: self.heard(radar), ..Campaign::default() }
     }
 
-    /// How pictures of a method's maps are drawn.
+    /// The style of pictures of a method's maps.
     #[cfg(feature = "pictures")]
     pub fn style(&self, method: &str) -> Style {
         let View { floor, normalisation, colours, target_eta, cfar, .. } = *self;

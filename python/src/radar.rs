@@ -243,7 +243,7 @@ impl Radar {
     ///
     /// Returns:
     ///     received_dbm, noise_dbm, sample_snr_db, range_snr_db (in a range bin), end_snr_db and array_snr_db (by one end and by
-    ///     the whole array, their elements added in phase). What is lost between two cells is left out.
+    ///     the whole array, their elements added in phase). The loss of an echo between two cells is left out.
     ///
     /// Raises:
     ///     ValueError: The range is not above 0, or a number is not finite.

@@ -1,4 +1,4 @@
-//! The thin part that joins state, jobs and what is drawn: poll, input, draw, apply, ask.
+//! The app: input, state, jobs and panels of each frame, in the order poll, input, draw, apply, ask.
 
 mod zoom;
 
@@ -21,33 +21,33 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use zoom::Zoom;
 
-/// Name under which settings and the autosave are kept.
+/// Name of the storage of settings and autosave.
 pub const APP_ID: &str = "apertura";
 
-/// How the app is started.
+/// Options with which the app starts.
 #[derive(Default)]
 pub struct Options {
     /// Scene or recording to open.
     pub scene: Option<PathBuf>,
     /// Name of the reconstruction to begin with; the one used last where `None`.
     pub method: Option<String>,
-    /// CSV file for the time of every frame.
+    /// CSV file in which the time of every frame is written.
     pub frame_log: Option<PathBuf>,
-    /// When the program was started, for that file; now where `None`.
+    /// Start of the program, for the frame log; now where `None`.
     pub started: Option<Instant>,
     /// Reconstruction methods; those of [`crate::methods::all`] where empty.
     pub methods: Vec<Arc<dyn Reconstructor>>,
-    /// Folder for the autosave; the system's usual one where `None`, none at all in a test.
+    /// Folder for the autosave; where `None`, the system's usual one, or none in a test.
     pub data_folder: Option<PathBuf>,
-    /// What another copy of the program shared as text ([`crate::share`]).
+    /// Text of a scene shared by another copy of the program ([`crate::share`]).
     pub shared: Option<String>,
     /// Lesson to begin.
     pub lesson: Option<PathBuf>,
-    /// Whether files are asked for by the window's own dialog even where the system has one.
+    /// Whether file dialogs are the window's own even where the system has one.
     pub own_dialogs: bool,
-    /// What is done first.
+    /// Commands for the first frame.
     pub commands: Vec<Command>,
-    /// What went wrong before the window opened.
+    /// Problems from before the window opened, told as messages.
     pub problems: Vec<String>,
 }
 
@@ -57,20 +57,20 @@ pub struct App {
     pub(super) jobs: Jobs,
     pub(super) panels: Panels,
     memory: ChromeMemory,
-    /// What was asked for outside a frame.
+    /// Commands asked for outside a frame.
     pub(super) asked: Vec<Command>,
     frame_log: Option<FrameLog>,
     title: String,
     zoom: Zoom,
-    /// Keys that came too quickly for one frame.
+    /// Keys that came too quickly for one frame, for the next ones.
     later: input::Later,
     /// Whether a field had the focus at the end of the last frame.
     in_a_field: bool,
-    /// Whether the window was kept open once, since what is unsaved can't be kept.
+    /// Whether a request to close the window was refused once, because unsaved work could not be kept.
     close_refused: bool,
 }
 
-/// What chrome remembers from frame to frame.
+/// State of menu, palette and file dialog between frames.
 #[derive(Default)]
 struct ChromeMemory {
     menu: menu::MenuMemory,
@@ -142,12 +142,12 @@ impl App {
         })
     }
 
-    /// Tells what went wrong before the window opened.
+    /// Shows a problem from before the window opened.
     pub(super) fn tell(&mut self, problem: String) {
         self.state.notices.error(problem);
     }
 
-    /// Does commands, and what they ask of the window.
+    /// Does commands, and applies their effects on the window.
     fn apply(&mut self, ctx: &egui::Context, commands: Vec<Command>) {
         if commands.iter().any(|c| !matches!(c, Command::View(ViewCommand::Hover(_)))) {
             ctx.request_repaint();
@@ -167,7 +167,7 @@ impl App {
         }
     }
 
-    /// What was asked by keys, files and dialogs, and outside a frame.
+    /// The commands of keys, dropped files and calls outside a frame.
     fn read_input(&mut self, ctx: &egui::Context) -> Vec<Command> {
         let mut commands = std::mem::take(&mut self.asked);
         let input = input::Input {
@@ -186,7 +186,7 @@ impl App {
         commands
     }
 
-    /// Keeps the window open once where it is to be closed and what is unsaved can't be kept. Closing it again closes it.
+    /// Refuses the first request to close the window where unsaved work can't be autosaved. The second request closes it.
     fn check_close(&mut self, ctx: &egui::Context) {
         if !ctx.input(|i| i.viewport().close_requested()) {
             return;
@@ -209,7 +209,7 @@ impl App {
         }
     }
 
-    /// Draws everything; what was asked for meanwhile.
+    /// Draws the window; returns the commands of the user.
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
         let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
         let is_open = |panel| state.arrangement.has_tile(panel);
@@ -234,7 +234,7 @@ impl App {
         commands
     }
 
-    /// Moves the scene where its motion plays; goes back to time 0 where it was edited.
+    /// Moves the time of a playing scene or recording on; returns to time 0 after an edit.
     fn let_time_go_on(&mut self, ctx: &egui::Context) {
         let State { timeline, editor, .. } = &mut self.state;
         timeline.follow(editor.scene());
@@ -267,7 +267,7 @@ impl App {
     }
 }
 
-/// Opens the file asked for, and what an earlier window left unsaved.
+/// Opens the file asked for, and the unsaved scenes of an earlier window.
 fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
     let restored = jobs.autosave.as_ref().map(|a| a.restore()).unwrap_or_default();
     for problem in &restored.problems {
@@ -310,7 +310,7 @@ impl eframe::App for App {
         self.state.dark = ctx.theme() == egui::Theme::Dark;
         let mut commands = self.jobs.poll(&mut self.state);
         self.panels.poll().into_iter().for_each(|error| self.state.notices.error(error));
-        // Before anything is drawn, so that no panel acts on what is no longer there.
+        // Before anything is drawn, so that no panel acts on an object that is gone.
         commands.extend(self.read_input(&ctx));
         self.apply(&ctx, commands);
         self.check_close(&ctx);
@@ -323,7 +323,7 @@ impl eframe::App for App {
         let commands = self.draw(ui);
         self.apply(&ctx, commands);
         if self.state.pointer.turn(self.state.editor.radar()) {
-            // Panels drawn before the one under it still show the old place.
+            // Panels drawn before the one under the pointer still show the pointer's old place.
             ctx.request_repaint();
         }
         if self.state.editor.dragged().is_some() {

@@ -1,4 +1,4 @@
-//! What a panel is: what it needs computed, what it remembers, and how it is drawn.
+//! The trait of a panel: its query, its memory and its drawing.
 
 use super::jobs::{Derived, Failure, Jobs, Polled, Query, Wants};
 use super::state::{Command, MapKind, Panel, State};
@@ -6,48 +6,48 @@ use super::widgets::method_menu::Offered;
 use crate::task::Task;
 use eframe::egui::Ui;
 
-/// A panel's own file implements this; [`every_panel`](super) has its line.
+/// A type of panel. A panel's own file implements the trait; [`every_panel`](super) has its line.
 pub trait Content: 'static {
-    /// What it draws that is computed for it alone; [`Nothing`] where there is no such thing.
+    /// The query of a value for this panel alone; [`Nothing`] where it has none.
     type Asks: Query;
-    /// What it remembers from frame to frame.
+    /// The panel's state between frames.
     type Remembers: Default + 'static;
-    /// What it reads of maps and methods, which are computed for all panels.
+    /// The maps and methods that the panel reads, which are computed for all panels.
     const WANTS: Wants = Wants::NOTHING;
-    /// Whether it marks what is old in it; else all of it is dimmed.
+    /// Whether the panel marks old values itself; otherwise it is dimmed as a whole.
     const MARKS_AGE: bool = false;
-    /// Whether it tells what lessons ask, so that it is hidden until the answer is given.
+    /// Whether the panel shows answers to a lesson's questions. It is hidden until the learner has predicted.
     const TELLS_ANSWERS: bool = false;
 
-    /// What is to be computed for it, while it is in sight.
+    /// The query of the panel's value, asked while the panel is in sight.
     fn asks(_state: &State, _jobs: &Jobs) -> Option<Self::Asks> {
         None
     }
 
-    /// What stands in the title bar beside its name.
+    /// Text in the title bar beside the panel's name.
     fn caption(_state: &State, _jobs: &Jobs, _panel: Panel) -> Option<String> {
         None
     }
 
-    /// Draws it; what the user asked for.
+    /// Draws the panel; returns the user's commands.
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command>;
 }
 
-/// What a panel is drawn of.
+/// The data that a panel is drawn from.
 pub struct Cx<'a, C: Content + ?Sized> {
-    /// Which panel it is: maps are one type.
+    /// The panel that is drawn: all maps are one type.
     pub panel: Panel,
-    /// What the app holds.
+    /// The app's state.
     pub state: &'a mut State,
-    /// What was computed for all panels.
+    /// Results computed for all panels.
     pub jobs: &'a Jobs,
-    /// What the panel remembers.
+    /// The panel's state between frames.
     pub memory: &'a mut C::Remembers,
-    /// What was computed for it alone, or why there is nothing; `None` before the first time.
+    /// The panel's own value, or the reason why there is none; `None` before the first.
     pub value: Option<Result<&'a <C::Asks as Query>::Value, &'a str>>,
 }
 
-/// The query of a panel for which nothing is computed.
+/// The query of a panel without a value of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Nothing {}
 
@@ -63,19 +63,19 @@ impl Query for Nothing {
     }
 }
 
-/// A panel's memory, and the value that is computed for it.
+/// A panel's memory and its computed value.
 pub struct Held<C: Content> {
     memory: C::Remembers,
     derived: Derived<C::Asks>,
 }
 
 impl<C: Content> Held<C> {
-    /// Starts the worker of its value, which waits; `wake` is called from its thread.
+    /// Starts the worker of the value, idle at first; `wake` is called from its thread.
     pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
         Box::new(Held::<C> { memory: C::Remembers::default(), derived: Derived::start(wake) })
     }
 
-    /// The value.
+    /// The panel's computed value.
     pub fn derived(&self) -> &Derived<C::Asks> {
         &self.derived
     }
@@ -83,32 +83,32 @@ impl<C: Content> Held<C> {
 
 /// A panel of any type.
 pub trait AnyPanel: std::any::Any {
-    /// What it reads of maps and methods.
+    /// The maps and methods that the panel reads.
     fn wants(&self) -> Wants;
 
-    /// Asks for its value, where it is in sight; lets it rest where it isn't.
+    /// Asks for the panel's value where the panel is in sight; asks for none elsewhere.
     fn ask(&mut self, state: &State, jobs: &Jobs, is_in_sight: bool);
 
-    /// What is computed for it alone.
+    /// The panel's own value, to be polled.
     fn polled(&mut self) -> &mut dyn Polled;
 
-    /// Whether that is being computed.
+    /// Whether the panel's own value is being computed.
     fn is_busy(&self) -> bool;
 
-    /// Whether what it draws has been of something else than what is on screen for so long that it must be told: the one place that says so.
+    /// Whether the panel has drawn results of an earlier scene or settings for so long that it must be marked. Only this function decides it.
     fn is_stale(&self, jobs: &Jobs, panel: Panel) -> bool;
 
-    /// Whether it draws a value as fresh that is of something else than what is on screen.
+    /// Whether the panel draws results of an earlier scene or settings without marking them.
     fn is_fresh_but_old(&self, state: &State, jobs: &Jobs) -> bool;
 
-    /// What stands in the title bar beside its name.
+    /// Text in the title bar beside the panel's name.
     fn caption(&self, state: &State, jobs: &Jobs, panel: Panel) -> Option<String>;
 
-    /// Draws it; what the user asked for.
+    /// Draws the panel; returns the user's commands.
     fn draw(&mut self, ui: &mut Ui, state: &mut State, jobs: &Jobs, panel: Panel) -> Vec<Command>;
 }
 
-/// How strong what is old is drawn.
+/// Opacity of an old panel.
 pub const OLD: f32 = 0.55;
 
 impl<C: Content> AnyPanel for Held<C> {
@@ -162,7 +162,7 @@ impl<C: Content> AnyPanel for Held<C> {
     }
 }
 
-/// The methods to choose from, with the times that are known of them.
+/// The methods to choose from, with their measured times.
 pub fn offered(state: &State) -> Offered<'_> {
     let times = state.method_times.on(state.radar());
     Offered { all: &state.methods.all, radar: Some(state.radar()), layout: state.settings.layout.as_ref(), times }
@@ -194,7 +194,7 @@ mod tests {
         }
     }
 
-    /// The panel that ARCHITECTURE shows: it counts reflectors, and has a button.
+    /// The panel of ARCHITECTURE, with a count of reflectors and a button.
     struct CountPanel;
 
     impl Content for CountPanel {

@@ -1,18 +1,18 @@
-//! Keys and clipboard events become commands.
+//! Keys and clipboard events, turned into commands.
 
 use super::state::{Command, EditCommand, WindowCommand, shortcuts};
 use super::widgets::nudge::nudge;
 use eframe::egui::{Context, Event, Key, Modifiers, Popup, RawInput};
 
-/// Events of one frame that must wait for the next.
+/// Events of one frame that wait for the next.
 ///
-/// A field takes what was typed when it is drawn, but Tab, Enter, a press of the mouse and the palette's key move the focus before anything is
-/// drawn: letters that come in one frame with them would land in another field, or nowhere, or run commands.
+/// A field takes typed letters when it is drawn. Tab, Enter, a press of the mouse and the palette's key move the focus before that. Letters that come in one
+/// frame with them would reach another field or none, or run commands.
 #[derive(Default)]
 pub struct Later(Vec<Event>);
 
 impl Later {
-    /// Leaves in `input` what can be done in this frame, after what has waited; keeps the rest. Whether there is a rest.
+    /// Leaves the waiting events in `input`, then those of this frame that may follow them; keeps the others. True where some are kept.
     pub fn sort(&mut self, input: &mut RawInput) -> bool {
         let mut events = std::mem::take(&mut self.0);
         events.append(&mut input.events);
@@ -40,27 +40,27 @@ impl Later {
     }
 }
 
-/// What the keys mean depends on this.
+/// State on which the meaning of keys depends.
 pub struct Input {
-    /// Whether the palette or a dialog is open: then the keys are its own.
+    /// Whether the palette or a dialog is open and takes all keys.
     pub keys_taken: bool,
-    /// Whether a field had the focus at the end of the last frame: then Escape is its own.
+    /// Whether a field had the focus at the end of the last frame and takes Escape.
     pub in_a_field: bool,
-    /// Whether something is selected that arrow keys can move.
+    /// Whether objects are selected that arrow keys can move.
     pub selected: bool,
-    /// A range bin of the radar: what an arrow key moves by.
+    /// Step of an arrow key: a range bin of the radar, metres.
     pub bin_metres: f64,
 }
 
-/// Everything that was asked for since the last frame, but for what panels will be asked in this one.
+/// The commands of keys and clipboard since the last frame.
 pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
     let mut commands = Vec::new();
-    // Enter and Tab end an entry in a field as letting go ends a drag: each is a step of its own.
+    // Enter and Tab end an entry in a field as releasing the pointer ends a drag. Each is an undo step.
     if ctx.input(|i| i.pointer.any_released() || i.key_pressed(Key::Enter) || i.key_pressed(Key::Tab)) {
         commands.push(EditCommand::Seal.into());
     }
     let escapes_a_field = input.in_a_field && ctx.input(|i| i.key_pressed(Key::Escape));
-    // The keys of an open menu are its own too: Escape closes it.
+    // An open menu takes all keys, too: Escape closes it.
     if input.keys_taken || escapes_a_field || Popup::is_any_open(ctx) || ctx.text_edit_focused() {
         return commands;
     }
@@ -73,7 +73,7 @@ pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
     }));
     ctx.input_mut(|keys| {
         for (shortcut, command) in shortcuts() {
-            // The system turns these three into events of their own.
+            // The system turns these three keys into events of their own.
             if !matches!(
                 command,
                 Command::Edit(EditCommand::Copy) | Command::Edit(EditCommand::Cut) | Command::Edit(EditCommand::Paste)
@@ -131,7 +131,7 @@ mod tests {
         Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE }
     }
 
-    /// Frames in which the events are done.
+    /// The events by the frame in which they are handled.
     fn frames(events: Vec<Event>) -> Vec<Vec<Event>> {
         let (mut later, mut frames) = (Later::default(), Vec::new());
         let mut input = RawInput { events, ..RawInput::default() };

@@ -1,4 +1,4 @@
-//! What may be seen of the app from outside: tests ask it what was computed and what was not.
+//! Read access to the app for tests.
 
 use super::application::App;
 use super::apply;
@@ -24,32 +24,32 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 impl App {
-    /// The scene being edited, what is selected and what can be undone.
+    /// The scene in the editor, with selection and history.
     pub fn editor(&self) -> &Editor {
         &self.state.editor
     }
 
-    /// What the user chose.
+    /// The user's settings.
     pub fn settings(&self) -> &Settings {
         &self.state.settings
     }
 
-    /// Where the panels are.
+    /// The arrangement of the panels.
     pub fn arrangement(&self) -> &Arrangement {
         &self.state.arrangement
     }
 
-    /// The radar before the scene.
+    /// The radar of the document on screen.
     pub fn radar(&self) -> &Radar {
         self.state.radar()
     }
 
-    /// Asks for a command, as a menu entry would.
+    /// Queues a command, as a menu entry would.
     pub fn ask(&mut self, command: impl Into<Command>) {
         self.asked.push(command.into());
     }
 
-    /// Who has answered what in lessons.
+    /// The learners' answers in lessons.
     pub fn progress(&self) -> &Progress {
         &self.state.progress
     }
@@ -59,17 +59,17 @@ impl App {
         (self.state.scene_view, self.state.map_views)
     }
 
-    /// Whether a worker has something to do.
+    /// Whether a worker of jobs or panels is busy.
     pub fn is_busy(&self) -> bool {
         self.jobs.is_busy() || self.panels.is_busy()
     }
 
-    /// Whether everything that is unsaved is on disk as it is.
+    /// Whether the autosave on disk holds all unsaved scenes as they are.
     pub fn is_kept(&self) -> bool {
         self.jobs.autosave.as_ref().is_some_and(|autosave| autosave.holds(&self.state.editor))
     }
 
-    /// Report of the last update, if there was one.
+    /// Report of the engine's last update, if there was one.
     pub fn report(&self) -> Option<&EngineReport> {
         self.jobs.pipeline.maps.result().map(|r| &r.frame.report)
     }
@@ -79,32 +79,32 @@ impl App {
         self.jobs.pipeline.maps.result().map(|r| r.pictures.keys().copied().collect()).unwrap_or_default()
     }
 
-    /// Requests sent to the maps worker, and pictures painted, since the start.
+    /// Requests sent to the maps' worker, and pictures painted, since the start.
     pub fn work_done(&self) -> (u64, u64) {
         (self.jobs.pipeline.maps.requests(), self.jobs.pipeline.maps.result().map_or(0, |r| r.painted))
     }
 
-    /// Where the method found something, as far as that is marked on the maps.
+    /// Reflectors found by the method, as far as the maps mark them.
     pub fn marked_found(&self) -> &[Reflector] {
         self.jobs.pipeline.shown_found(&self.state)
     }
 
-    /// What the method found, where it is listed.
+    /// Detections of the method, where they are listed.
     pub fn found(&self) -> Option<&[Detection]> {
         self.jobs.pipeline.output_of(&self.state)?.found.as_deref()
     }
 
-    /// Part of the recording that the reflectors laid over it explain, where that is looked at.
+    /// Part of the recording's power that the drawn reflectors explain, where a panel shows it.
     pub fn explained(&self) -> Option<f64> {
         self.jobs.pipeline.unexplained().map(|u| u.explained)
     }
 
-    /// Why the method has no output, where it has none.
+    /// The reason why the method has no output, where it has none.
     pub fn refusal(&self) -> Option<&str> {
         self.jobs.pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str())
     }
 
-    /// Cells that the detector in use finds in the target and in the first method's output, and why it finds none.
+    /// Cells that the detector in use finds in the target and in the first method's output, and the reason where it fails.
     pub fn detected(&self) -> ([Option<usize>; 2], Option<&str>) {
         let count = |map: &Option<Arc<RangeAngleMap>>| Some(map.as_ref()?.lambda.iter().filter(|v| **v > 0.5).count());
         let found = self.jobs.pipeline.maps.result().map(|r| &r.detected);
@@ -112,7 +112,7 @@ impl App {
         (counts, self.jobs.pipeline.detector_error())
     }
 
-    /// What is drawn as fresh and yet of something else than what is on screen: for a moment after a change, and never for longer.
+    /// Names of the results drawn as fresh that belong to an earlier scene or settings. There are some only for a moment after a change.
     pub fn drawn_as_fresh_but_old(&self) -> Vec<String> {
         let mut old = self.jobs.drawn_as_fresh_but_old(&self.state);
         old.extend(self.panels.drawn_as_fresh_but_old(&self.state, &self.jobs));
@@ -155,17 +155,17 @@ impl App {
         decades.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(cell, _)| cell)
     }
 
-    /// Time at which the scene is looked at, seconds.
+    /// The timeline's time, seconds.
     pub fn time_seconds(&self) -> f64 {
         self.state.timeline.seconds()
     }
 
-    /// The scene that is looked at, at that time.
+    /// The scene at the timeline's time.
     pub fn scene_at_time(&self) -> &Scene {
         self.state.scene()
     }
 
-    /// The range bin in which the beat on screen is strongest, and the element it is of.
+    /// The range bin in which the beat on screen is strongest, and the element of that beat.
     pub fn beat_peak(&self) -> Option<(usize, usize)> {
         let result = self.panels.derived::<ChirpPanel>(Panel::Chirp)?.value()?.ok()?;
         let peak = (0..result.spectrum.len()).max_by(|a, b| result.spectrum[*a].total_cmp(&result.spectrum[*b]))?;
@@ -177,38 +177,38 @@ impl App {
         self.jobs.pipeline.output().map(|output| output.method)
     }
 
-    /// Figures on screen, if there are any.
+    /// Figures of the first method's output, if there are any.
     pub fn metrics(&self) -> Option<Metrics> {
         self.jobs.pipeline.scores_in(MethodSlot::First).map(|s| s.metrics)
     }
 
-    /// Lambda of what the second method of the panel "Compare" made, if it made something.
+    /// Lambda of the second method in the panel "Compare", if it has an output.
     pub fn second_output(&self) -> Option<&RangeAngleMap> {
         self.jobs.pipeline.method(MethodSlot::Second).output().map(|output| output.pair.output.as_ref())
     }
 
-    /// Its figures, if there are any.
+    /// Figures of the second method's output, if there are any.
     pub fn second_metrics(&self) -> Option<Metrics> {
         self.jobs.pipeline.scores_in(MethodSlot::Second).map(|s| s.metrics)
     }
 
-    /// What became of every object in the output on screen, where that is marked and up to date.
+    /// The fate of every object in the output on screen, where the maps mark it and it is up to date.
     pub fn failures(&self) -> Option<&Failures> {
         let (fates, current) = super::jobs::fates_of(&self.jobs.kinds, MethodSlot::First, &self.jobs.pipeline)?;
         (current && self.state.settings.show_kinds).then_some(&fates.failures)
     }
 
-    /// Whether the maps on screen are those of a scene at rest, as every command computes them.
+    /// Whether the maps on screen are those of a scene at rest, with the same bits as a command's.
     pub fn is_settled(&self) -> bool {
         self.jobs.pipeline.maps.is_settled()
     }
 
-    /// Whether those of a scene at rest are being computed.
+    /// Whether the maps of a scene at rest are being computed.
     pub fn is_settling(&self) -> bool {
         self.jobs.pipeline.maps.is_settling()
     }
 
-    /// Whether the output on screen belongs to something else than the maps.
+    /// Whether the output on screen belongs to other samples than the maps.
     pub fn output_is_outdated(&self) -> bool {
         self.jobs.pipeline.output_is_outdated()
     }
@@ -218,7 +218,7 @@ impl App {
         self.jobs.run_time.rows().len()
     }
 
-    /// Whether something runs that was started in a tool's panel.
+    /// Whether a job started in a tool's panel runs.
     pub fn is_at_work(&self) -> bool {
         let jobs = &self.jobs;
         jobs.thresholds.progress().is_some()
@@ -227,7 +227,7 @@ impl App {
             || jobs.run_time.progress().is_some()
     }
 
-    /// What the evaluation has found, as CSV.
+    /// The evaluation's rows of the test sets, as CSV.
     pub fn evaluation_csv(&self) -> String {
         super::jobs::evaluation_to_csv(&super::jobs::evaluated(self.rows()))
     }
@@ -237,7 +237,7 @@ impl App {
         self.jobs.failures.table().rows()
     }
 
-    /// Whether the file that rows are kept in from start to start holds all of them.
+    /// Whether the file that keeps rows between starts holds all of them.
     pub fn rows_are_kept(&self) -> bool {
         self.jobs.failures.is_kept()
     }
@@ -252,17 +252,17 @@ impl App {
         self.jobs.failures.search.path()
     }
 
-    /// What is on screen as a line of text, where it can be one ([`crate::share`]).
+    /// The scene on screen as a line of text, where it can be shared ([`crate::share`]).
     pub fn shared_text(&self) -> Option<String> {
         apply::shared_text(&self.state).ok()
     }
 
-    /// How many of several maps are of the latest scene and values.
+    /// Number of small maps in the panel of several maps that are up to date.
     pub fn several_maps_made(&self) -> usize {
         self.jobs.several.shown().iter().filter(|small| small.is_current && small.made.is_some()).count()
     }
 
-    /// Whether maps and scene say what they show.
+    /// Whether maps and scene have captions.
     pub fn shows_captions(&self) -> bool {
         self.state.shows_captions()
     }

@@ -1,4 +1,4 @@
-//! What is kept from one start to the next, and what happens where it can't be kept or read.
+//! Settings kept between starts, and messages where they can't be kept or read.
 
 use super::state::{Arrangement, MethodTimes, Settings, View};
 use crate::files::write_bytes;
@@ -11,51 +11,51 @@ use std::path::{Path, PathBuf};
 /// Name of the file in which the window library keeps settings.
 const SETTINGS: &str = "app.ron";
 
-/// Name of the copy of that file as it was at the last start.
+/// Name of the copy of the settings' file from the last start.
 const COPY: &str = "app.ron.copy";
 
-/// Key of the program's version in that file.
+/// Key of the program's version in the settings' file.
 const VERSION_KEY: &str = "version";
 
-/// Largest settings that are looked at, bytes.
+/// Largest file of settings that is read, bytes.
 const MOST_BYTES: u64 = 16 << 20;
 
-/// What is kept from one start to the next.
+/// State kept between starts.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct KeptSettings {
     pub settings: Settings,
-    /// How scenes are looked at; it stood among the settings up to version 0.1.0.
+    /// View of the scenes; part of the settings up to version 0.1.0.
     pub view: Option<View>,
     #[serde(alias = "layout")]
     pub arrangement: Arrangement,
     pub recent: Vec<PathBuf>,
     pub progress: Progress,
     pub method_times: MethodTimes,
-    /// Size of the interface before a presentation that was on screen in the end.
+    /// Scale of the interface before a presentation that was on screen at the end.
     pub zoom: Option<f32>,
-    /// Whether something has been dragged, so that maps needn't say what they show.
+    /// Whether an object was dragged, which ends the captions of the maps.
     pub captions_seen: bool,
-    /// Names of the commands that the palette ran last.
+    /// Names of the commands that the palette ran last, the latest first.
     pub recent_commands: Vec<String>,
 }
 
-/// Where version 0.1.0 keeps how scenes are looked at.
+/// The part of version 0.1.0's settings that is now [`KeptSettings::view`].
 #[derive(Deserialize)]
 struct OlderSettings {
     settings: View,
 }
 
 impl KeptSettings {
-    /// Hands this to the window library, which writes it.
+    /// Hands the state to the window library, which writes it.
     pub fn write(&self, storage: &mut dyn eframe::Storage) {
         storage.set_string(VERSION_KEY, env!("CARGO_PKG_VERSION").to_owned());
         eframe::set_value(storage, eframe::APP_KEY, self);
     }
 }
 
-/// What was kept, and whether maps say what they show: not where nothing can be kept, as in tests. Where the text is there and
-/// can't be read, it is put into a file of its own in `folder`, and the third says so.
+/// The kept state, whether maps have captions, and a message about unreadable settings. Captions are off where nothing can be kept, as in tests. Unreadable
+/// settings are copied into a file of their own in `folder`.
 pub(super) fn read(
     storage: Option<&dyn eframe::Storage>,
     folder: Option<&Path>,
@@ -74,7 +74,7 @@ pub(super) fn read(
     (kept, captions, problem)
 }
 
-/// Writes settings that can't be read into a file of their own; a sentence about it.
+/// Copies unreadable settings into a file of their own. Returns a sentence about it.
 fn set_aside(folder: Option<&Path>, text: &str, version: Option<&str>) -> String {
     let ours = env!("CARGO_PKG_VERSION");
     let writer = version.map_or_else(|| "another version of apertura".to_owned(), |v| format!("apertura {v}"));
@@ -90,7 +90,7 @@ fn set_aside(folder: Option<&Path>, text: &str, version: Option<&str>) -> String
     format!("The settings that {writer} wrote can't be read by this program, apertura {ours}. {kept}")
 }
 
-/// Looks at the folder of settings and autosave before the window opens: what can't be kept there, or was not kept whole.
+/// Checks the folder of settings and autosave before the window opens. Returns messages about files that can't be kept there or were cut.
 pub(super) fn problems(folder: Option<&Path>) -> Vec<String> {
     let Some(folder) = folder else {
         return vec![unkept("there is no home folder")];
@@ -108,11 +108,10 @@ fn unkept(reason: &str) -> String {
     format!("Settings and unsaved scenes can't be kept ({reason}). Save what you want to keep in a file elsewhere.")
 }
 
-/// Keeps a copy of the settings, which the window library doesn't write in one step, or brings them back from it where the file
-/// is not whole.
+/// Copies the settings' file, which the window library doesn't write in one step, or restores it from the copy where it was cut.
 ///
 /// # Errors
-/// When nothing can be written into `folder`.
+/// When no file can be written into `folder`.
 fn keep_whole(folder: &Path) -> io::Result<Option<String>> {
     let (path, copy) = (folder.join(SETTINGS), folder.join(COPY));
     let read = |path: &Path| crate::files::read_bounded(path, MOST_BYTES).ok();
@@ -138,7 +137,7 @@ fn refused(folder: &Path, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{}: {}", folder.display(), error.kind()))
 }
 
-/// Whether a file of settings ends as the window library ends it: a map whose last line is its bracket alone.
+/// Whether a file of settings ends as the window library ends it: with the bracket of a map on a line of its own.
 fn is_whole(bytes: &[u8]) -> bool {
     let end = bytes.trim_ascii_end();
     end.ends_with(b"\n}") || end == b"{}"
@@ -233,7 +232,7 @@ mod tests {
         assert_eq!(read(Some(&storage), None).0.settings.view, view);
     }
 
-    /// Laid out as version 0.1.0 wrote it; never to be rewritten.
+    /// Settings written by version 0.1.0; never to be rewritten.
     const OF_0_1_0: &str = include_str!("../../tests/data/program-0.1.0/settings.ron");
 
     #[test]

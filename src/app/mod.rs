@@ -1,16 +1,15 @@
-//! The desktop program: a scene to play with, and every map beside it.
+//! The desktop program: a scene to edit, with all maps beside it.
 //!
 //! ```text
 //!   keys, files ──► input ──┐                        ┌──► State ──► contents ──► panels, chrome ──┐
 //!                           ├──► Command ──► apply ──┤                                            │
-//!   what panels ask for ────┘                        └──► Jobs (threads) ──► poll ──► State       │
+//!   panels' commands ───────┘                        └──► Jobs (threads) ──► poll ──► State       │
 //!          ▲                                                                                      │
 //!          └──────────────────────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
-//! A panel asks for what it draws and answers with commands; [`apply`] is the only place that changes settings. Imports run
-//! downward: application, contents, panels and chrome, content, jobs, widgets, state. Nothing shown is ever taken away before its successor is
-//! there. Editing itself is in [`crate::interact`], without egui.
+//! A panel asks for its value and answers with commands. Only [`apply`] changes settings. Imports run downward: application, contents, panels and chrome,
+//! content, jobs, widgets, state. A shown value stays until the next one is there. The editor itself is in [`crate::interact`], without egui.
 
 #[macro_use]
 mod registry;
@@ -42,7 +41,7 @@ pub use state::{
     ViewCommand, Way, WindowCommand, WorkCommand, listed, listed_on_a_page,
 };
 
-/// Why the app did not open.
+/// The reason why the app did not open.
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
     /// There is no display or no OpenGL.

@@ -1,11 +1,11 @@
-//! The window in a browser's page: what the address asks for.
+//! The window in a browser's page, opened by the page's address.
 
 use super::state::{Command, DocumentCommand, LessonCommand};
 use super::{App, Options};
 use crate::benchmark::one_thread;
 use crate::{lesson, platform, recording, scene};
 
-/// Opens the window on the page's canvas, with what the address asks for.
+/// Opens the window on the page's canvas, with the options of its address.
 pub fn open_page() {
     // Every thread of a page begins with `main`.
     if !platform::has_window() {
@@ -37,11 +37,10 @@ fn measured() -> String {
     timed.unwrap_or_else(|problem| format!("The run times can't be measured: {problem}"))
 }
 
-/// Key of an address that names the cell of a notebook, to which the page tells its scene (`page.js`).
+/// Key of an address that names a notebook's cell. The page sends its scene to the cell (`page.js`).
 const CELL: &str = "cell";
 
-/// What the address of a page asks for: `?scene=street`, `?lesson=two-ends` (the beginning of a lesson's name), `?recording=chip-8`, or what was
-/// copied as text behind `#`.
+/// The options in a page's address: `?scene=street`, `?lesson=two-ends` (the beginning of a lesson's name), `?recording=chip-8`, or a shared text behind `#`.
 ///
 /// # Errors
 /// A sentence for the person who opened the address.

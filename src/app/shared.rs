@@ -1,10 +1,9 @@
-//! A value that several hold, compared by identity.
+//! A value with several owners, compared by identity.
 
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// A shared value. Two are equal where they are one allocation, so that a struct of them compares in a few instructions by a derived
-/// `PartialEq`.
+/// A shared value. Two are equal where they are one allocation, so that a derived `PartialEq` of a struct of them takes a few instructions.
 #[derive(Debug)]
 pub struct Shared<T: ?Sized>(Arc<T>);
 

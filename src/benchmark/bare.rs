@@ -1,4 +1,4 @@
-//! The bare two-dimensional transform that every run time is measured in.
+//! The bare two-dimensional transform, the unit of every run time.
 
 use crate::platform::Instant;
 use crate::signal::simd::Simd;
@@ -9,7 +9,7 @@ use std::time::Duration;
 
 const ROWS: usize = 512;
 const COLUMNS: usize = 1024;
-/// Side of the squares that are turned at a time.
+/// Side of the squares of the blocked transpose, cells.
 const TILE: usize = 16;
 
 /// A 512 x 1024 single-precision complex transform on one thread: rows, blocked transpose, columns. No window, no logarithm.
@@ -50,7 +50,7 @@ impl BareTransform {
         }
         self.over_columns.process_with_scratch(&mut self.turned, &mut self.scratch);
         let took = start.elapsed();
-        // Keep the numbers from growing without bound.
+        // The factor keeps the values bounded over repeats.
         self.data.iter_mut().zip(&self.turned).for_each(|(d, t)| *d = t * 1e-3);
         took
     }

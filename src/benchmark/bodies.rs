@@ -1,7 +1,7 @@
-//! Run times of scenes of bodies: three maps from scratch, and while one body is dragged, in bare transforms of the same run.
+//! Run times of scenes of bodies: three maps from scratch and while one body is dragged, in bare transforms of the same run.
 //!
 //! The scenes are the preset "Street of things" and growing crowds of walls, boxes, posts and triangles. A dragged body moves by a centimetre
-//! before every update, as under the mouse, so that what it hides changes.
+//! before every update, as under the mouse, so that its shadow changes too.
 
 use super::front::MapConvention;
 use super::times::{bare_ms, quantile};
@@ -13,14 +13,14 @@ use crate::scene::{Block, Object, Point, Polygon, Post, Scene, SceneError, Wall}
 use crate::signal::simd::Simd;
 use serde::Serialize;
 
-/// Updates before the timed ones: the first moves of a drag take the body out of the sum at rest.
+/// Updates before the timed ones, since the first moves of a drag take the body out of the sum at rest.
 const WARM_UP: usize = 3;
-/// A measurement is not repeated any more after this time, milliseconds: crowds take seconds a map.
+/// Measured time after which no further repeat begins, milliseconds: crowds take seconds a map.
 const ENOUGH_MS: f64 = 4000.0;
-/// How far a dragged body moves from one update to the next, metres.
+/// Distance that a dragged body moves from one update to the next, metres.
 const STEP_METRES: f64 = 0.01;
 
-/// A scene to be measured; its first object is the one that is dragged.
+/// A scene to be measured; its first object is dragged.
 #[derive(Debug, Clone)]
 pub struct BodyCase {
     pub name: String,
@@ -28,7 +28,7 @@ pub struct BodyCase {
 }
 
 impl BodyCase {
-    /// The preset "Street of things": two cars, three walls and four posts. `None` if the program came without it.
+    /// The preset "Street of things": two cars, three walls and four posts. `None` in a build without it.
     pub fn street() -> Option<BodyCase> {
         let scene = Preset::by_id("street-of-things")?.load().ok()?.scene;
         Some(BodyCase { name: "street".to_owned(), scene })
@@ -52,7 +52,7 @@ impl BodyCase {
         }
     }
 
-    /// The same number of points at the same places as [`BodyCase::crowd`], to hold bodies against.
+    /// The same number of points at the same places as [`BodyCase::crowd`], for comparison with bodies.
     pub fn points(count: usize) -> BodyCase {
         let as_point = |object: Object| {
             let [x, y] = object.centre_metres();
@@ -76,15 +76,15 @@ pub struct BodyTimes {
 pub struct BodyRow {
     pub scene: String,
     pub objects: usize,
-    /// Echoes that they give an element at most.
+    /// Most echoes of the scene that an element receives.
     pub echoes: usize,
     #[serde(flatten)]
     pub convention: MapConvention,
-    /// Median time of three maps when nothing of the scene is known, milliseconds.
+    /// Median time of three maps of a scene that is new to the engine, milliseconds.
     pub scratch_ms: f64,
     /// Median time of three maps after the first object moved by a centimetre, milliseconds.
     pub drag_ms: f64,
-    /// What the engine says it computed for the last of those moves.
+    /// The engine's report of the signal stage for the last of those moves.
     pub computed: String,
 }
 
@@ -104,7 +104,7 @@ pub fn measure(
             let row = measured(radar, case, convention, repeats)?;
             on_row(&row);
             rows.push(row);
-            // Other load on the machine slows the transform as it slows the maps.
+            // Other load on the machine slows this transform and the maps alike.
             bare.push(bare_ms(3));
         }
     }
@@ -122,7 +122,7 @@ fn measured(radar: &Radar, case: &BodyCase, convention: MapConvention, repeats: 
         let frame = engine.update(scene, &wanted)?;
         Ok((1e3 * start.elapsed().as_secs_f64(), frame))
     };
-    // The first update makes what is kept from scene to scene, as the floor's noise.
+    // The first update fills the tables that are kept from scene to scene, such as the floor's noise.
     timed(&mut engine, &scene)?;
     let mut scratch = Vec::new();
     while scratch.len() < repeats && scratch.iter().sum::<f64>() < ENOUGH_MS {

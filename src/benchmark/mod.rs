@@ -1,5 +1,5 @@
-//! What the program itself is worth: run time against error ([`front`]), run time of scenes of bodies ([`bodies`]), the page against
-//! the native program ([`one_thread`]), and the bare transform that times are measured in. How good a map is stands in [`evaluate`](crate::evaluate).
+//! Benchmarks of the program itself: run time against error ([`front`]), run time of scenes of bodies ([`bodies`]), the page against the native
+//! program ([`one_thread`]), and the bare transform that is the unit of times. Measures of maps are in [`evaluate`](crate::evaluate).
 
 mod bare;
 pub mod bodies;

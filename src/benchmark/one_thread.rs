@@ -1,5 +1,5 @@
-//! Run times of what the window computes most, on one thread: the native program and the page run the same, and `scripts/measure-page`
-//! compares them.
+//! Run times of the window's most frequent computations, on one thread. The native program and the page run the same ones, and
+//! `scripts/measure-page` compares them.
 
 use super::times::quantile;
 use crate::engine::{Engine, MapRequest};
@@ -44,9 +44,9 @@ fn median(mut work: impl FnMut(usize) -> Result<(), String>) -> Result<f64, Stri
     Ok(quantile(&mut times[WARM_UP..], 0.5))
 }
 
-/// Three maps of 10 and of 300 reflectors, from scratch and while one is dragged, and the live network, on the threads that rayon has here.
+/// Three maps of 10 and of 300 reflectors, from scratch and while one is dragged, and the live network, on rayon's threads.
 /// # Errors
-/// Why one of them can't be computed.
+/// A message where one of them can't be computed.
 pub fn measure() -> Result<Vec<Timed>, String> {
     let radar = Radar::default();
     let mut timed = Vec::new();

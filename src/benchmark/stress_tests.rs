@@ -1,5 +1,5 @@
-//! Scenes built to break numerics, by every algorithm in both precisions, and many random edits: nothing infinite, every promise kept,
-//! incremental sums where a fresh build ends.
+//! Tests of scenes built to break numerics, by every algorithm in both precisions, and of many random edits: every value is finite, every
+//! tolerance is kept, and incremental sums equal those of a fresh build.
 
 use super::front::MapConvention;
 use super::front::reference::{JudgedProfiles, SEED, UnitNoise, maps_of, profile};
@@ -16,16 +16,16 @@ use rand::{RngExt, SeedableRng};
 /// The plain algorithms, and the judge, take minutes for more reflectors than this on the whole radar.
 const MAX_PLAIN_REFLECTORS: usize = 1000;
 const TOLERANCES: [(Precision, f64); 2] = [(Precision::F32, 1e-6), (Precision::F64, 1e-12)];
-/// The two that errors are given for, and the one whose floor is rounding.
+/// The two conventions of errors, and the one whose floor is rounding.
 const CONVENTIONS: [MapConvention; 3] = [MapConvention::FIXED_RANGE, MapConvention::THESIS, MapConvention::NO_FLOOR];
-/// Compared with a fresh engine so often over a run of edits.
+/// Number of comparisons with a fresh engine over a run of edits.
 const COMPARISONS: usize = 20;
 
 fn small() -> Radar {
     Radar { elements: 48, samples: 32, end_elements: 6, ..Radar::default() }
 }
 
-/// Every scene, for this radar; `many` points where many coincide.
+/// Every scene for this radar; `many` points in those where many coincide.
 fn scenes(radar: &Radar, many: usize) -> Vec<(&'static str, Vec<Reflector>)> {
     let point = |x_metres: f64, y_metres: f64, reflectivity: f64| Reflector { x_metres, y_metres, reflectivity };
     let element = radar.element_x_metres(radar.elements / 3);
@@ -64,16 +64,16 @@ fn out_of_range(map: &RangeAngleMap) -> usize {
     map.lambda.iter().filter(|v| !(0.0..=1.0).contains(*v)).count()
 }
 
-/// A scene, and what the algorithms are held against.
+/// A scene, and the reference for the algorithms.
 struct Case<'a> {
     radar: &'a Radar,
     scene: Scene,
     judge: JudgedProfiles,
-    /// What the amplitudes could add up to in a range cell.
+    /// Largest possible sum of the amplitudes in a range cell.
     scale: f64,
 }
 
-/// What an algorithm made of it.
+/// An algorithm's result for a case.
 struct Outcome {
     algorithm: Algorithm,
     /// Largest error of a range cell over [`Case::scale`].
@@ -84,13 +84,13 @@ impl<'a> Case<'a> {
     fn new(radar: &'a Radar, reflectors: &[Reflector]) -> Self {
         // Windowed and transformed, a reflector's profile peaks at (N - 1) / 2 / sqrt(N) times its amplitude.
         let gain = (radar.samples as f64 - 1.0) / 2.0 / (radar.samples as f64).sqrt();
-        // Cells far below the logarithm's guard are beyond being wrong.
+        // Errors of cells far below the logarithm's guard don't count.
         let scale = gain * plan::amplitude_bound(radar, reflectors).max(crate::maps::LOG_GUARD);
         Case { radar, scene: scene(reflectors), judge: JudgedProfiles::new(radar, reflectors), scale }
     }
 
     /// # Panics
-    /// Where a value isn't finite, or an algorithm breaks its promise.
+    /// Where a value isn't finite, or an algorithm exceeds its tolerance.
     fn holds(&self, name: &str) -> Vec<Outcome> {
         let mut outcomes = Vec::new();
         for algorithm in Algorithm::ALL {
@@ -133,7 +133,7 @@ impl<'a> Case<'a> {
         assert_eq!(maps.iter().flatten().map(out_of_range).sum::<usize>(), 0, "{name}, {algorithm}");
         let found = |n| profile(self.radar, signal.samples.view(), n);
         let signal_error = self.judge.error(self.radar, found, self.scale);
-        // The rounding of the direct formula is the thesis' own, and promises nothing.
+        // The direct formula has the rounding of the thesis, and no tolerance.
         let most = if algorithm == Algorithm::Exact { 1e-12 } else { f64::MAX };
         assert!(signal_error <= most, "{name}, {algorithm}: {signal_error:e}");
         Outcome { algorithm, signal_error }
@@ -147,7 +147,7 @@ fn every_scene_holds(radar: &Radar, coincident: usize) {
         outcomes.extend(Case::new(radar, &reflectors).holds(name));
     }
     assert!(outcomes.len() > 100, "{} cases", outcomes.len());
-    // A run that can't see an error proves nothing: the plain formula's rounding and f32's must show.
+    // A run without any visible error proves nothing: the plain formula's rounding and f32's must show.
     assert!(outcomes.iter().any(|o| o.algorithm == Algorithm::Direct && o.signal_error > 1e-14));
 }
 
@@ -176,12 +176,12 @@ fn random_object(rng: &mut impl RngExt) -> Object {
     }
 }
 
-/// Adds, removes, replaces, reorders and moves objects at random (`seed`): where the engine ends, and that its caches don't grow.
+/// Adds, removes, replaces, reorders and moves objects at random (`seed`), and compares the engine's state with a fresh build; its caches must not grow.
 fn edits_end_at_a_fresh_build(radar: &Radar, wanted: &MapRequest, edits: usize, seed: u64) {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let mut engine = Engine::new(radar.clone());
     let mut scene = Scene { objects: (0..12).map(|_| random_object(&mut rng)).collect(), ..Scene::default() };
-    // The error of both engines, and the half of it that the one may gather before it starts afresh.
+    // The errors of both engines, and half a tolerance that the edited one may gather before it recomputes the sum.
     let most = 2.5 * tolerance_for(wanted.floor, wanted.normalisation);
     let (mut worst, mut early_bytes) = (0.0f64, None);
     for edit in 1..=edits {
@@ -205,7 +205,7 @@ fn edits_end_at_a_fresh_build(radar: &Radar, wanted: &MapRequest, edits: usize, 
     assert!(engine.cache_bytes() <= early_bytes.unwrap(), "the caches grow");
 }
 
-/// Largest difference of range cells, relative to a cell in which all echoes of the scene agree, as tolerances are.
+/// Largest difference of range cells, relative to a cell in which all echoes of the scene are in phase, as tolerances are.
 fn apart(radar: &Radar, engine: &Engine, fresh: &Engine, scene: &Scene) -> f64 {
     let weights: f64 = radar.window.weights(radar.samples).iter().sum();
     let together = amplitude_bound(radar, &scene.reflectors()) * weights / (radar.samples as f64).sqrt();
@@ -221,7 +221,7 @@ fn edits_over_the_thesis_floor_end_at_a_fresh_build() {
     edits_end_at_a_fresh_build(&radar, &MapRequest { ends: false, ..MapRequest::default() }, 1500, 2);
 }
 
-/// Where only the rows that changed are computed again.
+/// Edits where only the rows that changed are computed again.
 #[test]
 fn edits_over_no_floor_end_at_a_fresh_build() {
     let normalisation = Normalisation::DynamicRange(Decibels(100.0));

@@ -1,4 +1,4 @@
-//! Figures of repeated measurements.
+//! Statistics of repeated time measurements.
 
 use super::BareTransform;
 
@@ -8,7 +8,7 @@ pub(super) fn bare_ms(repeats: usize) -> f64 {
     quantile(&mut times[2..], 0.5)
 }
 
-/// The time that this part of `times` does not exceed; 0 for none. Sorts them.
+/// The quantile of `times` below which the part `part` lies; 0 for none. Sorts `times`.
 pub(super) fn quantile(times: &mut [f64], part: f64) -> f64 {
     times.sort_by(f64::total_cmp);
     times.get((times.len().saturating_sub(1) as f64 * part).round() as usize).copied().unwrap_or_default()

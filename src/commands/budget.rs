@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// The numbers are those of [radar.budget] in the scene: transmit_power_dbm, antenna_gain_dbi, noise_figure_db, and half_power_width_degrees
 /// where elements have a pattern. Without that table they are the usual ones: 12 dBm, 10 dBi, 12 dB, isotropic. Noise is kTBF at 290 K in the
 /// bandwidth samples / chirp_seconds. The SNR of each object of the scene that is made of points follows, where it stands. Ends
-/// and array add their elements in phase, as a map does beyond the far field. What is lost between two cells is left out. Levels in dBm are powers in
+/// and array add their elements in phase, as a map does beyond the far field. The loss of an echo between two cells is left out. Levels in dBm are powers in
 /// the receiver. `--floor dbm=LEVEL` of other commands is such a level where the scene has a table [radar.budget], and else that of a sample.
 ///
 /// --json prints one object: budget, sample_rate_hz, object and objects (name, cross_section_dbsm, range_metres, angle_degrees, received_dbm,

@@ -214,7 +214,7 @@ fn chart(scenes: u32, rows: &[RobustnessRow], methods: &[Arc<dyn Reconstructor>]
         lines.push(ChartLine { dot: 4, ..means.named(method.name()) });
     }
     LineChart {
-        caption: "What elements that are off cost each method".to_owned(),
+        caption: "Cost of element errors to each method".to_owned(),
         size: (900, 540),
         x: ChartAxis::new(
             format!("errors of the elements, times {} (standard deviations)", unit(rows)),

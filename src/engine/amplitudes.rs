@@ -1,4 +1,4 @@
-//! How large the echoes of each object of the last scene can be: those of an object that is as it was are not looked at again.
+//! Bounds of the echo amplitudes of each object of the last scene. Only changed objects are evaluated again.
 
 use crate::radar::Radar;
 use crate::scattering::SeenObject;
@@ -10,7 +10,7 @@ pub(super) struct Amplitudes {
 }
 
 impl Amplitudes {
-    /// Sum of the largest amplitudes of all echoes of these objects, as [`plan::amplitude_bounds`] has them, and remembers them.
+    /// Sum of the largest amplitudes of all echoes of these objects, by [`plan::amplitude_bounds`]. Keeps the bound of each object.
     pub fn bound(&mut self, radar: &Radar, seen: &[SeenObject]) -> f64 {
         let is_known = |at: usize, one: &SeenObject| self.known.get(at).is_some_and(|(known, _)| known == one);
         let missing: Vec<usize> =
@@ -27,7 +27,7 @@ impl Amplitudes {
         self.known.iter().map(|(_, bound)| bound).sum()
     }
 
-    /// Forgets them.
+    /// Drops all kept bounds.
     pub fn forget(&mut self) {
         self.known.clear();
     }

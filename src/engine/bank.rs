@@ -1,4 +1,4 @@
-//! The sums the engine keeps, in one precision: range profiles of the objects at rest and of those being edited.
+//! The sums that the engine keeps in one precision: range profiles of the objects at rest and of those being edited.
 
 use super::change::SceneChange;
 use super::frame::MapRequest;
@@ -19,7 +19,7 @@ pub(super) struct BankUpdate<'a> {
     pub task: &'a Task,
     pub radar: &'a Radar,
     pub scene: &'a Scene,
-    /// Its objects, with what hides them.
+    /// Objects of the scene, each with those that hide it.
     pub seen: &'a [SeenObject],
     pub wanted: &'a MapRequest,
     pub plan: Plan,
@@ -36,8 +36,7 @@ impl BankUpdate<'_> {
         }
     }
 
-    /// Ten standard deviations of a floor with a level of its own, 0 for the others: only beneath such a floor can all echoes lie far below
-    /// the noise.
+    /// Ten standard deviations of a floor with a level of its own, 0 for the others. Only over such a floor can all echoes lie far below the noise.
     fn noise_amplitude(&self) -> f64 {
         self.wanted.floor.level_variance(self.radar).map_or(0.0, |variance| 10.0 * variance.sqrt())
     }
@@ -49,14 +48,14 @@ impl BankUpdate<'_> {
         if half.is_finite() { half } else { 0.0 }
     }
 
-    /// Two bounds of the amplitudes of objects that leave the sum: of their echoes as they are, and with every echo counted as three quarters of
-    /// [`BankUpdate::quiet`] at least. The error of a weak echo does not shrink with it: a quarter of the tolerance times twice that amplitude
-    /// from when it was added, and times that amplitude from when it is subtracted.
+    /// Two bounds of the amplitudes of objects that leave the sum. The first is of their echoes. The second counts every echo as at least three quarters of
+    /// [`BankUpdate::quiet`], since the error of a weak echo does not shrink with it. Its error is a quarter of the tolerance times twice `quiet` from the
+    /// addition, and times `quiet` from the subtraction.
     fn leaving(&self, objects: &[SeenObject]) -> [f64; 2] {
         let bounds = plan::amplitude_bounds(self.radar, objects.iter());
         let counted = objects.iter().zip(&bounds).map(|(one, bound)| {
             let (count, least) = (one.echo_count() as f64, 0.75 * self.quiet());
-            // One echo of so many has the mean at least.
+            // At least one of the echoes has the mean amplitude.
             bound + least * if *bound >= least * count { (count - 1.0).max(0.0) } else { count }
         });
         [bounds.iter().sum(), counted.sum()]
@@ -79,10 +78,10 @@ impl BankUpdate<'_> {
 
 pub(super) struct KeptDecades {
     pub decades: FastLogMap,
-    /// Rows that no longer show what the sums hold.
+    /// Rows that differ from the sums.
     pub stale: Rows,
     over_noise: bool,
-    /// Decades of its silent cells.
+    /// Decades of silent cells.
     silence: f32,
 }
 
@@ -101,7 +100,7 @@ impl KeptDecades {
 pub(super) struct Group<T, const W: usize> {
     objects: Vec<SeenObject>,
     pub(super) profiles: BlockProfiles<T, W>,
-    /// Largest [`BankUpdate::quiet`] that any of them was summed with, where quiet echoes have few rows.
+    /// Largest [`BankUpdate::quiet`] that any of the objects was summed with, where quiet echoes have few rows.
     quiet: f64,
     variance: Option<Vec<f64>>,
 }
@@ -114,7 +113,7 @@ impl<T: Real, const W: usize> Group<T, W> {
     fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[SeenObject], job: &BankUpdate<'_>) {
         let echoing = Echoing::seen(job.radar, objects);
         synthesis.range_profiles_beside(&echoing, job.quiet(), &mut self.profiles, job.task);
-        // The other algorithms take quiet echoes as they take all.
+        // The other algorithms treat quiet echoes as all others.
         let has_few_rows = synthesis.plan().algorithm == Algorithm::ClosedForm;
         self.quiet = if has_few_rows { job.quiet() } else { 0.0 };
         self.variance = None;
@@ -156,7 +155,7 @@ pub(super) struct Bank<T: Real, const W: usize> {
 struct Built {
     tolerance: f64,
     forced: Option<Algorithm>,
-    /// Bound of what additions and subtractions have left behind, in units of amplitude.
+    /// Bound of the rounding left by additions and subtractions, in units of amplitude.
     rounding: f64,
 }
 
@@ -206,9 +205,9 @@ impl<T: Real, const W: usize> Bank<T, W> {
         }
     }
 
-    /// Brings those of `maps` that the job misses up to the job's scene, row by row where only few changed.
+    /// Updates the missing maps of the job to its scene, row by row where only few rows changed.
     /// # Errors
-    /// [`Cancelled`]: nothing is held any more, and `maps` are of no use.
+    /// [`Cancelled`]: the sums are dropped, and `maps` can't be used.
     pub fn run(
         &mut self,
         job: &BankUpdate<'_>,
@@ -242,7 +241,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
             }
             let Some(kept) = kept else { continue };
             kept.stale.extend(&changed);
-            // The level of most noise follows the scene, and with it every row.
+            // The level of most noise follows the scene, so that every row changes.
             if noise.is_some() || kept.over_noise || kept.silence != silence {
                 kept.stale = Rows::all(job.radar.samples);
             }
@@ -267,20 +266,20 @@ impl<T: Real, const W: usize> Bank<T, W> {
         Ok(())
     }
 
-    /// Makes the two groups hold the scene; says how, and which rows may have changed.
+    /// Updates the two groups to the scene. Returns a description for the report, and the rows that may have changed.
     fn follow(&mut self, job: &BankUpdate<'_>) -> (String, Rows) {
         let scene = job.seen;
         let total = job.scene.echo_count();
         let limit = job.amplitude * (job.plan.tolerance / 2.0).max(4.0 * T::EPSILON);
         let usable = self.built.as_ref().filter(|b| b.tolerance <= job.plan.tolerance && b.forced == job.forced);
-        // Where a strong object is gone, the others were summed with too large an error.
+        // After a strong object has left, the others' errors of summation are too large.
         let usable = usable.filter(|_| self.rest.quiet <= 2.0 * job.quiet());
         let change = usable.map(|built| {
             let change = SceneChange::between(&self.rest.objects, &self.active.objects, scene);
             let more = if !change.settles {
                 0.0
             } else {
-                // What is taken away was evaluated another way than when it was added.
+                // The objects are subtracted by another algorithm than they were added by.
                 let [leaving, counted] = job.leaving(&change.leaving);
                 2.0 * T::EPSILON * (job.amplitude + leaving) + job.plan.tolerance * counted
             };
@@ -316,13 +315,13 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 let how = format!("{} in {}", plan.algorithm, T::NAME);
                 (format!("{evaluated} of {}, {how}, the others as before", job.counted(total)), changed)
             }
-            // What moved among bodies is kept apart at once: with what it hides it may be most of the scene, and will move again.
+            // Moved bodies and the objects they hide stay apart from the sum at rest. They may be most of the scene, and will move again.
             Some((change, ..)) if job.scene.has_bodies() => self.build_anew(job, &change.staying, &change.arriving),
             _ => self.build_anew(job, job.seen, &[]),
         }
     }
 
-    /// Makes the sum at rest hold `staying`, and the other `moving`: together the whole scene.
+    /// Sums `staying` at rest and `moving` apart from it; together they are the whole scene.
     fn build_anew(&mut self, job: &BankUpdate<'_>, staying: &[SeenObject], moving: &[SeenObject]) -> (String, Rows) {
         let total = job.scene.echo_count();
         let synthesis = self.synthesis(job, total);
@@ -341,7 +340,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
         (format!("{} from scratch, {} in {}", job.counted(total), plan.algorithm, T::NAME), changed)
     }
 
-    /// Standard deviation of the floor's noise at every element, in blocks; the unit noise is made ready too.
+    /// Standard deviation of the floor's noise at every element, in blocks of lanes; also makes the unit noise.
     fn deviation(&mut self, job: &BankUpdate<'_>) -> Option<Vec<Lanes<T, W>>> {
         let variance: Vec<f64> = match job.wanted.floor {
             Floor::Exact => return None,

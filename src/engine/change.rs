@@ -1,23 +1,23 @@
-//! What has to be done so that the sums the engine keeps become another scene. An object that something else hides than before is another
-//! one: so a body that moves has itself evaluated, and what it hides or reveals, and nothing else.
+//! The change from the sums that the engine keeps to another scene. An object counts as changed when other objects hide it than before. A moved body is thus
+//! evaluated with the objects that it hides or reveals, and no others.
 
 use crate::scattering::SeenObject;
 
 pub(super) struct SceneChange {
-    /// Whether the active ones are added to the sum at rest first.
+    /// Whether the active objects are first added to the sum at rest.
     pub settles: bool,
-    /// Stay in the sum at rest.
+    /// Objects that stay in the sum at rest.
     pub staying: Vec<SeenObject>,
-    /// Are evaluated and taken out of the sum at rest.
+    /// Objects to evaluate and subtract from the sum at rest.
     pub leaving: Vec<SeenObject>,
-    /// Are evaluated and become the active ones.
+    /// Objects to evaluate as the active ones.
     pub arriving: Vec<SeenObject>,
 }
 
 impl SceneChange {
     pub fn between(rest: &[SeenObject], active: &[SeenObject], scene: &[SeenObject]) -> SceneChange {
-        // Both sums are unordered: compare the objects as multisets. Edits touch few of them, so that what is left to
-        // search for after walking both lists in step is short.
+        // Both sums are unordered, so objects are compared as multisets. Edits touch few of them, so that few remain to be searched for after a pass over both
+        // lists in step.
         let mut unmatched: Vec<&SeenObject> = Vec::new();
         let mut staying = Vec::with_capacity(rest.len());
         let mut arriving: Vec<SeenObject> = Vec::new();
@@ -47,7 +47,7 @@ impl SceneChange {
         if at_rest && (stirring.arriving == active || count(&stirring.arriving) <= 1) {
             return stirring;
         }
-        // The active ones come to rest first, and those of them that are gone or changed leave too.
+        // The active objects are added to the sum at rest first; those that are gone or changed then leave it.
         let mut settling = SceneChange {
             settles: true,
             staying: stirring.staying.clone(),
@@ -60,11 +60,11 @@ impl SceneChange {
                 None => settling.leaving.push(object.clone()),
             }
         }
-        // As long as the active ones alone change, evaluating them again leaves the sum at rest without new rounding errors.
+        // As long as only active objects change, evaluating them again adds no rounding errors to the sum at rest.
         if at_rest && stirring.cost() <= settling.cost() { stirring } else { settling }
     }
 
-    /// Echoes to evaluate.
+    /// Number of echoes to evaluate.
     pub fn cost(&self) -> usize {
         count(&self.leaving) + count(&self.arriving)
     }

@@ -1,4 +1,4 @@
-//! What is asked of the engine, and what it answers with.
+//! Requests to the engine and its results.
 
 use super::report::EngineReport;
 use crate::maps::{Aperture, LambdaScale, Normalisation, RangeAngleMap};
@@ -6,22 +6,22 @@ use crate::radar::End;
 use crate::signal::{Floor, TwoEnds};
 use std::sync::Arc;
 
-/// Which maps are looked at; no other is computed.
+/// A request for maps and samples of a scene. The engine computes no others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapRequest {
     /// The floor beneath the reflectors.
     pub floor: Floor,
-    /// Picks the noise of the floor.
+    /// Seed of the floor's noise.
     pub seed: u64,
-    /// How the maps are normalised.
+    /// Normalisation of the maps.
     pub normalisation: Normalisation,
-    /// Whether the map of the first end is looked at.
+    /// Whether the map of the first end is wanted.
     pub first: bool,
-    /// Whether the map of the last end is looked at.
+    /// Whether the map of the last end is wanted.
     pub last: bool,
-    /// Whether the map of the whole array is looked at.
+    /// Whether the map of the whole array is wanted.
     pub full: bool,
-    /// Whether the samples of the two ends are needed, for a reconstruction.
+    /// Whether the samples of the two ends are wanted, for a reconstruction.
     pub ends: bool,
 }
 
@@ -50,11 +50,11 @@ impl Default for MapRequest {
 pub struct ReadyMap {
     /// Lambda, `[range bins, columns]`.
     pub lambda: Arc<RangeAngleMap>,
-    /// The straight line between decades of amplitude and Lambda.
+    /// Scale from decades of amplitude to Lambda.
     pub scale: LambdaScale,
 }
 
-/// Everything that was wanted of one scene.
+/// The requested maps and samples of one scene.
 #[derive(Debug, Clone)]
 pub struct EngineFrame {
     /// Map of the first end, if wanted.
@@ -65,14 +65,14 @@ pub struct EngineFrame {
     pub full: Option<ReadyMap>,
     /// Samples of both ends, if wanted.
     pub ends: Option<Arc<TwoEnds>>,
-    /// Whether it was computed as every command computes it ([`super::Engine::settle`]): figures may be made of it.
+    /// Whether the maps have the same bits as a command's ([`super::Engine::settle`]), so that figures may be made of them.
     pub settled: bool,
-    /// What each stage cost, and what was skipped and why.
+    /// Time of each stage, and the reasons for skipped ones.
     pub report: EngineReport,
 }
 
 impl EngineFrame {
-    /// The map of one aperture, if it was wanted.
+    /// The map of one aperture, if it was requested.
     pub fn map(&self, aperture: Aperture) -> Option<&ReadyMap> {
         match aperture {
             Aperture::Full => self.full.as_ref(),

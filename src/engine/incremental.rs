@@ -1,8 +1,8 @@
-//! The incremental engine, without threads: its owner decides on which thread it runs.
+//! The incremental engine, without threads of its own.
 //!
-//! The signal is a sum over objects. The engine keeps the range profiles of the objects at rest and, apart, of those being
-//! edited: dragging one of many objects evaluates that one alone. Taking an object out of the sum at rest leaves rounding behind;
-//! how much is bounded as it goes, and the sum is made afresh before it could show.
+//! The signal is a sum over objects. The engine keeps the range profiles of the objects at rest and, apart from them, of those being edited: a drag of one of
+//! many objects evaluates that one only. Subtracting an object from the sum at rest leaves rounding errors. The engine keeps a bound of them and sums anew
+//! before they could show in a map.
 
 use super::amplitudes::Amplitudes;
 use super::bank::{Bank, BankUpdate};
@@ -22,7 +22,7 @@ use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Keeps what it computed for one radar and recomputes only what a change touches.
+/// The engine of one radar, which keeps its results and recomputes only those that a change affects.
 pub struct Engine {
     radar: Radar,
     forced: Forced,
@@ -34,31 +34,31 @@ pub struct Engine {
     amplitudes: Amplitudes,
 }
 
-/// Choices taken from the planner; `None` leaves them to it.
+/// Overrides of the planner's choices; `None` leaves a choice to the planner.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Forced {
     /// Algorithm for every sum; [`Algorithm::Direct`] and [`Algorithm::Exact`] have no fast path and are evaluated by phasor split.
     pub algorithm: Option<Algorithm>,
-    /// Precision; where single precision would show its rounding as the picture, double is used and the report says so ([`tolerance::refusal`]).
+    /// Precision. Double is used where the rounding of single precision would show in the maps, and the report says so ([`tolerance::refusal`]).
     pub precision: Option<Precision>,
     /// Error of a sample relative to the amplitudes.
     pub tolerance: Option<f64>,
 }
 
 impl Engine {
-    /// An engine that has computed nothing yet. The radar must be valid ([`Radar::validate`]).
+    /// An engine without results. The radar must be valid ([`Radar::validate`]).
     pub fn new(radar: Radar) -> Self {
         let (forced, amplitudes) = (Forced::default(), Amplitudes::default());
         Engine { radar, forced, single: None, double: None, last: None, shown: None, settled: None, amplitudes }
     }
 
-    /// Takes choices from the planner and drops every cache.
+    /// Overrides the planner's choices and drops every cache.
     pub fn force(&mut self, forced: Forced) {
         self.forced = forced;
         self.forget();
     }
 
-    /// Forgets everything that was computed of the last scene, but keeps the memory it lay in: the next update starts from scratch.
+    /// Drops all results of the last scene, but keeps their memory; the next update starts from scratch.
     pub fn forget(&mut self) {
         self.settled = None;
         self.amplitudes.forget();
@@ -73,12 +73,12 @@ impl Engine {
         }
     }
 
-    /// The radar it simulates.
+    /// The radar of the engine.
     pub fn radar(&self) -> &Radar {
         &self.radar
     }
 
-    /// Range profile of one element as the last update left it, `[range bins]`, without the floor; `None` if it computed none.
+    /// Range profile of one element after the last update, `[range bins]`, without the floor; `None` if there is none.
     pub fn range_profile(&self, element: usize) -> Option<Vec<Complex64>> {
         match self.last? {
             Precision::F32 => self.single.as_ref()?.profile(element),
@@ -86,7 +86,7 @@ impl Engine {
         }
     }
 
-    /// Bytes held in caches.
+    /// Size of all caches, bytes.
     pub fn cache_bytes(&self) -> usize {
         let banks = self.single.as_ref().map_or(0, Bank::bytes) + self.double.as_ref().map_or(0, Bank::bytes);
         let cells = self.radar.samples * self.radar.elements * size_of::<f32>();
@@ -99,15 +99,15 @@ impl Engine {
         banks + (shown + settled) * cells
     }
 
-    /// Computes what is wanted of `scene`; what did not change since the last call is the same `Arc` as then. A scene that was settled
-    /// stays so. A disturbed one is settled at once: what it is made of isn't the sum of its objects. So is one whose maps are focused.
+    /// The wanted maps and samples of `scene`. Unchanged ones are the same `Arc` as in the last call. A settled scene stays settled. A scene with disturbances
+    /// is always settled, since it isn't the sum of its objects, and so is one with focused maps.
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn update(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
         self.update_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
     }
 
-    /// [`Engine::update`], unless `task` is cancelled before it is done: then the next update starts from scratch.
+    /// [`Engine::update`] that `task` can cancel. After that, the next update starts from scratch.
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
     pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
@@ -126,15 +126,15 @@ impl Engine {
         Ok(frame)
     }
 
-    /// Computes what is wanted of `scene` as every command does, by [`crate::signal::simulate`] and the plain transforms in f64: the same
-    /// bits after any earlier scene. Several times slower than an update; for scenes at rest, and whenever figures are made.
+    /// The wanted maps and samples of `scene` by [`crate::signal::simulate`] and the plain transforms in f64, as a command computes them: the same bits after
+    /// any earlier scene. It takes several times longer than an update. For scenes at rest, and for figures.
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn settle(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
         self.settle_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
     }
 
-    /// [`Engine::settle`], unless `task` is cancelled before it is done; updates go on from where they were.
+    /// [`Engine::settle`] that `task` can cancel. Later updates are not affected.
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
     pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
@@ -183,10 +183,10 @@ impl Engine {
         self.forced.tolerance.unwrap_or_else(|| tolerance::tolerance_for(wanted.floor, wanted.normalisation))
     }
 
-    /// What was shown last, if it is good enough for what is wanted; else its memory alone.
+    /// The maps of the last frame, if they are accurate enough for `wanted`; otherwise only their buffers.
     fn recall(&mut self, scene: &Scene, wanted: &MapRequest) -> ShownMaps {
         let tolerance = self.tolerance(wanted);
-        // Maps that are fine at a fixed range may be a trap when normalised by their minimum.
+        // Maps accurate enough for a fixed range may show rounding when normalised by their minimum.
         let nothing = Sum { algorithm: Algorithm::Split, reflectors: 0, amplitude: 0.0 };
         let trap = self.last == Some(Precision::F32)
             && tolerance::refusal(Precision::F32, &nothing, wanted.floor, wanted.normalisation).is_some();
@@ -226,7 +226,7 @@ impl Engine {
         let (radar, forced) = (&self.radar, self.forced.algorithm);
         let job = BankUpdate { task, radar, scene, seen: &seen, wanted, plan: chosen, forced, amplitude, missing };
         if self.last.replace(chosen.precision) != Some(chosen.precision) {
-            // What the maps show was summed by the other bank.
+            // The shown maps were summed by the other bank.
             shown.decades.iter_mut().flatten().for_each(|kept| kept.stale = Rows::all(radar.samples));
         }
         let maps = &mut shown.decades;

@@ -1,11 +1,11 @@
-//! The incremental engine: what changed, what is looked at, and nothing else computed.
+//! The incremental engine, which computes only wanted maps and only their changed parts.
 //!
-//! [`Engine::update`] takes a scene and a [`MapRequest`] and gives a [`EngineFrame`]. Results that did not change are the same
-//! [`Arc`](std::sync::Arc) as before, so that a painter tells with `Arc::ptr_eq` that nothing needs drawing.
+//! [`Engine::update`] takes a scene and a [`MapRequest`] and returns an [`EngineFrame`]. Unchanged maps are the same [`Arc`](std::sync::Arc) as before, so
+//! that a painter can skip them by `Arc::ptr_eq`.
 //!
-//! What it keeps between updates leaves its rounding in the maps: less than the tolerance asked for, but not the same bits as from scratch. The
-//! samples of the ends are exempt from that, and once a scene rests [`Engine::settle`] computes its maps as every command does: the same
-//! scene, seed and settings are the same bits, after any earlier scene.
+//! The sums kept between updates leave rounding errors in the maps, below the requested tolerance. The maps then don't have the same bits as from scratch. The
+//! samples of the ends always do. For a scene at rest [`Engine::settle`] computes the maps as every command does: the same scene, seed and settings give the
+//! same bits, after any earlier scene.
 
 mod amplitudes;
 mod bank;

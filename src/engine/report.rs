@@ -1,14 +1,14 @@
-//! What each stage of an update cost, and what was skipped and why.
+//! Times of the stages of an update, and the reasons for skipped ones.
 
 use std::fmt;
 use std::time::Duration;
 
-/// A stage of an update, in the order they run.
+/// A stage of an update, in the order of their runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EngineStage {
     /// Reflectors to range profiles.
     Signal,
-    /// The floor beneath them.
+    /// The floor beneath the reflectors.
     Noise,
     /// The samples of the two ends.
     Ends,
@@ -41,23 +41,23 @@ impl fmt::Display for EngineStage {
     }
 }
 
-/// What became of a stage.
+/// The outcome of a stage.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StageOutcome {
-    /// It ran; the text says what it did.
+    /// The stage ran, with a description of its work.
     Computed(String),
-    /// It did not run; the text says why.
+    /// The stage did not run, for this reason.
     Skipped(&'static str),
 }
 
 /// One stage of an update.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StageReport {
-    /// Which.
+    /// The stage.
     pub stage: EngineStage,
-    /// How long it took; zero when skipped.
+    /// Duration of the stage; zero when skipped.
     pub took: Duration,
-    /// What it did or why it was skipped.
+    /// The stage's work or the reason why it was skipped.
     pub outcome: StageOutcome,
 }
 
@@ -66,7 +66,7 @@ pub struct StageReport {
 pub struct EngineReport {
     /// The stages, in order.
     pub stages: Vec<StageReport>,
-    /// From the call to the finished frame.
+    /// Time from the call to the finished frame.
     pub total: Duration,
 }
 

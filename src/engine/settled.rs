@@ -1,4 +1,4 @@
-//! A scene at rest, computed as every command computes it.
+//! Maps of a scene at rest, computed as every command computes them.
 
 use super::frame::{EngineFrame, MapRequest, ReadyMap};
 use super::report::{EngineReport, EngineStage};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
 
-/// The maps of one scene by [`signal::simulate`] and the plain transforms in f64; nothing of any other scene is in them.
+/// The maps of one scene by [`signal::simulate`] and the plain transforms in f64, independent of any other scene.
 pub(super) struct SettledMaps {
     objects: Vec<Object>,
     shadows: bool,
@@ -27,7 +27,7 @@ pub(super) struct SettledMaps {
 }
 
 impl SettledMaps {
-    /// Computes what is wanted of `scene`, and adds to `report` what it cost.
+    /// Computes the wanted maps of `scene`, and adds the stages' times to `report`.
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, or `task` was cancelled.
     pub fn of(
@@ -40,7 +40,7 @@ impl SettledMaps {
         let start = Instant::now();
         let signal = signal::simulate_for(task, radar, scene, wanted.floor, wanted.seed)?;
         let ends = Arc::new(signal.two_ends(radar));
-        // Plain maps share their range profiles; focused ones have none in common.
+        // Plain maps share their range profiles; each focused map has its own.
         let profiles = (!radar.focus_off_line).then(|| range_transform(radar, &signal));
         report.computed(EngineStage::Signal, start.elapsed(), "from scratch in f64, as every command does");
         let mut logs = [None, None, None];
@@ -60,7 +60,7 @@ impl SettledMaps {
         Ok(SettledMaps { objects, shadows, disturbances, floor, seed, ends, logs, normalisation, maps })
     }
 
-    /// Whether it has all that is wanted of `scene`.
+    /// Whether the maps include all that `wanted` asks of `scene`.
     pub fn has(&self, scene: &Scene, wanted: &MapRequest) -> bool {
         let visible = wanted.visible();
         self.objects == scene.objects
@@ -70,12 +70,12 @@ impl SettledMaps {
             && (0..3).all(|i| !visible[i] || self.logs[i].is_some())
     }
 
-    /// Maps kept.
+    /// Number of kept maps.
     pub fn maps(&self) -> usize {
         self.logs.iter().flatten().count()
     }
 
-    /// What is wanted; maps that were given before are the same `Arc` as then.
+    /// The wanted maps and samples; maps returned before are the same `Arc`.
     pub fn frame(&mut self, wanted: &MapRequest, mut report: EngineReport) -> EngineFrame {
         let start = Instant::now();
         if self.normalisation != wanted.normalisation {

@@ -1,4 +1,4 @@
-//! What the last frame showed.
+//! Maps of the last frame.
 
 use super::bank::KeptDecades;
 use super::frame::{MapRequest, ReadyMap};
@@ -21,7 +21,7 @@ pub(super) struct ShownMaps {
     pub normalisation: Normalisation,
     pub ends: Option<Arc<TwoEnds>>,
     pub decades: [Option<KeptDecades>; 3],
-    /// Which of `decades` show these objects.
+    /// Whether each of `decades` is of `objects`.
     pub current: [bool; 3],
     pub maps: [Option<ReadyMap>; 3],
     /// Buffers of earlier maps, reused once no frame holds them.
@@ -29,7 +29,7 @@ pub(super) struct ShownMaps {
 }
 
 impl ShownMaps {
-    /// Nothing yet of a new scene; buffers come from what was shown before.
+    /// No maps yet of a new scene; buffers come from the maps `before`.
     pub fn of(scene: &Scene, wanted: &MapRequest, tolerance: f64, before: Option<ShownMaps>) -> Self {
         let (mut spare, mut decades) = (Vec::new(), [None, None, None]);
         if let Some(before) = before {
@@ -54,13 +54,13 @@ impl ShownMaps {
         }
     }
 
-    /// Holds nothing of any scene any more but buffers: no update is content with this tolerance.
+    /// Drops the scene but keeps buffers: no request accepts the infinite tolerance.
     pub fn forget(&mut self, radar: &Radar) {
         self.tolerance = f64::INFINITY;
         self.decades.iter_mut().flatten().for_each(|kept| kept.stale = Rows::all(radar.samples));
     }
 
-    /// Lambda of every visible map that is new or normalised another way than before.
+    /// Computes Lambda of every visible map that is new or has another normalisation than before.
     pub fn normalise(
         &mut self,
         visible: [bool; 3],

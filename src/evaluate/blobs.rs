@@ -4,16 +4,16 @@ use crate::maps::{Mask, RangeAngleMap};
 use crate::radar::Radar;
 use ndarray::Array2;
 
-/// How far from its place a blob is looked for: range bins, and as a part of all columns.
+/// Largest distance of a blob from the place it is searched at: range bins, and as a divisor of the number of columns.
 const NEAR_BINS: usize = 8;
 const NEAR_PART: usize = 48;
 
 /// Regions of touching cells: 8 neighbours, columns wrap around as angles do.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blobs {
-    /// Which blob a cell belongs to, counted from 1; 0 outside all. `[range bins, columns]`.
+    /// Number of the blob of each cell, from 1; 0 outside all blobs. `[range bins, columns]`.
     pub labels: Array2<u32>,
-    /// Cells of every blob: blob 1 first.
+    /// Cells (range bin, column) of every blob, blob 1 first.
     pub cells: Vec<Vec<[usize; 2]>>,
 }
 
@@ -47,7 +47,7 @@ impl Blobs {
         Blobs { labels, cells }
     }
 
-    /// The blob that covers most of `cells`, if any does.
+    /// The blob that covers most of `cells`; `None` where no blob covers any.
     pub fn most_of(&self, cells: &[[usize; 2]]) -> Option<u32> {
         let mut counts = std::collections::BTreeMap::new();
         for label in cells.iter().map(|&at| self.labels[at]).filter(|l| *l != 0) {
@@ -57,7 +57,7 @@ impl Blobs {
     }
 }
 
-/// How far Lambda falls between the blobs of two places in metres, below the weaker of the two; 0 where the map shows one blob.
+/// The dip of Lambda between the blobs of two places in metres, below the weaker blob; 0 where the map shows one blob.
 ///
 /// Each blob is the brightest cell near the place, on its own side of the middle between both.
 pub fn dip_between(radar: &Radar, map: &RangeAngleMap, places_metres: [[f64; 2]; 2]) -> f32 {

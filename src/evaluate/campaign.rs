@@ -1,4 +1,4 @@
-//! Methods over many scenes: what fills tables 4.1 to 4.3, row by row.
+//! Campaigns: methods over many scenes, whose rows fill tables 4.1 to 4.3.
 
 mod elements;
 mod error;
@@ -27,32 +27,32 @@ use error::set_name;
 use job::SceneJob;
 use rayon::prelude::*;
 
-/// Which scenes methods are tried on.
+/// The scenes on which methods are tried, and the measures of their maps.
 #[derive(Debug, Clone)]
 pub struct Campaign {
     /// The radar of generated scenes.
     pub radar: Radar,
-    /// How generated scenes are made.
+    /// The description after which scenes are generated.
     pub reading: Reading,
-    /// What generated scenes are for; reported figures come from [`Purpose::Test`].
+    /// Purpose of generated scenes; reported figures come from [`Purpose::Test`].
     pub purpose: Purpose,
     /// Seed of generated scenes.
     pub seed: u64,
     /// Number of generated scenes of each kind; of a folder's, all are tried.
     pub count: u32,
-    /// Which of them are this run's.
+    /// Shard of the scenes that this run tries.
     pub shard: Shard,
     /// Noise of the scene.
     pub floor: Floor,
-    /// How every map is normalised.
+    /// Normalisation of every map.
     pub normalisation: Normalisation,
-    /// A detector that is tried on every output beside the method's threshold, if one is.
+    /// A detector that is tried on every output beside the method's threshold, if there is one.
     pub cfar: Option<Cfar>,
-    /// The elements that hear the scenes.
+    /// The elements that measure the scenes.
     pub elements: Elements,
-    /// What outputs are held against.
+    /// The map of the whole array against which outputs are compared.
     pub target: Target,
-    /// Numbers of the elements that methods hear, in place of the two ends.
+    /// Numbers of the elements whose samples methods get, in place of the two ends.
     pub layout: Option<Vec<usize>>,
 }
 
@@ -76,7 +76,7 @@ impl Default for Campaign {
 }
 
 impl Campaign {
-    /// How many of a set's scenes this campaign tries.
+    /// Number of scenes of a set that this campaign tries.
     pub fn scenes(&self, set: &SceneSet) -> u32 {
         self.shard.size(set.len().unwrap_or(self.count))
     }
@@ -105,7 +105,7 @@ impl Campaign {
         self.run_rest(sets, methods, &empty, &|_, _, _| false, task, |row, _, _| on_row(row))
     }
 
-    /// [`Campaign::run`] that goes on without a method where it fails on a scene; the rows that there are, and what failed.
+    /// [`Campaign::run`], continued without a method where it fails on a scene. The answer is the rows found, and the methods that failed.
     /// # Errors
     /// As [`Campaign::run`], but for methods that fail.
     pub fn run_fit(
@@ -123,7 +123,7 @@ impl Campaign {
         Ok((rows, unfit))
     }
 
-    /// For each set, one row a method that says what makes the rows of this campaign and has no figures yet.
+    /// Rows without figures, one a set and method: only the columns that say how the rows of this campaign are made.
     /// # Errors
     /// [`CampaignError`] for a folder whose scenes can't be read, for a kind that finds no room before the radar, and for a set or method that is
     /// there twice.
@@ -177,8 +177,8 @@ impl Campaign {
         sets.iter().map(of_set).collect()
     }
 
-    /// [`Campaign::run`] without the rows that are there already: `is_done` says of a set, a scene and a method whether one is.
-    /// `empty` are [`Campaign::empty_rows`].
+    /// [`Campaign::run`] without the rows that exist already: `is_done` tells whether the row of a set, scene and method exists. `empty` are
+    /// [`Campaign::empty_rows`].
     /// # Errors
     /// As [`Campaign::run`].
     pub fn run_rest(
@@ -193,7 +193,7 @@ impl Campaign {
         self.run_through(sets, methods, empty, is_done, task, on_row, Err)
     }
 
-    /// [`Campaign::run_rest`]; `on_failure` says whether the campaign goes on without a row.
+    /// [`Campaign::run_rest`] whose `on_failure` decides whether the campaign continues after a method's failure.
     #[expect(clippy::too_many_arguments, reason = "what a campaign is run on, and two calls back")]
     fn run_through(
         &self,
@@ -225,7 +225,7 @@ impl Campaign {
                 for (trial, &index) in trials?.iter().zip(batch) {
                     let job = SceneJob { cfar: self.cfar, set, index, trial, request: &request, empty };
                     if !std::mem::replace(&mut warm, true) {
-                        // A method that fails here fails again where its row is asked for, if that is one of the rows.
+                        // A method that fails in this untimed run fails again in the timed one, where its row is asked for.
                         methods.iter().for_each(|&method| drop(job.answer(method)));
                     }
                     rows.extend(job.rows(methods, rest(index), &mut on_row, &mut on_failure)?);
@@ -235,7 +235,7 @@ impl Campaign {
         Ok(rows)
     }
 
-    /// For each set and method, on how many of the scenes the method was trained on other noise, in words; nothing where on none.
+    /// Sentences, one a set and method, with the number of scenes whose noise the method was not trained on; none where that number is 0.
     /// # Errors
     /// [`CampaignError`] names a scene that can't be read.
     pub fn untrained(&self, sets: &[SceneSet], methods: &[&dyn Reconstructor]) -> Result<Vec<String>, CampaignError> {
@@ -270,7 +270,7 @@ impl Campaign {
         Ok(told)
     }
 
-    /// Reads or makes a scene, simulates it, and finds where its objects show.
+    /// Reads or generates scene `index` of a set, and simulates it.
     /// # Errors
     /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {

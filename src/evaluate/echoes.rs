@@ -1,4 +1,4 @@
-//! Detection by echo: of each echo that stands out in the target, whether an output shows it.
+//! Detection by echo: the echoes that stand out in the target, and those of them that an output shows.
 //!
 //! P_D counts cells whose Lambda exceeds 0.9 in the target. The end of a wall lies 30 to 60 dB below its glint and never counts there, so that
 //! a method that finds glints alone looks perfect. Here each echo counts once, in classes of 10 dB below the strongest.
@@ -11,23 +11,23 @@ use std::fmt;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// Classes of 10 dB below the strongest echo; the last one has all that is weaker.
+/// Classes of 10 dB below the strongest echo; the last class also has all weaker echoes.
 pub const CLASSES: usize = 6;
 
 /// An echo counts if it stands out of its surroundings in the target by this much, in dB.
 const STANDS_OUT_DB: f64 = 10.0;
-/// An output shows it if it stands out there by this much, in dB.
+/// An output shows an echo that stands out of its surroundings there by this much, in dB.
 const SHOWN_DB: f64 = 3.0;
-/// No scene has more echoes in one class; a table that says so is damaged.
+/// No scene has more echoes in one class; a table with a larger count is damaged.
 const MAX_ECHOES_OF_CLASS: usize = 1 << 30;
 /// Half a resolution cell, in range bins.
 const HALF_BINS: f64 = 1.0;
-/// The same in columns, for an echo that no near field smears.
+/// Half a resolution cell, in columns, for an echo that no near field smears.
 const HALF_COLUMNS: f64 = 1.5;
-/// How far beyond the cell its surroundings reach, in rows and columns.
+/// Width of an echo's surroundings beyond its cell, in rows and columns.
 const SURROUNDING_CELLS: usize = 5;
 
-/// Echoes by their strength, one number a class; tables of rows have spaces between them.
+/// Numbers of echoes, one a class of strength; tables of rows have spaces between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EchoCounts(pub [usize; CLASSES]);
 
@@ -48,17 +48,17 @@ impl FromStr for EchoCounts {
     }
 }
 
-/// Echoes that stand out in targets, by their strength, and how many of them an output shows.
+/// Numbers of echoes that stand out in targets, and of those that an output shows, by classes of strength.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EchoTally {
     /// Echoes that stand out in the target, one number a class.
     pub there: [usize; CLASSES],
-    /// Those of them that the output shows.
+    /// Echoes among them that the output shows.
     pub found: [usize; CLASSES],
 }
 
 impl EchoTally {
-    /// Adds what was counted elsewhere.
+    /// Adds the counts of `other`.
     pub fn add(&mut self, other: &EchoTally) {
         for class in 0..CLASSES {
             self.there[class] += other.there[class];
@@ -73,17 +73,17 @@ impl EchoTally {
     }
 }
 
-/// Where a map shows an echo: the centre of its peak, in range bins and columns, and the peak's half width in columns.
+/// Place of an echo in a map: the centre of its peak, in range bins and columns, and the peak's half width in columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Shown {
     bin: f64,
     column: f64,
     half_columns: f64,
-    /// How far the echo lies below the scene's strongest, in dB.
+    /// Level of the echo below the scene's strongest, in dB.
     below_db: f64,
 }
 
-/// Where a map shows the echoes of `scene`, except those of rough surfaces, which have no place of their own.
+/// Places of the echoes of `scene` in a map, without those of rough surfaces, which have no place of their own.
 fn shown(radar: &Radar, scene: &Scene) -> Vec<Shown> {
     let echoing = Echoing::of(radar, scene);
     let mut heard = Vec::new();
@@ -108,7 +108,7 @@ fn shown(radar: &Radar, scene: &Scene) -> Vec<Shown> {
 }
 
 impl Shown {
-    /// Where a map shows an echo from a place, at a range in metres; the caller sets how strong it is.
+    /// The place in a map of an echo from `[x, y]`, at a range in metres; the caller sets its level.
     fn at(radar: &Radar, [x, y]: [f64; 2], range: f64, is_glint: bool) -> Shown {
         let cos = |centre: f64| radar.blob_of(centre, x, y).cos_theta;
         let [first, last] = End::BOTH.map(|end| cos(radar.end_centre_metres(end)));
@@ -127,7 +127,7 @@ impl Shown {
         self.bin + HALF_BINS < radar.samples as f64 - 1.0
     }
 
-    /// The rows of its place, and its first and last column, which may lie beyond the map's edge: columns wrap around.
+    /// The rows of the echo's place, and its first and last column, which may lie beyond the map's edge: columns wrap around.
     fn window(&self, [rows, columns]: [usize; 2]) -> (RangeInclusive<usize>, [i64; 2]) {
         let (low, high) = ((self.bin - HALF_BINS).round().max(0.0), (self.bin + HALF_BINS).round());
         let half = self.half_columns.min(columns as f64 / 4.0);
@@ -174,7 +174,7 @@ fn brightest(map: &RangeAngleMap, echo: &Shown, within: f64) -> Vec<[usize; 2]> 
     cells.into_iter().filter(|cell| f64::from(peak - map.lambda[*cell]) <= within).collect()
 }
 
-/// By how many dB the largest cell of an echo's place stands out of what surrounds it; `None` where it is no peak.
+/// Level of the brightest cell of an echo's place above its surroundings, in dB; `None` where the cell is no peak.
 fn stands_out(map: &RangeAngleMap, echo: &Shown, decibels_of_lambda: f64) -> Option<f64> {
     let (rows, columns) = map.lambda.dim();
     let value = |row: usize, column: i64| map.lambda[[row, column.rem_euclid(columns as i64) as usize]];
@@ -198,7 +198,7 @@ fn stands_out(map: &RangeAngleMap, echo: &Shown, decibels_of_lambda: f64) -> Opt
     Some(f64::from(peak - *median) * decibels_of_lambda)
 }
 
-/// Which echoes of `scene` stand out in `target`, and which of them `output` shows. `scale` is that between the target's decades and Lambda.
+/// Counts the echoes of `scene` that stand out in `target`, and those of them that `output` shows. `scale` is that between the target's decades and Lambda.
 pub fn tally(
     radar: &Radar,
     scene: &Scene,

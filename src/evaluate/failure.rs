@@ -1,10 +1,10 @@
-//! What kind of failure: every object of a scene found, missed, merged with a neighbour or on the wrong tooth of the comb; and ghosts, where
-//! a method sees what isn't there.
+//! Kinds of failure: every object of a scene found, missed, merged with a neighbour or on the wrong tooth of the comb; and ghosts, blobs of an
+//! output where the scene has nothing.
 //!
-//! An object's *footprint* is where it alone, seen by the whole array without noise, exceeds the level at which the scene's target is
-//! thresholded. To the footprint of a body belongs each of its ends, corners and glints that stands 10 dB out of the target: the end of a wall
-//! lies 30 to 60 dB below its glint, and is the wall's all the same. All verdicts are about footprints and the output above the method's threshold, so that they hold for any method, whether or
-//! not it believes in reflectors.
+//! An object's *footprint* is the set of cells at which it alone, seen by the whole array without noise, exceeds the level at which the scene's
+//! target is thresholded. The footprint of a body also has each of its ends, corners and glints that stands 10 dB out of the target: the end of
+//! a wall lies 30 to 60 dB below its glint, and belongs to the wall all the same. All verdicts compare footprints with the output above the
+//! method's threshold, so that they hold for methods with and without reflectors.
 
 use super::TARGET_ETA;
 use super::blobs::Blobs;
@@ -22,36 +22,36 @@ use ndarray::Axis;
 const MIN_FOUND_PART: f64 = 0.5;
 /// Error of a footprint's simulation, relative to the object's amplitudes.
 const TOLERANCE: f64 = 1e-6;
-/// Columns that a wrong tooth is looked for to either side. The two ends' ambiguity has a peak about every column.
+/// Largest shift of a wrong tooth to either side, columns. The two ends' ambiguity has a peak about every column.
 const MAX_TOOTH_COLUMNS: i32 = 8;
 /// An output belongs to another tooth when the target moved there leaves at most this part of the squared error.
 const LEFT_BY_TOOTH: f64 = 0.5;
 /// Cells that a detection may lie from a footprint without being a ghost: side lobes and smeared edges.
 const GHOST_MARGIN: usize = 3;
-/// Smaller specks are no ghosts, cells.
+/// Blobs of fewer cells are no ghosts.
 const GHOST_CELLS: usize = 8;
 
 /// A cell of a map: range bin and column.
 pub type CellIndex = [usize; 2];
 
-/// What became of an object.
+/// Verdict on an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Fate {
-    /// Half of its footprint or more is detected, of a body its strongest echo or half of those that stand out; and nothing is wrong with it.
+    /// Half of its footprint or more is detected; of a body, its strongest echo or half of those that stand out. No other fate applies.
     Found,
-    /// Less of it is detected.
+    /// Less of its footprint is detected.
     Missed,
-    /// One blob covers it and this object, which the target shows apart.
+    /// One blob covers the object and another one, which the target shows apart.
     Merged {
         /// Index of the other object in the scene.
         with: usize,
     },
-    /// It is where it should be but for a shift along the columns, to another tooth of the two ends' ambiguity.
+    /// The object is shown shifted along the columns, on another tooth of the two ends' ambiguity.
     WrongTooth {
-        /// How far, columns.
+        /// The shift, columns.
         columns: i32,
     },
-    /// Too weak beside the others: the target itself doesn't show it.
+    /// The object is too weak beside the others: the target itself doesn't show it.
     Hidden,
 }
 
@@ -67,7 +67,7 @@ impl Fate {
         }
     }
 
-    /// Whether the method did what could be done: found it, or couldn't have.
+    /// Whether the object is found, or too weak in the target to be found.
     pub fn is_right(self) -> bool {
         matches!(self, Fate::Found | Fate::Hidden)
     }
@@ -76,19 +76,19 @@ impl Fate {
 /// A blob of the output where the scene has nothing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ghost {
-    /// Its cells.
+    /// Cells of the blob.
     pub cells: Vec<CellIndex>,
 }
 
-/// What became of every object, and what isn't there.
+/// Fates of all objects of a scene, and the ghosts of an output.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Failures {
-    /// In the scene's order.
+    /// The fate of every object, in the scene's order.
     pub objects: Vec<Fate>,
-    /// Part of each object's footprint that is detected where the object stands, of a body's echoes that stand out, 0 to 1; 0 for one without a
-    /// footprint.
+    /// Part of each object's footprint that is detected at the object's place, of a body the part of its echoes that stand out, 0 to 1; 0 for an
+    /// object without a footprint.
     pub covered: Vec<f64>,
-    /// Blobs far from every object and from what the target shows.
+    /// Blobs far from every object and from every blob of the target.
     pub ghosts: Vec<Ghost>,
 }
 
@@ -98,19 +98,19 @@ impl Failures {
         self.count(|fate| fate == Fate::Missed)
     }
 
-    /// Objects whose fate is of a kind.
+    /// Number of objects whose fate satisfies `is`.
     pub fn count(&self, is: impl Fn(Fate) -> bool) -> usize {
         self.objects.iter().filter(|fate| is(**fate)).count()
     }
 
-    /// The headline: how many of the objects that the target shows are found, and how many blobs are false.
+    /// The headline: numbers of the objects that the target shows, of those found, and of ghosts.
     pub fn verdict(&self) -> String {
         let shown = self.objects.len() - self.count(|fate| fate == Fate::Hidden);
         format!("{} of {shown} found, {} false", self.count(|fate| fate == Fate::Found), self.ghosts.len())
     }
 }
 
-/// Where each object of a scene shows in its target.
+/// The footprints of all objects of a scene.
 #[derive(Debug, Clone)]
 pub struct Footprints {
     objects: Vec<Vec<CellIndex>>,
@@ -189,7 +189,7 @@ impl Footprints {
                 }
             }
         };
-        // What the target shows beside the objects, side lobes and noise, is no ghost either.
+        // Blobs of the target beside the objects, from side lobes and noise, are no ghosts either.
         self.target.cells.iter().flatten().for_each(|&cell| take(cell, 0));
         for (cells, fate) in self.objects.iter().zip(fates) {
             let shift = if let Fate::WrongTooth { columns } = fate { *columns } else { 0 };
@@ -241,7 +241,7 @@ fn moved(column: usize, by: i32, columns: usize) -> usize {
     (column as i64 + i64::from(by)).rem_euclid(columns as i64) as usize
 }
 
-/// The cells that an object alone, hidden as it is, without noise, lifts above `level` (a magnitude).
+/// The cells at which an object alone, in the part that other bodies don't hide, without noise, exceeds `level` (a magnitude).
 fn footprint(radar: &Radar, seen: &SeenObject, level: f64) -> Vec<CellIndex> {
     let echoing = Echoing::seen(radar, std::slice::from_ref(seen));
     let amplitude = amplitude_bound(radar, &echoing);
@@ -252,7 +252,7 @@ fn footprint(radar: &Radar, seen: &SeenObject, level: f64) -> Vec<CellIndex> {
         return map.indexed_iter().filter(|(_, v)| v.norm() > level).map(|((bin, column), _)| [bin, column]).collect();
     }
     let profiles = range_transform(radar, &signal).profiles;
-    // No cell of a row can exceed what its profiles add up to.
+    // No cell of a row can exceed the sum of its profiles.
     let scale = (radar.elements as f64).sqrt().recip();
     let window = radar.window.weights(radar.elements);
     let most = |bin: usize| -> f64 {
@@ -272,7 +272,7 @@ mod tests {
     use crate::signal::{Floor, simulate};
     use ndarray::Array2;
 
-    /// A target, where its objects show, and how far a threshold lies from its cells' edge.
+    /// A target with the footprints of its objects.
     fn seen(objects: Vec<Object>) -> (RangeAngleMap, Footprints) {
         let (radar, scene) = (Radar::default(), Scene { objects, ..Scene::default() });
         let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
@@ -291,7 +291,7 @@ mod tests {
         RangeAngleMap { lambda }
     }
 
-    /// Silences the cells of one object, with their surroundings.
+    /// Sets the cells of one object and their surroundings to 0.
     fn without(map: &RangeAngleMap, cells: &[CellIndex]) -> RangeAngleMap {
         let mut map = map.clone();
         for &[r, c] in cells {

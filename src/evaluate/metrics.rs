@@ -2,7 +2,7 @@
 
 use crate::maps::RangeAngleMap;
 
-/// Target cells are those where the whole array's Lambda exceeds this.
+/// Target cells are those where the whole array's Lambda exceeds this threshold.
 pub const TARGET_ETA: f32 = 0.9;
 
 /// The thesis' three figures for one scene.
@@ -23,8 +23,8 @@ impl Metrics {
         Metrics { squared_error: squared_error(target, output), detection, false_alarm }
     }
 
-    /// The same of a scene in which nothing reflects. Its target holds noise, or nothing: what exceeds 0.9 there is no echo, so that there
-    /// is nothing to detect, and every cell of the output above eta is a false alarm.
+    /// The figures of a scene in which nothing reflects. Its target holds noise, or nothing: cells above 0.9 are no echoes, so that there is
+    /// nothing to detect, and every cell of the output above eta is a false alarm.
     pub fn of_silence(target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Metrics {
         let alarms = output.above(eta).count() as f64;
         let false_alarm = alarms / output.lambda.len().max(1) as f64;
@@ -46,7 +46,7 @@ pub fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
 /// sum of its squares over every cell. On scenes and over noise like those of the training nine of ten cells are nearer, so that it is mostly
 /// larger than SE.
 ///
-/// It ranks scenes by their SE as well as the mean of doubt does, and has the unit of SE.
+/// The sum ranks scenes by their SE as well as the mean of doubt does, and has the unit of SE.
 pub fn squared_doubt(doubt: &RangeAngleMap) -> f64 {
     doubt.lambda.iter().map(|v| f64::from(*v).powi(2)).sum()
 }
@@ -59,7 +59,7 @@ pub fn part_within(doubt: &RangeAngleMap, target: &RangeAngleMap, output: &Range
     within as f64 / doubt.lambda.len().max(1) as f64
 }
 
-/// A threshold as it is shown: with all its digits, two at least, so that a typed one gives the same P_D and P_FA.
+/// A threshold as text, with all its digits, two at least, so that a typed one gives the same P_D and P_FA.
 pub fn eta_text(eta: f32) -> String {
     let exact = eta.to_string();
     let decimals = exact.split_once('.').map_or(0, |(_, decimals)| decimals.len());

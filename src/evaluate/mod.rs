@@ -1,5 +1,5 @@
-//! How good a map is: the thesis' squared error, detection and false-alarm rates, ROC and tables; methods over many scenes, row by row;
-//! what kind of failure; and the search for worse scenes.
+//! Measures of maps: the thesis' squared error, detection and false-alarm rates, ROC and tables; methods over many scenes, row by row; kinds of
+//! failure; and the search for worse scenes.
 
 mod blobs;
 pub mod campaign;

@@ -1,4 +1,4 @@
-//! How far found points lie from where they stand, and how near any unbiased estimate could be.
+//! Distance of found points from their true places, and its Cramér-Rao bound.
 
 use super::failure::{Failures, Fate};
 use crate::bounds::cramer_rao;

@@ -14,12 +14,12 @@ use crate::task::Task;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Which scenes methods are tried on, and how far the elements are off.
+/// A run of methods on scenes of arrays with element errors.
 #[derive(Debug, Clone)]
 pub struct Robustness {
-    /// The radar, as it should be.
+    /// The radar with exact elements.
     pub radar: Radar,
-    /// Numbers of the elements that methods hear in place of the two ends.
+    /// Numbers of the elements whose samples methods get in place of the two ends.
     pub layout: Option<Vec<usize>>,
     /// Kind of the test scenes.
     pub kind: Kind,
@@ -31,18 +31,18 @@ pub struct Robustness {
     pub floor: Floor,
     /// Errors at scale 1.
     pub tolerances: Tolerances,
-    /// What the errors are multiplied with, in the order of the answer.
+    /// Factors of the tolerances, in the order of the answer.
     pub scales: Vec<f64>,
     /// Whether the array is first calibrated on the scene's strongest reflector.
     pub calibrated: bool,
 }
 
-/// One method at one scale of errors; figures against the map of the array as it should be.
+/// One method at one scale of errors; figures against the map of the exact array.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RobustnessRow {
     /// Name of the method.
     pub method: &'static str,
-    /// What the tolerances were multiplied with.
+    /// Factor of the tolerances.
     pub scale: f64,
     /// Standard deviation of the elements' gains.
     pub gain_decibels: f64,
@@ -54,12 +54,12 @@ pub struct RobustnessRow {
     pub squared_error: Estimate,
     /// P_D at the method's own threshold.
     pub detection: Estimate,
-    /// P_FA there.
+    /// P_FA at the method's own threshold.
     pub false_alarm: Estimate,
 }
 
 impl Robustness {
-    /// Tries every method at every scale: the same scenes, the same errors but for the scale. `on_map` is called after every map.
+    /// Tries every method at every scale, on the same scenes and with errors that differ by the scale alone. `on_map` is called after every map.
     /// # Errors
     /// [`CampaignError`] names the scene, and the method that failed or was cancelled through `task`.
     pub fn run(
@@ -116,7 +116,7 @@ impl Robustness {
         }
     }
 
-    /// A scene, and the signal that the array hears at each scale.
+    /// Scene `number`, and the signal of the array at each scale.
     fn trial(&self, number: u32) -> Result<(Trial, Vec<BeatSignal>), SceneError> {
         let radar = &self.radar;
         let scene = Generator::new(radar, Reading::Program, Purpose::Test, self.seed).scene(self.kind, number);

@@ -39,14 +39,14 @@ impl Roc {
         roc
     }
 
-    /// The same where something reflects; else that of no scene, as there is no P_D.
+    /// [`Roc::of`] where something reflects; else the characteristic of no scene, since there is no P_D.
     pub fn of_echoes(has_echoes: bool, target: &RangeAngleMap, output: &RangeAngleMap) -> Roc {
         if has_echoes { Roc::of(target, output) } else { Roc::default() }
     }
 
     /// Adds a scene to the average. A scene without target cells has no P_D and is left out.
     pub fn add(&mut self, target: &RangeAngleMap, output: &RangeAngleMap) {
-        // Cell with output o exceeds eta_i = i/STEPS for i < o * STEPS: count it in the last such i, then sum from the top.
+        // A cell with output o exceeds eta_i = i/STEPS for i < o * STEPS: it is counted in the last such i, and counts are summed from the top.
         let (mut hits, mut alarms) = (vec![0u64; STEPS + 2], vec![0u64; STEPS + 2]);
         for (t, o) in target.lambda.iter().zip(&output.lambda) {
             let slot = (o.clamp(0.0, 1.0) * STEPS as f32).ceil() as usize;
@@ -103,8 +103,8 @@ impl Roc {
         (1.0 / false_alarm - 1.0).ceil()
     }
 
-    /// The mean P_FA that keeping the rate leaves to `scenes` scenes: `((n + 1) false_alarm - 1) / n`. A further scene may have P_FA 1, and the
-    /// fewer the scenes are, the more of the rate is kept back for it. Below 0 where the scenes are too few.
+    /// The mean P_FA that is left to `scenes` scenes by keeping the rate: `((n + 1) false_alarm - 1) / n`. A further scene may have P_FA 1, and
+    /// fewer scenes leave less of the rate. Below 0 where the scenes are too few.
     pub fn left_to_scenes(scenes: usize, false_alarm: f64) -> f64 {
         let scenes = scenes as f64;
         ((scenes + 1.0) * false_alarm - 1.0) / scenes
@@ -112,7 +112,7 @@ impl Roc {
 
     /// The fewest scenes to which [`Roc::left_to_scenes`] leaves nine tenths of the rate.
     pub fn scenes_within_a_tenth(false_alarm: f64) -> u64 {
-        // (n + 1) r - 1 >= 0.9 n r; the small part is rounding's.
+        // (n + 1) r - 1 >= 0.9 n r; the 1e-6 covers rounding.
         (10.0 * (1.0 - false_alarm) / false_alarm - 1e-6).ceil() as u64
     }
 

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// A false-alarm rate for scenes that the thesis prints no table of.
 const FALSE_ALARM_ELSEWHERE: f64 = 0.01;
 
-/// Level of the noise of scenes of noise alone, where none was asked for.
+/// Level of the noise of scenes of noise alone, where no thermal noise was asked for.
 pub const NOISE_LEVEL: DecibelMilliwatts = DecibelMilliwatts(-20.0);
 
 /// A set of scenes.
@@ -26,11 +26,11 @@ pub enum SceneSet {
     Generated(Kind),
     /// A folder of the user's.
     Folder(Folder),
-    /// The same, given one by one.
+    /// Scenes given one by one.
     Listed(Listed),
 }
 
-/// Scenes that are given one by one.
+/// Scenes that are given one by one, with a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Listed {
     name: String,
@@ -39,18 +39,18 @@ pub struct Listed {
 }
 
 impl Listed {
-    /// Scenes that rows call `name`.
+    /// A set called `name` in rows.
     /// # Errors
-    /// [`toml::ser::Error`] for a scene that no file can hold.
+    /// [`toml::ser::Error`] for a scene that can't be written as a file.
     pub fn new(name: String, cases: Vec<Case>) -> Result<Listed, toml::ser::Error> {
         let of = |case: &Case| file::to_toml(&SceneFile { scene: case.scene.clone(), radar: case.radar.clone() });
         let texts: Vec<String> = cases.iter().map(of).collect::<Result<_, _>>()?;
-        // An end that no file has keeps scenes apart.
+        // A zero byte, which no file contains, ends each scene's text.
         let digest = sha256::of_pieces(texts.iter().flat_map(|text| [text.as_bytes(), b"\0".as_slice()]));
         Ok(Listed { name, cases: Arc::new(cases), fingerprint: sha256::short(&digest).to_owned() })
     }
 
-    /// What the scenes and their radars are known by: the same only where every one is.
+    /// The fingerprint of the scenes and their radars, equal only where all are equal.
     pub fn fingerprint(&self) -> &str {
         &self.fingerprint
     }
@@ -67,7 +67,7 @@ pub struct Folder {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum FolderError {
-    /// What the system says.
+    /// The system's error.
     #[error("{}: {source}", path.display())]
     Io { path: PathBuf, source: io::Error },
     #[error("{}: there is no scene in this folder; expected files ending in .toml or .npz", path.display())]
@@ -75,9 +75,9 @@ pub enum FolderError {
 }
 
 impl Folder {
-    /// Looks which scene files there are; they are read when their turn comes. Files whose names begin with a dot are left alone.
+    /// Lists the scene files of `path` without reading them. Files whose names begin with a dot are left out.
     /// # Errors
-    /// [`FolderError`] when there is none.
+    /// [`FolderError`] where there is none.
     pub fn open(path: &Path) -> Result<Folder, FolderError> {
         let failed = |source| FolderError::Io { path: path.to_owned(), source };
         let mut files = Vec::new();
@@ -96,7 +96,7 @@ impl Folder {
         }
     }
 
-    /// What the names and contents of the files are known by: the same only where every scene is.
+    /// The fingerprint of the files' names and contents, equal only where all are equal.
     /// # Errors
     /// [`FolderError::Io`] names the file that can't be read.
     pub fn fingerprint(&self) -> Result<String, FolderError> {
@@ -117,7 +117,7 @@ impl Folder {
     }
 }
 
-/// A scene of a set, and the radar that looks at it.
+/// A scene of a set, with its radar.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
     /// The radar.
@@ -127,9 +127,9 @@ pub struct Case {
 }
 
 impl SceneSet {
-    /// The set that rows call `name`: a kind of scenes, or else a folder.
+    /// The set called `name` in rows: a kind of scenes, or else a folder.
     /// # Errors
-    /// [`FolderError`] for a folder that has no scene any more.
+    /// [`FolderError`] for a folder without a scene.
     pub fn by_name(name: &str) -> Result<SceneSet, FolderError> {
         match name.parse() {
             Ok(kind) => Ok(SceneSet::Generated(kind)),
@@ -137,7 +137,7 @@ impl SceneSet {
         }
     }
 
-    /// How many scenes there are, if not as many as one likes.
+    /// Number of scenes; `None` for generated scenes, which have no end.
     pub fn len(&self) -> Option<u32> {
         match self {
             SceneSet::Generated(_) => None,
@@ -146,14 +146,14 @@ impl SceneSet {
         }
     }
 
-    /// Whether it has no scenes: a folder always has some.
+    /// Whether the set has no scenes: a folder always has some.
     pub fn is_empty(&self) -> bool {
         self.len() == Some(0)
     }
 
-    /// Scene `index`. `radar` and `generator` are those of generated scenes; a file says itself which radar it is for.
+    /// Scene `index`. `radar` and `generator` are those of generated scenes; a file names its own radar.
     /// # Errors
-    /// [`SceneFileError`] when a file is no scene any more.
+    /// [`SceneFileError`] for a file that can't be read as a scene.
     pub fn case(&self, radar: &Radar, generator: &Generator, index: u32) -> Result<Case, SceneFileError> {
         match self {
             SceneSet::Generated(kind) => Ok(Case { radar: radar.clone(), scene: generator.scene(*kind, index) }),
@@ -168,8 +168,8 @@ impl SceneSet {
         }
     }
 
-    /// The floor of this set's scenes if `floor` was asked for. Scenes of noise alone have thermal noise of a level of
-    /// its own, [`NOISE_LEVEL`] where another floor was asked for: all others have no noise where there is no echo.
+    /// The floor of this set's scenes where a run has `floor`. Scenes of noise alone have thermal noise: `floor` where it is thermal, else that
+    /// of [`NOISE_LEVEL`], since any other floor leaves scenes without echoes silent.
     pub fn floor(&self, floor: Floor) -> Floor {
         match (self, floor) {
             (SceneSet::Generated(Kind::Noise), Floor::Level(_) | Floor::Thermal) => floor,
@@ -178,8 +178,7 @@ impl SceneSet {
         }
     }
 
-    /// The false-alarm rate at which methods are held against each other: what the thesis prints for its experiment 2, and 1 % where it
-    /// prints nothing.
+    /// The false-alarm rate at which methods are compared: the rate that the thesis prints for its experiment 2, and 1 % where it prints none.
     pub fn false_alarm(&self) -> f64 {
         match self {
             SceneSet::Generated(kind) => false_alarm(kind.test_set()),
@@ -188,13 +187,13 @@ impl SceneSet {
     }
 }
 
-/// [`SceneSet::false_alarm`] for test set 1, 2 or 3, or something else.
+/// [`SceneSet::false_alarm`] of test set 1, 2 or 3, or of another set.
 pub fn false_alarm(test_set: Option<usize>) -> f64 {
     let printed = test_set.and_then(|set| PRINTED_EXPERIMENT_2.get(set.wrapping_sub(1)));
     printed.map_or(FALSE_ALARM_ELSEWHERE, |p| p.false_alarm)
 }
 
-/// As rows name it. A folder that is called like a kind is "./kind".
+/// The set's name in rows. A folder that is called like a kind is "./kind".
 impl fmt::Display for SceneSet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -22,17 +22,17 @@ impl Shard {
         index % self.of == self.part
     }
 
-    /// How many shards together are the whole.
+    /// Number of shards of the whole campaign.
     pub fn of(self) -> u32 {
         self.of
     }
 
-    /// All shards that together are the whole.
+    /// All shards of the whole campaign.
     pub fn all(self) -> impl Iterator<Item = Shard> {
         (0..self.of).map(move |part| Shard { part, of: self.of })
     }
 
-    /// How many of the scenes 0 to `count - 1` are this shard's.
+    /// Number of this shard's scenes among 0 to `count - 1`.
     pub fn size(self, count: u32) -> u32 {
         count.saturating_sub(self.part).div_ceil(self.of)
     }

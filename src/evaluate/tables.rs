@@ -5,7 +5,7 @@ pub use super::estimate::Estimate;
 use super::echoes::EchoTally;
 use super::rows::{Column, Row, estimate};
 
-/// What the thesis prints for one test set (tables 4.1 to 4.3); rates as fractions.
+/// The thesis' printed values for one test set (tables 4.1 to 4.3); rates as fractions.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Printed {
     /// SE.
@@ -17,9 +17,9 @@ pub struct Printed {
 }
 
 impl Printed {
-    /// How far the printed rates are rounded: half of the last printed digit, as fractions (P_D, P_FA).
+    /// Half of the last printed digit of the rates, as fractions (P_D, P_FA).
     ///
-    /// All are printed with two decimals of a percent, but for the baseline's on set 1 (12.4 % and 0.2 %).
+    /// All rates are printed with two decimals of a percent, except the baseline's on set 1 (12.4 % and 0.2 %).
     pub fn rate_rounding(&self) -> f64 {
         if *self == PRINTED_BASELINE[0] { 0.05e-2 } else { 0.005e-2 }
     }
@@ -46,11 +46,11 @@ pub const PRINTED_EXPERIMENT_2: [Printed; 3] = [
     Printed { squared_error: 1613.29, detection: 0.9197, false_alarm: 0.0102 },
 ];
 
-/// What counts as near the best in [`part_near_best`].
+/// Largest ratio to the least SE that counts as near the best in [`part_near_best`].
 pub const NEAR_BEST: f64 = 1.2;
 
-/// Part of the scenes on which the SE of `method` is at most [`NEAR_BEST`] times the least of the other methods'; `None` where no scene
-/// has another method's. `rows` are those of one set.
+/// Part of the scenes on which the SE of `method` is at most [`NEAR_BEST`] times the least SE of the other methods; `None` where no scene has
+/// another method's row. `rows` are those of one set.
 pub fn part_near_best(rows: &[&Row], method: &str) -> Option<f64> {
     let is_near = |row: &&&Row| {
         let others = rows.iter().filter(|r| (r.seed, r.index) == (row.seed, row.index) && r.method != method);
@@ -68,7 +68,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// The rows of one method on one set.
+    /// The tally of the rows of one method on one set.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Tally {
         Tally { rows: rows.into_iter().cloned().collect() }
     }
@@ -83,7 +83,7 @@ impl Tally {
         self.rows.len()
     }
 
-    /// Threshold of the method, with all its digits; the mean of its answers' where each has its own ([`Tally::has_one_eta`]).
+    /// Threshold of the method, with all its digits; the mean over its answers where each has its own ([`Tally::has_one_eta`]).
     pub fn eta(&self) -> f32 {
         if let Some(first) = self.rows.first().filter(|_| self.has_one_eta()) {
             return first.eta;
@@ -97,12 +97,12 @@ impl Tally {
         self.rows.array_windows().all(|[a, b]| a.eta == b.eta)
     }
 
-    /// The optimisers that trained the method's weights, as its rows say; empty where they don't, and for methods that learn nothing.
+    /// The optimisers that trained the method's weights; empty where rows don't record them, and for methods that learn nothing.
     pub fn optimiser(&self) -> &str {
         self.rows.first().map_or("", |row| &row.optimiser)
     }
 
-    /// What the method's weights are known by.
+    /// The fingerprint of the method's weights; `None` for a method that learns nothing.
     pub fn weights(&self) -> Option<&str> {
         self.rows.first().map(|row| &*row.weights).filter(|weights| !weights.is_empty())
     }

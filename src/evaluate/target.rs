@@ -1,4 +1,4 @@
-//! Maps of the whole array that an estimate may be held against, and that a network may learn.
+//! Targets: maps of the whole array against which an estimate is compared, and which a network may learn.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,22 +6,22 @@ use std::str::FromStr;
 /// A map of the whole array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Target {
-    /// Of the array as it should be, without noise.
+    /// The map of the exact array, without noise.
     Ideal,
-    /// Of what the whole array heard: with its noise, and with the errors of its elements.
+    /// The map of the samples of the whole array, with their noise and with the errors of its elements.
     Measured,
-    /// Of what the array as it should be would have heard: with the noise, and without the errors of its elements. It is the measured one where no
-    /// element is off.
+    /// The map of the samples that the exact array would have measured: with the noise, and without the errors of its elements. It equals the
+    /// measured one where no element is off.
     Calibrated,
 }
 
 impl Target {
-    /// All of them.
+    /// All targets.
     pub const ALL: [Target; 3] = [Target::Ideal, Target::Measured, Target::Calibrated];
-    /// Those that data have where nothing else is asked for.
+    /// The targets in data unless others are asked for.
     pub const USUAL: [Target; 2] = [Target::Ideal, Target::Measured];
 
-    /// Name of its array in data.
+    /// Name of the target's array in data.
     pub fn array(self) -> &'static str {
         match self {
             Target::Ideal => "target_ideal",

@@ -10,16 +10,16 @@ use crate::scene::generate::{Generator, Kind, NoRoom, Purpose, Reading};
 use crate::signal::Floor;
 use crate::task::Task;
 
-/// What is tried: validation scenes of some kinds, after the author's program.
+/// A search for a threshold on validation scenes of some kinds, after the author's program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThresholdSearch {
     /// The radar of the scenes.
     pub radar: Radar,
-    /// Numbers of the elements that the method hears in place of the two ends.
+    /// Numbers of the elements whose samples the method gets in place of the two ends.
     pub layout: Option<Vec<usize>>,
     /// Noise of the scenes.
     pub floor: Floor,
-    /// How every map is normalised.
+    /// Normalisation of every map.
     pub normalisation: Normalisation,
     /// Kinds of scenes, each once.
     pub kinds: Vec<Kind>,
@@ -46,12 +46,12 @@ impl Default for ThresholdSearch {
     }
 }
 
-/// A threshold, and what it does on the scenes that chose it.
+/// A threshold, with its rates on the scenes that chose it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KeptThreshold {
     /// The threshold of Lambda.
     pub eta: f32,
-    /// P_FA and P_D there.
+    /// P_FA and P_D at the threshold.
     pub tried: ThresholdMeans,
 }
 
@@ -66,7 +66,7 @@ pub struct ThresholdMeans {
     pub detection: f64,
 }
 
-/// Why there is no threshold.
+/// The reason why a search finds no threshold.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ThresholdError {
@@ -93,7 +93,7 @@ pub enum ThresholdError {
 }
 
 impl ThresholdError {
-    /// Whether it was cancelled.
+    /// Whether the search was cancelled.
     pub fn is_cancelled(&self) -> bool {
         matches!(self, ThresholdError::Method { source: ReconstructError::Cancelled, .. })
     }
@@ -101,7 +101,7 @@ impl ThresholdError {
 
 impl ThresholdSearch {
     /// Tries `method` on every scene, and gives the lowest threshold that keeps the rate ([`Roc::keeping_false_alarm`]): the mean of P_FA over
-    /// further scenes that are exchangeable with these is at most the rate. `on_part` is told the part that is done, 0 to 1.
+    /// further scenes that are exchangeable with these is at most the rate. `on_part` receives the part that is done, 0 to 1.
     /// # Errors
     /// [`ThresholdError`]; it names the scene that failed, and [`ThresholdError::is_cancelled`] after `task` was cancelled.
     pub fn run(
@@ -143,7 +143,7 @@ impl ThresholdSearch {
         Ok(ThresholdMeans { detection: sums.detection / scenes, false_alarm: sums.false_alarm / scenes, ..sums })
     }
 
-    /// How much of the rate is left to P_FA on `scenes` scenes, and to how many nine tenths of it would be, in words.
+    /// A sentence with the part of the rate that is left to P_FA on `scenes` scenes, and the number of scenes with nine tenths of it.
     pub fn told_left(&self, scenes: usize) -> String {
         format!(
             "for {} % on further scenes, P_FA on {} may be {:.3} %: the rest is the price of few scenes, a tenth or less from {} scenes on",
@@ -168,9 +168,9 @@ impl ThresholdSearch {
         self.false_alarm_percent / 100.0
     }
 
-    /// What can be said before anything is tried.
+    /// Checks the settings before any scene is tried.
     /// # Errors
-    /// [`ThresholdError`] says what can't be.
+    /// [`ThresholdError`] of the first setting that can't be used.
     pub fn check(&self) -> Result<(), ThresholdError> {
         let percent = self.false_alarm_percent;
         if !(percent > 0.0 && percent < 100.0) {

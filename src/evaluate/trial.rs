@@ -13,16 +13,16 @@ use crate::scene::{Disturbances, Reflector, Scene, SceneError};
 use crate::signal::{self, Floor, LayoutSamples, TwoEnds};
 use std::sync::{Arc, OnceLock};
 
-/// A simulated scene: what methods get, and what they are held against.
+/// A simulated scene: the samples for methods, and the map against which answers are compared.
 #[derive(Debug, Clone)]
 pub struct Trial {
     /// The radar.
     pub radar: Radar,
     /// The samples of the two ends.
     pub ends: TwoEnds,
-    /// What another layout heard, where methods are to hear that.
+    /// The samples of the elements of another layout, for methods that use them.
     pub heard: Option<Arc<LayoutSamples>>,
-    /// Lambda that answers are held against.
+    /// Lambda against which answers are compared.
     pub target: RangeAngleMap,
     scene: Scene,
     scale: LambdaScale,
@@ -39,12 +39,12 @@ struct Facts {
     strongest_over_weakest_db: Option<f64>,
 }
 
-/// What a method made of a [`Trial`].
+/// A method's answer for a [`Trial`], timed and judged.
 #[derive(Debug, Clone)]
 pub struct TimedAnswer {
-    /// What it found.
+    /// The method's reconstruction.
     pub found: Reconstruction,
-    /// How long it took.
+    /// Duration of the reconstruction.
     pub milliseconds: f64,
     /// SE, and P_D and P_FA at the method's threshold.
     pub metrics: Metrics,
@@ -53,14 +53,14 @@ pub struct TimedAnswer {
 }
 
 impl Trial {
-    /// Simulates `scene` over `floor`, the noise picked by the scene's seed.
+    /// Simulates `scene` over `floor`; the scene's seed picks the noise.
     /// # Errors
     /// [`SceneError`] when the radar can't see the scene.
     pub fn new(radar: &Radar, scene: &Scene, floor: Floor, normalisation: Normalisation) -> Result<Trial, SceneError> {
         Trial::against(Target::Measured, None, radar, scene, floor, normalisation)
     }
 
-    /// [`Trial::new`] with another map that answers are held against, and with the samples of the elements of `layout` beside those of the ends.
+    /// [`Trial::new`] with another target, and with the samples of the elements of `layout` beside those of the ends.
     /// # Errors
     /// As [`Trial::new`].
     pub fn against(
@@ -88,7 +88,7 @@ impl Trial {
         Ok(Trial { radar, ends, heard, target, scene, scale, footprints: OnceLock::new() })
     }
 
-    /// Lets `method` try, and judges what it makes.
+    /// Runs `method` on the scene, and judges its answer.
     /// # Errors
     /// [`ReconstructError`] of the method.
     pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<TimedAnswer, ReconstructError> {
@@ -110,23 +110,23 @@ impl Trial {
         })
     }
 
-    /// Where each object shows in the target; found when first asked for.
+    /// The footprints of the objects, computed at the first call.
     pub fn footprints(&self) -> &Footprints {
         self.footprints.get_or_init(|| Footprints::new(&self.radar, &self.scene, &self.target, self.scale))
     }
 
-    /// What kind of failure an answer is, if any.
+    /// The failures of an answer.
     pub fn failures(&self, answer: &TimedAnswer) -> Failures {
         self.footprints().judge(&self.target, &answer.found.lambda, answer.eta)
     }
 
-    /// Which echoes stand out in the target, and which of them an answer shows.
+    /// Counts of the echoes that stand out in the target, and of those that an answer shows.
     pub fn echoes(&self, answer: &TimedAnswer) -> EchoTally {
         echoes::tally(&self.radar, &self.scene, &self.target, &answer.found.lambda, &self.scale)
     }
 
-    /// SE, P_D and P_FA of what `cfar` detects in an answer, against what it detects in the target, in the place of both thresholds. Lambda is
-    /// brought to power on the target's scale.
+    /// SE of an answer, and P_D and P_FA of the cells that `cfar` detects in it against those that `cfar` detects in the target, in the place of
+    /// both thresholds. Lambda is converted to power on the target's scale.
     /// # Errors
     /// [`CfarError`] where the detector can't work on the radar's maps.
     pub fn cfar_metrics(&self, answer: &TimedAnswer, cfar: &Cfar) -> Result<Metrics, CfarError> {
@@ -136,7 +136,7 @@ impl Trial {
         Ok(Metrics { squared_error: squared_error(&self.target, &answer.found.lambda), ..by_cfar })
     }
 
-    /// The row of an answer: `row`, which says what makes it, with all figures but those of a detector of constant false-alarm rate.
+    /// The row of an answer: `row`, which has the origin, with all figures but those of a detector of constant false-alarm rate.
     /// `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
     pub fn filled(&self, row: Row, answer: &TimedAnswer, false_alarm: f64) -> Row {
         let roc = Roc::of_echoes(!self.scene.is_silent(), &self.target, &answer.found.lambda);
@@ -171,7 +171,7 @@ impl Trial {
     }
 }
 
-/// The map of the array as it should be.
+/// The map of the exact array.
 fn calibrated(radar: &Radar, scene: &Scene, floor: Floor) -> Result<LogMap, SceneError> {
     let elements = BuiltArray::default();
     let disturbances = Disturbances { elements: elements.clone(), ..scene.disturbances.clone() };
@@ -179,7 +179,7 @@ fn calibrated(radar: &Radar, scene: &Scene, floor: Floor) -> Result<LogMap, Scen
     Ok(maps::focus::map_of(radar, &elements, &signal, Aperture::Full).log_magnitude())
 }
 
-/// Where a reflector shows: (column, range bin), neither rounded, and its object.
+/// Place of a reflector in a map: (column, range bin), neither rounded, and the index of its object.
 type Spot = ([f64; 2], usize);
 
 impl Facts {
@@ -189,7 +189,7 @@ impl Facts {
             of_objects.flat_map(|(i, all)| all.into_iter().map(move |r| (i, r))).collect();
         let range = |r: &Reflector| r.x_metres.hypot(r.y_metres);
         let ranges = reflectors.iter().map(|(_, r)| range(r));
-        // Seen from the middle of the array; what doesn't reflect has no echo.
+        // Strengths as seen from the middle of the array; a reflector of reflectivity 0 has no echo.
         let echoes = reflectors.iter().map(|(_, r)| r.reflectivity.abs() / range(r).powi(2)).filter(|e| *e > 0.0);
         let (weakest, strongest) = echoes.fold((f64::INFINITY, 0.0f64), |(a, b), e| (a.min(e), b.max(e)));
         let half = radar.elements as f64 / 2.0;

@@ -1,4 +1,4 @@
-//! A command as a shell's user writes it, split into words without a shell.
+//! The command line of a method, split into words as in a shell, but without one.
 
 use std::fmt;
 use std::str::FromStr;
@@ -10,7 +10,7 @@ pub struct CommandLine {
     pub(super) words: Vec<String>,
 }
 
-/// Why a text is no command.
+/// The reason why a text is no command.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum CommandLineError {

@@ -40,7 +40,7 @@ struct Sent {
     bytes: usize,
 }
 
-/// What the line of an answer may say; what it says beside is for later versions.
+/// The line of JSON of an answer; unknown fields are ignored, so that later versions can add some.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default)]
 pub struct AnswerHeader {
@@ -68,14 +68,14 @@ pub struct ExternalAnswer {
     arrays: Vec<(String, Vec<u8>)>,
 }
 
-/// What is in the map of an answer.
+/// The map of an answer, in one of two units.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Map {
     Lambda(Array2<f32>),
     Decades(Array2<f64>),
 }
 
-/// The first question: who is it?
+/// The first question, which asks for the method's name and description.
 pub fn hello() -> Vec<u8> {
     line_of(&Question {
         apertura: VERSION,
@@ -93,13 +93,13 @@ pub fn hello() -> Vec<u8> {
 pub fn question(id: u64, radar: &Radar, ends: &TwoEnds, request: &Request) -> Vec<u8> {
     let both = stack(Axis(0), &[ends.first.view(), ends.last.view()]).unwrap_or_default();
     let mut array = Vec::new();
-    // A vector takes all bytes.
+    // Writing to a vector can't fail.
     let _written = both.as_standard_layout().write_npy(&mut array);
     let mut bytes = line_of(&Question {
         apertura: VERSION,
         ask: "map",
         id,
-        // A method sees one chirp.
+        // A method gets samples of one chirp.
         radar: Some(&radar.of_one_chirp()),
         noise: Some(request.noise.to_string()),
         normalisation: Some(request.normalisation.to_string()),
@@ -123,7 +123,7 @@ pub fn most_array_bytes(radar: &Radar) -> u64 {
 
 /// Reads one answer; its arrays have at most `most_bytes` each. `None` where the process closed its standard output between answers.
 /// # Errors
-/// [`io::ErrorKind::InvalidData`] says what it wrote instead; others are the pipe's.
+/// [`io::ErrorKind::InvalidData`] quotes unexpected output; others are the pipe's.
 pub fn read_answer(from: &mut impl BufRead, most_bytes: &dyn Fn() -> u64) -> io::Result<Option<ExternalAnswer>> {
     let mut bytes = Vec::new();
     (&mut *from).take(MAX_LINE_BYTES).read_until(b'\n', &mut bytes)?;
@@ -169,9 +169,9 @@ fn rubbish(bytes: &[u8], why: &str) -> io::Error {
 }
 
 impl ExternalAnswer {
-    /// Its map of `[samples, elements]` finite cells.
+    /// The answer's map, `[samples, elements]`, with finite cells.
     /// # Errors
-    /// What is wrong with it.
+    /// A sentence with the fault of the array.
     pub fn map(&self, radar: &Radar) -> Result<Map, String> {
         let (name, bytes) = match self.arrays.as_slice() {
             [(name, bytes)] if name == "lambda" || name == "decades" => (name, bytes),
@@ -231,7 +231,7 @@ pub(super) mod tests {
         Radar { samples: 4, elements: 8, end_elements: 2, ..Radar::default() }
     }
 
-    /// The bytes of an answer with this line and these arrays, whose lengths are put in for LENGTH.
+    /// The bytes of an answer with this line and these arrays, with its length in the place of LENGTH.
     pub fn answer_bytes(line: &str, array: &[u8]) -> Vec<u8> {
         let mut bytes = line.replace("LENGTH", &array.len().to_string()).into_bytes();
         bytes.push(b'\n');

@@ -1,4 +1,4 @@
-//! A command as a reconstruction method.
+//! External commands as reconstruction methods.
 
 use super::command::CommandLine;
 use super::message::{self, AnswerHeader, ExternalAnswer, Map};
@@ -20,13 +20,13 @@ const LONGEST_TEXT: usize = 400;
 
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
-/// Why a command is no method.
+/// The reason why a command can't be a method.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum StartError {
     #[error("{command}: it can't be started: {source}")]
     System { command: String, source: io::Error },
-    /// It is no method: it hangs, it ended, it answers something else.
+    /// The command gave no valid answer: it hangs, it ended, or it wrote something else.
     #[error("{command}: {reason}")]
     NoMethod { command: String, reason: String },
 }
@@ -45,7 +45,7 @@ struct State {
     asked: u64,
 }
 
-/// Starts a command and asks it who it is. Starting and each answer may take `limit`. `task` stops the start.
+/// Starts a command and asks for its name. Starting and each answer may take `limit`. `task` stops the start.
 /// # Errors
 /// [`StartError`] with the end of the process' standard error.
 pub fn start(command: CommandLine, limit: Duration, task: &Task) -> Result<ExternalMethod, StartError> {
@@ -119,7 +119,7 @@ impl ExternalMethod {
         }
     }
 
-    /// Starts the process anew; it must be the same method.
+    /// Starts the process anew; its name must be that of this method.
     fn started(&self, task: &Task) -> Result<Process, ProcessFailure> {
         let mut process = Process::start(&self.command)
             .map_err(|error| ProcessFailure::Broken(format!("{} can't be started: {error}", self.command)))?;
@@ -143,7 +143,7 @@ impl ExternalMethod {
             state.process = Some(self.started(task)?);
         }
         let Some(process) = &mut state.process else { return Err(ProcessFailure::Broken("it isn't there".to_owned())) };
-        // Answers to cancelled questions come first.
+        // Answers to cancelled questions come first and are dropped.
         while process.pending > 0 {
             process.wait(task, self.limit)?;
         }
@@ -283,7 +283,7 @@ mod tests {
     #[test]
     fn a_process_that_hangs_is_ended() {
         let folder = tempfile::tempdir().unwrap();
-        // What a shell started would hold the pipes open.
+        // A process started by the shell would hold the pipes open.
         let command = script(folder.path(), "echo thinking >&2; sleep 600 & echo $! > pid; wait");
         let method = start(command, Duration::from_millis(400), &Task::default()).unwrap();
         let told = refused(&method);

@@ -1,8 +1,8 @@
-//! A method that another program computes: a network of one's own in any language.
+//! Methods that other programs compute, such as a user's own network in any language.
 //!
-//! [`start`] starts a command once and asks it who it is. Each reconstruction is one question on the process' standard input and one answer on its
-//! standard output; `docs/own-network.md` describes both. A process that hangs, ends, or answers anything but a map is ended. The error says
-//! why, with the end of its standard error. The next reconstruction starts it anew.
+//! [`start`] starts a command once and asks for its name. Each reconstruction is one question on the process' standard input and one answer on
+//! its standard output; `docs/own-network.md` describes both. A process that hangs, ends, or answers anything but a map is ended. The error has
+//! the reason, with the end of the process' standard error. The next reconstruction starts the process anew.
 
 mod command;
 mod message;

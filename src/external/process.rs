@@ -1,4 +1,4 @@
-//! The process of a command: questions go in, answers come out, each on a thread of its own, so that a process that does neither holds up no caller.
+//! The process of a command. A thread writes its questions and another reads its answers, so that a process that reads or writes nothing blocks no caller.
 
 use super::command::CommandLine;
 use super::message::{ExternalAnswer, read_answer};
@@ -18,7 +18,7 @@ const LAST_WORDS: Duration = Duration::from_millis(500);
 
 const FAREWELL: Duration = Duration::from_millis(500);
 
-/// Longest array of an answer that comes before a question says how long it may be, bytes.
+/// Longest array of an answer before the first question has set a limit, bytes.
 const MAX_UNASKED_BYTES: u64 = 1 << 20;
 
 /// A running process.
@@ -28,19 +28,19 @@ pub struct Process {
     answers: Receiver<io::Result<Option<ExternalAnswer>>>,
     stderr: Tail,
     most_bytes: Arc<AtomicU64>,
-    /// Questions without an answer yet.
+    /// Number of questions without an answer yet.
     pub pending: u32,
     owner: u32,
-    /// When it was last asked with nothing pending, or last answered.
+    /// Time of the last question asked with nothing pending, or of the last answer.
     since: Instant,
 }
 
-/// Why there is no answer.
+/// The reason for a missing answer.
 #[derive(Debug)]
 pub enum ProcessFailure {
-    /// The work was cancelled; the process goes on.
+    /// The work was cancelled; the process keeps running.
     Cancelled,
-    /// The process is of no further use.
+    /// The process can't be used any further.
     Broken(String),
 }
 
@@ -53,14 +53,14 @@ impl From<Cancelled> for ProcessFailure {
 impl Process {
     /// Starts the command.
     /// # Errors
-    /// Where the system can't start it.
+    /// The system's error where it can't start the command.
     pub fn start(command: &CommandLine) -> io::Result<Process> {
         let [program, arguments @ ..] = command.words.as_slice() else {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "the command is empty"));
         };
         let mut to_start = Command::new(program);
         to_start.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        // A group of its own: what it starts ends with it.
+        // The process has a group of its own, so that its children end with it.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut to_start, 0);
         let mut child = to_start.spawn()?;
@@ -80,7 +80,7 @@ impl Process {
         };
         spawn("questions", move || {
             let Some(mut stdin) = stdin else { return };
-            // The waiting caller learns from the other end of the process that it reads no more.
+            // The caller waits for an answer, and so learns that the process ended and reads no more.
             while let Ok(bytes) = asked.recv()
                 && stdin.write_all(&bytes).and_then(|()| stdin.flush()).is_ok()
             {}
@@ -103,12 +103,12 @@ impl Process {
         Ok(process)
     }
 
-    /// Whether this program started it, and not one that this program was forked from.
+    /// Whether this process started the child, and not a parent that this process was forked from.
     pub fn is_ours(&self) -> bool {
         self.owner == std::process::id()
     }
 
-    /// Asks; the answer's arrays may have `most_bytes` each.
+    /// Sends a question; the answer's arrays may have `most_bytes` each.
     pub fn ask(&mut self, question: Vec<u8>, most_bytes: u64) {
         self.most_bytes.fetch_max(most_bytes, Ordering::Relaxed);
         if self.pending == 0 {
@@ -116,14 +116,14 @@ impl Process {
         }
         self.pending += 1;
         if let Some(questions) = &self.questions {
-            // A thread that ended heard the process end, which the next wait tells.
+            // A thread that ended has seen the process end, which the next wait reports.
             let _sent = questions.send(question);
         }
     }
 
-    /// The next answer, for which the process may take `limit`.
+    /// Waits for the next answer, for at most `limit`.
     /// # Errors
-    /// [`ProcessFailure`], also where the process hangs, ended or wrote something else.
+    /// [`ProcessFailure`] where the task is cancelled, and where the process hangs, ended or wrote something else.
     pub fn wait(&mut self, task: &Task, limit: Duration) -> Result<ExternalAnswer, ProcessFailure> {
         loop {
             task.check()?;
@@ -161,7 +161,7 @@ impl Process {
         "it closed its standard output before it answered".to_owned()
     }
 
-    /// The reason with the end of the process' standard error, for which the wait is short where the process goes on.
+    /// The reason `why` with the end of the process' standard error, waiting up to `wait` for that end.
     pub fn with_last_words(&self, why: String, wait: Duration) -> String {
         match self.stderr.text(wait) {
             text if text.is_empty() => format!("{why}; it wrote nothing on its standard error"),
@@ -171,7 +171,7 @@ impl Process {
 }
 
 impl Drop for Process {
-    /// Closes the process' standard input. One that is waiting for a question has a moment to end by itself.
+    /// Closes the process' standard input. A process that waits for a question then has a moment to end by itself.
     fn drop(&mut self) {
         if !self.is_ours() {
             return;
@@ -187,7 +187,7 @@ impl Drop for Process {
         #[cfg(unix)]
         {
             use rustix::process::{Pid, Signal, kill_process_group};
-            // What it started may outlive it.
+            // Children of the process may outlive it.
             let _gone = kill_process_group(Pid::from_child(&self.child), Signal::KILL);
         }
         let _gone = self.child.kill();

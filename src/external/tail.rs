@@ -1,4 +1,4 @@
-//! The end of what a process writes on its standard error.
+//! The end of a process' standard error.
 
 use std::collections::VecDeque;
 use std::io::Read;
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 const KEPT_BYTES: usize = 2000;
 
-/// The last bytes that were read, shared by who reads and who asks.
+/// The last bytes that were read, shared between the reading thread and the callers.
 #[derive(Debug, Clone, Default)]
 pub struct Tail(Arc<Shared>);
 
@@ -24,7 +24,7 @@ struct Kept {
 }
 
 impl Tail {
-    /// Reads until the end.
+    /// Reads until the end of `from`.
     pub fn follow(&self, mut from: impl Read) {
         let Shared { kept, ended } = &*self.0;
         let mut bytes = [0; 1024];
@@ -39,7 +39,7 @@ impl Tail {
         ended.notify_all();
     }
 
-    /// What is there, after waiting a little for the end: whole lines, where more than one is kept.
+    /// The bytes so far, after waiting up to `wait` for the end: whole lines, where more than one is kept.
     pub fn text(&self, wait: Duration) -> String {
         let Shared { kept, ended } = &*self.0;
         let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);

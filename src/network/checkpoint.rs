@@ -1,4 +1,4 @@
-//! Checkpoints: a run goes on from one as if it had never stopped.
+//! Checkpoints, from which a run continues as if it had never stopped.
 
 use super::recipe::Recipe;
 use super::run::{RunProgress, TrainError, file};
@@ -16,7 +16,7 @@ const RECIPE: &str = "recipe.toml";
 
 /// Replaces the checkpoint at `folder` in one step.
 /// # Errors
-/// [`TrainError`] when it can't be written; the older one is still there then.
+/// [`TrainError`] when it can't be written; the older checkpoint is kept then.
 pub fn save<S: Student>(
     folder: &Path,
     recipe: &Recipe,
@@ -31,7 +31,7 @@ pub fn save<S: Student>(
     fs::create_dir_all(&next).map_err(file(&next))?;
     let bad = |reason: String| TrainError::Checkpoint { path: next.clone(), reason };
     let mut store = BurnpackStore::from_file(next.join(MODEL)).overwrite(true);
-    // A batch norm holds its newest running statistics back until they are asked for; this asks, and they are in what is saved.
+    // burn's batch norms keep their newest running statistics apart until `valid` merges them into the module.
     let _ = network.valid();
     network.save_into(&mut store).map_err(|e| bad(e.to_string()))?;
     optimizer.save(next.join(OPTIMIZER)).map_err(|e| bad(e.to_string()))?;
@@ -42,7 +42,7 @@ pub fn save<S: Student>(
         let path = next.join(name);
         fs::write(&path, text).map_err(file(&path))?;
     }
-    // Two renames: a run that is stopped between them finds the older checkpoint under its second name.
+    // Two renames: a run resumed after a stop between them finds the older checkpoint under its second name.
     let old = folder.with_extension("old");
     if old.exists() && folder.exists() {
         fs::remove_dir_all(&old).map_err(file(&old))?;
@@ -53,10 +53,10 @@ pub fn save<S: Student>(
     fs::rename(&next, folder).map_err(file(&next))
 }
 
-/// Where a run stands, and the weights it goes on from.
+/// The progress of a run, and the hash of its weights.
 #[derive(Debug)]
 pub struct Checkpoint {
-    /// Where the run stands.
+    /// The run's progress.
     pub progress: RunProgress,
     /// SHA-256 of the file of weights.
     pub weights_sha256: String,
@@ -76,13 +76,13 @@ pub fn recipe(folder: &Path) -> Result<Recipe, TrainError> {
     Ok(Recipe::parse(&path.display().to_string(), &text)?)
 }
 
-/// Where the checkpoint of `folder` is: under its second name where a run was stopped while the newest took its place.
+/// The checkpoint's folder: the second name of `folder` where a run was stopped during the replacement.
 fn there(folder: &Path) -> PathBuf {
     let old = folder.with_extension("old");
     if !folder.exists() && old.exists() { old } else { folder.to_owned() }
 }
 
-/// Loads the checkpoint at `folder` into network and optimizer and says where the run stands.
+/// Loads the checkpoint at `folder` into network and optimizer.
 /// # Errors
 /// [`TrainError`] when it is missing, damaged, or of another recipe.
 pub fn load<S: Student>(

@@ -1,17 +1,17 @@
-//! The radars that a network was trained for.
+//! The radars for which a network was trained.
 
 use crate::radar::{Antennas, Carrier, LinkBudget, Radar, WindowFunction};
 use crate::reconstruct::ReconstructError;
 use serde::{Deserialize, Serialize};
 
-/// Quantities that differ by less than this part of themselves are the same.
+/// Largest relative difference of two quantities that count as equal.
 const SAME_QUANTITY: f64 = 1e-9;
 
-/// The radars that a network was trained for.
+/// The radars for which a network was trained.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Domain {
-    /// One radar, and all others that hear the same samples of a scene.
+    /// One radar, and all others with the same samples of a scene.
     Radar(Box<Radar>),
     /// All radars within limits.
     Limits(RadarLimits),
@@ -44,18 +44,18 @@ pub struct RadarLimits {
     pub windows: Vec<WindowFunction>,
 }
 
-/// One quantity that differs, in words: as trained, and as found.
+/// A quantity that differs, in words: its value in training, and that of the radar.
 type Difference = [String; 2];
 
 impl Domain {
-    /// As a weight file's entry.
+    /// The domain as JSON, for an entry of a weight file.
     /// # Errors
-    /// [`serde_json::Error`] for numbers that JSON doesn't have.
+    /// [`serde_json::Error`] for numbers that JSON can't express.
     pub fn json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string(self)
     }
 
-    /// Whether it is one radar whose transmitters stand apart from its receivers.
+    /// Whether the domain is one radar whose transmitters stand apart from its receivers.
     pub fn is_of_pairs(&self) -> bool {
         matches!(self, Domain::Radar(radar) if !radar.is_monostatic())
     }
@@ -65,15 +65,14 @@ impl Domain {
         self.differences(radar).is_empty()
     }
 
-    /// Refuses every radar whose samples are others than those that `method` was trained with: its weights know no other, and what they would
-    /// draw means nothing.
+    /// Refuses a radar whose samples differ from those that `method` was trained with, since the network's answer for them has no meaning.
     /// # Errors
-    /// [`ReconstructError::Unusable`] names what differs.
+    /// [`ReconstructError::Unusable`] names the quantities that differ.
     pub fn check(&self, method: &'static str, radar: &Radar) -> Result<(), ReconstructError> {
         refused(method, &self.differences(radar))
     }
 
-    /// Samples and elements of its radars.
+    /// Samples and elements of the domain's radars.
     pub(super) fn shape(&self) -> [usize; 2] {
         match self {
             Domain::Radar(radar) => [radar.samples, radar.elements],
@@ -102,7 +101,7 @@ pub(super) fn is_alike(trained: &Radar, radar: &Radar) -> bool {
     differences(trained, radar).is_empty()
 }
 
-/// How many range bins a reflector at end-fire migrates from the first element to the last.
+/// Range bins that a reflector at end-fire migrates from the first element to the last.
 pub(super) fn migration_bins(radar: &Radar) -> f64 {
     radar.aperture_metres() / radar.range_resolution_metres()
 }
@@ -130,10 +129,10 @@ fn pattern(budget: Option<LinkBudget>) -> String {
     }
 }
 
-/// What makes the samples of `radar` others than those of `trained`. The transmit power only makes samples louder, which no network hears; the
-/// chirp's duration changes no echo, and of a link budget only the pattern of an element does.
+/// The quantities by which the samples of `radar` differ from those of `trained`. The transmit power only scales samples, and networks normalise
+/// them; the chirp's duration changes no echo, and of a link budget only the pattern of an element does.
 fn differences(trained: &Radar, radar: &Radar) -> Vec<Difference> {
-    // A new constant must be named here, or the networks would not know of it.
+    // A new constant of the radar must be listed here, or networks would accept any value of it.
     let Radar {
         transmit_power_watts: _,
         bandwidth_hz,
@@ -147,7 +146,7 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<Difference> {
         window,
         antennas: found_antennas,
         focus_off_line: _,
-        // Networks see one chirp.
+        // Networks get samples of one chirp.
         chirps: _,
         chirp_interval_seconds: _,
         budget,

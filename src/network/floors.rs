@@ -6,14 +6,14 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::fmt;
 
-/// Which floor a training scene has.
+/// The floor of a training scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Floors {
-    /// The same for all.
+    /// The same floor for all scenes.
     Fixed(Floor),
     /// Thermal noise beneath a part of the scenes, the thesis' floor beneath the others.
     Thermal {
-        /// The part, 0 to 1.
+        /// The part of scenes over thermal noise, 0 to 1.
         share: f64,
         /// Lowest ratio of signal to noise.
         from: Decibels,
@@ -32,7 +32,7 @@ impl fmt::Display for Floors {
 }
 
 impl Floors {
-    /// The floor of the scene whose noise has this seed.
+    /// The floor of the scene with this seed of noise.
     pub fn of(&self, noise_seed: u64) -> Floor {
         match *self {
             Floors::Fixed(floor) => floor,

@@ -1,4 +1,4 @@
-//! A training example: input and target of one scene.
+//! Training examples: input and target of one scene.
 
 use super::run::{TrainError, TrainingRun};
 use super::students::Student;

@@ -1,6 +1,6 @@
-//! Losses: those that the thesis names.
+//! The training losses that the thesis names.
 //!
-//! `output` and `target` are Lambda of a batch, `[batch, range bins, columns]`. Every loss is one number, smaller is better.
+//! `output` and `target` are Lambda of a batch, `[batch, range bins, columns]`. Every loss is one number; smaller is better.
 
 use crate::evaluate::TARGET_ETA;
 use burn::tensor::Tensor;
@@ -83,7 +83,7 @@ mod tests {
         let target = [[[1.0, 0.0], [0.5, 0.25]]];
         let close = |loss: TrainingLoss, expected: f64| {
             let found = f64::from(value(loss, output, target));
-            // Where a certain cell is certainly wrong, the loss is the log of 1e-6 as f32 has it beside 1.
+            // The loss of a cell that is certainly wrong is the log of 1e-6, as f32 rounds it beside 1.
             assert!((found - expected).abs() < 2e-3 * expected.abs().max(0.1), "{loss:?}: {found} for {expected}");
         };
         close(TrainingLoss::MeanSquare, 0.5 / 4.0);

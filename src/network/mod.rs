@@ -1,19 +1,19 @@
 //! Neural networks: the thesis' own encoder-decoder and its failing U-Net on burn, and the live network.
 //!
-//! | file | what |
+//! | file | content |
 //! |---|---|
 //! | [`live`] | the live network: features, examples to train on, an engine without a framework |
-//! | [`kernels`] | convolutions that both engines without a framework are made of |
+//! | [`kernels`] | convolutions of both engines without a framework |
 //! | [`floors`] | floors of training scenes |
-//! | [`domain`] | the radars that a network was trained for |
-//! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and as a reconstruction method |
+//! | [`domain`] | the radars for which a network was trained |
+//! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and its reconstruction method |
 //! | [`thesis_engine`] | its forward pass without a framework |
 //! | [`unet`] | the thesis' failing U-Net |
-//! | [`recipe`], [`losses`], [`students`], `lesson` | training: what, towards what, by whom, and from what |
-//! | [`run`], [`train`], [`checkpoint`] | what a run is and what it was made of, how it goes, and going on with it |
-//! | [`validation`] | what the trained network is worth, and its weight file |
-//! | [`backend`] | which of burn's backends computes |
-//! | [`weights`], [`pytorch`] | weight files: checking, loading, what they say about themselves |
+//! | [`recipe`], [`losses`], [`students`], `lesson` | training: recipes, losses, networks that can be trained, and examples |
+//! | [`run`], [`train`], [`checkpoint`] | a run with its origin, its steps, and its continuation |
+//! | [`validation`] | figures of the trained network, and its weight file |
+//! | [`backend`] | the choice of burn's backend |
+//! | [`weights`], [`pytorch`] | weight files: checking, loading, provenance |
 
 #[cfg(feature = "network")]
 pub mod backend;
@@ -72,7 +72,7 @@ const LIVE_FILES: [&str; 3] = [
     "assets/weights/live-cascade.safetensors",
 ];
 
-/// The live network whose weights are part of the program, by itself: those for the radar of table 3.1, those for others of its shape, and those
+/// The live network with the weights that are part of the program: those for the radar of table 3.1, those for others of its shape, and those
 /// for the cascade of 12 x 16 pairs. `None`, with a warning in the log, where the first can't be used.
 pub fn live() -> Option<LiveMethod> {
     let of = |(name, bytes): (&str, std::borrow::Cow<[u8]>)| {

@@ -10,17 +10,17 @@ use std::path::Path;
 /// Most bytes of a weight file, and of all tensors of a checkpoint together: 1 GiB, some 160 times the thesis' network.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// Under which keys programs keep a network's state beside an optimizer's and others, the first that is there first. `average` is where
-/// `training` keeps the averaged weights: those that it validates and ships.
+/// Keys under which programs keep a network's state beside an optimizer's and others; the first that a file has counts. `training` keeps the
+/// averaged weights, which it validates and ships, under `average`.
 const STATES: [&str; 6] = ["average", "model_state_dict", "state_dict", "model", "network", "net"];
-/// States within states that are looked into.
+/// Deepest nesting of states that is searched.
 const DEEPEST_STATE: usize = 4;
-/// What `DataParallel` puts before every name.
+/// Prefix that `DataParallel` adds to every name.
 const PARALLEL: &str = "module.";
 
 /// The bytes of the weight file at `path` as safetensors: those of a safetensors file as they are; those of a PyTorch checkpoint,
-/// which holds a `state_dict` by itself or under one of [`STATES`], translated. Names, shapes and types stay PyTorch's; what stands beside
-/// the state, such as an optimizer's tensors, is not read.
+/// which holds a `state_dict` by itself or under one of [`STATES`], translated. Names, shapes and types stay PyTorch's; tensors beside
+/// the state, such as an optimizer's, are not read.
 /// # Errors
 /// [`WeightsError::File`] when it can't be read, [`WeightsError::NotPytorch`] when it is neither.
 pub fn read_weights(path: &Path) -> Result<Vec<u8>, WeightsError> {
@@ -39,12 +39,12 @@ pub fn read_weights(path: &Path) -> Result<Vec<u8>, WeightsError> {
     })
 }
 
-/// A zip archive, which PyTorch has written since 1.6, or a bare pickle, which it wrote before.
+/// Whether the file is a zip archive, which PyTorch has written since 1.6, or a bare pickle, which it wrote before.
 fn is_pytorch(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(&[0x80, 2])
 }
 
-/// What stands before the names of the network's own tensors among `names`: "" for a bare `state_dict`, such as "model." for one beside others.
+/// Prefix of the network's own tensors among `names`: "" for a bare `state_dict`, such as "model." for one beside others.
 fn state_prefix(names: &[&str]) -> String {
     let mut prefix = String::new();
     for _ in 0..DEEPEST_STATE {
@@ -69,7 +69,7 @@ fn translate(path: &Path) -> Result<Vec<u8>, String> {
     let prefix = state_prefix(&tensors.keys().map(String::as_str).collect::<Vec<_>>());
     tensors.retain(|name, _| name.starts_with(&prefix));
     let tensors: BTreeMap<_, _> = tensors.into_iter().collect();
-    // Tensors may share a storage, or repeat one value: the file's length bounds nothing.
+    // Tensors may share a storage, or repeat one value: the file's length is no bound.
     let asked = tensors.values().fold(0u64, |n, t| n.saturating_add(t.byte_len() as u64));
     if asked > MAX_BYTES {
         return Err(format!("its tensors ask for {asked} bytes; at most {MAX_BYTES} are read"));
@@ -137,10 +137,10 @@ mod tests {
         let value = pickle.strip_prefix(b"\x80\x02").unwrap().strip_suffix(b".").unwrap();
         let mut out = b"\x80\x02".to_vec();
         for key in keys {
-            // An empty dictionary, then a key of it.
+            // An empty dictionary, then a key in it.
             out.extend([b"}".as_slice(), &text(key)].concat());
         }
-        // The value is kept under a number that the pickle doesn't use, and put into the dictionaries (SETITEM).
+        // The value is stored under a number that the pickle doesn't use, and put into the dictionaries (SETITEM).
         out.extend([value, b"r\x00\x00\x01\x00".as_slice(), &b"s".repeat(keys.len())].concat());
         out.extend(
             [&text("epoch"), b"K\x03s".as_slice(), &text("optimizer"), b"}", &text("state"), b"}K\x00"].concat(),

@@ -1,4 +1,4 @@
-//! Training recipes: everything that decides what a training run does, as TOML.
+//! Training recipes, which determine a training run, as TOML.
 
 use super::losses::TrainingLoss;
 use super::thesis::ThesisConfig;
@@ -17,7 +17,7 @@ pub const SHIPPED: [(&str, &str); 5] = [
     ("unet", include_str!("../../assets/recipes/unet.toml")),
 ];
 
-/// Which network, and how large.
+/// The network of a recipe, with its size.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Network {
@@ -27,7 +27,7 @@ pub enum Network {
     Unet(UnetConfig),
 }
 
-/// How weights follow the gradient.
+/// The optimizer and its parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Optimizer {
@@ -35,7 +35,7 @@ pub enum Optimizer {
     Sgd {
         /// Step size.
         learning_rate: f64,
-        /// Part of the last step that is kept.
+        /// Part of the last step that is added to the next.
         momentum: f64,
     },
     /// Adam with decoupled weight decay 1e-4.
@@ -55,7 +55,7 @@ impl Optimizer {
         }
     }
 
-    /// Its name, as weight files give it.
+    /// The optimizer's name in weight files.
     pub fn name(&self) -> &'static str {
         match self {
             Optimizer::Sgd { .. } => "SGD",
@@ -81,17 +81,17 @@ pub struct Decay {
     pub factor: f64,
 }
 
-/// So many training scenes of a kind.
+/// Number of training scenes of a kind.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct KindShare {
     /// The kind.
     pub kind: Kind,
-    /// How many.
+    /// Number of scenes.
     pub count: u32,
 }
 
-/// Most scenes a step, training scenes and validation scenes of a set: lists of them and the maps of a batch are held in memory.
+/// Most scenes a step, training scenes and validation scenes of a set: lists of them and the maps of a batch are in memory.
 const MAX_BATCH: usize = 1024;
 const MAX_SCENES: u64 = 10_000_000;
 const MAX_VALIDATION_SCENES: u32 = 10_000;
@@ -110,7 +110,7 @@ pub struct Recipe {
     pub epochs: u32,
     /// Scenes a step.
     pub batch: usize,
-    /// What is minimised.
+    /// The loss to minimise.
     pub loss: TrainingLoss,
     /// Validation scenes of each of the three sets.
     pub validation_scenes: u32,
@@ -124,11 +124,11 @@ pub struct Recipe {
     pub scenes: Vec<KindShare>,
 }
 
-/// What is wrong with a recipe.
+/// A fault of a recipe.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum RecipeError {
-    /// It is not TOML, or misses or misspells something.
+    /// The text is not TOML, or misses or misspells an entry.
     #[error("recipe {name}: {reason}")]
     Syntax { name: String, reason: String },
     #[error("recipe {name}: {field} is {value}; expected {expected}")]
@@ -136,9 +136,9 @@ pub enum RecipeError {
 }
 
 impl Recipe {
-    /// Reads and checks a recipe; `name` is for messages.
+    /// Reads and checks a recipe; messages call it `name`.
     /// # Errors
-    /// [`RecipeError`] says what is wrong and where.
+    /// [`RecipeError`] names the fault and its place.
     pub fn parse(name: &str, text: &str) -> Result<Recipe, RecipeError> {
         let syntax = |e: toml::de::Error| RecipeError::Syntax { name: name.to_owned(), reason: e.to_string() };
         let recipe: Recipe = toml::from_str(text).map_err(syntax)?;
@@ -146,7 +146,7 @@ impl Recipe {
         Ok(recipe)
     }
 
-    /// A shipped recipe.
+    /// The shipped recipe called `name`.
     pub fn shipped(name: &str) -> Option<Result<Recipe, RecipeError>> {
         SHIPPED.iter().find(|(known, _)| *known == name).map(|(name, text)| Recipe::parse(name, text))
     }

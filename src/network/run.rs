@@ -1,4 +1,4 @@
-//! A training run: its folder, its progress, its record, and its stopping rules.
+//! Training runs: folder, progress, record, and stopping rules.
 
 use super::recipe::RecipeError;
 use crate::radar::Radar;
@@ -9,46 +9,46 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// What a run needs beside its recipe.
+/// The settings of a run beside its recipe.
 #[derive(Debug, Clone)]
 pub struct TrainingRun {
     /// Folder of checkpoints, log and weights.
     pub folder: PathBuf,
-    /// Where tensors live.
+    /// The device of the tensors.
     pub device: Device,
     /// The radar.
     pub radar: Radar,
-    /// Stop, with a checkpoint, after so many steps in all.
+    /// Number of steps in all after which the run stops with a checkpoint.
     pub max_steps: Option<u64>,
-    /// Stop, with a checkpoint, after so long.
+    /// Time after which the run stops with a checkpoint.
     pub max_time: Option<Duration>,
-    /// Write weights that no step was taken with all the same.
+    /// Whether weights are written even where no step was taken.
     pub untrained: bool,
     /// Time between checkpoints.
     pub checkpoint_every: Duration,
-    /// What trains, as found when this part of the run started.
+    /// The origin of this part of the run, recorded when it started.
     pub origin: Origin,
 }
 
-/// What trains: found out when a program starts, and never later.
+/// The program that trains: recorded when it starts, and never later.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Origin {
     /// The commit of the working folder.
     pub commit: String,
-    /// SHA-256 of the program that runs, hexadecimal.
+    /// SHA-256 of the running program, hexadecimal.
     pub program_sha256: String,
-    /// Its arguments.
+    /// Arguments of the program.
     pub arguments: Vec<String>,
 }
 
-/// One start of a run, until it stopped.
+/// One part of a run, from a start to the next stop.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunPart {
-    /// When it started, in seconds since 1970.
+    /// Time of the start, in seconds since 1970.
     pub started_unix_seconds: u64,
-    /// What trained.
+    /// The program that trained.
     pub origin: Origin,
-    /// SHA-256 of the weights it started from; none where they were drawn from the recipe's seed.
+    /// SHA-256 of the weights at its start; none where they were drawn from the recipe's seed.
     pub initial_weights_sha256: Option<String>,
     /// Maps of the whole run before this part.
     pub maps_before: u64,
@@ -67,12 +67,12 @@ impl RunPart {
     }
 }
 
-/// Where a run stands.
+/// The progress of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct RunProgress {
     /// Whole epochs done.
     pub epoch: u32,
-    /// Steps done in the epoch that is under way.
+    /// Steps done in the current epoch.
     pub step_of_epoch: u64,
     /// Steps done in all.
     pub step: u64,
@@ -82,13 +82,13 @@ pub struct RunProgress {
     pub seconds: f64,
     /// Smoothed loss.
     pub loss: f64,
-    /// Every part of the run, the one under way last.
+    /// Every part of the run, the current one last.
     #[serde(default)]
     pub parts: Vec<RunPart>,
 }
 
 impl RunProgress {
-    /// Counts one step over `maps` maps; `seconds` is the training time so far, of all parts and of this one.
+    /// Counts one step over `maps` maps; `seconds` are the training time so far, of all parts and of this one.
     pub(super) fn step(&mut self, maps: u64, loss: f64, [seconds, of_part]: [f64; 2]) {
         self.step += 1;
         self.step_of_epoch += 1;
@@ -102,7 +102,7 @@ impl RunProgress {
     }
 }
 
-/// Why training stopped early or could not start.
+/// The reason why training stopped early or could not start.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum TrainError {

@@ -1,4 +1,4 @@
-//! The networks that come with the program, and those of files.
+//! The networks that come with the program, and those of weight files.
 
 use super::backend::Backend;
 use super::live::{self, LiveMethod};
@@ -15,12 +15,12 @@ use std::sync::{Arc, LazyLock};
 
 static SHIPPED: LazyLock<Vec<Arc<dyn Reconstructor>>> = LazyLock::new(|| load_shipped(Backend::default()));
 
-/// The networks whose weights are part of the program. One whose weights can't be used is left out, with a warning in the log.
+/// The networks whose weights are part of the program. A network whose weights can't be used is left out, with a warning in the log.
 pub fn shipped() -> Vec<Arc<dyn Reconstructor>> {
     SHIPPED.clone()
 }
 
-/// The same, with what burn computes of them computed by `backend`; `live` has an engine of its own.
+/// [`shipped`] with `backend` for the networks on burn; `live` has an engine of its own.
 pub fn shipped_on(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
     if backend == Backend::default() { shipped() } else { load_shipped(backend) }
 }
@@ -40,7 +40,7 @@ fn load_shipped(backend: Backend) -> Vec<Arc<dyn Reconstructor>> {
     live.into_iter().chain(others).collect()
 }
 
-/// The network whose weights the file at `path` holds: safetensors, or a PyTorch checkpoint of the thesis' or the live network.
+/// The network with the weights of the file at `path`: safetensors, or a PyTorch checkpoint of the thesis' or the live network.
 /// # Errors
 /// [`WeightsError`] when the file can't be read, is damaged, or belongs to no network of ours.
 pub fn from_file(path: &Path, backend: Backend) -> Result<Arc<dyn Reconstructor>, WeightsError> {
@@ -49,7 +49,7 @@ pub fn from_file(path: &Path, backend: Backend) -> Result<Arc<dyn Reconstructor>
 }
 
 fn method_of(file: WeightFile, backend: Backend) -> Result<Arc<dyn Reconstructor>, WeightsError> {
-    // PyTorch's own files name no network; their tensors do.
+    // PyTorch's own files don't name their network; the tensors tell it.
     let network = match file.network() {
         "" if Thesis::config_of(&file).is_ok() => Thesis::NAME,
         "" if file.shape("row_kernel").is_some() => live::method::NAME,

@@ -1,4 +1,4 @@
-//! Each network's input, target and estimated map for a scene.
+//! Input, target and estimated map of each network that can be trained.
 
 use super::thesis::{Thesis, ThesisConfig};
 use super::unet::{Unet, UnetConfig};
@@ -17,7 +17,7 @@ use ndarray::Array2;
 pub trait Student: Module + Clone {
     /// Width and depth.
     type Config: Clone + Send + Sync;
-    /// What it is shown of one scene.
+    /// The network's input for one scene.
     type Input: Send;
 
     /// Name in weight files.
@@ -31,15 +31,15 @@ pub trait Student: Module + Clone {
 
     /// Makes the tables.
     /// # Errors
-    /// [`ReconstructError`] for a radar that the network can't serve.
+    /// [`ReconstructError`] for a radar that the network can't use.
     fn tables(config: &Self::Config, radar: &Radar) -> Result<Self::Tables, ReconstructError>;
 
     /// The input made of the two ends' samples.
     /// # Errors
-    /// [`ReconstructError`] on samples it can't use.
+    /// [`ReconstructError`] on samples that the network can't use.
     fn input(tables: &Self::Tables, ends: &TwoEnds) -> Result<Self::Input, ReconstructError>;
 
-    /// The map it should give, every cell in [0, 1].
+    /// The target for the network's output, every cell in [0, 1].
     fn target(config: &Self::Config, radar: &Radar, signal: &BeatSignal) -> RangeAngleMap {
         let _ = config;
         LogMaps::of_signal(radar, signal).full.normalise(Normalisation::MinMax)
@@ -48,12 +48,12 @@ pub trait Student: Module + Clone {
     /// Estimates the maps of a batch, `[batch, rows, columns]`.
     fn estimate(&self, inputs: &[Self::Input], device: &Device) -> Tensor<3>;
 
-    /// The map whose squared error counts: an estimate with every cell in [0, 1].
+    /// The map of which the squared error is taken: an estimate with every cell in [0, 1].
     fn finish(estimate: Array2<f32>) -> RangeAngleMap {
         RangeAngleMap { lambda: estimate.mapv(|v| v.clamp(0.0, 1.0)) }
     }
 
-    /// The map whose cells are held against a threshold; the thesis stretches its networks' answers to [0, 1] for that.
+    /// The map that is compared with a threshold; the thesis stretches its networks' answers to [0, 1] for that.
     fn thresholded(estimate: Array2<f32>) -> RangeAngleMap {
         Self::finish(estimate)
     }
@@ -64,7 +64,7 @@ pub fn stack<const D: usize>(arrays: &[Vec<f32>], shape: [usize; D], device: &De
     Tensor::from_data(TensorData::new(arrays.concat(), shape.to_vec()), device)
 }
 
-/// The thesis' four-channel input and its size.
+/// The thesis' four-channel input, with its size.
 #[derive(Debug, Clone)]
 pub struct ThesisInput {
     /// `[4, bins, columns]`, row-major.
@@ -112,7 +112,7 @@ impl Student for Thesis {
     }
 }
 
-/// Lambda above the target threshold on the scene's own coordinates, 1 or 0, `[rows, 2 rows]` row-major.
+/// The map of Lambda above the target threshold on the scene's own coordinates, 1 or 0, `[rows, 2 rows]` row-major.
 pub fn thresholded_cartesian(radar: &Radar, map: &RangeAngleMap, rows: usize) -> Vec<f32> {
     let bright = RangeAngleMap { lambda: map.lambda.mapv(|v| f32::from(v > TARGET_ETA)) };
     project(radar, &bright, rows).lambda.iter().map(|v| f32::from(*v > 0.0)).collect()

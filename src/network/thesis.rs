@@ -13,7 +13,7 @@ use burn::tensor::ops::MaxPoolOptions;
 use burn::tensor::{Device, Tensor};
 use serde::{Deserialize, Serialize};
 
-/// What the author's program calls the tower of 3x3 convolutions.
+/// Name of the tower of 3x3 convolutions in the author's program.
 const FIRST_TOWER: &str = "down.layer3x3";
 
 /// Dilation of every convolution of the towers.
@@ -27,8 +27,8 @@ pub struct ThesisConfig {
     pub filters: usize,
     /// Halvings of the map, 5 in the thesis.
     pub levels: usize,
-    /// Whether training starts with the last batch norm at [`ALIVE_OUTPUT_MOMENTS`], about where the targets lie, instead of at 0 +- 1 as in the author's
-    /// program. From there, half of the cells start below zero, where the final ReLU lets no gradient through.
+    /// Whether training starts with the last batch norm at [`ALIVE_OUTPUT_MOMENTS`], near the targets' mean and deviation, instead of at 0 +- 1
+    /// as in the author's program. With the latter, half of the cells start below zero, where the final ReLU has no gradient.
     #[serde(default)]
     pub alive_output: bool,
 }
@@ -40,7 +40,7 @@ impl ThesisConfig {
     pub const MAX_LEVELS: usize = 8;
 }
 
-/// Mean and standard deviation of the output where training starts, if that is asked for.
+/// Mean and standard deviation of the output at the start of training with [`ThesisConfig::alive_output`].
 const ALIVE_OUTPUT_MOMENTS: [f64; 2] = [0.45, 0.15];
 
 impl Default for ThesisConfig {
@@ -117,7 +117,7 @@ impl Thesis {
         }
     }
 
-    /// Width and depth of the network that `file` holds weights of.
+    /// Width and depth of the network whose weights `file` holds.
     /// # Errors
     /// [`WeightsError::Tensor`] when it lacks the first convolution.
     pub fn config_of(file: &WeightFile) -> Result<ThesisConfig, WeightsError> {
@@ -153,7 +153,7 @@ impl Thesis {
         Ok(network)
     }
 
-    /// The bytes of `file` with our tensor names in place of the author's, if it has those.
+    /// The bytes of `file` with our tensor names in place of the author's, if it has the author's.
     /// # Errors
     /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub(super) fn in_our_names(file: &WeightFile) -> Result<Vec<u8>, WeightsError> {
@@ -171,7 +171,7 @@ impl Thesis {
         self.up.upconv.iter().fold(joined, |x, stage| stage.forward(x))
     }
 
-    /// The same function with every batch norm folded into its convolution: for inference.
+    /// The same function with every batch norm folded into its convolution, for inference.
     pub fn folded(mut self) -> Self {
         let Down { layer3x3, layer5x5 } = &mut self.down;
         for stage in layer3x3.iter_mut().chain(layer5x5) {
@@ -194,7 +194,7 @@ impl Thesis {
     }
 }
 
-/// What a batch norm does at inference: `x * scale + shift` for each channel.
+/// Scale and shift of a batch norm at inference: `x * scale + shift` for each channel.
 fn scale_and_shift(norm: &BatchNorm) -> (Tensor<1>, Tensor<1>) {
     let scale = norm.gamma.val() / (norm.running_var.value() + norm.epsilon).sqrt();
     let shift = norm.beta.val() - norm.running_mean.value() * scale.clone();
@@ -235,7 +235,7 @@ fn wrap(x: Tensor<4>, dim: usize, n: usize) -> Tensor<4> {
     Tensor::cat(parts, dim)
 }
 
-/// The author's tensor names as ours: the convolution and the batch norm of a stage are its items 0 and 1.
+/// Our name of one of the author's tensors: the convolution and the batch norm of a stage are its items 0 and 1.
 fn from_pytorch(name: &str) -> String {
     let mut parts: Vec<&str> = name.split('.').collect();
     if let [.., _, index, _] = parts.as_mut_slice() {
@@ -277,7 +277,7 @@ mod tests {
 
     #[test]
     fn an_alive_output_starts_above_zero_almost_everywhere() {
-        // Batch norms take the batch's own statistics where gradients are recorded.
+        // Batch norms use the batch's own statistics where gradients are recorded.
         let device = Device::flex().autodiff();
         device.seed(1);
         let positive = |alive_output: bool| {

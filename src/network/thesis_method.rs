@@ -23,8 +23,8 @@ const THESIS_ETA: f32 = 0.7;
 const TRAINED_ON: &str =
     "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor and never over thermal noise";
 
-/// The thesis' encoder-decoder with weights. Its output is Lambda as it stands: what it learned to answer, and what the thesis takes the
-/// squared error of. Its threshold is one for the output stretched to [0, 1], as the thesis' is.
+/// The thesis' encoder-decoder with weights. Its output is Lambda without a further normalisation, of which the thesis takes the squared error.
+/// Its threshold is one for the output stretched to [0, 1], as the thesis' is.
 #[derive(Debug)]
 pub struct ThesisMethod {
     network: Network,
@@ -38,10 +38,9 @@ pub struct ThesisMethod {
 
 #[derive(Debug)]
 enum Network {
-    /// The engine without a framework, with idle buffers. They are taken out for a pass and not locked while it runs: another thread
-    /// makes its own.
+    /// The engine without a framework, with idle buffers. A pass takes them out and holds no lock while it runs: another thread makes its own.
     Engine { engine: Box<ThesisEngine>, idle: Mutex<Option<Buffers>> },
-    /// burn, on a backend that was asked for.
+    /// burn, on a requested backend.
     Burn { network: Box<Thesis>, device: Device },
 }
 
@@ -61,7 +60,7 @@ impl Network {
         let size = input.size;
         match self {
             Network::Engine { engine, idle } => {
-                // A panic elsewhere can't leave the buffers in a state that matters: every pass overwrites them.
+                // A panic elsewhere can't spoil the buffers: every pass overwrites them.
                 let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
                 let taken = idle().take();
                 let mut buffers = taken.unwrap_or_default();
@@ -97,7 +96,7 @@ impl ThesisMethod {
         })
     }
 
-    /// The network's answer with the threshold that means the method's own once the answer is stretched.
+    /// The network's answer, with the threshold of its cells that equals the method's own after stretching to [0, 1].
     fn answer(&self, input: ThesisInput) -> Result<Reconstruction, ReconstructError> {
         let map = self.network.estimate(self.name, input)?;
         let eta = unstretched(&map, self.eta);
@@ -158,7 +157,7 @@ impl Reconstructor for ThesisMethod {
     }
 }
 
-/// The failing U-Net: its Cartesian answer, drawn back onto range and angle.
+/// The failing U-Net, with its Cartesian answer resampled to range and angle.
 #[derive(Debug)]
 pub struct UnetMethod {
     network: Unet,
@@ -239,7 +238,7 @@ fn in_rows(
         .map_err(|e| ReconstructError::Unusable { method, reason: e.to_string() })
 }
 
-/// The value that `eta` is of, once `map` is stretched to [0, 1].
+/// The value of `map` that becomes `eta` where the map is stretched to [0, 1].
 fn unstretched(map: &Array2<f32>, eta: f32) -> f32 {
     let (least, most) = map.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
     (least + eta * (most - least)).clamp(0.0, 1.0)

@@ -1,4 +1,4 @@
-//! Training: scenes simulated as they are needed, checkpoints that a run goes on from as if it had never stopped.
+//! Training, with scenes simulated as they are needed, and checkpoints from which a run continues as if it had never stopped.
 
 use super::checkpoint;
 use super::lesson::lesson;
@@ -20,7 +20,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Trains by `recipe` until it ends or `run` says stop. `resume` goes on from the folder's checkpoint; `watch` is told after every step.
+/// Trains by `recipe` until the recipe or a limit of `run` ends it. `resume` continues from the folder's checkpoint; `watch` is called after every step.
 /// # Errors
 /// [`TrainError`].
 pub fn train<S: Student>(
@@ -232,7 +232,7 @@ mod tests {
         let idle = run(folder.path(), 0);
         let error = train::<Thesis>(&recipe, &config, &idle, false, |_| {}).unwrap_err();
         assert!(matches!(error, TrainError::Untrained), "{error}");
-        // As where the time ends before the first step does.
+        // A run whose time ends before its first step.
         let hurried = TrainingRun { max_steps: None, max_time: Some(Duration::from_nanos(1)), ..idle.clone() };
         let error = train::<Thesis>(&recipe, &config, &hurried, false, |_| {}).unwrap_err();
         assert!(matches!(error, TrainError::Untrained) && !weights.exists(), "{error}");

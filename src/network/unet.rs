@@ -1,8 +1,8 @@
-//! The thesis' failure (its section 3.3 and figure 3-2): a U-Net between thresholded Cartesian maps learns to answer nothing.
+//! The thesis' failure (its section 3.3 and figure 3-2): a U-Net between thresholded Cartesian maps learns to answer zeros.
 //!
-//! Both ends' maps are thresholded and projected onto the scene; the target is the whole array's map treated alike. Only a
-//! few cells in a thousand are bright, so an output of zeros is nearly perfect to a mean square, and the network settles there:
-//! the gradient towards the few bright cells is drowned by the many dark ones. It ships so that this can be seen.
+//! Both ends' maps are thresholded and projected onto the scene; the target is the whole array's map treated alike. Only a few cells in a
+//! thousand are bright, so an output of zeros has nearly no mean square error, and training ends there: the gradient of the few bright cells is
+//! small against that of the many dark ones. The program includes it to show this.
 
 use burn::module::Module;
 use burn::nn::PaddingConfig2d;
@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 pub struct UnetConfig {
     /// Channels of the finest level; every level below has twice as many.
     pub channels: usize,
-    /// Halvings.
+    /// Number of halvings.
     pub levels: usize,
     /// Rows of the Cartesian maps; they have twice as many columns.
     pub rows: usize,

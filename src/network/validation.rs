@@ -21,7 +21,7 @@ pub struct SetFigures {
     pub detection: Option<f64>,
 }
 
-/// What validation found.
+/// The figures of a validation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Validation {
     /// One entry a set.

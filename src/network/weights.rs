@@ -1,7 +1,7 @@
-//! Weight files: safetensors with a record of where the weights come from.
+//! Weight files: safetensors with a record of the weights' origin.
 //!
-//! A file is checked against the module it is meant for (names, shapes, types, length, finite values) before a single weight is
-//! loaded, so that a truncated, foreign or wrong-shape file is an error that says what is wrong and not a crash.
+//! A file is checked against its module (names, shapes, types, length, finite values) before a single weight is loaded, so that a truncated,
+//! foreign or wrong-shape file gives an error that names the fault.
 
 use super::domain::Domain;
 use crate::files::kind::kind_of;
@@ -23,21 +23,21 @@ pub const DOMAIN_ENTRY: &str = "domain";
 /// Most tensors of a weight file; the thesis' network has some 70.
 const MAX_TENSORS: usize = 10_000;
 
-/// What a weight file says about itself; kept in its safetensors header.
+/// A weight file's record of its origin, from its safetensors header.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Provenance {
-    /// All entries, by name: `network`, `recipe`, `trainer`, `optimiser`, `seed`, `maps_seen`, `validation`, `eta`, ... Of a run in
+    /// All entries, by name: `network`, `recipe`, `trainer`, `optimiser`, `seed`, `maps_seen`, `validation`, `eta`, ... For a run in
     /// several parts `parts` has each one's record (JSON), in which a missing record says "not recorded".
     pub entries: BTreeMap<String, String>,
 }
 
 impl Provenance {
-    /// An entry, or "" where the file doesn't have it.
+    /// An entry, or "" where the file lacks it.
     pub fn get(&self, name: &str) -> &str {
         self.entries.get(name).map_or("", String::as_str)
     }
 
-    /// How the weights followed the gradient, such as "AdamW" or "SGD, then Muon"; "not recorded" where the file doesn't say.
+    /// The optimiser that trained the weights, such as "AdamW" or "SGD, then Muon"; "not recorded" where the file doesn't name it.
     pub fn optimiser(&self) -> &str {
         match self.get("optimiser") {
             "" => "not recorded",
@@ -69,7 +69,7 @@ impl Provenance {
     }
 }
 
-/// Why a weight file can't be used.
+/// The reason why a weight file can't be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum WeightsError {
@@ -104,7 +104,7 @@ struct TensorHeader {
 }
 
 impl TensorHeader {
-    /// Bytes that its shape and type ask for; `None` where that is no number, or the type is not one of safetensors'.
+    /// Bytes of a tensor of this shape and type; `None` where they overflow, or the type is not one of safetensors'.
     fn bytes(&self) -> Option<usize> {
         let bits: usize =
             self.dtype.trim_start_matches(|c: char| !c.is_ascii_digit()).split('_').next()?.parse().ok()?;
@@ -112,14 +112,14 @@ impl TensorHeader {
         self.shape.iter().try_fold(size, |product, n| product.checked_mul(*n))
     }
 
-    /// Whether it asks for as many bytes as it has of a file's `length`.
+    /// Whether the offsets lie within a file's `length` and enclose as many bytes as shape and type need.
     fn is_sound(&self, length: usize) -> bool {
         let [start, end] = self.data_offsets;
         start <= end && end <= length && self.bytes().is_none_or(|bytes| bytes == end - start)
     }
 }
 
-/// A weight file that was read and found whole.
+/// A weight file whose header and length are valid.
 #[derive(Debug)]
 pub struct WeightFile<'a> {
     name: String,
@@ -127,7 +127,7 @@ pub struct WeightFile<'a> {
     bytes: &'a [u8],
     data: &'a [u8],
     tensors: BTreeMap<String, TensorHeader>,
-    /// Where the weights come from.
+    /// The origin of the weights.
     pub provenance: Provenance,
 }
 
@@ -188,9 +188,9 @@ impl<'a> WeightFile<'a> {
         self.tensors.get(name).map(|tensor| tensor.shape.as_slice())
     }
 
-    /// Checks that every tensor of the file is one that `known` accepts.
+    /// Checks that `known` accepts every tensor of the file.
     /// # Errors
-    /// [`WeightsError::Tensor`] names the first that is none.
+    /// [`WeightsError::Tensor`] names the first that it doesn't accept.
     #[cfg(feature = "network")]
     pub(super) fn expect_only(&self, known: impl Fn(&str) -> bool) -> Result<(), WeightsError> {
         let Some(tensor) = self.tensors.keys().find(|name| !known(name)) else { return Ok(()) };
@@ -198,7 +198,7 @@ impl<'a> WeightFile<'a> {
         Err(WeightsError::Tensor { file, tensor: tensor.clone(), problem })
     }
 
-    /// Name of the network that the weights belong to, as recorded in the file; "" where nothing is.
+    /// Name of the network that the weights belong to, as recorded in the file; "" without a record.
     pub fn network(&self) -> &str {
         self.provenance.get("network")
     }
@@ -208,7 +208,7 @@ impl<'a> WeightFile<'a> {
         &self.name
     }
 
-    /// The same file with other tensor names.
+    /// The file with other tensor names.
     /// # Errors
     /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub fn renamed(&self, rename: impl Fn(&str) -> String) -> Result<Vec<u8>, WeightsError> {
@@ -216,7 +216,7 @@ impl<'a> WeightFile<'a> {
         write(&self.name, &tensors, &self.provenance, self.data)
     }
 
-    /// What the weights are known by, independent of the file's other metadata.
+    /// The fingerprint of the weights, independent of the file's other metadata.
     pub fn weights(&self) -> Weights {
         let sha256 = sha256::of_pieces([self.data]);
         Weights { sha256: sha256::short(&sha256).to_owned(), optimiser: self.provenance.optimiser().to_owned() }
@@ -232,7 +232,7 @@ impl<'a> WeightFile<'a> {
         }
     }
 
-    /// The error of a file that holds other weights where those of `expected` are wanted.
+    /// The error of a file that holds other weights than those of `expected`.
     pub fn foreign(&self, expected: &str) -> WeightsError {
         let (file, expected) = (self.name.clone(), expected.to_owned());
         match self.network() {

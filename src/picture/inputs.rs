@@ -1,9 +1,9 @@
-//! Maps of the samples that a method hears: those of the two ends, or of a layout.
+//! Input maps of a picture: those of the two ends, or of a layout.
 
 use super::ComposeError;
 use crate::maps::focus::layout_map;
 use crate::maps::{LogMap, Normalisation, RangeAngleMap};
-use crate::radar::{BuiltArray, End, LayoutKind, Radar, counted};
+use crate::radar::{BuiltArray, End, LayoutKind, Radar};
 use crate::signal::{BeatSignal, LayoutSamples};
 use std::sync::Arc;
 
@@ -28,7 +28,10 @@ impl InputMap {
     }
 }
 
-/// Samples and map of a layout's elements.
+/// Letters of a layout's name for which a title has room.
+const MAX_NAME_LETTERS: usize = 16;
+
+/// The samples of a layout's elements, and their map.
 pub(super) struct HeardByLayout {
     pub(super) samples: Arc<LayoutSamples>,
     pub(super) input: InputMap,
@@ -48,7 +51,9 @@ impl HeardByLayout {
         let numbers = layout.numbers(radar)?;
         let signal = signal.ok_or_else(|| ComposeError::EndsAlone(layout.to_string()))?;
         let samples = signal.of_layout(&numbers);
-        let title = format!("Input: {} of {layout}", counted(numbers.len(), "element", "elements"));
+        let name = layout.to_string();
+        let title =
+            if name.len() > MAX_NAME_LETTERS { "Input: listed elements".to_owned() } else { format!("Input: {name}") };
         let lambda = layout_map(radar, elements, &samples).log_magnitude().normalise(normalisation);
         Ok(HeardByLayout { samples: Arc::new(samples), input: InputMap { title, lambda } })
     }

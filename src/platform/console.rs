@@ -1,4 +1,4 @@
-//! The console that the program was started from, where there is one.
+//! The console that the program was started from, if any.
 
 /// Takes the console of the parent process. On Windows a program with a window has none of its own.
 pub fn join() {
@@ -10,7 +10,7 @@ pub fn join() {
     }
 }
 
-/// Says a sentence on standard error. On Windows a program that was started by a double click has none: there the system shows a box.
+/// Writes a sentence to standard error. A program started by a double click on Windows has none; there the system shows a box.
 pub fn say(sentence: &str) {
     #[cfg(all(windows, feature = "app"))]
     if std::os::windows::io::AsRawHandle::as_raw_handle(&std::io::stderr()).is_null() {

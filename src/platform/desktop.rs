@@ -1,13 +1,13 @@
-//! The system: threads, files on disk, its dialogs.
+//! Threads, files and dialogs of a desktop system.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What the address of a page says; a desktop has none.
+/// Query and fragment of the page's address; empty on a desktop.
 pub fn address() -> String {
     String::new()
 }
 
-/// Where the page stands; a desktop has no page.
+/// Address of the page; `None` on a desktop.
 pub fn page_address() -> Option<String> {
     None
 }
@@ -23,12 +23,12 @@ pub(crate) fn live_weights() -> [std::borrow::Cow<'static, [u8]>; 3] {
 /// Whether the window is a page in a browser.
 pub const IN_A_BROWSER: bool = false;
 
-/// Tells a sentence where there is no window to tell it in.
+/// Tells a sentence without a window: in the log.
 pub fn tell(sentence: &str) {
     tracing::error!("{sentence}");
 }
 
-/// Whether long work runs beside the window.
+/// Whether long work runs on threads beside the window.
 pub fn has_threads() -> bool {
     true
 }
@@ -38,23 +38,23 @@ pub fn has_window() -> bool {
     true
 }
 
-/// Whether writing a file may take long enough to be seen.
+/// Whether writing a file may take so long that the user notices.
 pub const WRITES_WAIT: bool = true;
 
-/// Holds `mutex`.
+/// Locks `mutex`.
 pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What a thread does where it panics and the panic can't be caught; here it can.
+/// Sets the action of a thread at a panic that can't be caught. On a desktop every panic can be caught.
 pub fn on_panic(_then: impl FnOnce(String) + 'static) {}
 
-/// What went wrong beside the window since the last call; here it is told with the work.
+/// Problems of threads since the last call. On a desktop there are none: a worker's reply has them.
 pub fn problems() -> Vec<String> {
     Vec::new()
 }
 
-/// A pool of threads of its own for slow work; `None` where the system can't start them.
+/// A pool of threads for slow work; `None` where the system can't start them.
 pub fn pool(name: &'static str) -> Option<rayon::ThreadPool> {
     rayon::ThreadPoolBuilder::new().thread_name(move |i| format!("{name} {i}")).build().ok()
 }
@@ -94,7 +94,7 @@ pub mod fs {
     use std::path::Path;
     use tempfile::NamedTempFile;
 
-    /// Whether there is anything at `path`.
+    /// Whether there is a file or a folder at `path`.
     pub fn exists(path: &Path) -> bool {
         path.exists()
     }
@@ -104,11 +104,11 @@ pub mod fs {
         path.is_dir()
     }
 
-    /// Held while it lives; the system lets go of it however the process ends.
+    /// A held lock file. The system releases it however the process ends.
     #[derive(Debug)]
     pub struct Lock(#[expect(dead_code, reason = "holds the lock")] File);
 
-    /// Tries to hold the lock file at `path`.
+    /// Tries to lock the file at `path`.
     pub fn claim(path: &Path) -> Claim {
         let Ok(file) = File::create(path) else { return Claim::Unavailable };
         match file.try_lock() {
@@ -123,9 +123,9 @@ pub mod fs {
     pub struct Draft(NamedTempFile);
 
     impl Draft {
-        /// Begins a file in `folder` that will take the place of `path`.
+        /// Begins a file in `folder` that will replace the one at `path`.
         /// # Errors
-        /// What the system says of the folder.
+        /// The system's error about the folder.
         pub fn begin(folder: &Path, path: &Path) -> io::Result<Draft> {
             let mut builder = tempfile::Builder::new();
             builder.prefix(".apertura-").suffix(".tmp");
@@ -135,9 +135,9 @@ pub mod fs {
             builder.tempfile_in(folder).map(Draft)
         }
 
-        /// Puts the file in the place of `path`.
+        /// Moves the file to `path`.
         /// # Errors
-        /// What the system says: the disk is full, the place can't be written.
+        /// The system's error: the disk is full, the place can't be written.
         pub fn persist(self, path: &Path) -> io::Result<()> {
             self.0.as_file().sync_all()?;
             self.0.persist(path).map(|_| ()).map_err(|e| e.error)
@@ -146,7 +146,7 @@ pub mod fs {
 
     impl Write for Draft {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            // The file within: the other one's errors name a path that leads nowhere.
+            // The inner file: errors of the outer one name its temporary path, which means nothing to the user.
             self.0.as_file_mut().write(bytes)
         }
 
@@ -161,7 +161,7 @@ pub mod fs {
         }
     }
 
-    /// Temporary files are private; a file a user asked for has the permissions of the one it replaces, or those the umask leaves.
+    /// Permissions of the file at `path`, or those that the umask leaves. Temporary files would be private.
     #[cfg(unix)]
     fn new_file_permissions(path: &Path) -> Option<Permissions> {
         use std::os::unix::fs::PermissionsExt;
@@ -174,7 +174,7 @@ pub mod fs {
     }
 }
 
-/// Asks by the system's dialog, on a thread of its own; `answer` gets the file, or `None` where the dialog was closed.
+/// Opens the system's dialog on a thread of its own; `answer` gets the file, or `None` where the dialog was closed.
 /// # Errors
 /// When the system can't start a thread.
 #[cfg(feature = "app")]
@@ -189,7 +189,7 @@ pub fn choose_file(
     })
 }
 
-/// Where the program keeps its own files.
+/// The folder of the program's own files.
 #[cfg(feature = "app")]
 pub fn storage_folder(app_id: &str) -> Option<std::path::PathBuf> {
     eframe::storage_dir(app_id)

@@ -22,7 +22,7 @@ fn missing(path: &Path) -> io::Error {
     io::Error::new(io::ErrorKind::NotFound, format!("there is no file \"{}\"", path.display()))
 }
 
-/// Writes a file as a whole; its folders are made.
+/// Writes a whole file and makes its folders.
 pub fn put(path: &Path, bytes: Vec<u8>) {
     let mut tree = tree();
     tree.folders.extend(path.ancestors().skip(1).map(Path::to_path_buf));
@@ -78,12 +78,12 @@ pub fn is_dir(path: &Path) -> bool {
 
 /// The path itself: there are no links.
 /// # Errors
-/// [`io::ErrorKind::NotFound`] where there is nothing.
+/// [`io::ErrorKind::NotFound`] where there is neither a file nor a folder.
 pub fn canonicalize(path: &Path) -> io::Result<PathBuf> {
     if exists(path) { Ok(path.to_owned()) } else { Err(missing(path)) }
 }
 
-/// What is known of a file or folder.
+/// Kind and length of a file or folder.
 #[derive(Debug, Clone, Copy)]
 pub struct Metadata {
     bytes: Option<u64>,
@@ -107,9 +107,9 @@ impl Metadata {
     }
 }
 
-/// What is known of a file or folder.
+/// Kind and length of a file or folder.
 /// # Errors
-/// [`io::ErrorKind::NotFound`] where there is nothing.
+/// [`io::ErrorKind::NotFound`] where there is neither.
 pub fn metadata(path: &Path) -> io::Result<Metadata> {
     let tree = tree();
     match tree.files.get(path) {
@@ -119,23 +119,23 @@ pub fn metadata(path: &Path) -> io::Result<Metadata> {
     }
 }
 
-/// What a folder holds.
+/// An entry of a folder.
 #[derive(Debug)]
 pub struct DirEntry(PathBuf);
 
 impl DirEntry {
-    /// Its whole path.
+    /// Whole path of the entry.
     pub fn path(&self) -> PathBuf {
         self.0.clone()
     }
 
-    /// Its name alone.
+    /// Name of the entry.
     pub fn file_name(&self) -> OsString {
         self.0.file_name().unwrap_or_default().to_owned()
     }
 }
 
-/// Files and folders of a folder.
+/// Entries of a folder.
 /// # Errors
 /// [`io::ErrorKind::NotFound`] where there is no such folder.
 pub fn read_dir(folder: &Path) -> io::Result<impl Iterator<Item = io::Result<DirEntry>> + use<>> {
@@ -148,7 +148,7 @@ pub fn read_dir(folder: &Path) -> io::Result<impl Iterator<Item = io::Result<Dir
     Ok(found.into_iter().map(|path| Ok(DirEntry(path))))
 }
 
-/// A file that is read.
+/// A file open for reading.
 #[derive(Debug)]
 pub struct File(Cursor<Arc<[u8]>>);
 
@@ -160,7 +160,7 @@ impl File {
         tree().files.get(path).map(|bytes| File(Cursor::new(bytes.clone()))).ok_or_else(|| missing(path))
     }
 
-    /// What is known of it.
+    /// Kind and length of the file.
     /// # Errors
     /// None.
     pub fn metadata(&self) -> io::Result<Metadata> {

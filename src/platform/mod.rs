@@ -1,5 +1,5 @@
-//! What differs between a desktop and a page in a browser: clock, threads, files, file dialogs, storage, fonts of pictures, and how the window
-//! opens. Each has one file; no other room asks which of the two it runs on, but for the SIMD kernels.
+//! The differences between a desktop and a page in a browser: clock, threads, files, file dialogs, storage, fonts of pictures, and opening of the window. Each
+//! of the two has one file. Except for the SIMD kernels, no other room depends on the platform.
 
 #[cfg(not(target_arch = "wasm32"))]
 pub mod console;
@@ -34,35 +34,35 @@ pub use page::{
 #[cfg(all(feature = "app", target_arch = "wasm32"))]
 pub use page::{choose_file, dropped, open_window, storage_folder, waker};
 
-/// A clock that goes on a desktop and in a page.
+/// A clock that works on a desktop and in a page.
 pub use web_time::Instant;
 
 use std::path::PathBuf;
 
-/// What a file is asked for.
+/// A question for a file, for the system's dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileQuestion {
     /// Title of the dialog.
     pub title: String,
-    /// What such files are.
+    /// Name of the kind of files.
     pub kind: String,
-    /// How the file's name may end, without the dot.
+    /// Endings of the file's name, without the dot.
     pub endings: Vec<String>,
-    /// Where to look first.
+    /// The folder that the dialog begins in.
     pub folder: Option<PathBuf>,
-    /// Name of the file by default.
+    /// Default name of the file.
     pub name: String,
     /// Whether the file is read, not written.
     pub reads: bool,
 }
 
-/// What came of a claim on a lock file.
+/// The result of a claim on a lock file.
 #[derive(Debug)]
 pub enum Claim {
     /// The lock is ours until the value is dropped.
     Ours(fs::Lock),
-    /// Another window holds it.
+    /// Another window holds the lock.
     Theirs,
-    /// There are no locks here.
+    /// The system has no locks.
     Unavailable,
 }

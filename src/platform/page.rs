@@ -1,4 +1,4 @@
-//! A page: Web Workers as threads, files in memory, the browser's storage and downloads.
+//! A page in a browser: Web Workers as threads, files in memory, the browser's storage and downloads.
 
 mod threads;
 
@@ -11,10 +11,10 @@ pub use threads::{has_threads, lock, on_panic, pool, problems, spawn};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen_futures::spawn_local;
 
-/// Folder whose files the browser keeps from one visit to the next.
+/// Folder whose files the browser keeps between visits.
 const STORAGE: &str = "/storage";
 
-/// Folder of files that were opened or dropped.
+/// Folder of opened and dropped files.
 const OPENED: &str = "/opened";
 
 /// Folder whose files the browser saves as downloads.
@@ -27,14 +27,14 @@ extern "C" {
     #[wasm_bindgen(js_name = storedKeys)]
     fn stored_keys() -> Vec<String>;
     fn stored(key: &str) -> Option<String>;
-    /// Whether the browser had room for it.
+    /// Whether the browser had room for the text.
     fn store(key: &str, text: &str) -> bool;
     fn forget(key: &str);
     #[wasm_bindgen(js_name = claimLock)]
     fn claim_lock(key: &str) -> bool;
     #[wasm_bindgen(js_name = releaseLock)]
     fn release_lock(key: &str);
-    /// What the address says behind `?` and `#`.
+    /// Query and fragment of the page's address, with `?` and `#`.
     pub fn address() -> String;
     #[wasm_bindgen(js_name = pageAddress)]
     fn page_address_here() -> String;
@@ -45,7 +45,7 @@ extern "C" {
     pub fn tell(sentence: &str);
 }
 
-/// Where the page stands, without what it is asked for.
+/// Address of the page, without query and fragment.
 pub fn page_address() -> Option<String> {
     Some(page_address_here())
 }
@@ -58,15 +58,15 @@ pub(crate) fn live_weights() -> [std::borrow::Cow<'static, [u8]>; 3] {
 /// Whether the window is a page in a browser.
 pub const IN_A_BROWSER: bool = true;
 
-/// Whether this thread has a window.
+/// Whether this thread can have a window.
 pub fn has_window() -> bool {
     threads::on_first_thread()
 }
 
-/// Whether writing a file may take long enough to be seen.
+/// Whether writing a file may take so long that the user notices.
 pub const WRITES_WAIT: bool = false;
 
-/// Files in memory. Those in the storage folder are kept by the browser, those in the folder of downloads are saved by it.
+/// Files in memory. The browser keeps those in the storage folder and saves those in the folder of downloads.
 pub mod fs {
     use super::{DOWNLOADS, STORAGE, claim_lock, forget, memory_files, release_lock, save_as_download, store};
     use crate::platform::Claim;
@@ -77,7 +77,7 @@ pub mod fs {
     use std::io::{self, Cursor, Seek, SeekFrom, Write};
     use std::path::{Path, PathBuf};
 
-    /// Held while it lives; a page that is closed lets go of it after some seconds.
+    /// A held lock, released some seconds after the page is closed.
     #[derive(Debug)]
     pub struct Lock(PathBuf);
 
@@ -87,7 +87,7 @@ pub mod fs {
         }
     }
 
-    /// Tries to hold the lock file at `path` against other pages.
+    /// Tries to lock `path` against other pages.
     pub fn claim(path: &Path) -> Claim {
         if claim_lock(&path.to_string_lossy()) { Claim::Ours(Lock(path.to_owned())) } else { Claim::Theirs }
     }
@@ -97,14 +97,14 @@ pub mod fs {
     pub struct Draft(Cursor<Vec<u8>>);
 
     impl Draft {
-        /// Begins a file that will take the place of another.
+        /// Begins a file that will replace another.
         /// # Errors
-        /// None here.
+        /// None on a page.
         pub fn begin(_folder: &Path, _path: &Path) -> io::Result<Draft> {
             Ok(Draft(Cursor::default()))
         }
 
-        /// Puts the file in the place of `path`.
+        /// Writes the file to `path`.
         /// # Errors
         /// When the browser's storage is full or forbidden.
         pub fn persist(self, path: &Path) -> io::Result<()> {
@@ -128,7 +128,7 @@ pub mod fs {
         }
     }
 
-    /// Writes a file as a whole.
+    /// Writes a whole file.
     /// # Errors
     /// When the browser's storage is full or forbidden.
     pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
@@ -159,16 +159,16 @@ pub mod fs {
 
     /// Gives a file another name.
     /// # Errors
-    /// Where there is no such file, or no room.
+    /// Where there is no such file, or no room in the storage.
     pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
         write(to, read(from)?)?;
         remove_file(from)
     }
 }
 
-/// Asks by the browser's dialog for a file to read. A file to write is a download: its name is the answer at once.
+/// Opens the browser's dialog for a file to read. A file to write is a download, whose name is the answer at once.
 /// # Errors
-/// None here.
+/// None on a page.
 #[cfg(feature = "app")]
 pub fn choose_file(
     question: super::FileQuestion,
@@ -186,7 +186,7 @@ pub fn choose_file(
     Ok(())
 }
 
-/// The path of a file that was dropped on the window: `answer` gets it when the browser has read the file.
+/// Reads a file that was dropped on the window; `answer` gets its path in memory once the browser has read it.
 #[cfg(feature = "app")]
 pub fn dropped(
     file: &std::sync::Arc<dyn eframe::egui::DroppedFile + Send + Sync>,
@@ -205,7 +205,7 @@ fn opened(name: &str, bytes: Vec<u8>) -> PathBuf {
     path
 }
 
-/// Where the program keeps its own files. Reads what the browser kept.
+/// The folder of the program's own files, filled from the browser's storage.
 #[cfg(feature = "app")]
 pub fn storage_folder(_app_id: &str) -> Option<PathBuf> {
     for folder in [STORAGE, OPENED, DOWNLOADS] {

@@ -84,7 +84,7 @@ const MONOSTATIC: &[RadarPreset] = &[
     RadarPreset {
         id: "table-3.1-physical",
         name: "Table 3.1 in the physical convention",
-        about: "What table 3.1 says, as a radar that is built measures it: a chirp that rises from 77 GHz, carrier and beat there and back with \
+        about: "The constants of table 3.1, as a radar that is built measures: a chirp that rises from 77 GHz, carrier and beat there and back with \
                 one sign. Elements stand a quarter of a wavelength apart, so the array is 1 m long. Blobs stand 1.3 % farther from \
                 broadside than their reflectors, not 2.6 % nearer.",
         radar: Radar {

@@ -1,4 +1,4 @@
-//! What a reconstruction is asked for, and what it answers.
+//! The request and the answer of a reconstruction.
 
 use super::attempt::Attempt;
 use super::prior::NoisePrior;
@@ -10,22 +10,22 @@ use crate::task::Task;
 use ndarray::Array2;
 use std::sync::Arc;
 
-/// What a reconstruction is told beside the samples.
+/// A request for a reconstruction: all that a method gets beside the samples.
 #[derive(Debug, Clone)]
 pub struct Request {
-    /// The noise beneath the samples.
+    /// Noise beneath the samples.
     pub noise: NoisePrior,
-    /// How the map it is compared with is normalised.
+    /// Normalisation of the map, that of the map it is compared with.
     pub normalisation: Normalisation,
-    /// Where the echoes of a single sample come from, metres, if it is known: one sample has no ranges of its own. They count as
-    /// plane waves all the same. Chirps of several samples know their ranges.
+    /// Distance of the echoes of a single sample, metres, if it is known: one sample has no ranges of its own. The echoes count as plane waves
+    /// all the same. Chirps of several samples have ranges.
     pub snapshot_range_metres: Option<f64>,
     /// Whether a method with a memory ([`Reconstructor::following`](super::Reconstructor::following)) may start from its last answer,
     /// as while something is dragged.
     pub may_follow: bool,
-    /// What another layout than the two ends heard, for methods that hear it ([`Reconstructor::hears`](super::Reconstructor::hears)).
+    /// Samples of another layout than the two ends, for methods that use them ([`Reconstructor::hears`](super::Reconstructor::hears)).
     pub heard: Option<Arc<LayoutSamples>>,
-    /// Progress to report to, and the flag to stop at.
+    /// Progress of the reconstruction, and its cancellation.
     pub task: Task,
 }
 
@@ -35,7 +35,7 @@ pub(super) fn halves(radar: &Radar) -> Radar {
 }
 
 impl LayoutSamples {
-    /// The [`halves`] of the array and their samples: zeros where an element is not heard. What belongs to both halves is heard in the first.
+    /// The [`halves`] of the array and their samples: zeros where the layout has no element. A middle element of both halves is filled in the first.
     pub(super) fn as_halves(&self, radar: &Radar) -> (Radar, TwoEnds) {
         let radar = halves(radar);
         let half = radar.end_elements;
@@ -64,31 +64,31 @@ impl Default for Request {
     }
 }
 
-/// What a reconstruction found.
+/// The result of a reconstruction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reconstruction {
     /// Estimate of the whole array's Lambda, `[range bins, columns]`.
     pub lambda: RangeAngleMap,
-    /// The reflectors it believes in, where the method finds any. A reflectivity's sign is a guess where noise leaves the range uncertain by
-    /// half a turn of the echo's phase; the sum of all is positive by convention.
+    /// The reflectors that the method found, if it finds any. A reflectivity's sign is a guess where noise leaves the range uncertain by half a
+    /// turn of the echo's phase; the sum of all is positive by convention.
     pub reflectors: Vec<Reflector>,
-    /// How far each of `reflectors` is needed, 0 to 1 ([`Detection::confidence`]); empty where the method does not say.
+    /// Confidence of each of `reflectors`, 0 to 1 ([`Detection::confidence`]); empty for methods without confidences.
     pub confidences: Vec<f64>,
-    /// The threshold that fits this very answer, where the method reads one off what it measured.
+    /// The threshold for this answer, where the method derives one from its own estimate.
     pub eta: Option<f32>,
-    /// Lambda that noise alone does not exceed in this map, where the method knows it: no threshold lies lower. [`reconstruct`] has raised
-    /// `eta` to it already.
+    /// Lambda that noise alone does not exceed in this map, where the method knows it: no threshold lies lower. [`reconstruct`] has already
+    /// raised `eta` to it.
     ///
     /// [`reconstruct`]: super::Reconstructor::reconstruct
     pub least_eta: Option<f32>,
-    /// How far off the method expects its map to be, `[range bins, columns]`: nine of ten cells are no farther than this from the true Lambda, on
-    /// scenes and over noise like those it was trained on. `None` where the method does not say.
+    /// The method's estimate of its map's error, `[range bins, columns]`: nine of ten cells are no farther than this from the true Lambda, on
+    /// scenes and over noise like those of its training. `None` for methods without such an estimate.
     pub doubt: Option<RangeAngleMap>,
-    /// What the method tried, the first first; empty where it does not say.
+    /// The attempts of a search, in their order; empty for other methods.
     pub trace: Vec<Attempt>,
 }
 
-/// A reflector as the array's centre hears it.
+/// A reflector in polar coordinates around the array's centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Detection {
     /// Cosine of the angle between the array's axis (+x) and the reflector.
@@ -97,15 +97,15 @@ pub struct Detection {
     pub range_metres: f64,
     /// Power of its echo, relative to the strongest one found.
     pub relative_power: Decibels,
-    /// `w / (w + r)`, 0 to 1: the part of the energy around its range, unexplained without it, that it explains. `w` is by how much
-    /// the unexplained energy grows where the echo is taken away and the gains of all others are fitted anew; `r` is the energy that
-    /// all echoes together leave unexplained within two range bins of it, or that noise leaves there where that is more. Low where the
-    /// other echoes, noise or what is left of side lobes would do as well. `None` where the method does not say.
+    /// `w / (w + r)`, 0 to 1: the part of the energy around the echo's range, unexplained without it, that it explains. `w` is the growth of the
+    /// unexplained energy where the echo is taken away and the gains of all others are fitted anew; `r` is the energy that all echoes together
+    /// leave unexplained within two range bins of it, or the noise's there where that is more. Low where the other echoes, noise or remaining
+    /// side lobes would do as well. `None` for methods without confidences.
     pub confidence: Option<f64>,
 }
 
 impl Detection {
-    /// A reflector of reflectivity 1 at its place, ahead of the array.
+    /// A reflector of reflectivity 1 at the detection's place, in front of the array.
     pub fn reflector(&self) -> Reflector {
         let Detection { cos_theta, range_metres, .. } = *self;
         let y_metres = range_metres * (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
@@ -119,13 +119,13 @@ impl Reconstruction {
         Reconstruction::of_map(RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) })
     }
 
-    /// An answer that knows no more than its map.
+    /// An answer that has a map alone.
     pub fn of_map(lambda: RangeAngleMap) -> Self {
         let (reflectors, confidences, trace) = (Vec::new(), Vec::new(), Vec::new());
         Reconstruction { lambda, reflectors, confidences, eta: None, least_eta: None, doubt: None, trace }
     }
 
-    /// Moves reflectors that were found in plane waves to `range_metres`, where they sound the same.
+    /// Moves reflectors that were found in plane waves to `range_metres`, with the same echoes.
     pub(super) fn moved_to(mut self, range_metres: f64) -> Self {
         for r in &mut self.reflectors {
             let nearer = range_metres / r.x_metres.hypot(r.y_metres);
@@ -136,7 +136,7 @@ impl Reconstruction {
         self
     }
 
-    /// The reflectors as the array's centre hears them, strongest first; those that reflect nothing are left out.
+    /// The reflectors in polar coordinates around the array's centre, strongest first, without those of reflectivity 0.
     pub fn detections(&self, radar: &Radar) -> Vec<Detection> {
         let amplitude = |r: &Reflector| r.reflectivity.abs() / (r.x_metres.powi(2) + r.y_metres.powi(2));
         let with_amplitude = |(i, r)| (amplitude(r), r, self.confidences.get(i).copied());
@@ -153,7 +153,7 @@ impl Reconstruction {
             .into_iter()
             .map(|(amplitude, r, confidence)| {
                 let polar = radar.polar_of(r.x_metres, r.y_metres);
-                // Of samples of one range bin none is told; else ranges wrap where those of the map do.
+                // Samples of one range bin have no ranges; else ranges wrap where those of the map do.
                 let range_metres = match radar.samples {
                     1 => polar.range_metres,
                     _ => polar.range_metres.rem_euclid(radar.max_range_metres()),

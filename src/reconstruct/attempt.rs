@@ -1,40 +1,40 @@
-//! One attempt of a search to explain the samples: the step that made it, what it gained, and whether it was kept.
+//! One attempt of a search to explain the samples: its step, its gain, and its verdict.
 
 use std::fmt;
 
 /// One attempt to explain the samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attempt {
-    /// Name of the rung of the ladder ([`LADDER`](super::search::LADDER)) that made it, [`FOLLOWING`](super::search::FOLLOWING) where it began with the last answer, or
-    /// [`CALIBRATION`](super::search::CALIBRATION) where elements were off.
+    /// Name of the rung of the ladder ([`LADDER`](super::search::LADDER)) that made it, [`FOLLOWING`](super::search::FOLLOWING) where the search
+    /// began with the last answer, or [`CALIBRATION`](super::search::CALIBRATION) where elements were off.
     pub rung: &'static str,
-    /// What was tried.
+    /// The proposed objects.
     pub tried: Tried,
-    /// Decades by which the energy that is left falls where it is kept, or would have fallen.
+    /// Decades by which the remaining energy falls where the attempt is kept, or would have fallen.
     pub gain_decades: f64,
-    /// What became of it.
+    /// The verdict on the attempt.
     pub verdict: Verdict,
-    /// Work since the attempt before: about ten microseconds a unit.
+    /// Work since the attempt before, in units of about ten microseconds.
     pub work: usize,
 }
 
-/// What an attempt would explain samples by. Places are (x, y), metres.
+/// The proposal of an attempt. Places are (x, y), metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tried {
     /// Nothing was proposed.
     Nothing,
     /// One reflector.
     Point {
-        /// Where it stands.
+        /// Place of the reflector.
         at_metres: [f64; 2],
     },
     /// Reflectors at equal steps.
     Line {
-        /// Where the first stands.
+        /// Place of the first reflector.
         from_metres: [f64; 2],
-        /// Where the last stands.
+        /// Place of the last reflector.
         to_metres: [f64; 2],
-        /// How many they are.
+        /// Number of reflectors.
         count: usize,
     },
     /// Gains of the ends' elements.
@@ -46,13 +46,13 @@ pub enum Tried {
     },
     /// Several objects that are kept or refused together.
     Together {
-        /// How many they are.
+        /// Number of objects.
         count: usize,
     },
 }
 
 impl Tried {
-    /// Where it stands, a line by its first reflector; metres.
+    /// Place of the object, that of a line's first reflector; metres.
     pub fn place_metres(&self) -> Option<[f64; 2]> {
         match *self {
             Tried::Point { at_metres } => Some(at_metres),
@@ -62,35 +62,35 @@ impl Tried {
     }
 }
 
-/// What became of an attempt.
+/// The verdict on an attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Verdict {
-    /// Part of the answer when its rung was done.
+    /// The attempt is part of the answer when its rung is done.
     Kept,
-    /// Not part of it, and why.
+    /// The attempt is not part of the answer, with the reason.
     Refused(Refusal),
 }
 
-/// Why an attempt was refused.
+/// The reason why an attempt was refused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refusal {
-    /// No candidate was found, or none that was worth an attempt.
+    /// No candidate was found, or none was worth an attempt.
     NothingFound,
     /// The rung was skipped.
     Skipped(&'static str),
-    /// An end hears more tones than can be paired in the time.
+    /// An end has more tones than can be paired in the time.
     TooManyTones,
-    /// Something else is left, so that other explanations are tried first.
+    /// Other energy remains, so that other explanations are tried first.
     LeavesSomething,
-    /// It explains this part, 0 to 1, of the energy in its range bins, which is too little.
+    /// The object explains this part, 0 to 1, of the energy in its range bins, which is too little.
     ExplainsTooLittle(f64),
-    /// The two ends hear it with different strength: one reflector has one reflectivity.
+    /// The object has different strengths at the two ends: one reflector has one reflectivity.
     EndsDisagree,
-    /// What is left falls too little.
+    /// The remaining energy falls too little.
     GainsTooLittle,
-    /// The other objects explain the samples as well without it.
+    /// The other objects explain the samples as well without the object.
     RestDoesWithout,
-    /// It was exchanged for another explanation, or moved far away.
+    /// The object was exchanged for another explanation, or moved far away.
     Exchanged,
 }
 

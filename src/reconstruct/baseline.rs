@@ -7,7 +7,7 @@ use crate::maps::channels_map;
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
 
-/// Lambda of the first end, taken as it is (thesis section 4.3).
+/// Lambda of the first end, unchanged (thesis section 4.3).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Baseline;
 

@@ -22,12 +22,12 @@ impl<'a> Beam<'a> {
         Beam { radar, elements, profiles: channels_range_transform(radar, rows.view()).profiles }
     }
 
-    /// The cosine within `within` of `about` from which most is heard at this range, all elements added in phase.
+    /// The cosine within `within` of `about` from which the power at this range is largest, all elements added in phase.
     pub fn strongest_near(&self, range_metres: f64, about: f64, within: f64) -> f64 {
         let bin = self.bin(range_metres);
         let cosine = |step: i32| (about + within * f64::from(step) / f64::from(STEPS)).clamp(-1.0, 1.0);
         let power = |step: i32| self.power(bin, range_metres, cosine(step));
-        // The nearest of equal ones: silence keeps its place.
+        // The nearest of equal cosines: silence keeps `about`.
         let best = (1..=STEPS).flat_map(|n| [n, -n]).fold((0, power(0)), |best, step| {
             let found = power(step);
             if found > best.1 { (step, found) } else { best }
@@ -35,7 +35,7 @@ impl<'a> Beam<'a> {
         cosine(best.0)
     }
 
-    /// The power that is heard from a place.
+    /// The power of the beam at a place.
     pub fn power_at(&self, range_metres: f64, cos_theta: f64) -> f64 {
         self.power(self.bin(range_metres), range_metres, cos_theta)
     }

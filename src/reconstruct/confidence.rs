@@ -1,4 +1,4 @@
-//! How far each echo that was found is needed: the part of what is unexplained without it that it explains.
+//! Confidence of each echo found: the part of the energy, unexplained without it, that it explains.
 
 use super::hearing::range_energy;
 use crate::radar::{End, Radar};
@@ -18,8 +18,8 @@ const ONE_ECHO_RIDGE: f64 = 1e-11;
 /// [`Detection::confidence`](super::Detection::confidence) of every one of `found` in `ends`, over noise of this variance a sample; one
 /// entry an echo.
 ///
-/// It is the coefficient of partial determination of linear regression (M. H. Kutner, C. J. Nachtsheim, J. Neter and W. Li, "Applied
-/// linear statistical models", section 7.4), the energy being that around the echo's range.
+/// The confidence is the coefficient of partial determination of linear regression (M. H. Kutner, C. J. Nachtsheim, J. Neter and W. Li, "Applied
+/// linear statistical models", section 7.4), of the energy around the echo's range.
 pub(super) fn confidences(radar: &Radar, ends: &TwoEnds, found: &[Reflector], noise_variance: f64) -> Vec<f64> {
     let (mut left, hears) = (ends.flat(), ends.hears());
     let echo = |r: &Reflector| {
@@ -54,21 +54,21 @@ pub(super) fn confidences(radar: &Radar, ends: &TwoEnds, found: &[Reflector], no
 
 /// Energy that all echoes together leave unexplained, over range.
 struct Unexplained {
-    /// Of each end, one value a range bin, windowed.
+    /// Energy of each end, one value a range bin, windowed.
     energy: [Vec<f64>; 2],
     /// Least energy of a bin of each end: that of the noise.
     noise: [f64; 2],
 }
 
 impl Unexplained {
-    /// Of what is `left`; `bin_noise` is the mean energy that noise gives to a range bin of one element.
+    /// The energy of `left`; `bin_noise` is the mean energy that noise gives to a range bin of one element.
     fn new(radar: &Radar, left: &TwoEnds, hears: &[bool], bin_noise: f64) -> Self {
         let (first, last) = hears.split_at(radar.end_elements.min(hears.len()));
         let noise = [first, last].map(|end| bin_noise * end.iter().filter(|h| **h).count() as f64);
         Unexplained { energy: End::BOTH.map(|end| range_energy(radar, left.end(end).view())), noise }
     }
 
-    /// Within [`AROUND_BINS`] of where each end hears `echo`; ranges wrap.
+    /// Energy within [`AROUND_BINS`] of the range of `echo` at each end; ranges wrap.
     fn around(&self, radar: &Radar, echo: &ArrayEcho) -> f64 {
         let bins = radar.samples as i64;
         let of_end = |(i, end): (usize, End)| {
@@ -91,7 +91,7 @@ mod tests {
     use crate::signal::floor::snr_noise_variance;
     use crate::signal::{Floor, simulate};
 
-    /// Confidence of echoes at `places` (metres) in what is heard of `truth` at this signal-to-noise ratio.
+    /// Confidence of echoes at `places` (metres) in the samples of `truth` at this signal-to-noise ratio.
     fn of(truth: &[(f64, f64)], places: &[(f64, f64)], db: f64) -> Vec<f64> {
         let radar = Radar::default();
         let scene = Scene::of_points(truth.iter().copied());

@@ -1,8 +1,8 @@
-//! Why a reconstruction gave nothing.
+//! The errors of a reconstruction.
 
 use crate::task::Cancelled;
 
-/// Why a reconstruction gave nothing.
+/// The reason why a reconstruction has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ReconstructError {

@@ -1,25 +1,25 @@
-//! Which kind of method a method is: lists are grouped by it.
+//! Families of methods, by which lists are grouped.
 
-/// A kind of method.
+/// A family of methods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
-    /// Programs of one's own.
+    /// Programs of the user.
     Own,
-    /// Learned from scenes.
+    /// Networks trained on scenes.
     Network,
-    /// Places reflectors one by one, off any grid.
+    /// Searches that place reflectors one by one, off any grid.
     Search,
-    /// Explains the samples with few cells or directions.
+    /// Methods that explain the samples with few cells or directions.
     Sparse,
     /// Beamformers and subspace methods, row by row or cell by cell.
     Classical,
 }
 
 impl Family {
-    /// All, in the order in which lists show them.
+    /// All families, in the order of lists.
     pub const ALL: [Family; 5] = [Family::Own, Family::Network, Family::Search, Family::Sparse, Family::Classical];
 
-    /// Its name.
+    /// The family's name.
     pub fn name(self) -> &'static str {
         match self {
             Family::Own => "Your own",
@@ -30,7 +30,7 @@ impl Family {
         }
     }
 
-    /// What its methods have in common.
+    /// A phrase on the family's common approach.
     pub fn describe(self) -> &'static str {
         match self {
             Family::Own => "computed by programs of your own (--method-command)",

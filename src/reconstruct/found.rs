@@ -1,4 +1,4 @@
-//! What a method found, as a list: its reflectors, or the peaks of its map.
+//! Lists of detections: a method's reflectors, or the peaks of its map.
 
 use super::beam::Beam;
 use super::{Detection, ReconstructError, Reconstruction, Reconstructor, Request};
@@ -7,22 +7,22 @@ use crate::maps::peaks::peaks;
 use crate::radar::{Decibels, Radar};
 use crate::signal::TwoEnds;
 
-/// A map's peaks are listed this far below its strongest.
+/// Level below its strongest to which a map's peaks are listed.
 const SPAN: Decibels = Decibels(20.0);
 
-/// Dynamic range of the map whose peaks are looked for.
+/// Dynamic range of the map in which peaks are searched.
 const MAP_RANGE: Decibels = Decibels(60.0);
 
 const MOST_PEAKS: usize = 256;
 
-/// Arrays of at most so many elements have columns so wide that the fringes of their two ends fall between them: a peak's direction is
-/// looked for between the columns.
+/// Most elements of an array whose columns are so wide that the fringes between its two ends fall between them: a peak's direction is then
+/// searched between the columns.
 const FEW_ELEMENTS: usize = 128;
 
-/// Peaks of one range bin that lie nearer than a column are one, as a part of it.
+/// Distance within which peaks of one range bin are one, as a part of a column.
 const ONE_PEAK: f64 = 0.5;
 
-/// Reconstructs, and lists what was found as [`find`] does.
+/// Reconstructs, and lists the detections of [`find`].
 /// # Errors
 /// As [`Reconstructor::reconstruct`].
 pub fn reconstruct_and_find(
@@ -36,9 +36,9 @@ pub fn reconstruct_and_find(
     Ok((answer, found))
 }
 
-/// What `method` found where `answer` is its answer to `request`, the strongest first: its own reflectors, or the peaks of its map
-/// within 20 dB of the strongest; nothing on few elements by a method whose places are those of cells. A map that `request` stretches by its smallest cell knows no decibels: its peaks come from a second
-/// one.
+/// The detections in `answer`, the answer of `method` to `request`, the strongest first: the method's own reflectors, or the peaks of its map
+/// within 20 dB of the strongest; nothing on few elements for a method whose places are those of cells. A map that `request` normalises by its
+/// smallest cell has no decibels: the peaks are those of a second map.
 /// # Errors
 /// As [`Reconstructor::reconstruct`].
 pub fn find(
@@ -49,7 +49,7 @@ pub fn find(
     answer: &Reconstruction,
 ) -> Result<Vec<Detection>, ReconstructError> {
     let normalisation = Normalisation::DynamicRange(MAP_RANGE);
-    // Of another layout the ends heard nothing.
+    // Beside another layout the ends have no samples.
     let heard = request.heard.is_none().then_some(ends);
     if radar.elements <= FEW_ELEMENTS && !method.lists_few_elements() {
         Ok(Vec::new())
@@ -80,8 +80,8 @@ fn found_in_map(radar: &Radar, ends: Option<&TwoEnds>, answer: &Reconstruction) 
     }
 }
 
-/// The peaks with the directions from which both ends together hear most near them, peaks that are then one once; each as strong as both ends
-/// hear it, since a pseudo-spectrum's heights tell no strength.
+/// The peaks moved to the nearby directions in which both ends together have most power, and merged where they become one. Each has the power of
+/// both ends, since a pseudo-spectrum's heights are not strengths.
 fn between_columns(radar: &Radar, ends: &TwoEnds, peaks: impl Iterator<Item = Detection>) -> Vec<Detection> {
     let beam = Beam::new(radar, ends);
     let column = (radar.cos_of_column(1.0) - radar.cos_of_column(0.0)).abs();

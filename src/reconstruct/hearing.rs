@@ -1,4 +1,4 @@
-//! How much of the samples is noise: what their quietest range bins hold, and no more than the floor beneath the echoes can be.
+//! Measurement of the noise in samples: the power of their quietest range bins, limited by the expected floor beneath the echoes.
 
 use super::noise::noise_heard;
 use super::prior::NoisePrior;
@@ -13,23 +13,23 @@ pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, noise: NoisePri
     Hearing::beneath(radar, ends, noise).ends_noise_variance(radar, ends)
 }
 
-/// Noise beneath the samples of both ends.
+/// The noise model of a reconstruction's samples.
 #[derive(Debug, Clone, Copy)]
 pub struct Hearing {
-    /// Variance a sample that is believed where more than [`MARGIN`] times as much is heard.
+    /// Expected variance a sample, which replaces a measured one that is more than [`MARGIN`] times as large and uneven.
     expected: f64,
-    /// Variance a sample, where it is known.
+    /// Variance a sample, where the request gives it.
     known: Option<f64>,
 }
 
 impl Hearing {
-    /// Of any noise.
+    /// A model without any expectation.
     pub fn any() -> Self {
         Hearing { expected: f64::INFINITY, known: None }
     }
 
-    /// Of what lies beneath the samples of `ends`: where that is rounding, the echoes themselves tell how much of it there is, even
-    /// where they fill every range bin.
+    /// The model for the samples of `ends`: where the noise is rounding, its expected variance follows from the echoes themselves, even where
+    /// they fill every range bin.
     pub fn beneath(radar: &Radar, ends: &TwoEnds, noise: NoisePrior) -> Self {
         if noise.is_white() {
             return Hearing { known: noise.variance(), ..Hearing::any() };
@@ -71,7 +71,7 @@ pub(super) fn range_energy(radar: &Radar, channels: ArrayView2<'_, Complex64>) -
     profiles.columns().into_iter().map(|column| column.iter().map(Complex64::norm_sqr).sum()).collect()
 }
 
-/// How much more rounding there may be than is expected: echoes from beyond the maximum range round more than their range bin tells.
+/// Ratio of the possible rounding to the expected one: echoes from beyond the maximum range have more rounding than their range bin suggests.
 const MARGIN: f64 = 3.0;
 
 #[cfg(test)]

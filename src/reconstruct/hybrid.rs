@@ -1,4 +1,4 @@
-//! Two experts and a judge: a search that draws the objects it finds, a network, and the rule that says cell by cell which to believe.
+//! A search that draws its objects, a network, and the rule that weighs them cell by cell.
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
@@ -12,10 +12,10 @@ use crate::radar::{Decibels, Radar};
 use crate::signal::TwoEnds;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What it knows beside the samples.
+/// The method's knowledge beside the samples, [`About::told`].
 const TOLD_TO_HYBRID: &str = "what nomp is told; and by its network, what live was trained on";
 
-/// [`super::search::Nomp`], and a network for what it can't take apart, or not in time.
+/// [`super::search::Nomp`], and a network for scenes that the search can't explain, or not in time.
 #[derive(Clone)]
 pub struct Hybrid {
     network: Arc<dyn Reconstructor>,
@@ -23,17 +23,17 @@ pub struct Hybrid {
 }
 
 impl Hybrid {
-    /// With the method that is believed where the search leaves something unexplained.
+    /// The hybrid of the search and `network`.
     pub fn new(network: Arc<dyn Reconstructor>) -> Self {
         Hybrid { network, settings: Settings::default() }
     }
 
-    /// The same with other limits to the search.
+    /// The hybrid with other limits of the search.
     pub fn with_settings(self, settings: Settings) -> Self {
         Hybrid { settings, ..self }
     }
 
-    /// The map of what was found, and the network's where the judge believes it more.
+    /// The map of the objects in `found`, weighed against the network's map by the judge.
     fn judged(
         &self,
         found: &Found,
@@ -48,7 +48,7 @@ impl Hybrid {
         }
         let corrected = found.element_gains.as_ref().map(|gains| gains.taken_from(ends));
         let ends = corrected.as_ref().unwrap_or(ends);
-        // A dynamic range counts from the peak of the judged map, so the experts' maps are joined on a scale that cuts off nothing.
+        // A dynamic range counts from the peak of the judged map, so both maps are joined on a scale that cuts off nothing.
         let shown = Shown::of(request.normalisation);
         let whole = Request { normalisation: shown.whole, ..request.clone() };
         let (mut expected, mut network) =
@@ -117,7 +117,7 @@ impl Reconstructor for Hybrid {
 /// Dynamic range without a cell beyond it, decibels: rounding in f64 lies some 320 below the peak.
 const WHOLE_RANGE: Decibels = Decibels(400.0);
 
-/// The range of brightness that was asked for, as the upper part of a whole one.
+/// The requested dynamic range, as the upper part of a whole one.
 #[derive(Debug, Clone, Copy)]
 struct Shown {
     /// The whole range.
@@ -136,7 +136,7 @@ impl Shown {
         }
     }
 
-    /// Cuts the shown part, counted from the peak, out of a map of the whole range; `eta` as a Lambda of what is left.
+    /// Cuts the shown part, counted from the peak, out of a map of the whole range; returns `eta` as a Lambda of that part.
     fn cut(self, map: &mut RangeAngleMap, eta: f32) -> f32 {
         if self.whole == Normalisation::MinMax {
             return eta;

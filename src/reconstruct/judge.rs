@@ -1,46 +1,45 @@
-//! Which of two maps of one scene to believe, cell by cell: that of the objects which a search found, or that of a network.
+//! The choice between two maps of one scene, cell by cell: that of a search's objects, or that of a network.
 //!
-//! The search's map is exact where its objects are right, and says so: nothing is left of the samples when they are drawn. The network's is
-//! about right everywhere, and says how far off it expects to be. So the search is believed where it leaves nothing. Elsewhere the two are
-//! averaged, and the more they differ beyond the network's doubt, the more the network is believed. White noise hides what the search may lack, so
-//! that the network counts everywhere over it.
+//! The search's map is exact where its objects are right, which the samples show: the drawn objects leave no residual. The network's map is
+//! about right everywhere, with an estimate of its error. So the search's map is taken where the residual is small. Elsewhere the two are
+//! averaged, and the network has the more weight, the more they differ beyond its doubt. White noise hides missing objects, so that the network
+//! counts everywhere over it.
 
 use crate::maps::RangeAngleMap;
 use ndarray::{Array1, Array2, ArrayView1, Axis, Zip};
 use rayon::prelude::*;
 
-/// What is left over what is drawn, in decades of power, from which on the search is no longer believed alone, and from which on not more
-/// than the network: a tenth of the power is half a decibel of the cell.
+/// Residual over the drawn map, in decades of power, from which the search's map no longer has all weight, and from which it has least: a tenth
+/// of the power is half a decibel of the cell.
 const LEFT_DECADES: [f32; 2] = [-3.0, -1.0];
 
-/// By how many decades these bounds are higher where a dynamic range cuts off the dark cells. In bright ones the network draws narrow lobes too dark.
+/// Shift of these bounds, in decades, where a dynamic range cuts off the dark cells. In bright ones the network draws narrow lobes too dark.
 const BRIGHT_SHIFT_DECADES: f32 = 3.0;
 
-/// Part of the shown cells with more left than drawn, between which the search isn't believed anywhere: such a scene is not made of what it
-/// looks for. Cells that a dynamic range cuts off say nothing of it.
+/// Parts of the shown cells with more residual than drawn power between which the weight of the search's map falls everywhere: such a scene is
+/// not made of points and rows. Cells that a dynamic range cuts off don't count.
 const UNEXPLAINED_PART: [f32; 2] = [0.7, 0.9];
 
-/// Weight of the network where the search leaves something and the two don't contradict each other. Their errors differ, so that the mean is
-/// better than either, and the network's is the smaller one there.
+/// Weight of the network where the search has a residual and the two agree. Their errors differ, so that the mean is better than either, and the
+/// network's error is the smaller one there.
 const AGREED_WEIGHT: f32 = 0.7;
 
-/// Mean square of the difference, over that of the network's expected error, from which on the two contradict each other, and from which on
-/// the network is believed alone.
+/// Mean square of the difference, over that of the network's expected error, from which the two disagree, and from which the network has all weight.
 const CONTRADICTION: [f32; 2] = [1.0, 3.0];
 
-/// What noise hides, over what is drawn, in decades of power at least: half way between the bounds of [`LEFT_DECADES`].
+/// Least residual over the drawn map that is assumed under white noise, in decades of power: half way between the bounds of [`LEFT_DECADES`].
 pub const HIDDEN_DECADES: f32 = -2.0;
 
-/// Standard deviations in a doubt that nine of ten normal errors stay below.
+/// Standard deviations in a doubt, which nine of ten normal errors stay below.
 const DOUBT_DEVIATIONS: f32 = 1.645;
 
 /// Range bins and columns to each side over which the difference of the maps is averaged: the width of a lobe of the ends' maps.
 const MEAN_SIDE_CELLS: [usize; 2] = [2, 8];
 
 /// Weight of `network`'s map in each cell, 0 to 1, over `drawn`, the search's; both are Lambda on one scale, `[range bins, columns]`.
-/// `left_decades` is what the search leaves ([`Found::left_decades`](super::search::Found::left_decades)), and `doubt` what nine of ten
-/// errors of the network stay below. A network without doubt is believed wherever something is left. Cells whose Lambda lies deeper below 1
-/// than `shown_part` are cut off in what is shown.
+/// `left_decades` is the search's residual ([`Found::left_decades`](super::search::Found::left_decades)), and nine of ten errors of the network
+/// are below `doubt`. A network without doubt has all weight wherever there is a residual. Cells whose Lambda lies deeper below 1 than
+/// `shown_part` are not shown.
 pub fn network_weight(
     drawn: &RangeAngleMap,
     network: &RangeAngleMap,
@@ -67,7 +66,7 @@ pub fn network_weight(
     weight
 }
 
-/// Stretches two maps of one scene, each from its peak downwards, to the geometric mean of their scales, and their thresholds along with them.
+/// Stretches two maps of one scene, each from its peak downwards, to the geometric mean of their scales, and converts their thresholds.
 ///
 /// Over noise the smallest of all cells sets the scale by chance. The mean of two scales is nearer to it than either.
 pub fn scales_joined(maps: [&mut RangeAngleMap; 2], etas: [f32; 2]) -> [f32; 2] {
@@ -82,7 +81,7 @@ pub fn scales_joined(maps: [&mut RangeAngleMap; 2], etas: [f32; 2]) -> [f32; 2] 
     [0, 1].map(|i| stretched(factors[i], etas[i]))
 }
 
-/// How far between two values another one is, 0 to 1.
+/// Place of `value` between two bounds, 0 to 1.
 fn between([low, high]: [f32; 2], value: f32) -> f32 {
     ((value - low) / (high - low)).clamp(0.0, 1.0)
 }
@@ -121,7 +120,7 @@ fn mean_of_window(cells: ArrayView1<f32>, side: usize) -> Array1<f32> {
     })
 }
 
-/// `drawn` towards `network` by `weight`; all `[range bins, columns]`.
+/// The mean of `drawn` and `network`, with the weight `weight` of the latter; all `[range bins, columns]`.
 pub fn blended(mut drawn: RangeAngleMap, network: &RangeAngleMap, weight: &Array2<f32>) -> RangeAngleMap {
     Zip::from(&mut drawn.lambda).and(&network.lambda).and(weight).par_for_each(|d, n, w| *d += w * (n - *d));
     drawn

@@ -1,4 +1,4 @@
-//! Methods on the samples of other elements than the two ends.
+//! Tests of methods on the samples of other elements than the two ends.
 
 use super::{Baseline, Fista, IAA, Omp, ReconstructError, Reconstructor, Request, SBL};
 use crate::maps::focus::map_of;
@@ -9,7 +9,7 @@ use crate::signal::{BeatSignal, Floor, simulate};
 use ndarray::Zip;
 use std::sync::Arc;
 
-/// What `method` makes of a point that the elements of `layout` heard: squared error, and P_D at its threshold.
+/// Result of `method` for a point in the samples of the elements of `layout`: squared error, and P_D at its threshold.
 fn of_layout(method: &dyn Reconstructor, radar: &Radar, layout: &[usize]) -> Result<(f64, f64), ReconstructError> {
     let scene = Scene::of_points([(2.0, 6.0), (-3.0, 4.0)]);
     let signal = simulate(radar, &scene, Floor::Thesis, 0).unwrap();
@@ -29,10 +29,10 @@ fn of_layout(method: &dyn Reconstructor, radar: &Radar, layout: &[usize]) -> Res
 fn methods_that_bear_gaps_hear_any_layout() {
     for elements in [64, 65] {
         let radar = Radar { elements, end_elements: 12, samples: 128, ..Radar::default() };
-        // 65 elements have one in their middle.
+        // An array of 65 elements has one in its middle.
         let nested = [0, 1, 2, 3, 4, 5, 6, 13, 20, 27, 32, 34, 41, 48, 55];
         let random = [0, 1, 3, 5, 11, 15, 17, 28, 34, 40, 44, 49, 57, 63];
-        // The penalty of fista weakens what it finds.
+        // The penalty of fista weakens the reflectors that it finds.
         let methods: [(&dyn Reconstructor, f64); 4] =
             [(&IAA, 300.0), (&SBL, 300.0), (&Omp::default(), 300.0), (&Fista::default(), 700.0)];
         for (method, max_error) in methods {

@@ -1,10 +1,10 @@
-//! From the samples of the two ends to an estimate of the whole array's map.
+//! Reconstruction of the whole array's map from the samples of the two ends.
 //!
-//! Everything that reconstructs, the baseline, model-based methods and networks alike, is a [`Reconstructor`].
+//! Every method, the baseline, model-based methods and networks alike, is a [`Reconstructor`].
 //!
-//! | folder | what its methods have in common |
+//! | folder | common approach of its methods |
 //! |---|---|
-//! | `rows` | one end and one range row at a time; both ends' estimates are laid over each other |
+//! | `rows` | one end and one range row at a time; both ends' estimates are combined |
 //! | `coherent` | both ends as one aperture, place by place |
 //! | `grid` | both ends together, on the cells of the whole array's polar grid |
 //! | [`search`] | both ends together, off any grid |

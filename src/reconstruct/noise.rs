@@ -1,4 +1,4 @@
-//! Listening to the noise beneath the samples.
+//! Measurement of the noise beneath the samples.
 
 use crate::maps::Spectrum;
 use crate::radar::Radar;
@@ -9,33 +9,33 @@ use std::f64::consts::PI;
 /// Largest shape of the Kaiser window: side lobes 300 dB down, below the rounding of f64.
 const MOST_BETA: f64 = 32.0;
 
-/// Range bins for each bin of half the window's main lobe, so that a few reflectors leave bins that hold noise only.
+/// Range bins for each bin of half the window's main lobe, so that a few reflectors leave bins of noise alone.
 const BINS_PER_LOBE: f64 = 16.0;
 
-/// Part of the range bins that are taken to hold noise only.
+/// Part of the range bins that are assumed to hold noise alone.
 const QUIET_PART: f64 = 0.2;
 
-/// Least part of the quiet bins' power that the quietest of them hold if it is white noise.
+/// Least ratio of the quietest bins' power to the quantile of [`QUIET_PART`] that counts as white noise.
 const EVEN: f64 = 0.03;
 
-/// Noise that is assumed where too few samples tell it from side lobes, as a part of the samples' mean power: 60 dB down.
+/// Noise that is assumed where too few samples separate it from side lobes, as a part of the samples' mean power: 60 dB down.
 const ASSUMED: f64 = 1e-6;
 
 pub(super) fn noise_variance<'a>(radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> f64 {
     noise_heard(radar, channels).variance
 }
 
-/// What the quietest range bins hold.
+/// The noise in the quietest range bins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HeardNoise {
     /// Variance a sample, if it is white noise.
     pub variance: f64,
-    /// Whether they hold much the same, as they do of white noise; side lobes differ by decades from bin to bin.
+    /// Whether the bins' powers are as even as those of white noise; side lobes differ by decades from bin to bin.
     pub is_even: bool,
 }
 
-/// Listens to `channels`: the power of the quietest range bins under a window whose side lobes are lower. Where the chirp is too short for
-/// such a window, noise 60 dB beneath the samples is assumed unless less is heard.
+/// Measures the noise of `channels`: the power of the quietest range bins under a window whose side lobes are lower. Where the chirp is too
+/// short for such a window, noise 60 dB beneath the samples is assumed unless less is measured.
 pub(super) fn noise_heard<'a>(radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> HeardNoise {
     let beta = beta(radar.samples);
     let window = kaiser(radar.samples, beta);
@@ -43,7 +43,7 @@ pub(super) fn noise_heard<'a>(radar: &Radar, channels: impl Iterator<Item = Arra
     let spectrum = Spectrum::new(radar.samples);
     let mut bins = vec![0.0; radar.samples];
     let (mut count, mut energy) = (0.0, 0.0);
-    // Elements that measured nothing tell nothing of the noise.
+    // Elements without samples have no noise to measure.
     for channel in channels.filter(|c| c.iter().any(|v| v.norm_sqr() > 0.0)) {
         for (bin, v) in bins.iter_mut().zip(spectrum.of(channel.iter().zip(&window).map(|(v, w)| v * w))) {
             *bin += v.norm_sqr();

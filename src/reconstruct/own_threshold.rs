@@ -1,8 +1,8 @@
-//! A threshold read off the answer itself, for any floor and normalisation.
+//! A threshold derived from the answer itself, for any floor and normalisation.
 //!
-//! P_D counts the cells whose true Lambda exceeds 0.9, and P_FA the others ([`Metrics`](crate::evaluate::Metrics)). A map that were exact
-//! would need a threshold of 0.9. One that is off by some doubt needs a lower one, so that cells which it draws too dark are not missed;
-//! and false alarms of its own bound how low.
+//! P_D counts the cells whose true Lambda exceeds 0.9, and P_FA the others ([`Metrics`](crate::evaluate::Metrics)). An exact map would need a
+//! threshold of 0.9. A map with an error needs a lower one, so that cells which it draws too dark are not missed; its own false alarms are the
+//! lower bound.
 
 use crate::maps::RangeAngleMap;
 
@@ -19,15 +19,14 @@ const DOUBT_LAMBDAS: std::ops::Range<f32> = 0.75..0.95;
 /// The part of those cells whose doubt is covered.
 const COVERED: f64 = 0.9;
 
-/// Highest threshold: a map without doubt is drawn to about this part of 0.9.
+/// Highest threshold, for a map without doubt.
 const EXACT_ETA: f32 = 0.896;
 
 /// Steps of Lambda, in which both quantiles are taken.
 const STEPS: usize = 4096;
 
-/// The threshold for an answer: no more of its own cells at or below 0.9 exceed it than 0.92 %, and no threshold is lower than the answer's
-/// doubt asks for. Rounded to three decimals, as people read it.
-/// `examples/experts.rs` prints the rates that follow.
+/// The threshold for an answer: at most 0.92 % of its own cells at or below 0.9 exceed it, and it is no lower than the answer's doubt requires.
+/// Rounded to three decimals, for readers. `examples/experts.rs` prints the resulting rates.
 pub(crate) fn own_threshold(answer: &RangeAngleMap, doubt: Option<&RangeAngleMap>) -> f32 {
     let below = quantile(answer.lambda.iter().copied().filter(|v| *v <= TARGET_ETA), 1.0 - FALSE_ALARM).unwrap_or(0.0);
     let doubtful = doubt.map(|doubt| {
@@ -38,7 +37,7 @@ pub(crate) fn own_threshold(answer: &RangeAngleMap, doubt: Option<&RangeAngleMap
     (eta * 1e3).round() / 1e3
 }
 
-/// The value that this part of `values`, 0 to 1 each, don't exceed; `None` without any.
+/// The value that this part of `values`, 0 to 1 each, doesn't exceed; `None` without any.
 fn quantile(values: impl Iterator<Item = f32>, part: f64) -> Option<f32> {
     let mut counts = [0u32; STEPS + 1];
     let mut all = 0u32;

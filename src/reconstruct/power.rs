@@ -1,4 +1,4 @@
-//! From an estimate of the whole array's power to Lambda, over the floor that lies beneath it.
+//! Conversion of an estimate of the whole array's power to Lambda, over the noise floor.
 
 use super::answer::{Reconstruction, Request};
 use super::significance::{cell_noise, least_eta};
@@ -14,12 +14,12 @@ pub(super) fn focused_gain(radar: &Radar) -> f64 {
 
 /// Lambda of the estimated power `|Y|^2`, `[range bins, columns]`, of the whole array's map.
 ///
-/// The noise that was measured in the samples is laid beneath: an estimate of zero shows as a typical noise cell, and with
-/// `MinMax` Lambda 0 is where the smallest of so many noise cells is to be expected. Without it a method's own dynamic range,
-/// which says nothing about the scene, would decide the squared error. Lambda 1 is no lower than where the largest of so many noise
-/// cells is to be expected: an estimate of zero everywhere is a typical noise cell everywhere, and not the peak.
+/// The noise measured in the samples is added: an estimate of zero becomes a typical noise cell, and with `MinMax` Lambda 0 is the expected
+/// smallest of so many noise cells. Without it a method's own dynamic range, which is unrelated to the scene, would decide the squared error.
+/// Lambda 1 is at least the expected largest of so many noise cells: an estimate of zero everywhere is a typical noise cell everywhere, and not
+/// the peak.
 ///
-/// Also says which Lambda noise alone does not exceed.
+/// Also returns the Lambda that noise alone does not exceed.
 pub(super) fn lambda_of_power(
     radar: &Radar,
     mut power: Array2<f64>,
@@ -31,7 +31,7 @@ pub(super) fn lambda_of_power(
         *v = if v.is_finite() { v.max(0.0) } else { 0.0 };
         peak = peak.max(*v);
     }
-    // 400 dB below the peak no f64 sample has anything to say.
+    // 400 dB below the peak is beyond the precision of f64 samples.
     let noise = (noise_variance * cell_noise(radar)).max(peak * 1e-40).max(f64::MIN_POSITIVE);
     let decades = |power: f64| 0.5 * power.log10();
     // The mean of log10|n| lies 0.125 decades below the root mean square of complex normal n.
@@ -45,7 +45,7 @@ pub(super) fn lambda_of_power(
     (RangeAngleMap { lambda }, least_eta(radar, noise_variance, scale))
 }
 
-/// The largest of n exponential powers of mean 1 is `ln n` and this on average.
+/// Euler's constant: the largest of n exponential powers of mean 1 is `ln n` and this on average.
 const EULER: f64 = 0.577_215_664_901_532_9;
 
 pub(super) fn of_power(radar: &Radar, power: Array2<f64>, noise_variance: f64, request: &Request) -> Reconstruction {

@@ -1,4 +1,4 @@
-//! What a method is told of the noise beneath the samples.
+//! The knowledge of the noise that a method is given.
 
 use crate::maps::Normalisation;
 use crate::maps::tolerance::tolerance_for;
@@ -7,18 +7,17 @@ use crate::signal::Floor;
 use std::fmt;
 use std::str::FromStr;
 
-/// What a method is told of the noise beneath the samples. A simulator knows its [`Floor`]; a recording's samples tell no more than
-/// this.
+/// The knowledge of the noise beneath the samples that a method is given. A simulator knows its [`Floor`]; a recording has at most this.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum NoisePrior {
     /// The rounding of the thesis' f64 program, which follows the echoes.
     #[default]
     Rounding,
-    /// Nothing.
+    /// No noise at all.
     Nothing,
     /// White complex noise.
     White {
-        /// Root of its mean square in a sample, in the samples' unit; `None` where it is unknown and methods measure it.
+        /// Root of the noise's mean square in a sample, in the samples' unit; `None` where it is unknown and methods measure it.
         sigma: Option<f64>,
     },
 }
@@ -43,7 +42,7 @@ pub struct NoisePriorError(String);
 impl FromStr for NoisePrior {
     type Err = NoisePriorError;
 
-    /// Reads what [`Display`](fmt::Display) writes, and the name of a floor.
+    /// Reads the text of [`Display`](fmt::Display), and the name of a floor.
     fn from_str(s: &str) -> Result<Self, NoisePriorError> {
         let sigma = |text: &str| text.parse::<f64>().ok().filter(|sigma| sigma.is_finite() && *sigma > 0.0);
         let prior = match s.split_once('=') {
@@ -67,10 +66,10 @@ impl fmt::Display for NoisePrior {
 }
 
 impl NoisePrior {
-    /// White noise of a level that the samples alone tell, as beneath every recording.
+    /// White noise of a level that must be measured, as beneath every recording.
     pub const UNKNOWN: NoisePrior = NoisePrior::White { sigma: None };
 
-    /// Whether it is white noise.
+    /// Whether the noise is white.
     pub fn is_white(self) -> bool {
         matches!(self, NoisePrior::White { .. })
     }
@@ -83,7 +82,7 @@ impl NoisePrior {
         }
     }
 
-    /// The same of samples multiplied by `gain`.
+    /// The prior for samples multiplied by `gain`.
     pub fn scaled(self, gain: f64) -> Self {
         match self {
             NoisePrior::White { sigma } => NoisePrior::White { sigma: sigma.map(|sigma| sigma * gain) },
@@ -91,8 +90,8 @@ impl NoisePrior {
         }
     }
 
-    /// Error of the samples that no map over this noise shows, as a part of the amplitudes' sum; `snr` is the echoes' ratio to the white
-    /// noise that was measured.
+    /// Error of the samples that no map over this noise shows, as a part of the amplitudes' sum; `snr` is the ratio of the echoes to the
+    /// measured white noise.
     pub(crate) fn tolerance(self, normalisation: Normalisation, snr: Option<Decibels>) -> f64 {
         let floor = match self {
             NoisePrior::Rounding => Floor::Thesis,

@@ -1,4 +1,4 @@
-//! Finely sampled range profiles, to be looked up at any distance.
+//! Finely sampled range profiles with look-ups at any distance.
 
 use crate::maps::Spectrum;
 use crate::radar::{Radar, chirp_window};
@@ -8,13 +8,12 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Padded range profiles of some channels under a Hann window, their phases referred to the middle of the chirp so that they vary
-/// slowly from row to row.
+/// Padded range profiles of some channels under a Hann window, their phases referred to the middle of the chirp so that they vary slowly from row to row.
 pub(super) struct Profiles {
-    /// One a channel; the first row stands at the end once more.
+    /// One profile a channel; the first row is repeated at the end.
     profiles: Vec<Vec<Complex64>>,
     rows_per_metre: f64,
-    /// Turns that a metre of distance adds in the middle of the chirp: carrier and beat.
+    /// Turns of phase per metre of distance in the middle of the chirp: carrier and beat.
     turns_per_metre: f64,
 }
 
@@ -44,7 +43,7 @@ impl Profiles {
         }
     }
 
-    /// What the channels from `first` on heard from `distances_metres`, one a lane, as [`Profiles::at`]; as many as `heard` has room for.
+    /// [`Profiles::at`] of the channels from `first` on at `distances_metres`, one a lane, for as many lanes as `heard` has entries.
     #[inline(always)]
     pub fn lanes_at<const W: usize, const FMA: bool>(
         &self,
@@ -58,7 +57,7 @@ impl Profiles {
         let phase = self.phases::<f64, W, FMA>(-distances_metres);
         for (lane, (heard, profile)) in heard.iter_mut().zip(&self.profiles[first..]).enumerate() {
             let (low, part) = (row.0[lane] as usize, row.0[lane].fract());
-            // Rounding may put a row on the last one, which is the first once more.
+            // Rounding may reach the last row, which repeats the first.
             let next = profile[(low + 1).min(profile.len() - 1)];
             let value = profile[low] * (1.0 - part) + next * part;
             *heard = value * Complex64::new(phase.re.0[lane], phase.im.0[lane]);
@@ -74,8 +73,8 @@ impl Profiles {
         phasor::<T, W, FMA>(distances_metres * Lanes::splat(self.turns_per_metre))
     }
 
-    /// What `channel` heard from `distance_metres`, linear between rows; the phase of that distance is taken off. 1 for a reflector
-    /// there whose samples have amplitude 1.
+    /// Profile of `channel` at `distance_metres`, linear between rows, without the phase of that distance. It is 1 for a reflector there whose
+    /// samples have amplitude 1.
     pub fn at(&self, channel: usize, distance_metres: f64) -> Complex64 {
         let profile = &self.profiles[channel];
         let rows = (profile.len() - 1) as f64;
@@ -85,13 +84,13 @@ impl Profiles {
         heard * self.phase(-distance_metres)
     }
 
-    /// Phase that `distance_metres` adds in the middle of the chirp.
+    /// Phase of `distance_metres` in the middle of the chirp.
     pub fn phase(&self, distance_metres: f64) -> Complex64 {
         Complex64::cis(TAU * (self.turns_per_metre * distance_metres).fract())
     }
 }
 
-/// What is left of a reflector's echo `bins` range bins off its own under a Hann window: 1 at 0, zeros from 2 on.
+/// Response of a reflector's echo `bins` range bins off its own under a Hann window: 1 at 0, zeros from 2 on.
 pub(super) fn range_response(bins: f64) -> f64 {
     let x = bins.abs();
     if x < 1e-6 {

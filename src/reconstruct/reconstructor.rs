@@ -1,4 +1,4 @@
-//! What every method is, and what is done once for all of them.
+//! The trait of every reconstruction method, and the steps that all of them share.
 
 use super::answer::{Reconstruction, Request, halves};
 use super::error::ReconstructError;
@@ -12,93 +12,92 @@ use ndarray::{Array2, Array3};
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Who a method is.
+/// Name and description of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct About {
     /// Short name for the command line and tables.
     pub name: &'static str,
     /// One sentence for tooltips and help.
     pub description: &'static str,
-    /// What the method knows beside the samples and the radar they were taken with: assumptions that a user's own scene may not
-    /// meet, or that the scenes of the tables happen to.
+    /// Knowledge of the method beside the samples and the radar: assumptions that a user's own scene may not meet, or that the scenes of the
+    /// tables happen to.
     pub told: &'static str,
-    /// Threshold at which its output is turned into detections, where an answer brings none of its own
-    /// ([`Reconstruction::eta`]). Chosen on validation scenes, never on test scenes, by
-    /// one rule for all methods: where the mean false-alarm rate over the three sets is that of the thesis, 0.65 % (`examples/choose_eta.rs`).
+    /// Threshold that turns the output into detections, where an answer has none of its own ([`Reconstruction::eta`]). Chosen on validation
+    /// scenes, never on test scenes, by one rule for all methods: the mean false-alarm rate over the three sets is that of the thesis, 0.65 %
+    /// (`examples/choose_eta.rs`).
     pub eta: f32,
 }
 
-/// What the learned weights of a method are known by.
+/// The identity of a method's learned weights.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Weights {
-    /// The first 12 hexadecimal digits of the SHA-256 of their values.
+    /// The first 12 hexadecimal digits of the SHA-256 of the weights' values.
     pub sha256: String,
-    /// The optimisers that trained them, in their order; empty where that isn't recorded.
+    /// The optimisers that trained the weights, in their order; empty where that isn't recorded.
     pub optimiser: String,
 }
 
-/// How a method makes maps of what other elements than the two ends heard.
+/// The way in which a method uses the samples of other elements than the two ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hears {
-    /// It hears the two ends alone.
+    /// The method uses the two ends alone.
     Ends,
-    /// It takes elements that heard nothing for missing ones: the ends are the halves of the array, silent but for the elements of the layout.
+    /// The method takes elements without samples for missing ones: the ends are the halves of the array, silent but for the elements of the layout.
     Halves,
-    /// It reads [`Request::heard`].
+    /// The method reads [`Request::heard`].
     Layouts,
 }
 
-/// Anything that turns the samples of the two ends into a map of the whole array.
+/// A method that computes a map of the whole array from the samples of the two ends.
 ///
 /// A method implements [`Reconstructor::about`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
 pub trait Reconstructor: Send + Sync {
-    /// Who the method is.
+    /// Name and description of the method.
     fn about(&self) -> About;
 
-    /// Which kind of method it is.
+    /// The family of the method.
     fn family(&self) -> Family {
         Family::Classical
     }
 
-    /// Says at once whether the method can work on samples of `radar`.
+    /// Checks at once whether the method can work on samples of `radar`.
     /// # Errors
-    /// [`ReconstructError::Unusable`] says what is in the way.
+    /// [`ReconstructError::Unusable`] with the reason.
     fn check_radar(&self, _radar: &Radar) -> Result<(), ReconstructError> {
         Ok(())
     }
 
-    /// Whether the method knows transmitters that stand apart from receivers: it takes ranges and amplitudes from each element's two
-    /// antennas, or asks for neither.
+    /// Whether the method accounts for transmitters apart from receivers: it takes ranges and amplitudes from each element's two antennas, or needs neither.
     fn knows_pairs(&self) -> bool {
         !matches!(self.family(), Family::Network | Family::Classical)
     }
 
-    /// How the method makes maps of what other elements than the two ends heard ([`Request::heard`]).
+    /// The way in which the method uses the samples of other elements than the two ends ([`Request::heard`]).
     fn hears(&self) -> Hears {
         Hears::Ends
     }
 
-    /// [`Reconstructor::check_array`] where the ends are the `halves` of an array of which so many elements are heard.
+    /// [`Reconstructor::check_array`] where the ends are the `halves` of an array, of which so many elements have samples.
     /// # Errors
-    /// [`ReconstructError::Unusable`] says what is in the way.
+    /// [`ReconstructError::Unusable`] with the reason.
     fn check_halves(&self, halves: &Radar, _heard: usize) -> Result<(), ReconstructError> {
         self.check_array(halves)
     }
 
-    /// Whether what it finds on an array of few elements, whose columns are wide, stands where the echoes are.
+    /// Whether the method's places on an array of few elements, whose columns are wide, are those of the echoes.
     fn lists_few_elements(&self) -> bool {
         true
     }
 
-    /// How many elements each end must have.
+    /// Fewest elements of an end.
     fn fewest_end_elements(&self) -> usize {
         3
     }
 
-    /// Says at once whether the method can work on samples of `radar`: [`Reconstructor::check_radar`], whether the ends have elements enough,
-    /// and whether it knows such antennas.
+    /// Checks at once whether the method can work on samples of `radar`: [`Reconstructor::check_radar`], whether the ends have enough elements,
+    /// and whether the method accounts for such antennas.
     /// # Errors
-    /// [`ReconstructError::Unusable`] says what is in the way.
+    /// [`ReconstructError::Unusable`] with the reason.
     fn check_array(&self, radar: &Radar) -> Result<(), ReconstructError> {
         let (fewest, found) = (self.fewest_end_elements(), radar.end_elements);
         if found < fewest {
@@ -113,9 +112,9 @@ pub trait Reconstructor: Send + Sync {
         Err(self.unusable(reason.to_owned()))
     }
 
-    /// Says at once whether the method can make maps of what the elements of these numbers hear, in place of the two ends.
+    /// Checks at once whether the method can make maps of the samples of these elements, in place of the two ends.
     /// # Errors
-    /// [`ReconstructError::Unusable`] says what is in the way.
+    /// [`ReconstructError::Unusable`] with the reason.
     fn check_elements(&self, radar: &Radar, layout: &[usize]) -> Result<(), ReconstructError> {
         check_layout(layout, radar.elements).map_err(|reason| self.unusable(reason))?;
         match self.hears() {
@@ -130,9 +129,9 @@ pub trait Reconstructor: Send + Sync {
         }
     }
 
-    /// Says whether a method that joins the halves of the array can work where these halves are silent.
+    /// Checks whether a method that joins the halves of the array can work where these halves are silent.
     /// # Errors
-    /// [`ReconstructError::Unusable`] names the half that is silent alone.
+    /// [`ReconstructError::Unusable`] names a half that is silent while the other is not.
     fn check_both_halves(&self, is_silent: [bool; 2]) -> Result<(), ReconstructError> {
         let half = match is_silent {
             [true, false] => "first",
@@ -148,15 +147,15 @@ pub trait Reconstructor: Send + Sync {
     /// Estimates the whole array's map from `ends`, which have the radar's shape, are finite, and whose largest real or imaginary
     /// part lies between 1 and 2. Reflectivities are relative to those samples.
     /// # Errors
-    /// [`ReconstructError`] when cancelled, or as the method says.
+    /// [`ReconstructError`] when cancelled, or where the method fails.
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError>;
 
-    /// Estimates the whole array's map from `ends`: checks them, scales them for [`Reconstructor::estimate`], takes the scale
-    /// off what was found, and raises the answer's threshold to where noise does not reach (`significance`). Silence is answered
-    /// with [`Reconstruction::silence`]. Where the request has the samples of a layout, those are answered and `ends` are not read.
+    /// Estimates the whole array's map from `ends`: checks them, scales them for [`Reconstructor::estimate`], removes the scale from the answer,
+    /// and raises the answer's threshold above the noise (`significance`). The answer to silence is [`Reconstruction::silence`]. Where the
+    /// request has the samples of a layout, those are used and `ends` are not read.
     /// # Errors
     /// [`ReconstructError`], on a radar or a layout the method can't work on, on samples of the wrong shape or not finite, when cancelled, or
-    /// as the method says.
+    /// where the method fails.
     fn reconstruct(
         &self,
         radar: &Radar,
@@ -173,20 +172,20 @@ pub trait Reconstructor: Send + Sync {
         answer(self, radar, (radar, ends), request)
     }
 
-    /// The same method with a memory, where that makes it faster on samples that change a little at a time: asked with
+    /// The method with a memory, where that makes it faster on samples that change a little at a time: for a request with
     /// [`Request::may_follow`] it starts from its last answer, and otherwise it answers as without a memory.
     fn following(&self) -> Option<Arc<dyn Reconstructor>> {
         None
     }
 
-    /// The learned weights that its answers to samples of `radar` depend on, if any.
+    /// The learned weights that the method uses for samples of `radar`, if any.
     fn weights(&self, _radar: &Radar) -> Option<Weights> {
         None
     }
 
-    /// Says whether the method can work on ends of which one heard nothing at all: by default none can, as it joins both.
+    /// Checks whether the method can work on ends of which one is silent: by default none can, as it joins both.
     /// # Errors
-    /// [`ReconstructError::Unusable`] names the deaf end.
+    /// [`ReconstructError::Unusable`] names the silent end.
     fn check_hearing(&self, ends: &TwoEnds) -> Result<(), ReconstructError> {
         match End::BOTH.map(|end| is_silent(ends.end(end))) {
             [false, false] | [true, true] => Ok(()),
@@ -207,7 +206,7 @@ pub trait Reconstructor: Send + Sync {
         Err(self.unusable(reason))
     }
 
-    /// The noise beneath the scenes that it was trained on, where it was trained.
+    /// The noise beneath the scenes of the method's training; `None` for methods that aren't trained.
     fn trained_noise(&self) -> Option<TrainedNoise> {
         None
     }
@@ -227,12 +226,12 @@ pub trait Reconstructor: Send + Sync {
         self.about().eta
     }
 
-    /// Whether all of its answers bring thresholds of their own; others do where noise reaches the method's.
+    /// Whether every answer has a threshold of its own; other methods' answers have one only where noise reaches the method's.
     fn reads_eta(&self) -> bool {
         false
     }
 
-    /// Whether it looks for places of echoes, which can be listed; the others only draw a map.
+    /// Whether the method searches for places of echoes, which can be listed; other methods only make a map.
     fn finds_reflectors(&self) -> bool {
         !matches!(self.family(), Family::Own | Family::Network)
     }
@@ -242,7 +241,7 @@ pub trait Reconstructor: Send + Sync {
         answer.eta.unwrap_or_else(|| self.eta())
     }
 
-    /// The error that says in the method's name why it can't work.
+    /// The error with the method's name for a `reason` why it can't work.
     fn unusable(&self, reason: String) -> ReconstructError {
         ReconstructError::Unusable { method: self.name(), reason }
     }
@@ -271,7 +270,7 @@ fn reconstruct_layout<M: Reconstructor + ?Sized>(
     answer(method, &halves, (&halves, &ends), &Request { heard: None, ..request.clone() })
 }
 
-/// What `method` makes of samples that were checked, with a threshold that knows the noise of `ends`, those of a radar that hears as much as `radar`.
+/// The answer of `method` to checked samples, with a threshold above the noise of `ends`, which are those of the radar `hearing`.
 fn answer<M: Reconstructor + ?Sized>(
     method: &M,
     radar: &Radar,
@@ -283,9 +282,9 @@ fn answer<M: Reconstructor + ?Sized>(
         Arc::new(LayoutSamples { layout: heard.layout.clone(), samples: heard.samples.mapv(|v| v * gain) })
     });
     let request = &Request { noise: request.noise.scaled(gain), heard, ..request.clone() };
-    // From within, a parallel step is handed to an idle thread; from without, its caller would sleep through each one.
+    // Inside the scope a parallel step goes to an idle thread; outside, the caller would sleep through each one.
     let found = rayon::scope(|_| method.estimate(radar, &ends, request))?;
-    // What was cancelled while it was drawn is no answer.
+    // An answer during which the task was cancelled may be incomplete.
     request.task.check()?;
     let noise_variance = ends_noise_variance(hearing, &ends, request.noise);
     let mut found = tested(hearing, &ends, noise_variance, method.eta(), found);
@@ -319,13 +318,13 @@ pub fn check_ends(radar: &Radar, ends: &TwoEnds) -> Result<(), ReconstructError>
     Ok(())
 }
 
-/// Scales the samples of both ends to a peak between 1 and 2 and says by how much; `None` for silence.
+/// The samples of both ends scaled to a peak between 1 and 2, and the factor; `None` for silence.
 pub(crate) fn unit_gain(ends: &TwoEnds) -> Option<(TwoEnds, f64)> {
     let peak = ends.first.iter().chain(&ends.last).fold(0.0f64, |m, v| m.max(v.re.abs()).max(v.im.abs()));
     if peak == 0.0 {
         return None;
     }
-    // A power of two loses no bit, so that the gain leaves no trace, not even in the rounding noise of the floor.
+    // A power of two loses no bit, so that the gain changes not even the rounding noise of the floor.
     let gain = (-peak.log2().floor()).clamp(-1000.0, 1000.0).exp2();
     Some((TwoEnds { first: ends.first.mapv(|v| v * gain), last: ends.last.mapv(|v| v * gain) }, gain))
 }
@@ -335,7 +334,7 @@ mod tests {
     use super::*;
     use crate::scene::Reflector;
 
-    /// Answers one reflector as strong as the strongest sample.
+    /// A method that answers with one reflector as strong as the strongest sample.
     struct Echo;
 
     impl Reconstructor for Echo {

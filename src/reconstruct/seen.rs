@@ -1,10 +1,10 @@
-//! How places look from elsewhere on the array's axis, and which directions a radar sees at all.
+//! Polar coordinates of places around other points than the array's centre, and the directions of a radar's columns.
 //!
-//! The ends of table 3.1 stand a metre to the left and right of the centre: they see one reflector at ranges up to 26 bins apart.
+//! The ends of table 3.1 stand a metre to the left and right of the centre: the ranges of one reflector from them differ by up to 26 bins.
 
 use crate::radar::{Pair, Radar};
 
-/// Far fields away at which a wave counts as plane: its front is curved by less than 1e-5 wavelengths over the array.
+/// Distance in far fields at which a wave counts as plane: its front is curved by less than 1e-5 wavelengths over the array.
 pub(super) const FAR_AWAY: f64 = 1e4;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,7 +15,7 @@ pub(super) struct PolarView {
     pub cos_theta: f64,
 }
 
-/// How a point of the array's axis at `from_x_metres` sees the reflector at (`range_metres`, `cos_theta`) of the centre.
+/// The reflector at (`range_metres`, `cos_theta`) of the centre, in polar coordinates around `from_x_metres` on the array's axis.
 pub(super) fn seen_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -> PolarView {
     let x = range_metres * cos_theta.clamp(-1.0, 1.0);
     let square = range_metres * range_metres - 2.0 * x * from_x_metres + from_x_metres * from_x_metres;
@@ -23,7 +23,7 @@ pub(super) fn seen_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -
     PolarView { range_metres: range, cos_theta: ((x - from_x_metres) / range).clamp(-1.0, 1.0) }
 }
 
-/// How an antenna at `place_metres`, (x, y), sees the reflector at (`range_metres`, `cos_theta`) of the centre, before the array.
+/// The reflector at (`range_metres`, `cos_theta`) of the centre, in polar coordinates around an antenna at `place_metres`, (x, y).
 fn seen_at(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> PolarView {
     let [from_x_metres, from_y_metres] = place_metres;
     if from_y_metres == 0.0 {
@@ -35,8 +35,8 @@ fn seen_at(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> PolarVi
     PolarView { range_metres: range, cos_theta: (x / range).clamp(-1.0, 1.0) }
 }
 
-/// How a pair of antennas sees the reflector at (`range_metres`, `cos_theta`) of the centre: half the way there and back, and the mean of both
-/// cosines, by which the range changes where both antennas move.
+/// The reflector at (`range_metres`, `cos_theta`) of the centre, for a pair of antennas: half the way there and back, and the mean of both
+/// cosines, which is the range's derivative where both antennas move.
 pub(super) fn seen_by(pair: Pair, range_metres: f64, cos_theta: f64) -> PolarView {
     let [transmitter, receiver] = pair.places_metres();
     let there = seen_at(transmitter, range_metres, cos_theta);
@@ -67,18 +67,18 @@ pub(super) struct Direction {
     pub column: usize,
 }
 
-/// Most directions that one column may stand for; wider spacings than that are refused.
+/// Most directions of one column; wider spacings are refused.
 pub(super) const MOST_FOLDS: usize = 8;
 
-/// Every direction the columns of `radar`'s map stand for, column after column.
+/// Every direction of the columns of `radar`'s map, column after column.
 ///
 /// One a column for half a wavelength and the one-way carrier. Wider spacings and the two-way carrier fold several directions into
-/// each column (grating lobes); with narrower spacings some columns stand for none.
+/// each column (grating lobes); with narrower spacings some columns have none.
 pub(super) fn directions(radar: &Radar) -> Vec<Direction> {
     let period = cos_period(radar);
     let of_column = |column: usize| {
         let cos = radar.cos_of_column(column as f64);
-        // Rounding must not push a column that is the axis itself off it.
+        // Rounding must not push the column of the axis itself off it.
         let lowest = cos - ((cos + 1.0 + ROUNDING_COS) / period).floor() * period;
         (0..=MOST_FOLDS)
             .map(move |fold| lowest + fold as f64 * period)
@@ -88,15 +88,15 @@ pub(super) fn directions(radar: &Radar) -> Vec<Direction> {
     (0..radar.elements).flat_map(of_column).collect()
 }
 
-/// What a cosine of a column may be wrong by.
+/// Largest error of a column's cosine.
 const ROUNDING_COS: f64 = 1e-9;
 
-/// Distance in cos(theta) after which directions share a column.
+/// Period in cos(theta) after which directions share a column.
 pub(super) fn cos_period(radar: &Radar) -> f64 {
     (radar.cos_of_column(radar.elements as f64) - radar.cos_of_column(0.0)).abs()
 }
 
-/// Why what one end hears can't be taken for plane waves, where nothing the radar sees is far enough away.
+/// The reason why the waves at one end are not plane, where all of the radar's ranges are too near.
 pub(super) fn no_plane_waves(radar: &Radar) -> Option<String> {
     let end_metres = (radar.end_elements - 1) as f64 * radar.element_spacing_metres;
     let far_metres = radar.plane_beyond_metres(end_metres);
@@ -110,7 +110,7 @@ pub(super) fn no_plane_waves(radar: &Radar) -> Option<String> {
     })
 }
 
-/// Why directions can't be told by their columns, where more than [`MOST_FOLDS`] share one.
+/// The reason why columns don't determine directions, where more than [`MOST_FOLDS`] share one.
 pub(super) fn too_many_folds(radar: &Radar) -> Option<String> {
     let folds = (2.0 / cos_period(radar)).ceil();
     (folds > MOST_FOLDS as f64).then(|| {

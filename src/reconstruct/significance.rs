@@ -1,13 +1,12 @@
-//! The absolute test of every threshold: what noise alone reaches is no detection.
+//! The absolute test of every threshold: a level that noise alone reaches is no detection.
 //!
-//! A threshold that lies a distance below the map's peak alarms on noise, whose peak is noise too. So every answer is held against the
-//! noise that is measured in the samples, in two ways, and both only raise the threshold:
+//! A threshold at a fixed distance below the map's peak alarms on noise, whose peak is noise too. So every answer is compared with the noise
+//! that is measured in the samples, in two ways, and both only raise the threshold:
 //!
-//! * Of the samples: where no cell of either end's own range-angle map exceeds what the largest of so many cells of white noise exceeds with
-//!   probability [`CHANCE`], they hold noise alone, and the answer's threshold is 1, which no cell exceeds. This needs nothing of the
-//!   method: it holds for pseudo-spectra and networks as for maps of power.
-//! * Of the map: where a method knows which of its cells are as strong as noise, it says where that level lies
-//!   ([`Reconstruction::least_eta`]), and no threshold lies lower.
+//! * Of the samples: where no cell of either end's own range-angle map exceeds the level that the largest of so many cells of white noise
+//!   exceeds with probability [`CHANCE`], they hold noise alone, and the answer's threshold is 1, which no cell exceeds. This is independent of
+//!   the method: it holds for pseudo-spectra and networks as for maps of power.
+//! * Of the map: a method that knows the level of noise in its map gives it ([`Reconstruction::least_eta`]), and no threshold lies lower.
 
 use super::answer::Reconstruction;
 use crate::maps::{LambdaScale, channels_range_transform};
@@ -22,8 +21,7 @@ const CHANCE: f64 = 1e-6;
 /// Threshold that no cell exceeds.
 pub(super) const NOTHING: f32 = 1.0;
 
-/// How often as strong as the mean the strongest of `cells` noise cells is at most, but with probability [`CHANCE`]: powers of complex normal
-/// noise are exponential.
+/// Ratio of the strongest of `cells` noise cells to their mean, exceeded with probability [`CHANCE`]: powers of complex normal noise are exponential.
 fn times_the_mean(cells: usize) -> f64 {
     (cells.max(1) as f64 / CHANCE).ln()
 }
@@ -34,18 +32,18 @@ pub(super) fn cell_noise(radar: &Radar) -> f64 {
     mean(radar.samples) * mean(radar.elements)
 }
 
-/// Decades of amplitude that no cell of the whole array's map of noise of this variance a sample exceeds, but with probability [`CHANCE`].
+/// Decades of amplitude that a cell of the whole array's map of noise of this variance a sample exceeds with probability [`CHANCE`] only.
 fn noise_decades(radar: &Radar, noise_variance: f64) -> f64 {
     decades_above_cells(noise_variance * cell_noise(radar), radar.samples * radar.elements)
 }
 
-/// The same of a map whose noise cells have this power on average.
+/// Decades of amplitude that a map exceeds with probability [`CHANCE`] only, whose noise cells have this mean power.
 pub(super) fn decades_above_cells(cell_noise: f64, cells: usize) -> f64 {
     0.5 * (cell_noise * times_the_mean(cells)).max(f64::MIN_POSITIVE).log10()
 }
 
-/// Decades from the mean of the logarithm of `cells` noise cells to the level that none of them exceeds, but with probability [`CHANCE`]. The mean
-/// of log10 |n| lies 0.125 decades below the root mean square of complex normal n.
+/// Decades from the mean of the logarithm of `cells` noise cells to the level that one of them exceeds with probability [`CHANCE`] only. The
+/// mean of log10 |n| lies 0.125 decades below the root mean square of complex normal n.
 #[cfg(feature = "live")]
 pub(crate) fn level_above_mean_decades(cells: usize) -> f64 {
     decades_above_cells(1.0, cells) + 0.125
@@ -68,7 +66,7 @@ fn holds_echo(radar: &Radar, ends: &TwoEnds, noise_variance: f64) -> bool {
     let mut scratch = vec![Complex64::default(); fft.get_inplace_scratch_len()];
     for end in End::BOTH {
         let channels = ends.end(end);
-        // Elements that measured nothing add no noise.
+        // Elements without samples add no noise.
         let heard = channels.outer_iter().map(|c| c.iter().any(|v| v.norm_sqr() > 0.0));
         let gain: f64 = heard.zip(&window).filter(|(heard, _)| *heard).map(|(_, w)| w * w).sum();
         let level = least * gain * profile_variance;
@@ -84,8 +82,8 @@ fn holds_echo(radar: &Radar, ends: &TwoEnds, noise_variance: f64) -> bool {
     false
 }
 
-/// `found` in `ends` with a threshold that knows the noise; `own_eta` is the method's own. A flat answer without reflectors found nothing, also
-/// where the samples hold more than noise: no threshold tells its cells apart.
+/// `found` in `ends` with a threshold raised above the noise; `own_eta` is the method's own. A flat answer without reflectors has no detection,
+/// also where the samples hold more than noise: no threshold separates its cells.
 pub(super) fn tested(
     radar: &Radar,
     ends: &TwoEnds,

@@ -1,9 +1,9 @@
-//! Over which noise a network was trained.
+//! The noise of a network's training scenes.
 
 use crate::radar::Decibels;
 
-/// The noise beneath the scenes that a method was trained on: the rounding of the thesis' program ([`crate::signal::Floor::Thesis`]), and thermal noise where
-/// some scenes had it.
+/// The noise beneath the scenes of a method's training: the rounding of the thesis' program ([`crate::signal::Floor::Thesis`]), and thermal
+/// noise in some of the scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TrainedNoise {
     /// Rounding alone.

@@ -1,4 +1,4 @@
-//! Whether a method is asked over noise that it was not trained on.
+//! The test for noise on which a method was not trained.
 
 use super::reconstructor::Reconstructor;
 use super::trained::TrainedNoise;
@@ -6,8 +6,8 @@ use crate::radar::Radar;
 use crate::scattering::Sources;
 use crate::signal::Floor;
 
-/// How the noise of these sources over `floor` differs from the noise that `method` was trained on, in words; `None` where it doesn't, and
-/// for methods that weren't trained.
+/// A sentence on the difference between the noise of these sources over `floor` and the noise of the training of `method`; `None` where there is
+/// none, and for methods that weren't trained.
 pub fn untrained_noise<'a>(
     method: &dyn Reconstructor,
     radar: &Radar,

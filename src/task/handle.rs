@@ -26,22 +26,22 @@ impl Task {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Reports the part that is done, 0 to 1.
+    /// Reports the finished part, 0 to 1.
     pub fn set_progress(&self, part: f32) {
         self.progress.store(part.clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
     }
 
-    /// A part of the work: it stops where the whole does, and its own progress is not shown.
+    /// The task of a part of the work: it is cancelled with the whole, and has its own hidden progress.
     pub fn quiet(&self) -> Task {
         Task { cancelled: self.cancelled.clone(), progress: Arc::default() }
     }
 
-    /// The part that is done, 0 to 1.
+    /// The finished part, 0 to 1.
     pub fn progress(&self) -> f32 {
         f32::from_bits(self.progress.load(Ordering::Relaxed))
     }
 
-    /// Stops a computation with `?` when it was cancelled.
+    /// An error once the task was cancelled, to leave a computation with `?`.
     /// # Errors
     /// [`Cancelled`] after [`Task::cancel`].
     pub fn check(&self) -> Result<(), Cancelled> {

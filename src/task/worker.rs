@@ -1,4 +1,4 @@
-//! One thread that always works on the latest request.
+//! A thread that always works on the latest request.
 //!
 //! ```text
 //!   request(c) ──► slot [b]  b is never started: c takes its place
@@ -17,26 +17,26 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Number of a request: rises by one with each.
+/// Number of a request, one higher than the last one's.
 pub type Generation = u64;
 
-/// What came of a request.
+/// The reply to a request.
 #[derive(Debug)]
 pub enum Reply<T> {
-    /// It is done.
+    /// The work is finished.
     Done {
-        /// Which request.
+        /// Number of the request.
         generation: Generation,
-        /// Its result.
+        /// Result of the work.
         result: T,
-        /// How long the work took.
+        /// Duration of the work.
         elapsed: Duration,
     },
-    /// It panicked; the worker was started afresh and waits for the next request.
+    /// The work panicked. The worker was started afresh and waits for the next request.
     Panicked {
-        /// Which request.
+        /// Number of the request.
         generation: Generation,
-        /// What the panic said.
+        /// Message of the panic.
         message: String,
     },
 }
@@ -58,12 +58,12 @@ struct Slot<Q, T> {
 struct Shared<Q, T> {
     slot: Mutex<Slot<Q, T>>,
     ready: Condvar,
-    /// Makes the work, with new state.
+    /// Makes the work with new state.
     step: Box<dyn Fn() -> Step<Q, T> + Send + Sync>,
     wake: Box<dyn Fn() + Send + Sync>,
 }
 
-/// Takes one request and gives its reply; the state of the work is inside.
+/// Turns one request into its reply; the state of the work is inside.
 type Step<Q, T> = Box<dyn FnMut(Generation, Q, &Task) -> Reply<T>>;
 
 enum Place<Q, T> {
@@ -71,14 +71,14 @@ enum Place<Q, T> {
     Here(RefCell<Step<Q, T>>),
 }
 
-/// A thread that turns requests `Q` into results `T`, latest request first. Dropping it stops the thread. Where there are no threads the work
-/// is done when replies are asked for.
+/// A thread that turns requests `Q` into results `T`, the latest request first. Dropping it stops the thread. On a page without threads the work is done when
+/// replies are asked for.
 pub struct Worker<Q, T> {
     shared: Arc<Shared<Q, T>>,
     place: Place<Q, T>,
 }
 
-/// Does the work of one request; a panic drops the state.
+/// The work of a request as a function; a panic drops the state.
 fn step<S, Q, T>(
     start: impl Fn() -> S,
     work: impl Fn(&mut S, Q, &Task) -> T,
@@ -114,9 +114,8 @@ fn serve<Q: Send + 'static, T: Send + 'static>(name: String, shared: Arc<Shared<
 }
 
 impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
-    /// A worker whose thread is called `name` and starts with the first request. `start` makes the state that `work` keeps from request to
-    /// request; `wake` is called from the thread after each reply.
-    /// A thread that can't be started is told with the first reply.
+    /// A worker whose thread is called `name` and starts with the first request. `start` makes the state that `work` keeps between requests; `wake` is called
+    /// from the thread after each reply. A failure to start the thread is reported with the first reply.
     pub fn spawn<S: 'static>(
         name: &str,
         start: impl Fn() -> S + Send + Sync + 'static,
@@ -151,12 +150,12 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         }
     }
 
-    /// Asks for `request` next; one that waits is replaced, one that runs goes on.
+    /// Asks for `request` next. A waiting request is replaced; a running one goes on.
     pub fn request(&self, request: Q) -> Generation {
         self.request_for(Task::default(), request)
     }
 
-    /// Asks for `request` next, on a task that the caller can cancel without touching any other's.
+    /// Asks for `request` next, on a task that the caller can cancel apart from others.
     pub fn request_for(&self, task: Task, request: Q) -> Generation {
         let mut slot = self.shared.lock();
         slot.generation += 1;
@@ -168,7 +167,7 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         generation
     }
 
-    /// Cancels what runs and forgets what waits. The cancelled work still replies.
+    /// Cancels the running request and drops the waiting one. The cancelled work still replies.
     pub fn cancel(&self) {
         let mut slot = self.shared.lock();
         slot.pending = None;
@@ -177,7 +176,7 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         }
     }
 
-    /// Cancels what runs if it began longer ago than `patience`, and says whether it did; what waits stays.
+    /// Cancels the running request if it began longer ago than `patience`; returns whether it did. A waiting one stays.
     pub fn cancel_older_than(&self, patience: Duration) -> bool {
         match &self.shared.lock().running {
             Some(running) if running.began.elapsed() > patience => {
@@ -194,7 +193,7 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         slot.pending.is_some() || slot.running.is_some()
     }
 
-    /// Progress of what runs, 0 to 1; `None` when idle.
+    /// Progress of the running request, 0 to 1; `None` when idle.
     pub fn progress(&self) -> Option<f32> {
         self.shared.lock().running.as_ref().map(|running| running.task.progress())
     }
@@ -228,7 +227,7 @@ impl<Q, T> Shared<Q, T> {
         (self.wake)();
     }
 
-    /// Hands over why nothing came of the request that runs, or else of the one that waits.
+    /// Replies with a failure to the running request, or else to the waiting one.
     fn give_up(&self, message: String) {
         let mut slot = self.lock();
         let running = slot.running.take().map(|running| running.generation);
@@ -262,12 +261,12 @@ impl<Q, T> Drop for Worker<Q, T> {
             running.task.cancel();
         }
         drop(slot);
-        // The thread is not joined: work that doesn't look at its task would keep the window from closing.
+        // The thread is not joined: work that doesn't check its task would keep the window from closing.
         self.shared.ready.notify_all();
     }
 }
 
-/// What a caught panic said.
+/// The message of a caught panic.
 pub fn panic_message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without a message".to_owned())

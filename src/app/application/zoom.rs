@@ -1,38 +1,38 @@
-//! How large everything is while a presentation or a lesson is shown, and whether the window fills the screen.
+//! Scale of the interface and full screen, during a presentation or a lesson.
 
 use crate::app::state::State;
 use eframe::egui;
 
-/// Height that a presentation is laid out for, points: on a larger screen everything is larger.
+/// Height that a presentation is laid out for, points. A higher window scales it up.
 const PRESENTATION_HEIGHT: f32 = 600.0;
 
-/// How much larger everything is in a presentation at least and at most.
+/// Least and largest scale of a presentation.
 const PRESENTATION_ZOOMS: [f32; 2] = [1.25, 2.5];
 
-/// How much larger everything is in a presentation on a window of a height, points at normal size.
+/// Scale of a presentation on a window of `height` points, measured at normal scale.
 fn presentation_zoom(height: f32) -> f32 {
     let [least, most] = PRESENTATION_ZOOMS;
     (height / PRESENTATION_HEIGHT).clamp(least, most)
 }
 
-/// Sizes of the interface that come back when what is shown ends.
+/// The user's scale of the interface, kept during a presentation or a lesson.
 #[derive(Default)]
 pub struct Zoom {
     /// Whether the window fills the screen because a presentation does.
     is_full_screen: bool,
-    /// Before the presentation that is shown.
+    /// Scale before the presentation that is shown.
     before_presenting: Option<f32>,
-    /// Before the lesson that is taken.
+    /// Scale before the lesson that is shown.
     before_lesson: Option<f32>,
 }
 
 impl Zoom {
-    /// The size that the user chose, where another is shown.
+    /// The user's own scale, where a presentation or a lesson changed it.
     pub fn before(&self) -> Option<f32> {
         self.before_lesson.or(self.before_presenting)
     }
 
-    /// Follows what is shown.
+    /// Adapts scale and full screen to the presentation or lesson of `state`.
     pub fn follow(&mut self, ctx: &egui::Context, state: &State) {
         let full_screen = state.is_presenting();
         if full_screen != self.is_full_screen {
@@ -43,7 +43,7 @@ impl Zoom {
         self.follow_lesson(ctx, state.lesson.is_some());
     }
 
-    /// Large type while a presentation or a lesson has the whole screen; that of before after it.
+    /// Scales the interface up while a presentation or a lesson fills the screen, and back after it.
     fn follow_presentation(&mut self, ctx: &egui::Context, is_presenting: bool) {
         match (is_presenting, self.before_presenting) {
             (true, None) => {
@@ -59,13 +59,13 @@ impl Zoom {
         }
     }
 
-    /// The size of before a lesson comes back after it.
+    /// Keeps the scale before a lesson and restores it after the lesson.
     fn follow_lesson(&mut self, ctx: &egui::Context, is_taken: bool) {
         match (is_taken, self.before_lesson) {
             (true, None) => self.before_lesson = Some(self.before_presenting.unwrap_or_else(|| ctx.zoom_factor())),
             (false, Some(before)) => {
                 self.before_lesson = None;
-                // A presentation gives it back when it ends.
+                // The presentation restores the scale when it ends.
                 match &mut self.before_presenting {
                     Some(zoom) => *zoom = before,
                     None => ctx.set_zoom_factor(before),

@@ -1,4 +1,4 @@
-//! Commands that put another scene on screen, or this one in a file.
+//! Commands that open, save, make and share documents.
 
 use super::{saving, shared};
 use crate::app::jobs::{Jobs, is_live};
@@ -51,7 +51,7 @@ fn open(state: &mut State, path: PathBuf) {
     }
 }
 
-/// Adds the live network with the weights of a file, and takes it where it is for the radar on screen.
+/// Adds the live network with the weights of a file, and selects it where it takes the radar on screen.
 #[cfg(feature = "live")]
 fn open_weights(state: &mut State, path: &Path) {
     let method = match methods::add_weights(path) {
@@ -69,17 +69,17 @@ fn open_weights(state: &mut State, path: &Path) {
     }
 }
 
-/// Puts a document on screen, and what it is looked at with.
+/// Puts a document on screen, with a method that takes its radar and the panels of a recording.
 fn show(state: &mut State, label: &str, document: Document) {
     state.set_document(label, document);
     opened(state);
 }
 
-/// Takes what the document on screen is looked at with: a method that can, and for a recording its panels.
+/// Selects a method that takes the radar of the document on screen, and opens the panels of a recording.
 pub fn opened(state: &mut State) {
     use_a_method_that_can(state);
     let Some(recording) = state.editor.document().recording() else { return };
-    // What is doubtful stands in the panel.
+    // The panel lists the recording's doubts.
     let is_doubtful = recording.origin.is_some() || !recording.doubts.is_empty();
     show_recording_panels(state);
     if is_doubtful {
@@ -87,7 +87,7 @@ pub fn opened(state: &mut State) {
     }
 }
 
-/// Changes to a method that takes the radar of what was opened, where the one in use doesn't; says so.
+/// Selects a method that takes the radar of the opened document, where the method in use doesn't; tells the user.
 fn use_a_method_that_can(state: &mut State) {
     fit_layout(state);
     if state.settings.layout.is_some() {
@@ -101,8 +101,8 @@ fn use_a_method_that_can(state: &mut State) {
     }
 }
 
-/// Changes to a method that hears the layout in use, where the one in use doesn't, and to the two ends where what is on screen has not the elements
-/// of the layout; says so.
+/// Selects a method that takes the layout in use, where the method in use doesn't. Falls back to the two ends where the document on screen lacks elements of
+/// the layout. Tells the user either way.
 pub fn fit_layout(state: &mut State) {
     let Some(kind) = &state.settings.layout else { return };
     let has_ends_alone = state.editor.document().recording().is_some_and(|recording| recording.signal().is_none());
@@ -125,7 +125,7 @@ pub fn fit_layout(state: &mut State) {
     }
 }
 
-/// The list of what was found in front, where the method finds anything, and what reflectors leave unexplained behind the output.
+/// Opens the map of the unexplained part behind the output, and the list of found reflectors where the method finds any.
 fn show_recording_panels(state: &mut State) {
     let lists = state.finds_reflectors().then_some(Panel::Found);
     for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output)].into_iter().chain(lists) {
@@ -133,7 +133,7 @@ fn show_recording_panels(state: &mut State) {
     }
 }
 
-/// Reads a scene file or a recording; says why where it can't.
+/// Reads a scene file or a recording; an error becomes a message.
 pub fn read(state: &mut State, path: &Path) -> Option<Document> {
     let read = match recording::file::is_recording_at(path) {
         true => Document::read_recording(path).map_err(|e| e.to_string()),
@@ -155,7 +155,7 @@ fn preset(state: &mut State, index: usize) {
     let Some(preset) = presets::ALL.get(index) else { return };
     match preset.load() {
         Ok(file) => {
-            // A failure is one of its method before its radar.
+            // A preset of failures needs its own radar: its method fails with that one.
             let keeps_radar = !preset.has_radar() && !preset.is_failure();
             let before = state.setup();
             preset.failing_method().into_iter().for_each(|name| state.settings.method = name.to_owned());
@@ -165,7 +165,7 @@ fn preset(state: &mut State, index: usize) {
             state.set_document("preset", document);
             use_a_method_that_can(state);
             if preset.is_failure() {
-                // The method comes back with the scene.
+                // Undo brings back the method together with the scene.
                 let after = state.setup();
                 state.guided.push(before, after);
             }
@@ -182,7 +182,7 @@ fn shipped_recording(state: &mut State, index: usize) {
     }
 }
 
-/// Reads the file of the recording on screen another way; on any error it stays as it is.
+/// Reads the file of the recording on screen with another layout, frame or board; on any error the recording stays as it is.
 fn read_another_way(state: &mut State, way: Way) {
     let Some(origin) = state.editor.document().recording().and_then(|r| r.origin.clone()) else { return };
     let read = match way {
@@ -208,7 +208,7 @@ fn read_another_way(state: &mut State, way: Way) {
     }
 }
 
-/// Shows the newest frame of a capture card; where something else was put on screen since the last, the listening ends.
+/// Shows the newest frame of a capture card. Where another document is on screen since the last frame, the card is no longer listened to.
 fn show_frame(state: &mut State, jobs: &mut Jobs, frame: LiveFrame) {
     let LiveFrame { recording, config, is_first } = frame;
     let recording = Recording::clone(&recording);
@@ -226,7 +226,7 @@ fn show_frame(state: &mut State, jobs: &mut Jobs, frame: LiveFrame) {
     }
 }
 
-/// Lets the frames of the recording play, from the first where the last is on screen, or stops them.
+/// Plays the frames of the recording, from the first where the last is on screen, or stops them.
 pub fn play_frames(state: &mut State, is_playing: bool) {
     state.timeline.play_frames(is_playing);
     if is_playing && state.frames().is_some_and(|[frame, count]| frame + 1 >= count) {
@@ -235,7 +235,7 @@ pub fn play_frames(state: &mut State, is_playing: bool) {
     }
 }
 
-/// Goes to the next frame of the recording that plays where it is due, `step` seconds after the last call; the last one ends it.
+/// Goes to the recording's next frame where it is due, `step` seconds after the last call; stops at the last frame.
 pub fn next_frame(state: &mut State, step: f64) {
     let [frame, count] = state.frames().unwrap_or_default();
     if frame + 1 >= count {

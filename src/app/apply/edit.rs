@@ -7,7 +7,7 @@ use crate::interact::Place;
 use crate::scene::{Block, GaussianCluster, Line, Object, Point, Polygon, Post, Wall};
 use crate::share::is_shared;
 
-/// Does such a command, but for what the clipboard has to do.
+/// Does an edit; the effect is text for the clipboard, or a request for its text.
 pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
     let editor = &mut state.editor;
     match command {
@@ -43,7 +43,7 @@ pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
             }
         }
         EditCommand::Name(name) => editor.name_selected(&name),
-        // What is looked at at another time is not where the document has it.
+        // At another time the objects on screen are not where the document has them.
         EditCommand::Grab(_) if state.timeline.moved().is_some() => state.timeline.set(editor.scene(), 0.0),
         EditCommand::Grab(blob) => editor.grab(blob),
         EditCommand::DragTo(place) => _ = editor.drag_to(place, state.settings.snap),
@@ -62,7 +62,7 @@ pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
     None
 }
 
-/// The selected objects for the clipboard; says what to do where there are none.
+/// The selected objects as text for the clipboard; a message where none is selected.
 fn copy(state: &mut State) -> Option<Effect> {
     let copied = state.editor.copy().map(Effect::Copy);
     if copied.is_none() {
@@ -71,7 +71,7 @@ fn copy(state: &mut State) -> Option<Effect> {
     copied
 }
 
-/// Adds an object at `place`, or in the middle of the visible scene, beside what is there already.
+/// Adds an object at `place`, or in the middle of the visible scene, beside the objects already there.
 fn add(state: &mut State, kind: NewObject, place: Option<Place>) {
     let (bin, view) = (state.radar().range_resolution_metres(), state.scene_view);
     let mut at = place.unwrap_or(Place::new(view.centre.x_metres, view.centre.y_metres.max(2.0)));

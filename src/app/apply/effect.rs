@@ -1,23 +1,23 @@
-//! What a command asks of the window.
+//! Changes to the window that a command causes.
 
 use crate::app::state::Brightness;
 use eframe::egui::ColorImage;
 
-/// What a command asks of the window.
+/// A change to the window that a command causes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
-    /// Light or dark.
+    /// Light or dark theme.
     Brightness(Brightness),
-    /// Another size of the interface, as a factor; back to normal where `None`.
+    /// Another scale of the interface: a step added to the factor, or normal size where `None`.
     Zoom(Option<f32>),
-    /// This text on the clipboard.
+    /// Text for the clipboard.
     Copy(String),
-    /// This picture on the clipboard.
+    /// Picture for the clipboard.
     CopyImage(ColorImage),
-    /// Ask the system for the clipboard.
+    /// Asks the system for the clipboard's content.
     RequestPaste,
-    /// Show or hide the palette.
+    /// Shows or hides the palette.
     Palette,
-    /// Close.
+    /// Closes the window.
     Close,
 }

@@ -1,11 +1,11 @@
-//! Commands that write for other programs: files and the clipboard.
+//! Commands that export files and copy to the clipboard.
 
 use super::effect::Effect;
 use super::{map_picture, shared};
 use crate::app::jobs::{Jobs, evaluated, evaluation_to_csv, tell};
 use crate::app::state::{ExportCommand, State};
 
-/// Does such a command, but for what the clipboard has to do.
+/// Does an export; the effect is text or a picture for the clipboard.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: ExportCommand) -> Option<Effect> {
     let said = match command {
         ExportCommand::CopyMap(kind) => return map_picture::copy(state, jobs, kind).map(Effect::CopyImage),

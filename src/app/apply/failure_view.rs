@@ -8,10 +8,10 @@ use crate::radar::Radar;
 use crate::theory::blob_cell;
 use eframe::egui::{Pos2, Vec2, pos2, vec2};
 
-/// At least so much of a map is shown around a failure, to either side: parts of its width and height.
+/// Least part of a map shown to either side of a failure, as ratios of the map's width and height.
 const MIN_SHOWN_RATIO: Vec2 = vec2(0.12, 0.1);
 
-/// Shows the failure that was opened, once it is known; shows whole maps again when another document comes.
+/// Zooms the maps to the failure of an opened preset, once its fates are known; shows whole maps again with the next document.
 pub fn follow(state: &mut State, jobs: &Jobs) {
     let document = state.editor.document().id();
     let shown = &mut state.map_views.range_angle;

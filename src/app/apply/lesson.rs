@@ -22,7 +22,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: LessonCommand) {
         LessonCommand::Predict(guess) => {
             if let Some(run) = state.lesson.as_mut().filter(|run| run.is_predicting()) {
                 run.guess = Some(guess);
-                // The maps of what exceeds the threshold show what was chosen.
+                // Maps of cells above the threshold use the predicted threshold.
                 if let Guess::Eta(eta) = guess {
                     state.settings.target_eta = eta;
                 }
@@ -75,7 +75,7 @@ fn set_up(state: &mut State) {
     state.settings.layout = None;
     state.settings.detect_by(step.view.cfar);
     let name = state.lesson.as_ref().map_or_else(String::new, |run| run.lesson.title.clone());
-    // Name and notes of a scene tell what its maps show: that is asked for here.
+    // Name and notes would tell the answer that the learner predicts.
     let scene = Scene { name, notes: String::new(), noise_seed: step.view.seed, ..step.scene() };
     state.set_document("lesson", Document::shipped(SceneFile { scene, radar: step.radar.clone() }));
     let (scene, depth) = (state.editor.scene().clone(), state.editor.history().depth());
@@ -90,7 +90,7 @@ fn set_up(state: &mut State) {
     }
 }
 
-/// Brings the control in front that the step's challenge needs, once the challenge is there.
+/// Brings the control for the step's challenge to the front, once the challenge is on screen.
 fn show_challenge(state: &mut State) {
     let run = state.lesson.as_ref().filter(|run| !run.is_predicting());
     let Some((panel, object)) = run.and_then(|run| run.current()).and_then(control_of) else { return };
@@ -98,7 +98,7 @@ fn show_challenge(state: &mut State) {
     state.editor.select(object, SelectionMode::Replace);
 }
 
-/// Keeps in sight what a challenge is about, as the scene and the radar change, until the learner zooms.
+/// Keeps the cells of a challenge in sight as scene and radar change, until the learner zooms.
 pub fn follow_challenge(state: &mut State) {
     let Some(run) = state.lesson.as_mut().filter(|_| state.editor.dragged().is_none()) else { return };
     let Some(part) = run.challenged_part(state.editor.radar(), state.editor.scene()) else { return };
@@ -122,7 +122,7 @@ fn show_solution(state: &mut State) {
     state.lesson.iter_mut().for_each(|run| run.gave_up = true);
 }
 
-/// Ends the lesson: scene, radar, settings, panels and what is visible of scene and maps are again what they were before.
+/// Ends the lesson and restores scene, radar, settings, panels and visible parts from before it.
 fn leave(state: &mut State) {
     let Some(run) = state.lesson.take() else { return };
     let after = state.settings.view.clone();

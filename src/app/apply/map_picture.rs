@@ -4,10 +4,10 @@ use crate::app::jobs::Jobs;
 use crate::app::state::{MapKind, Panel, State};
 use eframe::egui::ColorImage;
 
-/// Most pixels of a picture on the clipboard: it is held there several times over.
+/// Most pixels of a picture for the clipboard. The clipboard holds several copies of it.
 const MAX_PIXELS: usize = 1 << 24;
 
-/// The picture of a map, for the clipboard; says why where there is none.
+/// The picture of a map for the clipboard; a message where there is none.
 pub fn copy(state: &mut State, jobs: &Jobs, kind: MapKind) -> Option<ColorImage> {
     match picture(state, jobs, kind) {
         Ok(image) => {
@@ -22,7 +22,7 @@ pub fn copy(state: &mut State, jobs: &Jobs, kind: MapKind) -> Option<ColorImage>
     }
 }
 
-/// A map's picture as it hangs on screen, the farthest range on top; cell by cell, all of it.
+/// The whole map's picture with a pixel per cell, the farthest range on top as on screen.
 fn picture(state: &State, jobs: &Jobs, kind: MapKind) -> Result<ColorImage, String> {
     if state.is_predicting() {
         return Err("it is hidden until you have predicted".to_owned());
@@ -34,7 +34,7 @@ fn picture(state: &State, jobs: &Jobs, kind: MapKind) -> Result<ColorImage, Stri
     upright(&picture.image)
 }
 
-/// The rows of a texture the other way round.
+/// The image with its rows in reverse order.
 fn upright(image: &ColorImage) -> Result<ColorImage, String> {
     let [width, height] = image.size;
     if image.pixels.len() > MAX_PIXELS {

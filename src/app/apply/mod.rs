@@ -1,4 +1,4 @@
-//! What each command does: the only place that changes settings, and the only one that starts work.
+//! Effects of commands on state and jobs. Only this module changes settings and starts work.
 
 mod document;
 mod edit;
@@ -26,14 +26,14 @@ pub use shared::of as shared_text;
 use super::jobs::Jobs;
 use super::state::{Command, State};
 
-/// Does a command, and holds the layout in use to what is on screen then.
+/// Does a command, then makes the layout in use fit the document on screen.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Effect> {
     let effect = done(state, jobs, command);
     document::fit_layout(state);
     effect
 }
 
-/// Does a command: each group in the file of its name.
+/// Does a command by the file of its group.
 fn done(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Effect> {
     match command {
         Command::Document(command) => document::apply(state, jobs, command),
@@ -51,7 +51,7 @@ fn done(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Effect> 
     None
 }
 
-/// Does what a button of the guide asks for; one undo takes all of it back.
+/// Does the commands of a button of the guide, which one undo takes back.
 fn guided(state: &mut State, jobs: &mut Jobs, commands: Vec<Command>) {
     let before = state.setup();
     for command in commands {

@@ -1,4 +1,4 @@
-//! Commands that change the radar before the scene, its elements, and what else disturbs it.
+//! Commands that change the radar, its elements, and other disturbances of the scene.
 
 use crate::app::state::{RadarCommand, State};
 use crate::radar::{BuiltArray, Radar, presets};
@@ -26,7 +26,7 @@ pub fn apply(state: &mut State, command: RadarCommand) {
     }
 }
 
-/// Changes what disturbs the scene; changes of one kind in a row are one step until the pointer is let go.
+/// Changes the scene's disturbances; changes under one name are one undo step until the pointer is released.
 fn disturb(state: &mut State, what: &str, change: impl FnOnce(&mut Disturbances)) {
     let mut changed = state.editor.scene().disturbances.clone();
     change(&mut changed);
@@ -36,9 +36,9 @@ fn disturb(state: &mut State, what: &str, change: impl FnOnce(&mut Disturbances)
     }
 }
 
-/// What differs first: edits of one field merge into one step, those of another begin another.
+/// Name of the first field that differs: edits of one field merge into one undo step.
 fn changed_field(before: &Radar, after: &Radar) -> &'static str {
-    // A drag of one antenna changes the number of elements and their spacing, too.
+    // A drag of one antenna also changes the number of elements and their spacing.
     let has_moved = before.antennas.is_some() && after.antennas.is_some() && before.antennas != after.antennas;
     let changes = [
         ("antennas", has_moved),
@@ -63,7 +63,7 @@ fn changed_field(before: &Radar, after: &Radar) -> &'static str {
     changes.into_iter().find(|(_, changed)| *changed).map_or("radar", |(name, _)| name)
 }
 
-/// Changes the radar, as a step that can be undone.
+/// Changes the radar as one undo step.
 fn edit(state: &mut State, label: &str, merge_key: Option<&str>, change: impl FnOnce(&mut Radar)) {
     let mut changed = state.radar().clone();
     change(&mut changed);

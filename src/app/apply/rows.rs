@@ -1,4 +1,4 @@
-//! Commands about rows: try methods, open a row, look for worse, keep.
+//! Commands on the rows of the failures: try methods, open a row, search for worse scenes, keep a scene.
 
 use super::work;
 use crate::app::jobs::{FailuresPlan, Jobs, is_table_of_rows, keep, tell};
@@ -53,8 +53,8 @@ fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPl
     Ok(FailuresPlan { campaign, sets, methods })
 }
 
-/// Puts a row's scene on screen as another document, its floor and method in the settings. One undo takes back all of it, and a walk along
-/// many rows too, as long as nothing was changed on the way.
+/// Opens a row's scene as another document, with the row's floor and method in the settings. One undo takes back all of it. It also takes back a series of
+/// opened rows, as long as none was changed in between.
 fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
     let table = jobs.failures.table();
     let Some(row) = table.rows().get(index).cloned() else { return };
@@ -74,13 +74,13 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
     match state.methods.all.iter().find(|m| m.name() == &*row.method) {
         Some(method) => {
             state.settings.method = row.method.to_string();
-            // Its own threshold, raised to where noise does not reach, or the one that the row was judged at.
+            // The method's own threshold, also where it was raised above the noise; otherwise the row's threshold.
             let is_own = method.reads_eta() || method.eta() <= row.eta;
             state.settings.set_method_eta(&row.method, (!is_own).then_some(row.eta));
         }
         None => state.notices.info(format!("There is no method \"{}\" here; the one in use stays.", row.method)),
     }
-    // Another method of the rows stands beside it, where Compare is opened.
+    // Compare shows another method of the rows beside this one.
     let offered = |name: &&String| **name != *row.method && state.methods.all.iter().any(|m| m.name() == **name);
     if let Some(second) = table.methods().iter().find(offered) {
         state.settings.compare.second.clone_from(second);
@@ -93,7 +93,7 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
     jobs.failures.search.keep_to(opened);
 }
 
-/// Whether the scene on screen is that of a row, as it was opened.
+/// Whether the scene on screen is a row's, unchanged since it was opened.
 fn is_walking(state: &State) -> bool {
     let is_row = state.row_on_screen().is_some() && !state.editor.is_modified();
     is_row && state.guided.can_undo(&state.setup())
@@ -104,7 +104,7 @@ fn take_finding(state: &mut State, jobs: &Jobs) {
     let ([_, .., found], Some((choice, _))) = (search.path(), search.subject()) else { return };
     let label = if choice.aim == Aim::Repair { "repair" } else { "worse" };
     let found = found.scene.clone();
-    // Its name and notes stay those of the scene that it was looked for near.
+    // The scene on screen, near which the search looked, keeps its name and notes.
     state.editor.edit(label, None, |scene, _| (scene.objects, scene.noise_seed) = (found.objects, found.noise_seed));
 }
 

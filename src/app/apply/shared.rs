@@ -1,4 +1,4 @@
-//! What is on screen as a line of text, and back.
+//! Sharing of the scene on screen and its view as a line of text.
 
 use super::lesson;
 use crate::app::state::{MapView, State, View};
@@ -9,7 +9,7 @@ use crate::radar::Radar;
 use crate::share::{LessonPlace, ShareError, SharedScene, SharedView, VisiblePart};
 use eframe::egui::pos2;
 
-/// The text of what is on screen; says why where there can be none.
+/// The scene on screen as text to share; a message where it can't be shared.
 pub fn text(state: &mut State) -> Option<String> {
     match of(state) {
         Ok(text) => {
@@ -23,7 +23,7 @@ pub fn text(state: &mut State) -> Option<String> {
     }
 }
 
-/// A link to this page that shows what is on screen; says why where there can be none.
+/// A link to this page that opens the scene on screen; a message where there is none.
 pub fn link(state: &mut State) -> Option<String> {
     let address = platform::page_address();
     match address.ok_or_else(|| "only a page has an address".to_owned()).and_then(|address| {
@@ -42,17 +42,17 @@ pub fn link(state: &mut State) -> Option<String> {
     }
 }
 
-/// Longest link that browsers open.
+/// Longest link that browsers open, bytes.
 const MOST_OF_A_LINK: usize = 2 << 20;
 
 fn too_long(letters: usize) -> String {
     format!("the link would have {letters} letters, browsers open {MOST_OF_A_LINK}; save the scene as a file instead")
 }
 
-/// What is on screen as text.
+/// The scene on screen and its view as text.
 ///
 /// # Errors
-/// [`ShareError`] where it can't be one.
+/// [`ShareError`] where they can't be written as text.
 pub fn of(state: &State) -> Result<String, ShareError> {
     share(state).to_text()
 }
@@ -73,12 +73,12 @@ fn part(view: MapView) -> VisiblePart {
     VisiblePart { left, bottom, right, top }
 }
 
-/// A part of the columns as a part of what is drawn, and back: texts count from the first column.
+/// Mirrors a visible part where cos(theta) falls from column to column: shared texts count from the first column.
 fn by_column(radar: &Radar, part: VisiblePart) -> VisiblePart {
     if radar.columns_fall() { VisiblePart { left: 1.0 - part.right, right: 1.0 - part.left, ..part } } else { part }
 }
 
-/// Opens a text that was shared; on any error the scene on screen stays.
+/// Opens a shared text; on any error the scene on screen stays.
 pub fn open(state: &mut State, text: &str) {
     let shared = match SharedScene::from_text(text) {
         Ok(shared) => shared,
@@ -101,7 +101,7 @@ pub fn open(state: &mut State, text: &str) {
     state.set_document("shared scene", Document::made(file));
     look(state, view);
     let after = state.setup();
-    // A lesson takes everything back when it is left.
+    // Leaving a lesson takes everything back, so no undo step is needed.
     if state.lesson.is_none() {
         state.guided.push(before, after);
     }

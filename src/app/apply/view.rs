@@ -1,4 +1,4 @@
-//! Commands that change how the scene is looked at.
+//! Commands that change the view of scene and maps.
 
 use super::document;
 use crate::app::jobs::Jobs;
@@ -65,7 +65,7 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
     }
 }
 
-/// Takes the next method that hears the layout.
+/// Selects the next method that takes the layout in use.
 fn next_method(state: &mut State) {
     let layout = state.settings.heard(state.radar());
     let hears = |method: &dyn Reconstructor| {

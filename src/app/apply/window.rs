@@ -4,7 +4,7 @@ use super::effect::Effect;
 use crate::app::state::{Arrangement, Brightness, State, WindowCommand};
 use crate::interact::SelectionMode;
 
-/// Does such a command, but for what the window has to do.
+/// Does a window command; the effect is for the window itself.
 pub fn apply(state: &mut State, command: WindowCommand) -> Option<Effect> {
     match command {
         WindowCommand::Escape => escape(state),
@@ -36,7 +36,7 @@ pub fn apply(state: &mut State, command: WindowCommand) -> Option<Effect> {
     None
 }
 
-/// Ends what is nearest: a drag, a panel that fills the window, a presentation; else selects nothing.
+/// Ends a drag, else a maximised panel, else a presentation, else the selection.
 fn escape(state: &mut State) {
     if state.editor.dragged().is_some() {
         state.editor.cancel_drag();

@@ -1,4 +1,4 @@
-//! Commands that start long work, or stop it.
+//! Commands that start or stop long work.
 
 use crate::app::jobs::{Jobs, RunTimePlan, ThresholdPlan, Watched, tell};
 use crate::app::state::{MethodSlot, Panel, State, WorkCommand};

@@ -1,12 +1,12 @@
-//! The panels in one column, for a window as narrow as a telephone: what fills the screen comes first, the rest is scrolled to.
+//! The panels in one column, for a window as narrow as a telephone.
 
 use crate::app::state::{Arrangement, MapKind, Panel};
 use eframe::egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, vec2};
 
-/// A window narrower than this, points, has its panels in one column: beside a scene a map could not be read.
+/// Width below which a window has its panels in one column, points. Beside a scene a map could not be read.
 pub const MAX_COLUMN_WIDTH_POINTS: f32 = 520.0;
 
-/// Panels that fill the height of the window together.
+/// Panels that together fill the height of the window.
 const AT_ONCE: f32 = 3.0;
 
 /// Least height of a panel that is no map, points.
@@ -15,7 +15,7 @@ const LEAST_HEIGHT: f32 = 260.0;
 /// Height of a panel's title, points.
 const TITLE: f32 = 20.0;
 
-/// The open panels from above: tools that were opened, then the scene, what a method makes of it and what there is to see, then the rest.
+/// The open panels from top to bottom: tools, then scene, output, target and controls, then the rest.
 pub fn order(arrangement: &Arrangement) -> Vec<Panel> {
     let first = [Panel::Scene, Panel::Map(MapKind::Output), Panel::Map(MapKind::Target), Panel::Controls];
     let (tools, rest): (Vec<Panel>, Vec<Panel>) = Panel::tiles().into_iter().partition(|panel| panel.is_tool());
@@ -23,10 +23,10 @@ pub fn order(arrangement: &Arrangement) -> Vec<Panel> {
     tools.into_iter().chain(first).chain(rest).filter(|panel| arrangement.has_tile(*panel)).collect()
 }
 
-/// Draws `panels`, those in sight by `draw`.
+/// Draws the column of `panels`; calls `draw` only for those in sight.
 pub fn show(ui: &mut Ui, panels: &[Panel], mut draw: impl FnMut(&mut Ui, Panel)) {
     let map_height = (ui.available_height() / AT_ONCE - TITLE - ui.spacing().item_spacing.y).max(140.0);
-    // Where a finger is on a panel it means the panel: a point is dragged, a map is moved.
+    // A touch on a panel drags its content; it does not scroll the column.
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::new(0.0, 2.0);
         for &panel in panels {

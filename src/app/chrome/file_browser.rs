@@ -1,4 +1,4 @@
-//! A folder on screen, to choose a file from or to name a new one in.
+//! A folder's entries on screen, to choose a file or to name a new one.
 
 use crate::app::jobs::Question;
 use crate::app::state::Purpose;
@@ -16,34 +16,34 @@ struct Entry {
     is_folder: bool,
 }
 
-/// What the user decided.
+/// The user's decision in the dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answer {
-    /// This file.
+    /// The chosen file.
     Chosen(PathBuf),
-    /// None.
+    /// No file.
     Cancelled,
 }
 
-/// The folder on screen, and what was typed.
+/// The folder on screen and the text of the fields.
 pub struct Browser {
     purpose: Purpose,
     folder: PathBuf,
-    /// The folder as it is being typed.
+    /// Text of the folder's field.
     typed: String,
     name: String,
-    /// The name where no other was typed.
+    /// Proposed name, for an empty field.
     usual: String,
     /// Whether hidden files and those of other kinds are listed.
     all: bool,
     entries: Vec<Entry>,
     problem: Option<String>,
-    /// Whether the name's field has had the focus, so that a name can be typed at once.
+    /// Whether the name's field was given the focus, so that a name can be typed at once.
     was_focused: bool,
 }
 
 impl Browser {
-    /// Shows the folder of a question, or the one that the program was started in.
+    /// Shows the question's folder, or the working directory.
     pub fn new(question: &Question) -> Self {
         let start = question.folder.clone().or_else(|| std::env::current_dir().ok());
         let (purpose, folder) = (question.purpose, start.unwrap_or_else(|| PathBuf::from("/")));
@@ -55,7 +55,7 @@ impl Browser {
         browser
     }
 
-    /// Goes to a folder; where it can't be read, says so and stays.
+    /// Goes to a folder; where it can't be read, stays and tells the problem.
     fn enter(&mut self, folder: PathBuf) {
         let before = std::mem::replace(&mut self.folder, folder);
         if !self.list() {
@@ -64,7 +64,7 @@ impl Browser {
         self.typed = self.folder.display().to_string();
     }
 
-    /// Reads the folder; whether it could be read.
+    /// Reads the folder's entries; false where it can't be read.
     fn list(&mut self) -> bool {
         let read = match fs::read_dir(&self.folder) {
             Ok(read) => read,
@@ -88,7 +88,7 @@ impl Browser {
         true
     }
 
-    /// Draws it; what was decided, once something is.
+    /// Draws the dialog; returns the user's decision once made.
     pub fn show(&mut self, ctx: &Context) -> Option<Answer> {
         let mut answer = None;
         let window = egui::Window::new(self.purpose.title()).id(Id::unique("file dialog")).collapsible(false);
@@ -104,7 +104,7 @@ impl Browser {
         answer.or(escaped.then_some(Answer::Cancelled))
     }
 
-    /// Where one is, and the way up.
+    /// Draws the folder's path and the button to its parent.
     fn place(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let label = ui.label("Folder");
@@ -149,7 +149,7 @@ impl Browser {
         chosen
     }
 
-    /// The file's name, and what to do with it.
+    /// Draws the file's name and the buttons below it.
     fn foot(&mut self, ui: &mut Ui) -> Option<Answer> {
         let mut done = false;
         let mut answer = None;
@@ -181,7 +181,7 @@ impl Browser {
         answer.or_else(|| done.then(|| self.choose()).flatten())
     }
 
-    /// Takes what was typed: a folder is entered, a file chosen, and what is to be read must be there.
+    /// Enters a typed folder or chooses a typed file. A file to be read must exist.
     fn choose(&mut self) -> Option<Answer> {
         let path = self.folder.join(self.name.trim());
         if fs::is_dir(&path) {

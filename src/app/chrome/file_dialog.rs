@@ -1,4 +1,4 @@
-//! A file dialog in the window, for systems that have none of their own.
+//! A file dialog in the window, for systems without one.
 
 use super::file_browser::{Answer, Browser};
 use crate::app::jobs::Question;
@@ -7,16 +7,16 @@ use crate::platform::fs;
 use eframe::egui::{Context, Id, Modal, Ui};
 use std::path::{Path, PathBuf};
 
-/// What is asked for, if anything is.
+/// The open dialog or question, if any.
 #[derive(Default)]
 pub struct FileDialogMemory {
     dialog: Option<(Purpose, Browser)>,
-    /// A file that is there already, and would be replaced.
+    /// An existing file that would be replaced.
     replace: Option<(Purpose, PathBuf)>,
 }
 
 impl FileDialogMemory {
-    /// Whether it is on screen.
+    /// Whether the dialog or its question is on screen.
     pub fn is_open(&self) -> bool {
         self.dialog.is_some() || self.replace.is_some()
     }
@@ -26,7 +26,7 @@ impl FileDialogMemory {
         self.dialog = Some((question.purpose, Browser::new(&question)));
     }
 
-    /// A file was chosen: done, unless it would replace another.
+    /// Takes a chosen file, or first asks whether to replace it.
     fn choose(&mut self, purpose: Purpose, path: PathBuf) -> Option<Command> {
         if purpose.reads() || !fs::exists(&path) {
             return Some(purpose.command(path));
@@ -61,7 +61,7 @@ pub fn show(ctx: &Context, memory: &mut FileDialogMemory) -> Vec<Command> {
     asked
 }
 
-/// Asks whether a file is to be replaced; the answer, once there is one.
+/// Asks whether to replace a file; returns the answer once given.
 fn replace(ui: &mut Ui, path: &Path) -> Option<bool> {
     ui.set_width(320.0);
     ui.strong("Replace the file?");

@@ -1,15 +1,15 @@
-//! Pages of help in a window: keys, where figures come from, what this program is.
+//! Pages of help in a window: keys, origin of the figures, about the program.
 
 use crate::app::state::{Command, HelpPage, WindowCommand, listed, shortcuts};
 use eframe::egui::{self, Align2, Context, Grid, Key, Modifiers, RichText, ScrollArea, Ui, vec2};
 
-/// What is shown.
+/// Content of the help window.
 pub struct Input {
     /// The page that is open.
     pub page: Option<HelpPage>,
 }
 
-/// What the pointer does, and keys that are no command of the list.
+/// Pointer actions, and keys that are no command of the list: action and explanation.
 const POINTER: &[[&str; 2]] = &[
     ["Drag in the scene", "Move an object; its handles stretch, turn and spread it"],
     ["Drag a blob in a map", "Move the reflector behind it"],
@@ -26,7 +26,7 @@ const POINTER: &[[&str; 2]] = &[
     ["+ and − in a map, scene or cut", "Zoom"],
 ];
 
-/// Where figures come from, a line each.
+/// Origin of each figure: its name and explanation.
 const FIGURES: &[[&str; 2]] = &[
     [
         "Λ, normalised",
@@ -37,7 +37,7 @@ const FIGURES: &[[&str; 2]] = &[
         "Target",
         "The map of all elements: samples simulated from the scene, Hann window, two transforms (README, ARCHITECTURE).",
     ],
-    ["Output", "What the chosen method makes of the samples of the two ends alone. It never sees the target."],
+    ["Output", "The chosen method's map, from the samples of the two ends alone. It never sees the target."],
     [
         "P_D, P_FA, SE",
         "Cells of the target above η' are to be detected. P_D is the part of them where the output exceeds η, P_FA the part of all others, \
@@ -83,7 +83,7 @@ pub fn show(ctx: &Context, input: Input) -> Vec<Command> {
     if open && !escaped { Vec::new() } else { vec![WindowCommand::CloseHelp.into()] }
 }
 
-/// Two columns: what is explained, and the explanation, which wraps.
+/// A table of two columns: term and explanation. Explanations wrap.
 fn rows(ui: &mut Ui, name: &str, rows: impl Iterator<Item = [String; 2]>) {
     let left = (0.32 * ui.available_width()).clamp(90.0, 200.0);
     let right = (ui.available_width() - left - 24.0).max(80.0);

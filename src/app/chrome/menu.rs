@@ -21,7 +21,7 @@ use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
 use eframe::egui::{PopupCloseBehavior, Ui};
 use std::path::PathBuf;
 
-/// What the bar shows.
+/// Content of the bar.
 pub struct Input<'a> {
     /// Whether a presentation is shown.
     pub presents: bool,
@@ -39,15 +39,15 @@ pub struct Input<'a> {
     pub recent: &'a [PathBuf],
     /// Whether the method in use finds places of echoes.
     pub finds_reflectors: bool,
-    /// Whether a recording stands in the place of the scene.
+    /// Whether a recording is on screen in place of a simulated scene.
     pub has_recording: bool,
-    /// Unsaved scenes that another took the place of, the latest last.
+    /// Unsaved scenes replaced by another, the latest last.
     pub left: &'a [Document],
-    /// What the panels are arranged for.
+    /// The task that the panels are arranged for.
     pub task: Task,
     /// Whether a panel has a visible tile.
     pub is_open: &'a dyn Fn(Panel) -> bool,
-    /// Whether what a command switches is on; `None` where it switches nothing.
+    /// Whether the switch of a command is on; `None` where the command is no switch.
     pub is_on: &'a dyn Fn(&Command) -> Option<bool>,
 }
 
@@ -87,7 +87,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut MenuMemory) -> Vec<Comma
             ui.menu_button("View", |ui| view(ui, &input, &mut asked));
             ui.menu_button("Tools", |ui| tools(ui, &input, memory, &mut asked));
             ui.menu_button("Help", |ui| help(ui, &input, &mut asked));
-            // In a narrow window they would stand past its edge; all of them are in the menus.
+            // In a narrow window they would reach past its edge; the menus have all of them.
             if !is_narrow {
                 buttons(ui, &input, width, &mut asked);
             }
@@ -101,9 +101,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut MenuMemory) -> Vec<Comma
     asked
 }
 
-/// Width of a window from which on every kind of body has a button of its own, points.
+/// Least width of a window with a button for each kind of body, points.
 const MIN_BUTTONS_WIDTH_POINTS: f32 = 1150.0;
-/// Width from which on they have a menu, points.
+/// Least width of a window with a menu of bodies, points.
 const MEDIUM: f32 = 950.0;
 
 fn buttons(ui: &mut Ui, input: &Input<'_>, width: f32, asked: &mut Vec<Command>) {
@@ -138,7 +138,7 @@ fn buttons(ui: &mut Ui, input: &Input<'_>, width: f32, asked: &mut Vec<Command>)
 }
 
 fn right(ui: &mut Ui, shown: Projection, asked: &mut Vec<Command>) {
-    // In a narrow window it would stand over the others; its key stays.
+    // In a narrow window the button would overlap others; its key stays.
     if ui.available_width() < 90.0 {
         return;
     }
@@ -210,14 +210,14 @@ fn scene(ui: &mut Ui, random: (u64, u32), memory: &MenuMemory, asked: &mut Vec<C
         entries(ui, (0..recordings::ALL.len()).map(|v| Command::Document(DocumentCommand::Recording(v))), asked);
     });
     ui.separator();
-    // A click into one of its fields must not close it.
+    // A click into a field of the submenu must not close it.
     let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     SubMenuButton::new("Random scene").config(stays).ui(ui, |ui| random_scenes(ui, random, asked));
     ui.separator();
     entry(ui, ViewCommand::FitScene, true, asked);
 }
 
-/// Every kind of random scene, and which one is next.
+/// Entries for every kind of random scene, and fields for seed and number of the next.
 fn random_scenes(ui: &mut Ui, random: (u64, u32), asked: &mut Vec<Command>) {
     for kind in Kind::all() {
         entry_called(ui, kind.description(), Command::Document(DocumentCommand::RandomScene(kind)), true, asked);
@@ -235,7 +235,7 @@ fn random_scenes(ui: &mut Ui, random: (u64, u32), asked: &mut Vec<Command>) {
     });
 }
 
-/// The presets on which a method fails, or the others.
+/// The presets of failures, or all others.
 fn presets_of(ui: &mut Ui, memory: &MenuMemory, failures: bool, asked: &mut Vec<Command>) {
     let listed = memory.presets.iter().enumerate().filter(|(_, preset)| preset.is_failure == failures);
     for (index, preset) in listed {
@@ -246,7 +246,7 @@ fn presets_of(ui: &mut Ui, memory: &MenuMemory, failures: bool, asked: &mut Vec<
     }
 }
 
-/// Whether there is anything for a panel to show; what is open already can be closed.
+/// Whether a panel has content; an open panel can always be closed.
 fn is_of_use(panel: Panel, input: &Input<'_>) -> bool {
     let has_content = match panel {
         Panel::Found => input.finds_reflectors,
@@ -256,7 +256,7 @@ fn is_of_use(panel: Panel, input: &Input<'_>) -> bool {
     has_content || (input.is_open)(panel)
 }
 
-/// An entry, with a tick where it switches something that is on.
+/// An entry, with a tick where its switch is on.
 fn item(ui: &mut Ui, command: Command, input: &Input<'_>, asked: &mut Vec<Command>) {
     let name = command.entry().map_or("", |listed| listed.name.as_ref());
     match (input.is_on)(&command) {
@@ -274,7 +274,7 @@ fn items<C: Into<Command>>(
     commands.into_iter().for_each(|command| item(ui, command.into(), input, asked));
 }
 
-/// Panels that are of use, each with a tick where it is open, and with its key.
+/// Entries of panels with content, each with its key and with a tick where it is open.
 fn panels(ui: &mut Ui, panels: impl IntoIterator<Item = Panel>, input: &Input<'_>, asked: &mut Vec<Command>) {
     for panel in panels.into_iter().filter(|panel| is_of_use(*panel, input)) {
         let open = (input.is_open)(panel);
@@ -283,7 +283,7 @@ fn panels(ui: &mut Ui, panels: impl IntoIterator<Item = Panel>, input: &Input<'_
     }
 }
 
-/// Tools and what belongs to them; those for research in a menu of their own.
+/// Tools and their commands; research tools appear where developer panels are on.
 fn tools(ui: &mut Ui, input: &Input<'_>, memory: &MenuMemory, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
     let tools = Panel::tiles().into_iter().filter(|panel| panel.is_tool() && !HELP.contains(panel));

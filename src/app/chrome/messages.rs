@@ -1,18 +1,18 @@
-//! Messages in the corner below scene and settings, where they cover no map: they wrap, can be read aloud and closed, and go away by themselves.
+//! Messages in the corner below scene and settings, which cover no map. They wrap, can be read aloud and closed, and vanish after a time.
 
 use crate::app::state::{Notice, NoticeKind, Notices};
 use crate::app::widgets::icons::{Icon, icon};
 use eframe::egui;
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, Pos2, vec2};
 
-/// Widest message, in points.
+/// Largest width of a message, points.
 const WIDTH: f32 = 380.0;
 
-/// Seconds for which a message stays: long enough to read an error and do what it says.
+/// Seconds for which a message stays: long enough to read an error and act on it.
 const INFO_SECONDS: f64 = 6.0;
 const ERROR_SECONDS: f64 = 20.0;
 
-/// Draws the messages and drops those whose time is over.
+/// Draws the messages and drops expired ones.
 pub fn show(ctx: &Context, notices: &mut Notices) {
     let messages = notices.list_mut();
     if messages.is_empty() {
@@ -44,7 +44,7 @@ pub fn show(ctx: &Context, notices: &mut Notices) {
         };
         let until = message.until.get_or_insert(now + seconds);
         if hovered {
-            // Nothing goes away under the pointer.
+            // A message under the pointer stays.
             *until = until.max(now + 2.0);
         }
     }
@@ -54,7 +54,7 @@ pub fn show(ctx: &Context, notices: &mut Notices) {
     }
 }
 
-/// Draws one message; whether it was closed.
+/// Draws one message; true where the user closed it.
 fn draw(ui: &mut egui::Ui, message: &Notice, width: f32) -> bool {
     let (sign, colour) = match message.kind {
         NoticeKind::Info => ("i", ui.visuals().hyperlink_color),

@@ -1,4 +1,4 @@
-//! What stands around the panels: tiles, one column in a narrow window, menu bar, palette of commands, messages, status bar, file dialog, questions.
+//! The parts of the window around the panels: tiles, column, menu bar, palette, messages, status bar, dialogs.
 
 pub mod column;
 mod file_browser;

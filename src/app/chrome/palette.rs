@@ -1,4 +1,4 @@
-//! The palette: find any command by typing part of its name.
+//! The palette: any command, found by part of its name.
 
 use crate::app::state::{
     Command, DocumentCommand, LessonCommand, Panel, ViewCommand, WindowCommand, listed, menu_path, synonyms,
@@ -11,9 +11,9 @@ use eframe::egui;
 use eframe::egui::{Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
 use std::sync::{Arc, OnceLock};
 
-/// What the palette lists beside the commands that are always there.
+/// The methods that the palette lists besides the commands.
 pub struct Input<'a> {
-    /// The methods to choose from.
+    /// Methods to choose from.
     pub methods: &'a [Arc<dyn Reconstructor>],
 }
 
@@ -28,22 +28,22 @@ pub struct PaletteMemory {
     recent: Vec<String>,
 }
 
-/// How many commands it remembers.
+/// Most commands in the list of recent ones.
 const RECENT: usize = 8;
 
 impl PaletteMemory {
-    /// Whether it is on screen.
+    /// Whether the palette is on screen.
     pub fn is_open(&self) -> bool {
         self.open
     }
 
-    /// Opens it afresh, or closes it.
+    /// Opens the palette with empty text, or closes it.
     pub fn toggle(&mut self) {
         let recent = std::mem::take(&mut self.recent);
         *self = PaletteMemory { open: !self.open, just_opened: !self.open, recent, ..PaletteMemory::default() };
     }
 
-    /// One that remembers these commands, the latest first.
+    /// A palette with a list of recent commands, the latest first.
     pub fn remembering(recent: Vec<String>) -> PaletteMemory {
         PaletteMemory { recent, ..PaletteMemory::default() }
     }
@@ -66,11 +66,11 @@ struct Found {
     name: String,
     tooltip: &'static str,
     key: String,
-    /// The menus in which it stands.
+    /// The menus that lead to the command.
     path: String,
 }
 
-/// The keys that it takes away from everything else.
+/// Keys that were pressed for the palette and are hidden from other widgets.
 struct Keys {
     up: bool,
     down: bool,
@@ -117,7 +117,7 @@ fn taught() -> &'static [Taught] {
     })
 }
 
-/// What else may be typed for a command: name and words of the file that it opens.
+/// Further search words of a command: name and text of the file that it opens.
 fn words(command: &Command) -> [&'static str; 2] {
     let file = match command {
         Command::Document(DocumentCommand::Preset(index)) => presets::ALL.get(*index).map(|file| [file.id, file.toml]),
@@ -130,8 +130,8 @@ fn words(command: &Command) -> [&'static str; 2] {
     file.unwrap_or_default()
 }
 
-/// The commands that `text` finds by name, by another word for it, or by the menu it stands in: first those whose name it is, of these
-/// those that have it as it was typed and as whole words, and of these the ones that were run last.
+/// The commands that match `text` by name, synonym, menu, tooltip or file. Matches of the name come first, then those with the text as typed, then those with
+/// it as whole words, then the most recent.
 fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<Found> {
     let commands = listed().iter().filter(|e| e.command != Command::Window(WindowCommand::Palette)).map(|e| Found {
         command: e.command.clone(),
@@ -191,11 +191,11 @@ pub fn show(ctx: &Context, input: Input<'_>, memory: &mut PaletteMemory) -> Vec<
     run.into_iter().collect()
 }
 
-/// The text first, then what matches it as it is now: Enter may come in the same frame as the last letter.
+/// Draws the field first and searches by its new text: Enter may come in the same frame as the last letter.
 fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut PaletteMemory, keys: &Keys) -> Option<Found> {
     let before = memory.text.clone();
     if memory.just_opened {
-        // The field has no focus yet, but letters may have come already.
+        // The field has no focus yet, but the frame may hold letters already.
         let typed = ui.input(|i| i.events.iter().filter_map(text_of).collect::<String>());
         memory.text += &typed;
     }
@@ -231,12 +231,12 @@ fn text_of(event: &Event) -> Option<&str> {
     if let Event::Text(text) = event { Some(text) } else { None }
 }
 
-/// Draws what was found; the number of the one that was clicked.
+/// Draws the matches; returns the index of a clicked one.
 fn list(ui: &mut Ui, found: &[Found], chosen: usize, moved: bool) -> Option<usize> {
     let mut clicked = None;
     egui::ScrollArea::vertical().auto_shrink([false, false]).max_height(300.0).show(ui, |ui| {
         for (index, line) in found.iter().enumerate() {
-            // An empty key, too, pushes the name to the left.
+            // Even an empty key pushes the name to the left.
             let beside = [line.path.as_str(), line.key.as_str()].join(if line.key.is_empty() { "" } else { "   " });
             let button = Button::selectable(index == chosen, &line.name).truncate().shortcut_text(beside);
             let response = ui.add_sized([ui.available_width(), 22.0], button).on_hover_text(line.tooltip);
@@ -310,12 +310,12 @@ mod tests {
     fn commands_that_were_run_last_come_first() {
         let recent = ["Export maps…", "Redo"];
         assert_eq!(names("", &recent)[..2], recent);
-        // What is called by the word comes before what is found by another word for it.
+        // A match by name comes before a match by synonym.
         let found = names("undo", &["Export maps…"]);
         assert_eq!(found[0], "Undo");
-        // And what has the words as they were typed before what has them anywhere: "Floor: thesis".
+        // A match of the text as typed comes before a match of its words: "Floor: thesis".
         assert!(names("the floor", &[])[0].starts_with("Lesson: The floor"));
-        // And what has them as whole words before what begins so: "Cartesian".
+        // A match of whole words comes before a match of their beginnings: "Cartesian".
         assert!(names("car", &[])[0].split(' ').any(|word| word == "car"), "{:?}", names("car", &[]));
         let mut memory = PaletteMemory::remembering(vec!["Redo".to_owned()]);
         memory.remember("Undo".to_owned());
@@ -337,7 +337,7 @@ mod tests {
         for (text, frames_before_enter) in [("add line", 0), ("method: baseline", 2)] {
             palette.state_mut().0.toggle();
             palette.step();
-            // Not by `event`, which leaves a frame to each.
+            // `event` would give each key a frame of its own.
             palette.input_mut().events.push(Event::Text(text.to_owned()));
             palette.run_steps(frames_before_enter);
             let (key, modifiers) = (Key::Enter, Modifiers::NONE);

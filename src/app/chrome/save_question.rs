@@ -1,11 +1,11 @@
-//! Asks before a scene is written to a file that can't hold all of it, or that another program has written to.
+//! The question before a scene is written to a file that can't hold all of it, or that another program changed.
 
 use crate::app::state::{Command, DocumentCommand, Doubt, SaveAnswer, SaveQuestion};
 use eframe::egui::{Context, Id, Modal, Ui};
 
-/// What is asked.
+/// The question on screen.
 pub struct Input<'a> {
-    /// The file and what speaks against it, if anything is asked.
+    /// The file and the doubt about it; `None` where nothing is asked.
     pub question: Option<&'a SaveQuestion>,
 }
 
@@ -23,7 +23,7 @@ fn draw(ui: &mut Ui, question: &SaveQuestion) -> Option<SaveAnswer> {
     let [elsewhere, tip, anyway] = match &question.doubt {
         Doubt::Losses(losses) => {
             ui.strong(format!("{name} can't hold all of this scene"));
-            ui.label("What would be lost in it:");
+            ui.label("These changes would be lost:");
             for loss in losses {
                 ui.label(format!("•  {loss}"));
             }
@@ -92,7 +92,7 @@ mod tests {
         }
     }
 
-    /// What a key answers.
+    /// The command that a key sends.
     fn answer_by(key: Key) -> Option<Command> {
         let mut question = asked();
         question.key_press(key);

@@ -1,4 +1,4 @@
-//! One line at the bottom: where the pointer is, what the scene holds, what the last update cost.
+//! One line at the bottom: the pointer's place, the number of objects, the time of the last update.
 
 use crate::app::state::Cursor;
 use crate::app::widgets::direction::angle_degrees;
@@ -7,19 +7,19 @@ use eframe::egui;
 use eframe::egui::{Align, Color32, Layout, TextStyle, Ui};
 use std::time::Duration;
 
-/// What the line says.
+/// Content of the status bar.
 pub struct Input {
-    /// Where the pointer is, if it is over a map or the scene.
+    /// The pointer's place, if it is over a map or the scene.
     pub cursor: Option<Cursor>,
-    /// Which echo of which body is there.
+    /// Kind and body of the echo under the pointer, in words.
     pub echo: Option<String>,
     /// Objects of the scene.
     pub objects: usize,
-    /// Their reflectors.
+    /// Reflectors of the scene.
     pub reflectors: usize,
-    /// How many of the objects are bodies.
+    /// Objects that are bodies.
     pub bodies: usize,
-    /// Most echoes that one element gets of the bodies; not told while a lesson asks for them.
+    /// Most echoes that one element gets of the bodies; `None` while a lesson asks for a prediction.
     pub echoes: Option<usize>,
     /// Time of the last update of maps and pictures.
     pub took: Option<Duration>,
@@ -27,10 +27,10 @@ pub struct Input {
     pub alone: bool,
 }
 
-/// Between two texts.
+/// Gap between two texts, points.
 const GAP: f32 = 18.0;
 
-/// Draws the line: as much as there is room for, what matters most first.
+/// Draws as many texts as there is room for, the most important first.
 pub fn show(ui: &mut Ui, input: Input) {
     egui::Panel::bottom("status").show(ui, |ui| {
         ui.horizontal(|ui| {
@@ -76,7 +76,7 @@ pub fn show(ui: &mut Ui, input: Input) {
     });
 }
 
-/// What may stand on the left, the shortest first.
+/// Candidates for the left text, the shortest first.
 fn texts_of(cursor: Option<Cursor>, echo: Option<&str>) -> Vec<String> {
     let Some(c) = cursor else {
         let hints = ["Drag a reflector", "double-click to add one", "scroll to zoom", "right-click for more"];
@@ -90,13 +90,13 @@ fn texts_of(cursor: Option<Cursor>, echo: Option<&str>) -> Vec<String> {
     let texts = [range.clone(), polar, format!("{place}   {range}"), both.clone(), format!("{both}   {cell}")];
     let texts = texts.map(|text| text.replace('-', "−"));
     match echo {
-        // What echoes there says more than a further number.
+        // The echo under the pointer tells more than a further number.
         Some(echo) => texts.map(|text| format!("{text}   {echo}")).to_vec(),
         None => texts.to_vec(),
     }
 }
 
-/// What the scene holds: objects with their reflectors, and bodies with their echoes.
+/// The numbers of objects with their reflectors, and of bodies with their echoes.
 fn count_of(input: &Input) -> String {
     let Input { objects, reflectors, bodies, echoes, .. } = *input;
     let mut parts = Vec::new();
@@ -139,7 +139,7 @@ mod tests {
         assert!(texts.iter().any(|text| text.contains("−45.0°   cos θ −0.707")), "{texts:?}");
     }
 
-    /// A bar of this width, with the pointer over a map or not.
+    /// A bar `width` points wide, with the pointer over a map or not.
     fn bar(width: f32, has_cursor: bool) -> Harness<'static> {
         let cursor = has_cursor.then(|| Cursor::at_cell(&Radar::default(), 258.7, 448.7));
         Harness::builder().with_size([width, 60.0]).build_ui(move |ui| {

@@ -1,4 +1,4 @@
-//! The panels' tiles: tabs, title bars, one panel that fills the window.
+//! The panels' tiles: tabs, title bars, and a maximised panel.
 
 use super::column;
 use crate::app::content::OLD;
@@ -9,15 +9,15 @@ use eframe::egui::{TextStyle, Ui, WidgetText, vec2};
 use egui_tiles::{SimplificationOptions, TileId, Tiles, UiResponse};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Draws what stands in the tiles.
+/// Draws the panels of the tiles.
 pub trait Draw {
     /// Draws a panel.
     fn draw(&mut self, ui: &mut Ui, panel: Panel);
 
-    /// What stands in a panel's title bar beside its name.
+    /// Text in a panel's title bar beside its name.
     fn caption(&self, panel: Panel) -> Option<String>;
 
-    /// Whether what a panel shows belongs to something else than what is on screen: its caption is dimmed as its contents are.
+    /// Whether a panel shows results of an earlier scene or settings. Its caption is then dimmed as its content is.
     fn is_old(&self, _: Panel) -> bool {
         false
     }
@@ -35,7 +35,7 @@ pub fn show(ui: &mut Ui, arrangement: &mut Arrangement, panels: &mut dyn Draw) -
     }
     let Behavior { shown, asked, .. } = behavior;
     if arrangement.set_shown(shown) | (!is_narrow && arrangement.make_room()) {
-        // A tab that has just come to the front is laid out in this frame and drawn in the next.
+        // A tab that has just come to the front is laid out in this frame and drawn in the next one.
         ui.request_repaint();
     }
     asked
@@ -59,18 +59,18 @@ fn maximised(ui: &mut Ui, panel: Panel, behavior: &mut Behavior<'_>) {
     behavior.draw(ui, panel);
 }
 
-/// Between a tab's title and its sides, points.
+/// Gap between a tab's title and its sides, points.
 const TAB_MARGIN: f32 = 8.0;
 
-/// The least that a caption is worth drawing in, points.
+/// Least width of a caption, points.
 const LEAST_CAPTION: f32 = 60.0;
 
-/// What the two arrows take that scroll tabs, points.
+/// Width of the two arrows that scroll the tabs, points.
 const ARROWS: f32 = 64.0;
 
 struct Behavior<'a> {
     panels: &'a mut dyn Draw,
-    /// The view in front of each tile that several share, where it is not the first.
+    /// The view in front of each tile with several views, where it is not the first.
     views: BTreeMap<Panel, Panel>,
     shown: BTreeSet<Panel>,
     asked: Vec<Command>,
@@ -102,7 +102,7 @@ impl Behavior<'_> {
         }
     }
 
-    /// Draws a panel's caption into `room` points, unless that is too little to say anything.
+    /// Draws a panel's caption `room` points wide, or none where `room` is too narrow.
     fn caption(&self, ui: &mut Ui, panel: Panel, room: f32) {
         let Some(text) = self.panels.caption(panel).filter(|_| room >= LEAST_CAPTION) else { return };
         let ink = ui.visuals().weak_text_color();
@@ -115,7 +115,7 @@ impl Behavior<'_> {
     }
 }
 
-/// A tab, and where it is in the row of tabs.
+/// A tab and its edges in the row of tabs, points.
 struct Tab {
     tile: TileId,
     left: f32,
@@ -136,7 +136,7 @@ fn tabs_of(ui: &Ui, tiles: &Tiles<Panel>, tabs: &egui_tiles::Tabs) -> Vec<Tab> {
     placed.collect()
 }
 
-/// Scrolls the row of tabs so that the one in front is in sight, whenever another has come to the front.
+/// Scrolls the row of tabs to the front one, whenever another has come to the front.
 fn show_front(ui: &Ui, container: TileId, front: &Tab, room: f32, offset: &mut f32) {
     let id = egui::Id::unique(("front tab", container));
     let before = ui.data(|d| d.get_temp::<(TileId, bool)>(id));
@@ -188,7 +188,7 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
             let front = self.front(panel);
             self.asked.push(WindowCommand::Maximise(front).into());
         }
-        // The tabs come first: what they leave is the caption's.
+        // The tabs come first; the caption gets the remaining width.
         let row = tabs_of(ui, tiles, tabs);
         let needed = row.last().map_or(0.0, |tab| tab.right);
         let room = ui.available_width();
@@ -229,7 +229,7 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// Panels that say nothing but a long caption.
+    /// Panels without content, and with a long caption.
     struct Silent;
 
     impl Draw for Silent {

@@ -1,4 +1,4 @@
-//! The menu of unsaved scenes that another took the place of: to be brought back, or given up.
+//! The menu of unsaved scenes that another one replaced on screen, to bring back or discard.
 
 use crate::app::state::{Command, DocumentCommand};
 use crate::interact::Document;

@@ -1,4 +1,4 @@
-//! What the menu bar and the status bar are told.
+//! Inputs of the menu bar and the status bar.
 
 use crate::app::chrome::{menu, status_bar};
 use crate::app::jobs::Jobs;
@@ -6,7 +6,7 @@ use crate::app::state::{Command, Cursor, Panel, State};
 use crate::platform;
 use crate::scattering::{PathEcho, heard_in_the_middle};
 
-/// What the menu bar shows.
+/// Content of the menu bar.
 pub fn menu_input<'a>(
     state: &'a State,
     is_open: &'a dyn Fn(Panel) -> bool,
@@ -30,7 +30,7 @@ pub fn menu_input<'a>(
     }
 }
 
-/// What the status bar says.
+/// Content of the status bar.
 pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
     let scene = state.editor.scene();
     let bodies = || scene.objects.iter().filter_map(|o| o.body());
@@ -46,12 +46,12 @@ pub fn status_input(state: &State, jobs: &Jobs) -> status_bar::Input {
     }
 }
 
-/// Most bodies among which the echo under the pointer is looked for.
+/// Most bodies among which the echo under the pointer is searched.
 const MOST_BODIES: usize = 60;
-/// How far from an echo the pointer may be, in range bins and columns.
+/// Largest distance of the pointer from an echo, in range bins and columns.
 const NEAR_CELLS: [f64; 2] = [1.5, 8.0];
 
-/// Which echo of which body the map shows where the pointer is, in words: the strongest, if several are there.
+/// Kind and body of the strongest echo under the pointer, in words.
 fn echo_at(state: &State, cursor: &Cursor) -> Option<String> {
     let (radar, scene) = (state.radar(), state.editor.scene());
     let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();

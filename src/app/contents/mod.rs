@@ -1,4 +1,4 @@
-//! The panels that there are, each with its memory and what is computed for it.
+//! All panels of the app, each with its memory and its computed value.
 
 mod bars;
 
@@ -13,7 +13,7 @@ use eframe::egui::Ui;
 use std::any::Any;
 use std::collections::BTreeMap;
 
-/// Starts what draws each panel of the list.
+/// Starts a panel by the type in its line of the list.
 macro_rules! starts {
     ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:ident $(of $tile:ident)?, $key:ident, $title:literal, $help:literal;)*) => {
         fn start(panel: Panel, wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
@@ -27,52 +27,52 @@ macro_rules! starts {
 
 every_panel!(starts);
 
-/// All panels, by name.
+/// All panels, by [`Panel`].
 pub struct Panels(BTreeMap<Panel, Box<dyn AnyPanel>>);
 
 impl Panels {
-    /// Starts the workers of what is computed for each, which wait; `wake` is called from their threads.
+    /// Starts the workers of all panels' values, idle at first; `wake` is called from their threads.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Panels {
         Panels(Panel::all().into_iter().map(|panel| (panel, start(panel, wake.clone()))).collect())
     }
 
-    /// Takes in what was computed since the last frame. Returns messages for the user.
+    /// Takes in values computed since the last frame. Returns messages for the user.
     pub fn poll(&mut self) -> Vec<String> {
         self.0.values_mut().filter_map(|panel| panel.polled().poll()).collect()
     }
 
-    /// What the panels of the last frame read of maps and methods.
+    /// The maps and methods that the last frame's panels read.
     pub fn wants(&self, state: &State) -> Wants {
         let shown = state.arrangement.shown().iter().filter_map(|panel| self.0.get(panel));
         shown.fold(Wants::NOTHING, |all, panel| all.and(panel.wants()))
     }
 
-    /// Asks for what is computed for the panels of this frame alone.
+    /// Asks for the own values of this frame's panels.
     pub fn ask(&mut self, state: &State, jobs: &Jobs) {
         for (panel, held) in &mut self.0 {
             held.ask(state, jobs, state.arrangement.shown().contains(panel));
         }
     }
 
-    /// Whether something is computed for one of them.
+    /// Whether the own value of any panel is being computed.
     pub fn is_busy(&self) -> bool {
         self.0.values().any(|panel| panel.is_busy())
     }
 
-    /// Titles of those that draw a value as fresh that is of something else than what is on screen.
+    /// Titles of the panels that draw results of an earlier scene or settings without marking them.
     pub fn drawn_as_fresh_but_old(&self, state: &State, jobs: &Jobs) -> Vec<String> {
         let old = self.0.iter().filter(|(_, held)| held.is_fresh_but_old(state, jobs));
         old.map(|(panel, _)| panel.title().to_owned()).collect()
     }
 
-    /// What is computed for a panel of one type.
+    /// The own value of a panel of type `C`.
     pub fn derived<C: Content>(&self, panel: Panel) -> Option<&Derived<C::Asks>> {
         let held: &dyn Any = self.0.get(&panel)?.as_ref();
         held.downcast_ref::<Held<C>>().map(Held::derived)
     }
 }
 
-/// Draws panels, and gathers what they ask for.
+/// Draws panels and gathers the user's commands.
 pub struct Contents<'a> {
     state: &'a mut State,
     jobs: &'a Jobs,
@@ -81,12 +81,12 @@ pub struct Contents<'a> {
 }
 
 impl<'a> Contents<'a> {
-    /// Of what there is.
+    /// A drawer of `panels` for one frame.
     pub fn new(state: &'a mut State, jobs: &'a Jobs, panels: &'a mut Panels) -> Self {
         Contents { state, jobs, panels, commands: Vec::new() }
     }
 
-    /// What was asked for.
+    /// The user's commands so far.
     pub fn into_commands(self) -> Vec<Command> {
         self.commands
     }

@@ -1,4 +1,4 @@
-//! What is drawn of maps and marks as fresh though it is old.
+//! Checks for old maps and marks that are drawn as fresh.
 
 use super::Jobs;
 use super::derived::{Derived, Query};
@@ -7,7 +7,7 @@ use super::theory::TheoryRequest;
 use crate::app::state::{MapKind, MethodSlot, Panel, State};
 
 impl Jobs {
-    /// What is drawn as fresh and yet of something else than what is on screen: for a moment after a change, and never for longer.
+    /// Names of the maps and marks drawn as fresh that belong to an earlier scene or settings. There are some only for a moment after a change.
     pub fn drawn_as_fresh_but_old(&self, state: &State) -> Vec<String> {
         let mut old = Vec::new();
         let shown = state.arrangement.shown();
@@ -30,7 +30,7 @@ impl Jobs {
         old
     }
 
-    /// Whether the picture of a map is of other samples, or of another method, than those on screen.
+    /// Whether the picture of a map is made of other samples, or by another method, than those on screen.
     fn is_of_another_source(&self, state: &State, kind: MapKind) -> bool {
         let source = Source::of(state);
         let Some(maps) = self.pipeline.maps.result().filter(|r| r.pictures.contains_key(&kind)) else { return false };
@@ -42,7 +42,7 @@ impl Jobs {
     }
 }
 
-/// Whether a value is drawn as fresh that is not of `now`.
+/// Whether a value is drawn as fresh and belongs to another query than `now`.
 fn is_old<Q: Query>(derived: &Derived<Q>, now: Option<Q>) -> bool {
     derived.value().is_some() && !derived.is_stale() && !derived.is_of(now.as_ref())
 }

@@ -1,4 +1,4 @@
-//! Work that is done once beside the window, each piece on a thread of its own.
+//! Single pieces of work beside the window, each on a thread of its own.
 
 use crate::platform;
 use crate::task::panic_message;
@@ -7,21 +7,21 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// Pieces of work under way, and what came of those that are finished.
+/// Pieces of work under way, and the results of finished ones.
 pub struct Background<T> {
     wake: Context,
     done: (Sender<T>, Receiver<T>),
-    /// Held once more by every piece under way.
+    /// Cloned by every piece of work under way, so that the count tells how many there are.
     under_way: Arc<()>,
 }
 
 impl<T: Send + 'static> Background<T> {
-    /// Nothing yet; `wake` draws another frame when something is finished.
+    /// No work yet; `wake` draws another frame when a piece is finished.
     pub fn new(wake: Context) -> Self {
         Background { wake, done: channel(), under_way: Arc::new(()) }
     }
 
-    /// Begins `work` on a thread called `name`; `failed` says what came of it where it panics.
+    /// Begins `work` on a thread called `name`; `failed` makes the result of a panic's message.
     ///
     /// # Errors
     /// When the system can't start a thread.
@@ -42,12 +42,12 @@ impl<T: Send + 'static> Background<T> {
         })
     }
 
-    /// What has been finished since the last call.
+    /// Results finished since the last call.
     pub fn finished(&self) -> Vec<T> {
         self.done.1.try_iter().collect()
     }
 
-    /// Whether something is under way.
+    /// Whether a piece of work is under way.
     pub fn is_busy(&self) -> bool {
         Arc::strong_count(&self.under_way) > 1
     }

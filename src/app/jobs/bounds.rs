@@ -1,4 +1,4 @@
-//! Bounds of one reflector: how well any unbiased estimator could place it, and what looks like it.
+//! Bounds of one reflector: the least position error of any unbiased estimator, and places with a similar echo.
 
 use super::derived::{Failure, Query};
 use crate::app::state::{BoundsSettings, Elements, State};
@@ -14,27 +14,27 @@ use crate::task::Task;
 use eframe::egui::ColorImage;
 use std::sync::Arc;
 
-/// What is looked at.
+/// A request for the bounds of one reflector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundsRequest {
     pub radar: Radar,
-    /// Which elements listen.
+    /// The elements that listen.
     pub elements: Elements,
     /// Seed of random elements.
     pub seed: u64,
-    /// What the reflector is called.
+    /// Name of the reflector.
     pub name: String,
     pub reflector: Reflector,
     /// Signal-to-noise ratio of a sample.
     pub snr: Decibels,
-    /// Half of what the picture spans, columns.
+    /// Half of the picture's width, columns.
     pub columns: f64,
-    /// And range bins.
+    /// Half of the picture's height, range bins.
     pub bins: f64,
 }
 
 impl BoundsRequest {
-    /// For the selected object's centre, or else the first's; `None` where there is none ahead of the array.
+    /// The bounds of the first selected object's centre, or of the first object's; `None` where there is none away from the array's middle.
     pub fn of(state: &State) -> Option<Self> {
         let (name, reflector) = subject(&state.editor)?;
         let BoundsSettings { elements, seed, snr, columns, bins } = state.settings.bounds;
@@ -42,7 +42,7 @@ impl BoundsRequest {
     }
 }
 
-/// The reflector that bounds and theory are of, with its name: the selected object's middle, or else the first's.
+/// The reflector of bounds and theory, with its name: the centre of the first selected object, or else of the first.
 pub(super) fn subject(editor: &Editor) -> Option<(String, Reflector)> {
     let index = editor.selection().iter().next().unwrap_or(0);
     let object = editor.scene().objects.get(index)?;
@@ -53,28 +53,28 @@ pub(super) fn subject(editor: &Editor) -> Option<(String, Reflector)> {
     (x_metres.hypot(y_metres) > 0.0).then(|| (format!("{what}{}", object.called(index)), reflector))
 }
 
-/// What came of it.
+/// Bounds of a reflector.
 pub struct BoundsResult {
-    /// What was asked.
+    /// The request.
     pub request: BoundsRequest,
-    /// Where the elements that listen stand.
+    /// Positions of the elements that listen.
     pub layout: Layout,
-    /// Where the reflector stands.
+    /// Range and direction of the reflector.
     pub centre: Polar,
-    /// How well its position can be known.
+    /// Cramér–Rao bound of the position.
     pub bound: Result<PositionBound, BoundsError>,
-    /// How well, with one unknown complex gain for either half of the elements.
+    /// The bound with one unknown complex gain for either half of the elements.
     pub gain_per_end: Option<PositionBound>,
-    /// What looks like it.
+    /// Likeness of other places' echoes to the reflector's.
     pub ambiguity: Ambiguity,
-    /// The picture of that.
+    /// Picture of that likeness, the farthest range on top.
     pub image: Arc<ColorImage>,
 }
 
-/// Echoes compared for one picture: what takes a few tenths of a second.
+/// Echoes compared for one picture, which take a few tenths of a second.
 const BUDGET: f64 = 2.0e6;
 
-/// Computes what was asked.
+/// Computes the bounds of a request.
 ///
 /// # Errors
 /// [`LayoutError`] where the elements that listen can't be placed.
@@ -131,7 +131,7 @@ impl Query for BoundsRequest {
 mod tests {
     use super::*;
 
-    /// Of a reflector so far to the side that the picture reaches beyond end fire.
+    /// Bounds of a reflector so far to the side that the picture reaches beyond end fire.
     fn found() -> BoundsResult {
         let request = BoundsRequest {
             radar: Radar { elements: 64, samples: 32, ..Radar::default() },

@@ -1,4 +1,4 @@
-//! What the selected reflector tells of the elements.
+//! Calibration of the elements by the selected reflector.
 
 use super::derived::{Failure, Query};
 use super::source::Source;
@@ -8,18 +8,18 @@ use crate::scene::{Object, Reflector};
 use crate::signal::{Calibration as Found, calibrate};
 use crate::task::Task;
 
-/// What a reflector told of the elements.
+/// A calibration of the elements by a reflector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibrated {
-    /// What the reflector is called.
+    /// Name of the reflector.
     pub name: String,
     /// Gain and phase of each element.
     pub calibration: Found,
-    /// What is wrong with the elements once those are taken off.
+    /// Errors of the elements that remain after the correction.
     pub left: BuiltArray,
 }
 
-/// A point of what is on screen.
+/// A query of the calibration by a point of the scene on screen.
 #[derive(Clone, PartialEq)]
 pub struct CalibrationQuery {
     source: Source,
@@ -28,7 +28,7 @@ pub struct CalibrationQuery {
 }
 
 impl CalibrationQuery {
-    /// The selected point, if one is.
+    /// The query of the selected point; `None` where no single point is selected.
     pub fn of(state: &State) -> Option<Self> {
         let index = state.editor.selection().single()?;
         let scene = state.editor.scene();
@@ -42,7 +42,7 @@ impl CalibrationQuery {
     }
 }
 
-/// Why a recording of the two ends calibrates nothing.
+/// The reason why a recording of the two ends can't calibrate.
 const ENDS_ALONE: &str = "The recording has the two ends alone; calibration looks at every element.";
 
 impl Query for CalibrationQuery {

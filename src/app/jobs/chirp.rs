@@ -8,7 +8,7 @@ use crate::task::Task;
 use ndarray::s;
 use num_complex::Complex64;
 
-/// One element of what is on screen.
+/// A query of the beat of one element.
 #[derive(Clone, PartialEq)]
 pub struct ChirpQuery {
     source: Source,
@@ -16,19 +16,19 @@ pub struct ChirpQuery {
 }
 
 impl ChirpQuery {
-    /// The chosen element.
+    /// The query of the element chosen in the settings.
     pub fn of(state: &State) -> Self {
         let element = state.settings.chirp.element.min(state.radar().elements - 1);
         ChirpQuery { source: Source::of(state), element }
     }
 }
 
-/// What one element hears in a chirp.
+/// The beat of one element in a chirp.
 pub struct ChirpResult {
     pub element: usize,
     /// The samples of the beat.
     pub samples: Vec<Complex64>,
-    /// Amplitude of each range bin of its spectrum under the radar's window.
+    /// Amplitude of each range bin of the beat's spectrum under the radar's window.
     pub spectrum: Vec<f64>,
 }
 

@@ -1,43 +1,43 @@
-//! A value derived from what is on screen: computed on a thread of its own, kept with what it was computed of, and old as soon as that
-//! is not on screen any more.
+//! Values derived from the state on screen. Each is computed on a thread of its own and kept with its query. It is old as soon as the state gives another
+//! query.
 //!
 //! ```text
-//!   what is on screen ──► query ──► worker ──► (query, value)      the value is drawn until another takes its place
+//!   state on screen ──► query ──► worker ──► (query, value)      the value is drawn until the next one replaces it
 //! ```
 
 use crate::platform::Instant;
 use crate::task::{Cancelled, Generation, Reply, Task, Worker};
 use std::time::Duration;
 
-/// What is older than this on screen is marked as old: less would flicker.
+/// Age at which a value is marked as old; a shorter one would flicker.
 pub const STALE: Duration = Duration::from_millis(400);
 
-/// What a value depends on, and how it is computed. Equal queries have equal values.
+/// The inputs of a value, and its computation. Equal queries have equal values.
 pub trait Query: Clone + PartialEq + Send + 'static {
-    /// What is computed.
+    /// The computed value.
     type Value: Send + 'static;
-    /// What the thread keeps from one query to the next.
+    /// State that the thread keeps between queries.
     type State: Default + 'static;
     /// Name of the thread.
     const THREAD: &'static str;
-    /// What fails where it panics, as a sentence begins.
+    /// Subject of the message about a panic, at the beginning of a sentence.
     const WHAT: &'static str;
-    /// What the user may do then.
+    /// The user's remedy after a panic, as a sentence.
     const ADVICE: &'static str;
 
     /// Computes the value.
     ///
     /// # Errors
-    /// Why there is none, as a panel tells it, or that `task` was cancelled.
+    /// The reason why there is no value, as a panel tells it, or that `task` was cancelled.
     fn compute(&self, state: &mut Self::State, task: &Task) -> Result<Self::Value, Failure>;
 }
 
-/// Why a query has no value.
+/// The reason why a query has no value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Failure {
-    /// It was cancelled: another query waits.
+    /// It was cancelled for a newer query.
     Cancelled,
-    /// There is none, and why.
+    /// There is no value, for this reason.
     Because(String),
 }
 
@@ -53,21 +53,21 @@ impl From<String> for Failure {
     }
 }
 
-/// A query, and its value or why it has none.
+/// A query with its value, or the reason why it has none.
 type Made<Q> = (Q, Result<<Q as Query>::Value, Failure>);
 
-/// The worker of one kind of query, what it was asked last, and what it made last.
+/// The worker of one kind of query, the last query asked, and the last value made.
 pub struct Derived<Q: Query> {
     worker: Worker<Q, Made<Q>>,
     asked: Option<Q>,
     made: Option<(Q, Result<Q::Value, String>)>,
-    /// Requests without an answer and when they were made, the oldest first: since then, what was made last is old.
+    /// Requests without an answer and their times, the oldest first. The value is old since the oldest one.
     waiting: Vec<(Generation, Instant)>,
     requests: u64,
 }
 
 impl<Q: Query> Derived<Q> {
-    /// Starts the worker, which waits; `wake` is called from its thread.
+    /// Starts the worker, idle at first; `wake` is called from its thread.
     pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Self {
         let work = |state: &mut Q::State, query: Q, task: &Task| {
             let value = query.compute(state, task);
@@ -77,7 +77,7 @@ impl<Q: Query> Derived<Q> {
         Derived { worker, asked: None, made: None, waiting: Vec::new(), requests: 0 }
     }
 
-    /// Asks for the value that a panel of this frame draws, unless it was asked for last; `None` where none draws it.
+    /// Asks for the value that a panel of this frame draws, unless it was the last one asked for; `None` where no panel draws it.
     pub fn ask(&mut self, query: Option<Q>) {
         let is_back = self.asked.is_none();
         let Some(query) = query else {
@@ -90,7 +90,7 @@ impl<Q: Query> Derived<Q> {
         }
         let is_made = self.made.as_ref().is_some_and(|(of, _)| *of == query);
         if is_back && !is_made {
-            // It was not drawn while the screen changed, so that its age is not known.
+            // The value was not drawn while the screen changed, so its age is unknown.
             self.made = None;
         }
         if !(is_back && is_made) {
@@ -100,23 +100,23 @@ impl<Q: Query> Derived<Q> {
         self.asked = Some(query);
     }
 
-    /// What was made last, or why there is nothing; nothing where no panel of the frame before drew it.
+    /// The last value, or the reason why there is none; `None` where no panel of the last frame drew it.
     pub fn value(&self) -> Option<Result<&Q::Value, &str>> {
         let (_, value) = self.made.as_ref().filter(|_| self.is_asked())?;
         Some(value.as_ref().map_err(String::as_str))
     }
 
-    /// Whether a panel of the frame before drew it.
+    /// Whether a panel of the last frame drew the value.
     pub fn is_asked(&self) -> bool {
         self.asked.is_some()
     }
 
-    /// Whether what is drawn has been of something else than what is on screen for so long that it must be told.
+    /// Whether the value has belonged to an earlier query for so long that it must be marked.
     pub fn is_stale(&self) -> bool {
         self.waiting.first().is_some_and(|(_, since)| since.elapsed() > STALE)
     }
 
-    /// Whether what was made last is the value of `query`.
+    /// Whether the last value is that of `query`.
     pub fn is_of(&self, query: Option<&Q>) -> bool {
         self.made.as_ref().map(|(of, _)| of) == query
     }
@@ -132,12 +132,12 @@ impl<Q: Query> Derived<Q> {
     }
 }
 
-/// What all derived values have in common.
+/// The part of [`Derived`] that is the same for every query.
 pub trait Polled {
-    /// Takes in what was made since the last frame. Returns a message for the user.
+    /// Takes in the value made since the last frame. Returns a message for the user.
     fn poll(&mut self) -> Option<String>;
 
-    /// Whether something is computed.
+    /// Whether the value is being computed.
     fn is_busy(&self) -> bool;
 }
 
@@ -174,7 +174,7 @@ impl<Q: Query> Polled for Derived<Q> {
 mod tests {
     use super::*;
 
-    /// The square of a number; none of 13, and 7 panics.
+    /// The square of a number; 13 has none, and 7 panics.
     #[derive(Debug, Clone, PartialEq)]
     struct Square(u32);
 
@@ -195,7 +195,7 @@ mod tests {
         }
     }
 
-    /// Waits until nothing is computed.
+    /// Waits until the worker is idle.
     fn rest(squares: &mut Derived<Square>) -> Option<String> {
         let deadline = Instant::now() + Duration::from_secs(20);
         while squares.is_busy() {

@@ -1,4 +1,4 @@
-//! What a detector with a constant false-alarm rate finds in the maps on screen; computed only while one is in use.
+//! Detections with a constant false-alarm rate in the maps on screen, computed only while such a detector is in use.
 
 use super::memo::Memo;
 use crate::app::shared::Shared;
@@ -10,25 +10,25 @@ use std::sync::Arc;
 /// Maps whose detected cells are 1 and others 0.
 #[derive(Debug, Clone, Default)]
 pub struct Detected {
-    /// Of the target.
+    /// Detections in the target.
     pub target: Option<Arc<RangeAngleMap>>,
-    /// Of either method's output.
+    /// Detections in each method's output.
     pub outputs: [Option<Arc<RangeAngleMap>>; 2],
-    /// Why there are none.
+    /// The reason why there are none.
     pub error: Option<String>,
 }
 
 /// A map, its scale and the detector.
 type Detection = (Shared<RangeAngleMap>, LambdaScale, Cfar);
 
-/// Detects, and keeps what it found last: target, then both outputs.
+/// A detector that keeps its last detections: of the target, then of both outputs.
 #[derive(Default)]
 pub struct Detector {
     kept: [Memo<Detection, Arc<RangeAngleMap>>; 3],
 }
 
 impl Detector {
-    /// What a detector finds in the target, where that is looked at, and in those outputs that are given; nothing where there is no detector.
+    /// Detections in the target, where a panel shows them, and in the given outputs; none without a detector.
     pub fn detect(
         &mut self,
         cfar: Option<Cfar>,
@@ -60,7 +60,7 @@ impl Detector {
     }
 }
 
-/// A message as a sentence of its own.
+/// The message with a capital letter and a full stop.
 fn sentence(message: &str) -> String {
     let mut letters = message.chars();
     let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().collect());

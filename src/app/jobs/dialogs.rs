@@ -1,5 +1,5 @@
-//! Which file? The system's dialogs, off the UI thread; what is chosen comes back as a command. Where the system has none, the user who asks
-//! is told, so that the window shows its own.
+//! File dialogs of the system, off the UI thread. The chosen file comes back as a command. Where the system has no dialogs, the window shows its own and tells
+//! so.
 
 use crate::app::state::{Command, DocumentCommand, Purpose, RowsCommand};
 use crate::platform::{self, FileQuestion, Instant};
@@ -10,22 +10,22 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
-/// A dialog that ended sooner than this was never on screen: no user closes it so quickly.
+/// Least time for which a dialog is on screen: no user closes one sooner.
 const NEVER_SHOWN: Duration = Duration::from_millis(250);
 
-/// A file asked for, at first in a folder.
+/// A question for a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Question {
-    /// What it is for.
+    /// The purpose of the file.
     pub purpose: Purpose,
-    /// Where to look first.
+    /// The folder that the dialog begins in.
     pub folder: Option<PathBuf>,
-    /// Name of the file where no other is chosen.
+    /// Name of the file where the user chooses no other.
     pub name: String,
 }
 
 impl Question {
-    /// Asks with the usual name, beside `document` where it has a file.
+    /// A question with the usual name, in the folder of `document` where it has one.
     pub fn beside(purpose: Purpose, document: Option<&Path>) -> Question {
         let stem = document.and_then(Path::file_stem).filter(|_| purpose == Purpose::SaveScene);
         let name = match stem {
@@ -36,7 +36,7 @@ impl Question {
         Question { purpose, folder, name }
     }
 
-    /// Asks with this file as the usual one.
+    /// A question with the name and folder of `path`.
     fn at(purpose: Purpose, path: &Path) -> Question {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         Question { purpose, folder: path.parent().map(Path::to_path_buf), name }
@@ -55,15 +55,15 @@ impl Question {
     }
 }
 
-/// Asks by a dialog of the system, which answers later: `None` where it was closed without a file, or could not be shown.
+/// Opens a dialog of the system. The reply comes later, with `None` where the dialog was closed without a file or could not be shown.
 type System = Arc<dyn Fn(FileQuestion, Reply) -> std::io::Result<()>>;
 
-/// Takes the file that was chosen, or `None`.
+/// Takes the chosen file, or `None`.
 type Reply = Box<dyn FnOnce(Option<PathBuf>) + Send>;
 
 enum Answer {
     Chosen(Command),
-    /// The window asks once more.
+    /// A question that the window asks once more.
     Again(Question),
     NotShown(Question),
     Unreadable(String),
@@ -71,20 +71,20 @@ enum Answer {
 
 /// File dialogs on threads of their own: a window that waits for one would look dead.
 pub struct Dialogs {
-    /// `None` where the system has none.
+    /// The system's dialog; `None` where the system has none.
     system: Option<System>,
     answers: (Sender<Answer>, Receiver<Answer>),
     unanswered: Option<Question>,
-    /// What is to be told with the first question that the window asks itself.
+    /// Message for the first question that the window's own dialog asks.
     apology: Option<&'static str>,
     told: Option<&'static str>,
 }
 
-/// What is told once where the system has no dialogs.
+/// Message where the system has no dialogs, shown once.
 const APOLOGY: &str = "This system shows no file dialog (no portal, no zenity), so the window shows its own.";
 
 impl Dialogs {
-    /// Asks by the system's dialogs as long as there are some.
+    /// Dialogs of the system, as long as it shows any.
     pub fn of_the_system() -> Self {
         let [bus, runtime, path] = ["DBUS_SESSION_BUS_ADDRESS", "XDG_RUNTIME_DIR", "PATH"].map(std::env::var_os);
         match cfg!(not(target_os = "linux")) || may_have_dialogs(bus, runtime, path) {
@@ -93,7 +93,7 @@ impl Dialogs {
         }
     }
 
-    /// Leaves every question to the window.
+    /// Dialogs of the window only.
     pub fn of_the_window() -> Self {
         Dialogs::by(None)
     }
@@ -102,7 +102,7 @@ impl Dialogs {
         Dialogs { system, answers: channel(), unanswered: None, apology: None, told: None }
     }
 
-    /// Asks the user for a file; [`Dialogs::poll`] has the command later.
+    /// Asks the user for a file; [`Dialogs::poll`] returns the command later.
     ///
     /// # Errors
     /// When the system can't start a thread.
@@ -118,7 +118,7 @@ impl Dialogs {
         let reply = move |path: Option<PathBuf>| {
             let answer = match path.map(|path| (question.purpose.destination(path.clone()), path)) {
                 Some((Err(why), _)) => Answer::Unreadable(why),
-                // The system asked about another name: the window asks about this one.
+                // The system asked about another name, so the window asks about this one.
                 Some((Ok(path), chosen)) if path != chosen && platform::fs::exists(&path) => {
                     Answer::Again(Question::at(question.purpose, &path))
                 }
@@ -133,8 +133,7 @@ impl Dialogs {
         system(asked, Box::new(reply))
     }
 
-    /// What the user chose since the last call, which files could not be read, and what to tell the user when it turns out that the system has
-    /// no dialogs.
+    /// The commands of files chosen since the last call, messages about unreadable files, and a message where the system turns out to have no dialogs.
     pub fn poll(&mut self) -> (Vec<Command>, Vec<String>, Option<&'static str>) {
         let (mut chosen, mut problems, mut told) = (Vec::new(), Vec::new(), self.told.take());
         while let Ok(answer) = self.answers.1.try_recv() {
@@ -153,7 +152,7 @@ impl Dialogs {
         (chosen, problems, told)
     }
 
-    /// Opens a file that was dropped on the window; [`Dialogs::poll`] has the command, at once or later.
+    /// Opens a file dropped on the window; [`Dialogs::poll`] returns the command, at once or later.
     pub fn open_dropped(&self, file: &Arc<dyn DroppedFile + Send + Sync>, wake: impl Fn() + 'static) {
         let answers = self.answers.0.clone();
         let name = file.path().display().to_string();
@@ -168,13 +167,13 @@ impl Dialogs {
         });
     }
 
-    /// A question that the window has to ask.
+    /// A question for the window's own dialog.
     pub fn take_unanswered(&mut self) -> Option<Question> {
         self.unanswered.take()
     }
 }
 
-/// What is done with a file that was dropped.
+/// The command for a dropped file.
 fn command_of_dropped(path: PathBuf) -> Command {
     match path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
         true => Command::Rows(RowsCommand::OpenTable(path)),
@@ -182,8 +181,8 @@ fn command_of_dropped(path: PathBuf) -> Command {
     }
 }
 
-/// Whether there can be a dialog at all: a portal is asked over the session's bus, and `zenity` is a program. Without either the system's
-/// answer comes too late to tell it from a dialog that was closed.
+/// Whether the system can show a dialog: a portal is reached over the session's bus, and `zenity` is a program. Without either, the system's answer comes too
+/// late to tell it from a closed dialog.
 fn may_have_dialogs(bus: Option<OsString>, runtime: Option<OsString>, path: Option<OsString>) -> bool {
     let has_bus = bus.is_some_and(|b| !b.is_empty()) || runtime.is_some_and(|r| Path::new(&r).join("bus").exists());
     has_bus || path.is_some_and(|p| std::env::split_paths(&p).any(|folder| folder.join("zenity").exists()))
@@ -196,7 +195,7 @@ mod tests {
     fn answer(dialogs: &mut Dialogs, question: Question) -> (Vec<Command>, Option<&'static str>) {
         let (wake, woken) = channel();
         dialogs.ask(question, move || wake.send(()).unwrap()).unwrap();
-        // A dialog that was closed wakes nothing, and one of the window need not.
+        // A closed dialog of the system calls no `wake`, and one of the window need not.
         let _closed = woken.recv_timeout(Duration::from_secs(2));
         let (chosen, _, told) = dialogs.poll();
         (chosen, told)
@@ -241,7 +240,7 @@ mod tests {
         assert_eq!(folder("chip-8-overlay.toml"), None);
     }
 
-    /// Of a system that shows none.
+    /// Dialogs of a system that shows none.
     fn never_shown() -> Dialogs {
         Dialogs::by(Some(Arc::new(|_, reply| {
             reply(None);
@@ -267,7 +266,7 @@ mod tests {
         assert_eq!(told, [Some(APOLOGY), None]);
     }
 
-    /// What follows a question where every dialog is closed but that of a scene to open.
+    /// Commands, message and question that follow where the user closes every dialog except the one for a scene to open.
     fn answered(purpose: Purpose) -> (Vec<Command>, Option<&'static str>, Option<Question>) {
         let slow: System = Arc::new(|question, reply| {
             std::thread::sleep(NEVER_SHOWN + Duration::from_millis(50));

@@ -1,4 +1,4 @@
-//! The range-Doppler map on screen.
+//! The range-Doppler map of the scene or recording on screen.
 
 use super::derived::{Failure, Query};
 use super::memo::Memo;
@@ -14,7 +14,7 @@ use crate::task::Task;
 use eframe::egui::ColorImage;
 use std::sync::Arc;
 
-/// What is on screen, and how it is drawn.
+/// A query of the range-Doppler map and its picture.
 #[derive(Clone, PartialEq)]
 pub struct DopplerQuery {
     source: Source,
@@ -24,7 +24,7 @@ pub struct DopplerQuery {
 }
 
 impl DopplerQuery {
-    /// The map of what is on screen; `None` where the radar of a scene sends one chirp, and of a recording whose loops are not known.
+    /// The query for the scene or recording on screen; `None` where a scene's radar sends one chirp, and for a recording with unknown loops.
     pub fn of(state: &State) -> Option<Self> {
         let (normalisation, colours) = (state.settings.normalisation, state.settings.colours);
         let source = Source::of(state);
@@ -37,11 +37,11 @@ impl DopplerQuery {
     }
 }
 
-/// A map to be drawn.
+/// A range-Doppler map and its picture.
 pub struct DopplerResult {
-    /// The radar whose chirps it is made of.
+    /// The radar of the map's chirps.
     pub radar: Radar,
-    /// Whether their interval is known.
+    /// Whether the interval of the chirps is known.
     pub knows_interval: bool,
     /// Decades of amplitude, `[range bins, velocities]`.
     pub decades: LogMap,
@@ -51,7 +51,7 @@ pub struct DopplerResult {
 
 impl Query for DopplerQuery {
     type Value = DopplerResult;
-    /// The decades of the last scene or recording, and the radar: colours and normalisation are chosen among many for one.
+    /// The last map, so that another colour map or normalisation does not compute it again.
     type State = Memo<(Source, bool), DopplerMade>;
     const THREAD: &'static str = "range-Doppler";
     const WHAT: &'static str = "Computing the range-Doppler map";
@@ -67,7 +67,7 @@ impl Query for DopplerQuery {
     }
 }
 
-/// A map, and the radar whose chirps it is made of.
+/// A range-Doppler map and the radar of its chirps.
 #[derive(Clone)]
 pub struct DopplerMade {
     radar: Radar,

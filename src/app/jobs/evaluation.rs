@@ -1,11 +1,11 @@
-//! Tables 4.1 to 4.3 of the rows there are: every method on every test set.
+//! Tables 4.1 to 4.3 made of the evaluated rows: every method on every test set.
 
 use crate::evaluate::rows::{Column, Row, Text};
 use crate::evaluate::tables::{Estimate, Tally};
 use crate::scene::generate::Kind;
 use std::collections::BTreeMap;
 
-/// One method on one test set.
+/// Figures of one method on one test set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluationRow {
     /// Test set, 1 to 3.
@@ -14,27 +14,27 @@ pub struct EvaluationRow {
     pub method: Text,
     /// The optimisers that trained the method's weights; empty without weights.
     pub optimiser: String,
-    /// The threshold it was judged at; the mean where each answer has its own.
+    /// The threshold of all answers, or the mean of their own thresholds.
     pub eta: f32,
     /// Whether every answer was judged at `eta`.
     pub one_eta: bool,
     /// Scenes of the set.
     pub scenes: usize,
-    /// SE.
+    /// Squared error SE.
     pub squared_error: Estimate,
-    /// P_D.
+    /// Detection probability P_D, 0 to 1.
     pub detection: Estimate,
-    /// P_FA.
+    /// False-alarm probability P_FA, 0 to 1.
     pub false_alarm: Estimate,
-    /// P_D where every scene's P_FA is held to the printed one of experiment 2.
+    /// P_D where every scene's threshold gives the printed P_FA of experiment 2.
     pub detection_at_printed: Option<Estimate>,
-    /// P_D and P_FA by a detector of constant false-alarm rate, where one was in use.
+    /// P_D and P_FA by a detector of constant false-alarm rate, where all rows have them.
     pub cfar: Option<[Estimate; 2]>,
-    /// Time of a map.
+    /// Median time of a map.
     pub median_milliseconds: f64,
 }
 
-/// Every method on every test set of which there are rows.
+/// Figures of every method on every test set with rows.
 pub fn evaluated(rows: &[Row]) -> Vec<EvaluationRow> {
     let sets = Kind::TEST_SETS.map(|kind| kind.to_string());
     let mut found: BTreeMap<(usize, &Text), Vec<&Row>> = BTreeMap::new();
@@ -65,10 +65,10 @@ fn evaluated_on(set: usize, method: &Text, rows: Vec<&Row>) -> EvaluationRow {
     }
 }
 
-/// Name of a column of the CSV, and what a row has there.
+/// A column's name in the CSV, and the text of a row's cell.
 type CsvColumn = (&'static str, fn(&EvaluationRow) -> String);
 
-/// The columns; the last two stand there where a detector of constant false-alarm rate was in use.
+/// The columns of the CSV. The last two are written only where a row has figures by a detector of constant false-alarm rate.
 const CSV_COLUMNS: [CsvColumn; 18] = [
     ("set", |r| r.set.to_string()),
     ("method", |r| r.method.to_string()),

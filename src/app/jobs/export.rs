@@ -1,4 +1,4 @@
-//! Pictures, arrays and figures for other programs, written on threads of their own.
+//! Exports of pictures, arrays and figures, written on threads of their own.
 
 use super::background::Background;
 use super::failures::{RowTable, write_rows_to};
@@ -15,18 +15,18 @@ use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What came of an export.
+/// A finished export.
 pub struct Export {
     path: PathBuf,
-    /// What to add where something could not be had.
+    /// A remark about a missing part, or the reason of a failure.
     written: Result<Option<String>, String>,
 }
 
 impl Export {
-    /// What to tell: that it is written, or why not.
+    /// The message for the user after success.
     ///
     /// # Errors
-    /// The message of one that failed.
+    /// The message of an export that failed.
     pub fn message(&self) -> Result<String, String> {
         let path = self.path.display();
         match &self.written {
@@ -41,20 +41,20 @@ impl Export {
 pub struct Exports(Background<Export>);
 
 impl Exports {
-    /// Nothing yet; `wake` draws another frame when one is finished.
+    /// No export yet; `wake` draws another frame when one is finished.
     pub fn new(wake: Context) -> Self {
         Exports(Background::new(wake))
     }
 
-    /// What has been finished since the last call.
+    /// Exports finished since the last call.
     pub fn finished(&self) -> Vec<Export> {
         self.0.finished()
     }
 
-    /// Draws the panels that `apertura maps` draws, with the method and the settings on screen, as PNG or SVG. Returns what to tell.
+    /// Draws the panels of `apertura maps` with the method and the settings on screen, as PNG or SVG. Returns the message for the user.
     ///
     /// # Errors
-    /// Why it could not be begun.
+    /// The reason why it could not be begun.
     pub fn picture(&self, state: &State, path: PathBuf) -> Result<String, String> {
         let format = PictureFormat::of_path(&path).ok_or_else(|| Purpose::ExportPicture.unknown_ending(&path))?;
         let Some(method) = state.method().cloned() else {
@@ -76,10 +76,10 @@ impl Exports {
         })
     }
 
-    /// Writes samples and maps of the scene on screen, and the output of the method in use, as NumPy arrays. Returns what to tell.
+    /// Writes samples and maps of the scene on screen, and the output of the method in use, as NumPy arrays. Returns the message for the user.
     ///
     /// # Errors
-    /// Why it could not be begun.
+    /// The reason why it could not be begun.
     pub fn maps(&self, state: &State, path: PathBuf) -> Result<String, String> {
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
         let (floor, normalisation) = (state.settings.floor, state.settings.normalisation);
@@ -104,19 +104,19 @@ impl Exports {
         })
     }
 
-    /// Writes the figures of the scene on screen as CSV. Returns what to tell.
+    /// Writes the figures of the scene on screen as CSV. Returns the message for the user.
     ///
     /// # Errors
-    /// What is missing, or why it could not be begun.
+    /// The missing part, or the reason why it could not be begun.
     pub fn metrics(&self, state: &State, pipeline: &Pipeline, path: PathBuf) -> Result<String, String> {
         let text = metrics_csv(state, pipeline)?;
         self.begin(path, move |path| write_bytes(path, text.as_bytes()).map(|()| None).map_err(|e| e.to_string()))
     }
 
-    /// Writes the rows of the panel Evaluate as CSV. Returns what to tell.
+    /// Writes the rows of the panel Evaluate as CSV. Returns the message for the user.
     ///
     /// # Errors
-    /// That there are none, or why it could not be begun.
+    /// That there are no rows, or the reason why it could not be begun.
     pub fn rows(&self, table: &RowTable, path: PathBuf) -> Result<String, String> {
         if table.rows().is_empty() {
             return Err("There are no rows yet: try methods on scenes first.".to_owned());
@@ -125,7 +125,7 @@ impl Exports {
         self.begin(path, move |path| write_rows_to(path, &rows, &conditions).map(|()| None))
     }
 
-    /// Starts an export that takes a moment, and says so.
+    /// Starts an export on a thread. Returns the message that it has begun.
     fn begin(
         &self,
         path: PathBuf,
@@ -144,13 +144,13 @@ impl Exports {
     }
 }
 
-/// The recording on screen as its radar takes it now.
+/// The recording on screen, as the radar and the elements of its document change it.
 fn seen_recording(state: &State) -> Option<Recording> {
     let document = state.editor.document();
     document.recording().map(|r| seen_by(r, document.radar(), &document.scene().disturbances.elements))
 }
 
-/// Writes samples and maps of a recording, and the output of a method. Returns what could not be had.
+/// Writes samples and maps of a recording, and the output of a method. Returns a remark about a missing output.
 fn write_recording(
     path: &Path,
     recording: &Recording,

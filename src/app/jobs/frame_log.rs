@@ -11,7 +11,7 @@ pub struct FrameLog {
     out: BufWriter<File>,
     began: Instant,
     frame: u64,
-    /// The frame that is being drawn: when it began, and the thread's time on a processor by then.
+    /// Start of the frame that is being drawn, and the thread's processor time at that moment, milliseconds.
     current: (Instant, Option<f64>),
 }
 
@@ -28,8 +28,8 @@ impl FrameLog {
         self.current = (Instant::now(), processor_ms());
     }
 
-    /// Writes the frame that began last: time in the app's own code (by the clock, and on a processor, which other programs don't
-    /// lengthen), and the whole of the previous frame with layout, tessellation and drawing.
+    /// Writes a line for the frame that began last. It has the time in the app's own code, by the clock and on a processor, which other programs don't
+    /// lengthen. It also has the whole time of the previous frame with layout, tessellation and drawing.
     pub fn write(&mut self, previous: Option<f32>, requested: u64, painted: u64) -> io::Result<()> {
         let (frame_began, processor_began) = self.current;
         let (seconds, ui) = (self.began.elapsed().as_secs_f64(), frame_began.elapsed().as_secs_f64() * 1e3);

@@ -1,4 +1,4 @@
-//! What other elements than those of the two ends hear: their samples and their map.
+//! Samples and map of a layout of elements other than the two ends.
 
 use super::memo::Memo;
 use super::recorded::{ready, seen_by};
@@ -10,7 +10,7 @@ use crate::maps::{LogMap, Normalisation};
 use crate::signal::{self, BeatSignal, LayoutSamples, Unfinished};
 use crate::task::Task;
 
-/// What the elements of a layout hear.
+/// Samples and map of the elements of a layout.
 pub struct Heard {
     pub samples: Shared<LayoutSamples>,
     log: LogMap,
@@ -18,7 +18,7 @@ pub struct Heard {
 }
 
 impl Heard {
-    /// Of a scene, or of a recording of every element; `None` of one of the two ends alone.
+    /// The samples of a scene, or of a recording of every element; `None` for a recording of the two ends alone.
     ///
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, or `task` was cancelled.
@@ -36,7 +36,7 @@ impl Heard {
         })
     }
 
-    /// Their map.
+    /// The map of the samples.
     pub fn map(&mut self, normalisation: Normalisation) -> ReadyMap {
         self.shown.of(normalisation, |normalisation| ready(&self.log, self.log.scale(*normalisation))).clone()
     }

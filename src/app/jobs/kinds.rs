@@ -1,4 +1,4 @@
-//! What kind of failure: what became of every object in the outputs on screen, and what isn't there.
+//! The fate of every object in the outputs on screen, and their ghosts.
 
 use super::derived::{Derived, Failure, Query};
 use super::memo::Memo;
@@ -16,56 +16,56 @@ use crate::radar::Layout;
 use crate::scene::Scene;
 use crate::task::Task;
 
-/// An output, and the threshold that says what of it is detected.
+/// An output, and the threshold of its detections.
 #[derive(Clone, PartialEq)]
 struct Output {
     lambda: Shared<RangeAngleMap>,
-    /// The map that is compared with the threshold: the output itself, or what a detector made of it.
+    /// The map compared with the threshold: the output itself, or a detector's map of it.
     judged: Shared<RangeAngleMap>,
     eta: f32,
 }
 
-/// Outputs on screen, and what they are judged by.
+/// A query of the fates in both outputs on screen.
 #[derive(Clone, PartialEq)]
 pub struct KindsQuery {
     truth: Truth,
     outputs: [Option<Output>; 2],
 }
 
-/// What became of one object, or a blob where there is none.
+/// The fate of one object, or a ghost.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
     /// Index of the object in the scene; `None` for a ghost.
     pub object: Option<usize>,
     /// Cells of its footprint, or of the ghost.
     pub cells: usize,
-    /// The brightest of them in the output.
+    /// The brightest of these cells in the output.
     pub brightest: Option<CellIndex>,
 }
 
-/// What became of everything in one output.
+/// The fates of all objects in one output, and its ghosts.
 #[derive(Debug, Clone)]
 pub struct Fates {
     pub scene: Shared<Scene>,
-    /// What is right and what is not.
+    /// Fate of every object, and the ghosts.
     pub failures: Failures,
     /// Every object of the scene, in its order, then every ghost.
     pub verdicts: Vec<Verdict>,
-    /// The threshold that was judged at.
+    /// The threshold of the detections.
     pub eta: f32,
-    /// How near to its place any unbiased estimate could put a found point, metres: the median of all, where there is noise.
+    /// Median position bound of the found points, metres: no unbiased estimate is nearer on average. `None` without noise.
     pub bound_metres: Option<f64>,
     output: Shared<RangeAngleMap>,
     target: Shared<RangeAngleMap>,
 }
 
-/// Of either method's output.
+/// Fates in either method's output.
 type Made = [Option<Fates>; 2];
 
-/// What is kept from one query to the next.
+/// State kept between queries.
 #[derive(Default)]
 pub struct KeptFates {
-    /// Footprints of the last target: several outputs and thresholds are judged by the same.
+    /// Footprints of the last target, which serve several outputs and thresholds.
     footprints: Memo<Shared<RangeAngleMap>, Footprints>,
     last: Made,
 }
@@ -78,10 +78,10 @@ impl KeptFates {
 }
 
 impl KindsQuery {
-    /// The outputs on screen, where they are to be marked and belong to the maps.
+    /// The query of the outputs on screen, where their fates are shown and they belong to the maps.
     pub fn of(state: &State, pipeline: &Pipeline) -> Option<Self> {
         let told = state.arrangement.shown().contains(&Panel::Failures) && state.row_on_screen().is_some();
-        // The headline of an output is made once the scene rests: a drag costs nothing for it.
+        // The headline of an output is made once the scene rests, so a drag doesn't pay for it.
         if !(state.settings.show_kinds || told || pipeline.maps.is_settled()) || !pipeline.maps.wants_ends() {
             return None;
         }
@@ -116,7 +116,7 @@ impl Query for KindsQuery {
     }
 }
 
-/// What became of everything in a method's output, and whether that is the one on screen and fresh.
+/// The fates in a method's output, and whether they belong to the output on screen and it is fresh.
 pub fn fates_of<'a>(
     kinds: &'a Derived<KindsQuery>,
     slot: MethodSlot,
@@ -150,7 +150,7 @@ fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
 
 #[cfg(test)]
 impl Fates {
-    /// Fates of a scene's objects, each of 40 cells, and ghosts of 12 cells, at a threshold of 0.8.
+    /// Fates of a scene's objects of 40 cells each, and ghosts of 12 cells, at a threshold of 0.8.
     pub fn made_up(scene: Scene, fates: &[Fate], ghosts: &[CellIndex]) -> Fates {
         let object = |index: usize| Verdict { object: Some(index), cells: 40, brightest: None };
         let ghost = |at: &CellIndex| Verdict { object: None, cells: 12, brightest: Some(*at) };
@@ -180,7 +180,7 @@ mod tests {
     use crate::radar::Radar;
     use crate::signal::{Floor, simulate};
 
-    /// Two points, as a radar sees them.
+    /// The target map of two points.
     fn truth(radar: Radar) -> Truth {
         let scene = Shared::new(Scene::of_points([(-4.0, 12.0), (5.0, 20.0)]));
         let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;

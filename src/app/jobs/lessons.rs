@@ -1,4 +1,4 @@
-//! Predictions judged and challenges measured, off the UI thread.
+//! Judgement of predictions and measurement of challenges, off the UI thread.
 
 use super::background::Background;
 use crate::app::shared::Shared;
@@ -15,7 +15,7 @@ use eframe::egui::{ColorImage, Context};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What is to be judged.
+/// A request to judge a prediction and to measure a challenge.
 #[derive(Clone, PartialEq)]
 struct Request {
     lesson: Shared<Lesson>,
@@ -25,7 +25,7 @@ struct Request {
     scene: Shared<Scene>,
 }
 
-/// What came of it.
+/// The judged prediction and the measured challenge.
 #[derive(Default)]
 struct Outcome {
     judgement: Option<Result<Judgement, String>>,
@@ -45,7 +45,7 @@ fn work(request: &Request) -> Outcome {
 
 type Challenged = (Result<Vec<Measured>, String>, Option<Arc<ColorImage>>);
 
-/// The challenge measured on what the learner made, and a picture of what is to be explained.
+/// The challenge measured on the learner's scene, and a picture of the hidden scene.
 fn challenge(step: &Step, request: &Request) -> Option<Challenged> {
     let challenge = step.challenge.as_ref()?;
     let hidden = challenge
@@ -57,7 +57,7 @@ fn challenge(step: &Step, request: &Request) -> Option<Challenged> {
     Some((measured, picture))
 }
 
-/// Every second cell, the farthest row on top.
+/// A picture of every second cell, the farthest row on top.
 fn picture(radar: &Radar, map: &RangeAngleMap) -> Arc<ColorImage> {
     let table = colour_table(ColourMap::default());
     let drawn = radar.left_to_right(&map.lambda);
@@ -66,7 +66,7 @@ fn picture(radar: &Radar, map: &RangeAngleMap) -> Arc<ColorImage> {
     Arc::new(ColorImage::new([cells.ncols(), cells.nrows()], pixels))
 }
 
-/// The worker, what it was asked last, what is to be explained, and lesson files that are read and tried out.
+/// The worker of judgements, its last request, the hidden scene's picture, and lesson files being read.
 pub struct Lessons {
     worker: Worker<Request, (Request, Outcome)>,
     opened: Background<Result<LessonCommand, String>>,
@@ -75,7 +75,7 @@ pub struct Lessons {
 }
 
 impl Lessons {
-    /// Starts the worker, which waits; `wake` draws another frame.
+    /// Starts the worker, idle at first; `wake` draws another frame.
     pub fn start(wake: &Context) -> Lessons {
         let work = |_: &mut (), request: Request, _: &Task| {
             let outcome = work(&request);
@@ -85,7 +85,7 @@ impl Lessons {
         Lessons { worker, opened: Background::new(wake.clone()), asked: None, hidden: None }
     }
 
-    /// Reads a lesson file and tries its steps out; [`Lessons::opened`] says what came of it.
+    /// Reads a lesson file and tries its steps out; [`Lessons::opened`] returns the result.
     ///
     /// # Errors
     /// When the system can't start a thread.
@@ -97,17 +97,17 @@ impl Lessons {
         self.opened.begin("lesson files", work, |why| Err(format!("The lesson can't be tried out ({why}).")))
     }
 
-    /// Whether a file is being tried out.
+    /// Whether a lesson file is being tried out.
     pub fn is_reading(&self) -> bool {
         self.opened.is_busy()
     }
 
-    /// Files that were tried out: lessons to begin, or why there is none.
+    /// Results of lesson files tried out: a command that begins the lesson, or the reason why it can't begin.
     pub fn opened(&self) -> Vec<Result<LessonCommand, String>> {
         self.opened.finished()
     }
 
-    /// Asks for what the lesson on screen needs, if that changed.
+    /// Asks for judgement and measurement of the lesson on screen, if that changed.
     pub fn ask(&mut self, state: &State) {
         let Some(run) = &state.lesson else {
             (self.asked, self.hidden) = (None, None);
@@ -126,12 +126,12 @@ impl Lessons {
         }
     }
 
-    /// What is to be explained, where the step hides something.
+    /// Picture of the hidden scene, where the step has one.
     pub fn hidden(&self) -> Option<&Arc<ColorImage>> {
         self.hidden.as_ref()
     }
 
-    /// Takes in what was judged. Returns a message for the user.
+    /// Takes in judgements. Returns a message for the user.
     pub fn poll(&mut self, state: &mut State) -> Option<String> {
         let mut message = None;
         for reply in self.worker.replies() {

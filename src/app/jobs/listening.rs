@@ -1,7 +1,7 @@
-//! A capture card that is listened to: its newest frame as a recording, and what had to be dropped.
+//! The newest frame of a capture card as a recording, and the number of dropped frames.
 //!
-//! One thread takes packets, another reads frames as recordings. Between them one frame has room, and between the second and the window one
-//! recording: a newer frame takes the place of one that nothing looked at yet.
+//! One thread takes packets, another reads frames as recordings. One frame can wait between the two, and one recording between the second and the window. A
+//! newer frame replaces a waiting one.
 
 use crate::app::state::{CardPlan, LiveFrame};
 use crate::platform::{self, lock};
@@ -16,17 +16,17 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How often a port is tried that was listened to a moment ago, and how long it waits between two tries.
+/// Number of attempts to open a port that this program listened to a moment ago, and the time between two attempts.
 const TRIES: u32 = 20;
 const BETWEEN_TRIES: Duration = Duration::from_millis(50);
 
-/// Listens where it is asked to.
+/// The listener to a capture card.
 pub struct Listening {
     wake: Context,
     running: Option<Running>,
     is_first: bool,
     summary: CardSummary,
-    /// Frames that came between two calls of `poll` and were no longer the newest.
+    /// Frames that came between two calls of `poll` and were not the newest.
     passed_over: u64,
 }
 
@@ -36,11 +36,11 @@ struct Running {
     recordings: Receiver<Result<Recording, String>>,
 }
 
-/// What the threads share.
+/// State shared by the threads and the window.
 #[derive(Default)]
 struct Between {
     held: Mutex<Waiting>,
-    /// Told where a frame comes or the end.
+    /// Notified of a frame and of the end.
     changed: Condvar,
 }
 
@@ -53,15 +53,15 @@ struct Waiting {
 }
 
 impl Listening {
-    /// Listens to nothing yet; `wake` draws another frame of the window when one came.
+    /// Listens to no port yet; `wake` draws another frame of the window when the card's frame came.
     pub fn new(wake: Context) -> Self {
         Listening { wake, running: None, is_first: true, summary: CardSummary::default(), passed_over: 0 }
     }
 
-    /// Begins to listen, in place of what was listened to before. The port.
+    /// Begins to listen and ends any earlier listening. Returns the port.
     ///
     /// # Errors
-    /// A sentence: what is wrong with the `.cfg`, or who has the port.
+    /// A sentence about the error in the `.cfg`, or about the port that is taken.
     pub fn begin(&mut self, plan: CardPlan) -> Result<u16, String> {
         let tries = if self.running.is_some() { TRIES } else { 0 };
         self.stop();
@@ -69,7 +69,7 @@ impl Listening {
         let failed = |e: io::Error| format!("UDP port {} can't be listened to: {e}", plan.port);
         let wanted = plan.port;
         let listen = move || Card::listen(wanted, frame_bytes);
-        // The thread that had the port lets go of it soon: the next one waits for that, not the window.
+        // The thread that has the port frees it soon; the new thread waits for that, not the window.
         let card = listen().map(Some).or_else(|e| if tries > 0 { Ok(None) } else { Err(e) }).map_err(failed)?;
         let port = card.as_ref().map_or(Ok(wanted), Card::port).map_err(failed)?;
         let shared = Arc::new(Between::default());
@@ -87,24 +87,24 @@ impl Listening {
         Ok(port)
     }
 
-    /// Ends it, where it is running.
+    /// Stops listening.
     pub fn stop(&mut self) {
         if let Some(running) = self.running.take() {
             running.shared.end(None);
         }
     }
 
-    /// What is listened to, if anything.
+    /// Port, `.cfg` and board in use, while listening.
     pub fn plan(&self) -> Option<&CardPlan> {
         self.running.as_ref().map(|running| &running.plan)
     }
 
-    /// What came since it began.
+    /// Counts of packets and frames since listening began.
     pub fn summary(&self) -> CardSummary {
         CardSummary { dropped: self.summary.dropped + self.passed_over, ..self.summary }
     }
 
-    /// The newest frame since the last call, if one came; and why the listening ended, if it did.
+    /// The newest frame since the last call, if any, and the reason why listening ended, if it did.
     pub fn poll(&mut self) -> (Option<LiveFrame>, Option<String>) {
         let Some(running) = &self.running else { return (None, None) };
         let failed = match running.shared.held.try_lock() {
@@ -150,7 +150,7 @@ impl Between {
         self.changed.notify_all();
     }
 
-    /// The newest frame, once there is one; `None` at the end.
+    /// Waits for the newest frame; `None` at the end.
     fn next(&self) -> Option<CardFrame> {
         let held = lock(&self.held);
         let waits = |held: &mut Waiting| held.newest.is_none() && !held.is_over;
@@ -159,13 +159,13 @@ impl Between {
     }
 }
 
-/// Tries a port once more, after a while.
+/// Tries a port again after [`BETWEEN_TRIES`].
 fn listen_later(listen: &impl Fn() -> io::Result<Card>) -> io::Result<Card> {
     std::thread::sleep(BETWEEN_TRIES);
     listen()
 }
 
-/// Takes packets until the end; the newest frame waits, and one that it takes the place of is dropped.
+/// Takes packets until the end. The newest frame waits; a frame that it replaces is dropped.
 fn receive(card: impl FnOnce() -> io::Result<Card>, shared: &Between, wake: impl Fn()) {
     let hand = |frame: CardFrame| {
         let before = lock(&shared.held).newest.replace(frame);
@@ -184,7 +184,7 @@ fn receive(card: impl FnOnce() -> io::Result<Card>, shared: &Between, wake: impl
     }
 }
 
-/// Reads frames as recordings until the end; waits while the window has not taken the last.
+/// Reads frames as recordings until the end; waits until the window has taken the last.
 fn read_frames(shared: &Between, plan: &CardPlan, sender: &SyncSender<Result<Recording, String>>, wake: impl Fn()) {
     let mut origin = None;
     while let Some(frame) = shared.next() {
@@ -198,7 +198,7 @@ fn read_frames(shared: &Between, plan: &CardPlan, sender: &SyncSender<Result<Rec
     wake();
 }
 
-/// A frame as a recording, in the layout of the first.
+/// A frame as a recording, in the layout of the first frame.
 fn read(origin: &mut Option<Origin>, frame: CardFrame, plan: &CardPlan) -> Result<Recording, RecordingError> {
     let of_first = match origin {
         Some(of_first) => of_first,
@@ -212,7 +212,7 @@ fn read(origin: &mut Option<Origin>, frame: CardFrame, plan: &CardPlan) -> Resul
     if frame.lost_bytes > 0 {
         recording.doubts.push(format!("{} bytes of frame {} were lost and are zeros.", frame.lost_bytes, frame.number));
     }
-    // There is no file to read another way.
+    // A frame has no file to read another way.
     let mut shown = of_first.clone();
     shown.offers.truncate(1);
     shown.offers.iter_mut().for_each(|offer| offer.power.clear());
@@ -220,7 +220,7 @@ fn read(origin: &mut Option<Origin>, frame: CardFrame, plan: &CardPlan) -> Resul
     Ok(recording)
 }
 
-/// Whether a recording is a frame that was listened to with this `.cfg`.
+/// Whether a recording is a frame of a card listened to with this `.cfg`.
 pub fn is_live(recording: &Recording, config: &Path) -> bool {
     recording.origin.as_ref().is_some_and(|origin| origin.data == raw::frame_path(config))
 }
@@ -253,7 +253,7 @@ mod tests {
         CardPlan { port, config, board: None }
     }
 
-    /// Polls until `is_done` or for five seconds; the frames that came.
+    /// The frames polled until `is_done` or for five seconds.
     fn polled(listening: &mut Listening, is_done: impl Fn(&Listening, &[LiveFrame]) -> bool) -> Vec<LiveFrame> {
         let (began, mut frames) = (Instant::now(), Vec::new());
         while !is_done(listening, &frames) && began.elapsed() < Duration::from_secs(5) {
@@ -295,9 +295,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut listening = Listening::new(Context::default());
         let port = listening.begin(plan(folder.path(), 0)).unwrap();
-        // The socket holds half of it, should the receiver wait for a processor; the pause lets it take them.
+        // The socket holds half of the packets, should the receiver wait for a processor; the pause lets it take them.
         replay(sent(&frames(20)), port, Duration::from_micros(300), 56).join().unwrap();
-        // The window looked at nothing meanwhile: one recording waits for it, one for room there, one to be read.
+        // Meanwhile the window took no frame: one recording waits for it, one for room in the channel, one to be read.
         std::thread::sleep(Duration::from_millis(300));
         let shown = polled(&mut listening, |_, shown| shown.last().is_some_and(|f| f.recording.name != "frame 0"));
         let summary = listening.summary();

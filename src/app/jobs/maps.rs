@@ -1,4 +1,4 @@
-//! The maps of the scene on screen: what their worker was asked for, and what it made last.
+//! The worker of the maps on screen, its last request and its last result.
 
 use super::rest::{Motion, Rest};
 use super::scene_maps::{MapsRequest, MapsResult, MapsState};
@@ -8,20 +8,20 @@ use crate::signal::Unfinished;
 use crate::task::{Reply, Task, Worker};
 use std::time::Duration;
 
-/// Maps of a scene that has changed are given up when they took longer than this.
+/// Longest time for maps of a scene that has changed; longer work is cancelled.
 const PATIENCE: Duration = Duration::from_millis(400);
 
-/// The worker, what it was asked last, and what it made last.
+/// The worker of the maps, its last request and its last result.
 pub struct MapsJob {
     worker: Worker<MapsRequest, Result<MapsResult, Unfinished>>,
-    /// What every request at rest works on, until the scene changes.
+    /// The task of all requests at rest, until the scene changes.
     settling: Task,
-    /// Whether maps were given up since the last ones arrived: the next come to an end, so that something is seen.
+    /// Whether maps were cancelled since the last ones arrived. The next ones are then finished, so that the user sees some.
     gave_up: bool,
     asked: Option<MapsRequest>,
     rest: Rest,
     motion: Motion,
-    /// When the worker was asked for what it hasn't answered yet.
+    /// Time of the first request without an answer.
     waiting: Option<Instant>,
     result: Option<MapsResult>,
     /// Time of the last maps that followed a change.
@@ -50,7 +50,7 @@ impl MapsJob {
         }
     }
 
-    /// Takes in what the worker made; `on_maps` is called with all maps that arrived. Returns messages for the user.
+    /// Takes in the worker's maps; `on_maps` is called with each result that arrived. Returns messages for the user.
     pub fn poll(&mut self, mut on_maps: impl FnMut(&MapsResult)) -> Vec<String> {
         let mut messages = Vec::new();
         for reply in self.worker.replies() {
@@ -61,7 +61,7 @@ impl MapsJob {
                     self.take_in(result, &mut on_maps);
                 }
                 Reply::Done { result: Err(Unfinished::Scene(error)), .. } => self.scene_error = Some(error.to_string()),
-                // What was asked for instead is on its way.
+                // The newer request is on its way.
                 Reply::Done { result: Err(Unfinished::Cancelled(_)), .. } => {}
                 Reply::Panicked { message, .. } => {
                     self.waiting.get_or_insert_with(Instant::now);
@@ -74,8 +74,8 @@ impl MapsJob {
         messages
     }
 
-    /// The samples of a scene's ends are the same bits whether it rests or not: what a method made of them before stays its output, but
-    /// aims for the latest target.
+    /// Keeps the samples of the last result where they are the same bits, as they are whether a scene rests or not. A method's output of them then stays
+    /// valid, with the latest target.
     fn take_in(&mut self, mut result: MapsResult, on_maps: &mut impl FnMut(&MapsResult)) {
         let before = self.result.as_ref().and_then(|r| r.frame.ends.as_ref());
         if let (Some(ends), Some(before)) = (&mut result.frame.ends, before)
@@ -93,10 +93,10 @@ impl MapsJob {
         self.gave_up = false;
     }
 
-    /// Asks for maps, unless it was asked for just these; at rest if the scene rests. `held` while something is dragged.
+    /// Asks for maps, unless the last request was the same; at rest if the scene rests. `held` while an object is dragged.
     pub fn ask(&mut self, mut request: MapsRequest, held: bool) {
         self.motion = self.rest.look(&request.source, held, Instant::now());
-        // Maps that follow the hand come first: those at rest may take long, and would push a request that waits aside.
+        // Maps that follow a drag come first: those at rest may take long, and would replace a waiting request.
         let follows = self.result.as_ref().is_some_and(|r| r.request.source == request.source);
         request.at_rest = self.motion == Motion::AtRest && follows;
         if self.asked.as_ref() != Some(&request) {
@@ -107,15 +107,14 @@ impl MapsJob {
             let task = if request.at_rest { self.settling.clone() } else { Task::default() };
             self.worker.request_for(task, request.clone());
             if !request.at_rest {
-                // Maps that are only computed once more are not old meanwhile.
+                // The same maps at rest do not make those on screen old.
                 self.waiting.get_or_insert_with(Instant::now);
             }
             self.asked = Some(request);
         }
     }
 
-    /// The scene has changed: what was only computed once more is given up at once, other maps where they take long and nothing is
-    /// held.
+    /// Cancels work on the scene before its change: maps at rest at once, others where they take long and no object is held.
     fn make_way(&mut self, held: bool) {
         std::mem::take(&mut self.settling).cancel();
         if !held && !self.gave_up {
@@ -128,7 +127,7 @@ impl MapsJob {
         self.result.as_ref()
     }
 
-    /// Why the scene on screen can't be computed.
+    /// The reason why the scene on screen can't be computed.
     pub fn scene_error(&self) -> Option<&str> {
         self.scene_error.as_deref()
     }
@@ -138,12 +137,12 @@ impl MapsJob {
         self.requests
     }
 
-    /// Whether it has something to do, or will as soon as the scene rests.
+    /// Whether the worker is busy, or will be as soon as the scene rests.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy() || self.rests_in().is_some()
     }
 
-    /// How long until the scene on screen rests; `None` where it does, or is held.
+    /// Time until the scene on screen rests; `None` where it rests, or an object is held.
     pub fn rests_in(&self) -> Option<Duration> {
         match self.motion {
             Motion::RestsIn(left) => Some(left),
@@ -157,7 +156,7 @@ impl MapsJob {
         latest.is_some_and(|(asked, result)| result.frame.settled && *asked == result.request)
     }
 
-    /// Whether they are being computed.
+    /// Whether maps of the scene at rest are being computed.
     pub fn is_settling(&self) -> bool {
         self.worker.is_busy() && self.asked.as_ref().is_some_and(|asked| asked.at_rest) && !self.is_settled()
     }
@@ -167,12 +166,12 @@ impl MapsJob {
         self.took
     }
 
-    /// Whether the samples of the ends were asked for.
+    /// Whether the last request was for the samples of the ends.
     pub fn wants_ends(&self) -> bool {
         self.asked.as_ref().is_some_and(|asked| asked.wanted.ends)
     }
 
-    /// Since when it has been asked for maps that it hasn't made yet.
+    /// Time of the first request without an answer.
     pub fn waiting(&self) -> Option<Instant> {
         self.waiting
     }

@@ -1,8 +1,8 @@
-//! The last value of something, kept with what it was made of.
+//! The last value of a computation, kept with its key.
 
 use std::convert::Infallible;
 
-/// A value that is made anew only where `K`, all that it depends on, has changed.
+/// A value computed anew only when its key `K` changes.
 pub struct Memo<K, V>(Option<(K, V)>);
 
 impl<K, V> Default for Memo<K, V> {
@@ -12,7 +12,7 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: PartialEq, V> Memo<K, V> {
-    /// The value of `key`: the last one, where that was of the same.
+    /// The value of `key`: the last one, where its key is equal.
     pub fn of(&mut self, key: K, make: impl FnOnce(&K) -> V) -> &mut V {
         match self.try_of(key, |key| Ok::<V, Infallible>(make(key))) {
             Ok(value) => value,
@@ -20,7 +20,7 @@ impl<K: PartialEq, V> Memo<K, V> {
         }
     }
 
-    /// The same where there may be none; then nothing is kept.
+    /// The same for a computation that may fail; a failure leaves no value.
     ///
     /// # Errors
     /// Those of `make`.

@@ -1,4 +1,4 @@
-//! One method at work on the scene on screen: what it was asked for, what it made last, or why it made nothing.
+//! One method at work on the scene on screen: its last request and its last output, or the reason why it has none.
 
 use super::memo::Memo;
 use super::scene_maps::{MapsRequest, MapsResult, Pair};
@@ -16,16 +16,15 @@ use crate::task::{Reply, Task, Worker};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A reconstruction that is slower than this is cancelled when the scene has moved on, unless it is being dragged: then the last one
-/// finishes, so that something is seen.
+/// Longest time of a reconstruction of a scene that has moved on; a slower one is cancelled. During a drag the last one finishes, so that the user sees it.
 const PATIENCE: Duration = Duration::from_millis(400);
 
-/// What a method works on.
+/// The inputs of a method.
 #[derive(Clone, PartialEq)]
 pub struct Basis {
     radar: Radar,
     ends: Shared<TwoEnds>,
-    /// What another layout hears in their place.
+    /// Samples of the layout in use, in place of the two ends.
     heard: Option<Shared<LayoutSamples>>,
     noise: NoisePrior,
     normalisation: Normalisation,
@@ -33,7 +32,7 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// What a method gets of a scene; `None` where its ends were not wanted.
+    /// The inputs from a result of the maps' worker; `None` where it has no samples of the ends.
     pub fn of(result: &MapsResult) -> Option<Basis> {
         let MapsRequest { source: Source { radar, recording, .. }, wanted, layout, .. } = &result.request;
         Some(Basis {
@@ -58,27 +57,27 @@ impl Basis {
     }
 }
 
-/// What a method is asked for.
+/// A request for a method's output.
 #[derive(Clone)]
 pub struct MethodRequest {
-    /// Which document it is of.
+    /// Id of the document.
     pub document: u64,
-    /// Where the samples come from.
+    /// The source of the samples.
     pub source: Source,
-    /// What it works on.
+    /// The method's inputs.
     pub basis: Basis,
-    /// What it aims for; `None` where a recording has the two ends alone.
+    /// The target map; `None` where a recording has the two ends alone.
     pub target: Option<Shared<RangeAngleMap>>,
     pub method: Shared<dyn Reconstructor>,
-    /// Whether what was found is to be listed.
+    /// Whether the detections are wanted as a list.
     pub listed: bool,
-    /// Whether the scene rests: the answer is then that of a method without a memory.
+    /// Whether the scene rests. The answer is then that of a method without a memory.
     pub at_rest: bool,
 }
 
 impl MethodRequest {
-    /// Whether what was made for this one is an answer to the `other` too: one at rest answers one in motion, and the other way round
-    /// only for a method without a memory.
+    /// Whether the answer to this request answers `other` too. An answer at rest serves a request in motion; the opposite holds only for a method without a
+    /// memory.
     fn serves(&self, other: &MethodRequest) -> bool {
         self.basis == other.basis
             && self.method == other.method
@@ -87,54 +86,54 @@ impl MethodRequest {
     }
 }
 
-/// What a method made.
+/// The output of a method.
 #[derive(Clone)]
 pub struct MethodResult {
-    /// Its name.
+    /// Name of the method.
     pub method: &'static str,
-    /// Which document its samples are of.
+    /// Id of the samples' document.
     pub document: u64,
-    /// Its map, and the one it aimed for.
+    /// The output map and its target.
     pub pair: Pair,
-    /// The threshold that fits it, where the method read one off the samples.
+    /// The threshold that the method derived from the samples, if it did.
     pub eta: Option<f32>,
-    /// What it found, the strongest first, where a list was asked for.
+    /// Detections, the strongest first, where a list was requested.
     pub found: Option<Vec<Detection>>,
-    /// Where it found reflectors.
+    /// Places of the found reflectors.
     pub reflectors: Vec<Reflector>,
-    /// What it tried, the first first.
+    /// The method's attempts in order.
     pub attempts: Vec<Attempt>,
-    /// Time it took.
+    /// Time of the reconstruction.
     pub took: Duration,
     basis: Basis,
 }
 
 impl MethodResult {
-    /// The radar that it reconstructed for.
+    /// The radar of the samples.
     pub fn radar(&self) -> &Radar {
         &self.basis.radar
     }
 }
 
-/// Why a method gave nothing.
+/// A method's failure to give an output.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
-    /// Its name.
+    /// Name of the method.
     pub method: &'static str,
-    /// Why.
+    /// Reason of the failure.
     pub reason: String,
 }
 
-/// What a method made of the samples, and the list of what it found where one was asked for.
+/// A method's reconstruction, and the list of detections where one was requested.
 type Answer = (Reconstruction, Option<Vec<Detection>>);
 
 type MethodReply = (MethodRequest, Result<Answer, ReconstructError>);
 
-/// What the worker keeps from one request to the next.
+/// State of the worker between requests.
 struct MethodWorker {
-    /// Threads of its own: on shared ones the maps would wait for the end of a slow reconstruction.
+    /// Threads of its own: on shared ones the maps would wait for a slow reconstruction.
     threads: Option<rayon::ThreadPool>,
-    /// The method asked last, with a memory where it can have one.
+    /// The method of the last request, with a memory where it has such a form.
     follower: Memo<Shared<dyn Reconstructor>, Option<Arc<dyn Reconstructor>>>,
 }
 
@@ -154,29 +153,29 @@ impl MethodWorker {
     }
 }
 
-/// The worker, what it was asked last, and what it made last.
+/// The worker of one method slot, its last request and its last output.
 pub struct MethodJob {
     worker: Worker<MethodRequest, MethodReply>,
     asked: Option<MethodRequest>,
-    /// Since when the output belongs to something else than the maps.
+    /// Time since which the output belongs to other samples or another method than requested.
     outdated: Option<Instant>,
-    /// Whether a panel of the frame before drew something of it.
+    /// Whether a panel of the last frame drew the output.
     was_drawn: bool,
     output: Option<MethodResult>,
     refusal: Option<Refusal>,
-    /// A time that was not taken yet: for which radar, of which method.
+    /// Radar, method and duration of an answer whose time was not yet taken.
     time: Option<(Radar, &'static str, Duration)>,
 }
 
 impl MethodJob {
-    /// Starts the worker's `thread`; `wake` is called from it when there is something to show.
+    /// Starts the worker's `thread`; `wake` is called from it when there is an output to show.
     pub fn start(thread: &'static str, wake: impl Fn() + Send + Sync + 'static) -> MethodJob {
         let work = |kept: &mut MethodWorker, q: MethodRequest, task: &Task| kept.work(q, task);
         let worker = Worker::spawn(thread, move || MethodWorker::new(thread), work, wake);
         MethodJob { worker, asked: None, outdated: None, was_drawn: false, output: None, refusal: None, time: None }
     }
 
-    /// Takes in what the worker made of the `latest` maps or earlier ones. Returns messages for the user.
+    /// Takes in the worker's answers. Answers to the `latest` maps get their document, source and target. Returns messages for the user.
     pub fn poll(&mut self, latest: Option<&MapsResult>) -> Vec<String> {
         let mut messages = Vec::new();
         for reply in self.worker.replies() {
@@ -209,7 +208,7 @@ impl MethodJob {
         latest: Option<&MapsResult>,
     ) {
         let MethodRequest { document, source, basis, target, method, at_rest, .. } = request;
-        // A method with a memory is faster than the same from scratch, by which methods are chosen.
+        // A method with a memory is faster than from scratch; users choose methods by the time from scratch.
         if at_rest || method.following().is_none() {
             self.time = Some((basis.radar.clone(), method.name(), took));
         }
@@ -230,18 +229,18 @@ impl MethodJob {
         self.output = Some(MethodResult { method, document, pair, eta, found, reflectors, attempts, took, basis });
     }
 
-    /// There is no output, and the last one is not its own: nothing of it stays.
+    /// Records a failure and drops the last output, which is not of this scene.
     fn refuse(&mut self, method: &'static str, reason: String) {
         self.output = None;
         self.refusal = Some(Refusal { method, reason });
     }
 
-    /// The time of the latest answer from scratch, once.
+    /// Radar, method and duration of the latest answer from scratch; returned once.
     pub fn take_time(&mut self) -> Option<(Radar, &'static str, Duration)> {
         self.time.take()
     }
 
-    /// New maps of the same samples, as when a scene comes to rest: the output stays, is theirs, and aims for their target.
+    /// Gives the output the document, source and target of new maps, where they are of the same samples, as when a scene comes to rest.
     pub fn aim(&mut self, maps: &MapsResult) {
         if let Some(output) = &mut self.output
             && Basis::of(maps).is_some_and(|basis| basis == output.basis)
@@ -252,7 +251,7 @@ impl MethodJob {
         }
     }
 
-    /// Notes whether a panel of this frame draws something of its output. What changed out of sight is not drawn: its age is not known.
+    /// Notes whether a panel of this frame draws the output. An output that became old out of sight is dropped, since its age is unknown.
     pub fn look(&mut self, is_drawn: bool, source: &Source, method: Option<&str>) {
         let is_current = |o: &MethodResult| o.pair.source == *source && Some(o.method) == method;
         if is_drawn && !self.was_drawn && !self.output.as_ref().is_none_or(is_current) {
@@ -261,7 +260,7 @@ impl MethodJob {
         self.was_drawn = is_drawn;
     }
 
-    /// Asks for an output, unless it was asked for just that; `held` while something is dragged.
+    /// Asks for an output, unless the last request serves; `held` while an object is dragged.
     pub fn ask(&mut self, request: MethodRequest, held: bool) {
         let current =
             self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis == request.basis);
@@ -275,7 +274,7 @@ impl MethodJob {
         }
     }
 
-    /// Stops what runs, as the user wished.
+    /// Cancels the work at the user's request.
     pub fn cancel(&mut self) {
         self.worker.cancel();
         let method = self.asked.as_ref().map_or("", |q| q.method.name());
@@ -283,7 +282,7 @@ impl MethodJob {
         self.refusal = Some(Refusal { method, reason });
     }
 
-    /// Stops what runs, since it is out of sight; it is asked for again once it is in sight.
+    /// Cancels the work while it is out of sight; the next frame with it in sight asks again.
     pub fn rest(&mut self) {
         if self.worker.is_busy() {
             self.worker.cancel();
@@ -296,29 +295,29 @@ impl MethodJob {
         self.output.as_ref()
     }
 
-    /// Why there is no output for the scene on screen.
+    /// The reason why there is no output for the scene on screen.
     pub fn refusal(&self) -> Option<&Refusal> {
         self.refusal.as_ref()
     }
 
-    /// Progress, 0 to 1; `None` when nothing runs.
+    /// Progress, 0 to 1; `None` when no work runs.
     pub fn progress(&self) -> Option<f32> {
         self.worker.progress()
     }
 
-    /// Whether it has something to do.
+    /// Whether the worker is busy.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }
 
-    /// The method whose output is shown, where it is of the samples on screen and another method is at work on them.
+    /// Name of the method of the shown output, where it is of the samples on screen and another method works on them.
     pub fn of_another_method(&self) -> Option<&'static str> {
         let (output, asked) = (self.output.as_ref()?, self.asked.as_ref()?);
         let is_only_method = output.basis == asked.basis && output.method != asked.method.name();
         (is_only_method && self.is_busy()).then_some(output.method)
     }
 
-    /// Since when the output belongs to something else than the maps, where it does.
+    /// Time since which the output belongs to other samples or another method than requested, if it does.
     pub fn outdated(&self) -> Option<Instant> {
         self.outdated
     }

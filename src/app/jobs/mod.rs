@@ -1,5 +1,4 @@
-//! Everything that works beside the window: each on a thread of its own, asked at the end of a frame for what its panels showed, and
-//! polled at the beginning of the next.
+//! Work on threads of its own beside the window. Each frame polls it at its beginning, and at its end asks for the values that its panels showed.
 
 mod age;
 mod background;
@@ -80,44 +79,44 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Time between two looks at what runs, where a bar shows how far it is.
+/// Time between two frames while a progress bar is shown.
 const BAR: Duration = Duration::from_millis(100);
 
-/// All of them.
+/// All work of the app.
 pub struct Jobs {
-    /// Maps, pictures, outputs.
+    /// Maps, pictures and outputs.
     pub pipeline: Pipeline,
-    /// Thresholds that keep a rate of false alarms.
+    /// Searches for thresholds at a given rate of false alarms.
     pub thresholds: RowJob<ThresholdPlan>,
-    /// Methods on many scenes, row by row.
+    /// Methods tried on many scenes, row by row.
     pub failures: Failures,
     /// Run time against error.
     pub run_time: RowJob<RunTimePlan>,
-    /// The log of a training that is followed, if one is.
+    /// The training log that is followed, if any.
     pub training: Option<Watched>,
-    /// One map for several values.
+    /// One map for several values of a parameter.
     pub several: SeveralMaps,
-    /// What became of every object in the outputs.
+    /// The fate of every object in the outputs.
     pub kinds: Derived<KindsQuery>,
-    /// What the formulas say of one reflector.
+    /// Predictions and position bound of one reflector by formulas.
     pub theory: Derived<TheoryRequest>,
-    /// Answers being judged.
+    /// Predictions and challenges being judged.
     pub lessons: Lessons,
-    /// Files being written.
+    /// Exports being written.
     pub exports: Exports,
-    /// A capture card that is listened to.
+    /// The capture card that is listened to.
     pub listening: Listening,
-    /// Files being chosen.
+    /// File dialogs.
     pub dialogs: Dialogs,
-    /// Where an unsaved scene is kept, if anywhere.
+    /// The autosave of unsaved scenes, if there is a folder for it.
     pub autosave: Option<Autosave>,
     wake: Context,
-    /// Where the app keeps its files, if anywhere.
+    /// The app's folder, if it has one.
     folder: Option<PathBuf>,
 }
 
 impl Jobs {
-    /// Starts every thread. `folder` is where the autosave is kept; without it there is none.
+    /// Starts every thread. The autosave is kept in `folder`; there is none without it.
     ///
     /// # Errors
     /// When no autosave can be kept in `folder`.
@@ -142,7 +141,7 @@ impl Jobs {
         })
     }
 
-    /// Takes in what was finished since the last frame. Returns what is to be done with files that were chosen.
+    /// Takes in work finished since the last frame. Returns the commands of chosen files, lessons, frames, thresholds and searches.
     pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
         let mut errors = platform::problems();
         errors.extend(self.pipeline.poll());
@@ -174,14 +173,14 @@ impl Jobs {
             state.notices.info(kept.told);
             chosen.push(ViewCommand::SetMethodEta(kept.method, Some(kept.eta)).into());
         }
-        // What was found takes the place of what it was looked for near, but not of what was edited meanwhile.
+        // The search's result replaces the scene that the search began at, but not one edited since.
         if found && self.failures.search.is_about(state.editor.scene()) {
             chosen.push(RowsCommand::TakeFinding.into());
         }
         chosen
     }
 
-    /// Asks for what the panels of this frame need, if that changed; `wants` is what they read of maps and methods.
+    /// Asks for the values that this frame's panels need, if they changed; `wants` has the maps and methods they read.
     pub fn ask(&mut self, state: &mut State, wants: Wants) {
         self.pipeline.ask(state, wants);
         self.lessons.ask(state);
@@ -202,7 +201,7 @@ impl Jobs {
         self.keep_unsaved(state);
     }
 
-    /// Keeps copies of what is unsaved, but not while something is dragged.
+    /// Keeps copies of unsaved scenes, except during a drag.
     fn keep_unsaved(&mut self, state: &mut State) {
         let Some(autosave) = &mut self.autosave else { return };
         for problem in autosave.poll() {
@@ -215,7 +214,7 @@ impl Jobs {
         }
     }
 
-    /// Opens a file dialog; what is chosen comes back as a command.
+    /// Opens a file dialog; [`Jobs::poll`] returns the command of the chosen file.
     pub fn choose_file(&mut self, state: &mut State, purpose: Purpose) {
         let wake = platform::waker(&self.wake);
         let question = Question::beside(purpose, state.editor.document().likely_path().as_deref());
@@ -225,13 +224,13 @@ impl Jobs {
         }
     }
 
-    /// Opens a file that was dropped on the window; what is to be done with it, where that is known at once.
+    /// Opens a file dropped on the window; returns its command, where it is known at once.
     pub fn open_dropped(&mut self, state: &mut State, file: &Arc<dyn DroppedFile + Send + Sync>) -> Vec<Command> {
         self.dialogs.open_dropped(file, platform::waker(&self.wake));
         self.chosen(state)
     }
 
-    /// What is to be done with files that were chosen.
+    /// The commands of chosen files.
     fn chosen(&mut self, state: &mut State) -> Vec<Command> {
         let (chosen, problems, told) = self.dialogs.poll();
         told.into_iter().for_each(|t| state.notices.info(t));
@@ -239,13 +238,13 @@ impl Jobs {
         chosen
     }
 
-    /// The folder of one's own scenes: the one chosen, or else one beside the app's other files.
+    /// The folder of the user's own scenes: the chosen one, or `scenes` in the app's folder.
     pub fn own_scenes(&self, state: &State) -> Option<PathBuf> {
         let usual = || self.folder.as_ref().map(|folder| folder.join("scenes"));
         state.settings.own_scenes.clone().or_else(usual)
     }
 
-    /// Whether maps, output or bounds are being computed.
+    /// Whether maps, outputs, files or other values are being computed, read or written.
     pub fn is_busy(&self) -> bool {
         self.pipeline.is_busy()
             || self.kinds.is_busy()
@@ -257,7 +256,7 @@ impl Jobs {
     }
 }
 
-/// Shows what became of something.
+/// Shows the result of work as a message.
 pub fn tell(state: &mut State, said: Result<String, String>) {
     match said {
         Ok(info) => state.notices.info(info),

@@ -1,4 +1,4 @@
-//! Maps of one frame on one scale, so that what is weaker looks weaker.
+//! Maps of one frame on a common scale, so that a weaker map is darker.
 
 use crate::app::shared::Shared;
 use crate::app::state::MapKind;
@@ -6,7 +6,7 @@ use crate::engine::{EngineFrame, ReadyMap};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use std::collections::BTreeMap;
 
-/// A map on a scale that it shares with others.
+/// A map on a scale shared with others.
 #[derive(Clone)]
 pub struct Rescaled {
     /// The map on its own scale.
@@ -18,13 +18,13 @@ pub struct Rescaled {
     pub scale: LambdaScale,
 }
 
-/// The maps that were put on one scale last.
+/// The last maps on a common scale.
 #[derive(Default)]
 pub struct OneScale(BTreeMap<MapKind, Rescaled>);
 
 impl OneScale {
-    /// The inputs, the target and the outputs on the scale of the strongest of inputs and target, which spans as many decibels as the widest.
-    /// An output's own scale is the target's.
+    /// The inputs, the target and the outputs on a common scale. It ends at the highest peak of inputs and target and spans as many decibels as the widest of
+    /// them. An output's own scale is the target's.
     pub fn of(
         &mut self,
         frame: &EngineFrame,
@@ -47,7 +47,7 @@ impl OneScale {
     }
 }
 
-/// The scale that ends at the highest peak and spans as much as the widest of all.
+/// The scale that ends at the highest peak and spans as much as the widest.
 fn common(scales: impl Iterator<Item = LambdaScale> + Clone) -> LambdaScale {
     let peak = scales.clone().map(|scale| scale.peak).fold(f64::NEG_INFINITY, f64::max);
     let span = scales.map(|scale| scale.peak - scale.floor).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! From maps to pictures, off the UI thread and only where something changed.
+//! Pictures of maps, painted off the UI thread and only after a change.
 
 use super::sentence::sentence;
 use super::subject::{Paint, Subject};
@@ -17,34 +17,34 @@ use std::sync::Arc;
 /// A painted map; row 0 is range (or y) 0, and the first pixel of a row its leftmost direction.
 #[derive(Debug, Clone)]
 pub struct Picture {
-    /// Its cells.
+    /// Pixels: one per cell, or interpolated columns between cells.
     pub image: Arc<ColorImage>,
-    /// Where its scale ends: 1, but for differences.
+    /// End of the scale: 1, except for differences and doubt.
     pub end: f32,
-    /// Over which coordinates it is.
+    /// Coordinates of the picture.
     pub projection: Projection,
-    /// What it shows, for screen readers.
+    /// Sentence for screen readers.
     pub sentence: Arc<str>,
 }
 
-/// Paints pictures and keeps the last of each kind.
+/// A painter that keeps the last picture of each kind.
 #[derive(Default)]
 pub struct Painter {
     cache: BTreeMap<MapKind, (Subject, Picture)>,
     projector: Option<cartesian::Projector>,
     is_fine: bool,
-    /// Pictures painted since the start: a test asks what was not painted.
+    /// Pictures painted since the start, for tests.
     pub painted: u64,
 }
 
 /// Colour beyond the maximum range of a Cartesian map.
 const OUTSIDE: Color32 = Color32::TRANSPARENT;
 
-/// Columns and rows that a map on screen has room for, about.
+/// Approximate numbers of columns and rows that a map on screen has room for.
 const ON_SCREEN: [usize; 2] = [340, 128];
 
 impl Painter {
-    /// Whether maps of few columns are painted on more of them, but for masks, which are told cell by cell.
+    /// Sets whether maps of few columns are painted on more of them. Masks are not: their verdicts are per cell.
     pub fn draw_finely(&mut self, is_fine: bool) {
         if self.is_fine != is_fine {
             self.is_fine = is_fine;
@@ -103,14 +103,14 @@ impl Painter {
         picture
     }
 
-    /// Forgets pictures that are out of sight.
+    /// Drops pictures for which `shown` is false.
     pub fn keep(&mut self, shown: impl Fn(MapKind) -> bool) {
         self.cache.retain(|kind, _| shown(*kind));
     }
 }
 
-/// Where the scale of a picture ends: that of a difference at the next of 1, 2, 5, 10 ... that holds all of it, so that its labels are
-/// round and it rests while a reflector is dragged.
+/// End of a picture's scale. For a difference it is the smallest of 1, 2, 5, 10 ... that is not exceeded. Its labels are then round, and it stays while a
+/// reflector is dragged.
 fn end_of(subject: &Subject) -> f32 {
     let round = |most: f32| ENDS.into_iter().find(|end| *end >= most).unwrap_or(1.0);
     if let Paint::Doubt(_) = subject.paint {
@@ -128,7 +128,7 @@ pub fn largest_difference(map: &RangeAngleMap, minus: &RangeAngleMap) -> f32 {
     map.lambda.iter().zip(&minus.lambda).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
 
-/// Where scales end, but for those that end at 1.
+/// Ends of scales below 1.
 const ENDS: [f32; 9] = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 
 /// The colour of every cell.
@@ -149,7 +149,7 @@ fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<
             let mask = theme::mask(dark);
             cells.map(|&v| shown(v, mask[usize::from(v > eta)])).collect()
         }
-        // Ghosts are drawn over it, once the output is judged.
+        // Ghosts are drawn over the picture, once the output is judged.
         (Paint::Detections { eta, dark }, Some(target)) => {
             let verdicts = told_apart(map, target, [eta, TARGET_ETA], &[]);
             let colours = fills(&verdicts.into_raw_vec_and_offset().0, map.dim(), dark);
@@ -171,9 +171,9 @@ fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<
     }
 }
 
-/// Fills of hits, rims, misses and false alarms, and an outline around each patch of them.
+/// Fills of hits, rims, misses and false alarms, and an outline around each patch.
 fn fills(kinds: &[CellVerdict], (rows, columns): (usize, usize), dark: bool) -> Vec<Color32> {
-    // A map of many cells is shrunk on screen: a thinner outline would be lost there.
+    // A map of many cells is shrunk on screen, where a thinner outline would vanish.
     let [wide, high] = [(columns / ON_SCREEN[0]).max(1), (rows / ON_SCREEN[1]).max(1)];
     let mut around = vec![CellVerdict::Nothing; kinds.len()];
     let near = |at: usize, by: usize, end: usize| at.saturating_sub(by)..(at + by + 1).min(end);
@@ -246,7 +246,7 @@ mod tests {
             };
             let painted = painter.paint(&radar, MapKind::OutputAbove, &subject).image.pixels.clone();
             let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
-            // The cell of neither map is beside a hit: the outline of what it touches most telling.
+            // The cell of neither map is beside a hit, so it has the hit's outline.
             let expected = [CellVerdict::Hit.outline(dark)]
                 .into_iter()
                 .chain([CellVerdict::Miss, CellVerdict::Rim, CellVerdict::Hit].map(|kind| kind.fill(dark)));

@@ -10,19 +10,19 @@ use crate::signal::{self, BeatSignal, Floor};
 use crate::task::Task;
 use crate::theory::Phasors as Chain;
 
-/// A cell of what is on screen.
+/// A query of the phasors of one cell.
 #[derive(Clone, PartialEq)]
 pub struct PhasorsQuery {
     source: Source,
     cell: [usize; 2],
-    /// Where a point would have its blob in that cell.
+    /// Place of a point whose blob peaks in the cell.
     place: Place,
     settings: PhasorSettings,
     found: Vec<Reflector>,
 }
 
 impl PhasorsQuery {
-    /// The cell under the cursor, where the map has one.
+    /// The query of the cell under the cursor, where the map has one.
     pub fn of(state: &State, pipeline: &Pipeline) -> Option<Self> {
         let cursor = state.cut_cursor();
         let (bin, column) = cursor.cell(state.radar())?;
@@ -33,17 +33,17 @@ impl PhasorsQuery {
     }
 }
 
-/// The chains of one cell.
+/// Chains of phasors of one cell.
 pub struct PhasorsResult {
     /// Range bin and column.
     pub cell: [usize; 2],
-    /// What the elements contribute.
+    /// Contributions of the elements.
     pub measured: Chain,
-    /// The same without the curvature of the wave from the cell's place.
+    /// The contributions without the curvature of a wave from the cell's place.
     pub focused: Option<Chain>,
-    /// What the echoes alone contribute.
+    /// Contributions of the echoes alone.
     pub echoes: Option<Chain>,
-    /// What the reflectors that the method found leave.
+    /// Contributions left after subtracting the found reflectors.
     pub residual: Option<Chain>,
 }
 
@@ -77,7 +77,7 @@ impl Query for PhasorsQuery {
     }
 }
 
-/// What is left of `chain` without `other`.
+/// The contributions of `chain` minus those of `other`.
 fn less(chain: &Chain, other: &Chain) -> Chain {
     let contributions = chain.contributions.iter().zip(&other.contributions).map(|(a, b)| a - b).collect();
     Chain { first_element: chain.first_element, contributions }

@@ -1,7 +1,7 @@
-//! What to compute, and what came of it: the UI's side of the workers.
+//! The UI's side of the workers of maps and methods: requests and results.
 //!
 //! ```text
-//!   scene, what is shown ──► maps worker (engine, pictures, scores) ──► MapsResult
+//!   scene, panels in sight ──► maps worker (engine, pictures, scores) ──► MapsResult
 //!                               ▲                                          │ ends, target
 //!                               └── pairs of maps ◄── method workers ◄─────┘
 //! ```
@@ -34,21 +34,21 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// Starts the workers; `wake` is called from their threads when there is something to show.
+    /// Starts the workers; `wake` is called from their threads when there is a result to show.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Pipeline {
         let maps = MapsJob::start(wake.clone());
         let methods = [MethodJob::start("reconstruction", wake.clone()), MethodJob::start("second method", wake)];
         Pipeline { maps, methods }
     }
 
-    /// The threshold of either method's output: the user's, or what fits the output on screen, or the method's own.
+    /// The threshold of either method's output: the user's, else the one derived for the output on screen, else the method's own.
     pub fn eta(&self, state: &State, slot: MethodSlot) -> f32 {
         let method = state.method_in(slot).map(|method| method.name());
         let output = self.method(slot).output().filter(|output| Some(output.method) == method);
         state.eta_in(slot, output.and_then(|output| output.eta))
     }
 
-    /// Takes in what the workers made since the last frame. Returns messages for the user.
+    /// Takes in the workers' results since the last frame. Returns messages for the user.
     pub fn poll(&mut self) -> Vec<String> {
         let Pipeline { maps, methods } = self;
         let mut messages = maps.poll(|maps| methods.iter_mut().for_each(|method| method.aim(maps)));
@@ -58,7 +58,7 @@ impl Pipeline {
         messages
     }
 
-    /// Hands over how long the methods took since the last frame.
+    /// Adds the methods' durations since the last frame to `times`.
     pub fn record_times(&mut self, times: &mut MethodTimes) {
         for method in &mut self.methods {
             if let Some((radar, name, took)) = method.take_time() {
@@ -67,7 +67,7 @@ impl Pipeline {
         }
     }
 
-    /// Asks the workers for what the panels of this frame need, if that changed.
+    /// Asks the workers for the values that this frame's panels need, if they changed.
     pub fn ask(&mut self, state: &State, wants: Wants) {
         let pictures = state.pictured();
         let drawn = pictures.iter().any(|kind| kind.slot() == Some(MethodSlot::First)) || state.marks_output();
@@ -89,7 +89,7 @@ impl Pipeline {
         }
     }
 
-    /// The request for the pictures in sight, the outputs that are `read` and what else is wanted.
+    /// The request for the pictures in sight, the outputs that are `read`, and other wanted values.
     fn maps_request(
         &self,
         state: &State,
@@ -121,7 +121,7 @@ impl Pipeline {
             let output = self.method(slot).output().filter(|o| o.radar() == state.radar());
             output.filter(|_| is_read(slot)).map(|o| o.pair.clone())
         };
-        // An empty scene over noise has false alarms to count; one without noise has nothing.
+        // An empty scene over noise has false alarms to count; one without noise has none.
         let is_noise = settings.floor.has_level();
         MapsRequest {
             document: state.editor.document().id(),
@@ -145,11 +145,11 @@ impl Pipeline {
         }
     }
 
-    /// Asks for an output of the latest maps, unless it was asked for just that.
+    /// Asks for a method's output of the latest maps, unless the last request serves.
     fn ask_method(&mut self, state: &State, slot: MethodSlot, listed: bool) {
         let latest = self.maps.result().and_then(|r| {
             let (target, about) = (r.target(), (r.request.at_rest, r.request.document, r.request.source.clone()));
-            // A recording of the two ends has none; a scene has one as soon as it is wanted.
+            // A recording of the two ends has no target; a scene has one as soon as it is wanted.
             (target.is_some() || r.request.source.recording.is_some()).then_some((Basis::of(r)?, target, about))
         });
         let Some(((basis, target, (at_rest, document, source)), method)) =
@@ -161,12 +161,12 @@ impl Pipeline {
         self.methods[slot as usize].ask(request, state.editor.dragged().is_some());
     }
 
-    /// Either method, to be stopped.
+    /// The job of either method, to be stopped.
     pub fn method_mut(&mut self, slot: MethodSlot) -> &mut MethodJob {
         &mut self.methods[slot as usize]
     }
 
-    /// Either method: its latest output, or why it has none.
+    /// The job of either method, with its latest output or the reason why it has none.
     pub fn method(&self, slot: MethodSlot) -> &MethodJob {
         &self.methods[slot as usize]
     }
@@ -176,18 +176,17 @@ impl Pipeline {
         self.method(MethodSlot::First).output()
     }
 
-    /// The latest output of the first method, where it was made for the document that is on screen: what it found in another is nothing
-    /// of this one.
+    /// The latest output of the first method, where it was made for the document on screen. Reflectors found in another document are not shown.
     pub fn output_of(&self, state: &State) -> Option<&MethodResult> {
         self.output().filter(|output| output.document == state.editor.document().id())
     }
 
-    /// Where the first method found something, if that is to be drawn: over a recording always.
+    /// Places of reflectors found by the first method, where they are to be drawn: over a recording always.
     pub fn shown_found(&self, state: &State) -> &[Reflector] {
         self.output_of(state).filter(|_| state.draws_found()).map_or(&[], |output| &output.reflectors)
     }
 
-    /// The scene of the latest maps and its target, where it is one of reflectors and not a recording.
+    /// Source, target and layout of the latest maps; `None` for a recording.
     pub fn truth(&self) -> Option<Truth> {
         let MapsResult { request, frame, .. } = self.maps.result()?;
         let full = frame.full.as_ref().filter(|_| request.source.recording.is_none())?;
@@ -195,13 +194,13 @@ impl Pipeline {
         Some(Truth { source: request.source.clone(), layout, target: (&full.lambda).into(), scale: full.scale })
     }
 
-    /// Why the detector in use finds nothing.
+    /// The reason why the detector in use fails.
     pub fn detector_error(&self) -> Option<&str> {
         self.maps.result()?.detected.error.as_deref()
     }
 
-    /// What says which cells of a method's output are detections: the output and its threshold, or a detector's map and the threshold in the
-    /// middle of its two values; nothing while the detector has not seen the output yet.
+    /// The map and threshold of a method's detections: the output and its threshold, or a detector's map and the middle of its two values. `None` while the
+    /// detector's map of the output is not there.
     pub fn judged(&self, state: &State, slot: MethodSlot) -> Option<(&Arc<RangeAngleMap>, f32)> {
         let output = &self.method(slot).output()?.pair.output;
         let Some(cfar) = state.settings.cfar else { return Some((&**output, self.eta(state, slot))) };
@@ -210,7 +209,7 @@ impl Pipeline {
         Some((result.detected.outputs[slot as usize].as_ref().filter(|_| is_of_it)?, DETECTED))
     }
 
-    /// The maps that can be cut.
+    /// The maps available for cuts.
     pub fn cut_maps(&self) -> Vec<CutMap> {
         let frame = self.maps.result().map(|r| &r.frame);
         let scale = frame.and_then(|f| f.full.as_ref()).map(|m| m.scale);
@@ -228,67 +227,67 @@ impl Pipeline {
         ready.chain(output).collect()
     }
 
-    /// What Lambda of the target on screen spans, decibels.
+    /// Span of the target's Lambda, decibels.
     pub fn range_db(&self) -> Option<f64> {
         let scale = self.maps.result()?.frame.full.as_ref()?.scale;
         Some(scale.decibels())
     }
 
-    /// What the reflectors on screen leave of the recording, where it is in sight.
+    /// The part of the recording that the reflectors on screen leave unexplained, where its map is in sight.
     pub fn unexplained(&self) -> Option<&Unexplained> {
         self.maps.result()?.unexplained.as_ref()?.as_ref().ok()
     }
 
-    /// Why the reflectors can't be fitted to the recording.
+    /// The reason why the reflectors can't be fitted to the recording.
     pub fn why_unexplained(&self) -> Option<&str> {
         self.maps.result()?.unexplained.as_ref()?.as_ref().err().map(String::as_str)
     }
 
-    /// Figures of either method's output, against the target of the same scene.
+    /// Figures of either method's output against the target of the same scene.
     pub fn scores_in(&self, slot: MethodSlot) -> Option<Scores> {
         self.method(slot).output()?;
         self.maps.result()?.scores[slot as usize]
     }
 
-    /// Whether any worker has something to do, or will as soon as the scene rests.
+    /// Whether any worker is busy, or will be as soon as the scene rests.
     pub fn is_busy(&self) -> bool {
         self.maps.is_busy() || self.methods.iter().any(MethodJob::is_busy)
     }
 
-    /// Whether the shown output belongs to something else than the shown maps.
+    /// Whether the shown output belongs to other samples than the shown maps.
     pub fn output_is_outdated(&self) -> bool {
         self.method(MethodSlot::First).outdated().is_some()
     }
 
-    /// Whether a map has belonged to an earlier scene for so long that it must be told.
+    /// Whether a map has belonged to an earlier scene for so long that it must be marked.
     pub fn is_stale(&self, kind: MapKind) -> bool {
         let old = |since: Option<Instant>| since.is_some_and(|t| t.elapsed() > STALE);
         old(self.maps.waiting()) || kind.slot().is_some_and(|slot| old(self.method(slot).outdated()))
     }
 }
 
-/// What panels read of maps and methods, besides the pictures that maps draw.
+/// Values of maps and methods that panels read, besides the pictures of maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wants {
     /// The numbers of every map.
     pub every_map: bool,
     /// The first method's output.
     pub output: bool,
-    /// The second method's.
+    /// The second method's output.
     pub second: bool,
-    /// A list of what was found.
+    /// The list of detections.
     pub listed: bool,
     /// The ROC.
     pub roc: bool,
 }
 
 impl Wants {
-    /// Nothing of all.
+    /// No values.
     pub const NOTHING: Wants = Wants { every_map: false, output: false, second: false, listed: false, roc: false };
     /// The first method's output.
     pub const OUTPUT: Wants = Wants { output: true, ..Wants::NOTHING };
 
-    /// What two panels want together.
+    /// The values of two panels together.
     pub fn and(self, other: Wants) -> Wants {
         Wants {
             every_map: self.every_map || other.every_map,

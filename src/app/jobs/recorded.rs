@@ -1,4 +1,4 @@
-//! A recording in the place of a scene: its maps, and what the reflectors laid over it leave unexplained.
+//! Maps of a recording in place of a scene, and of the part that the drawn reflectors leave unexplained.
 
 use super::memo::Memo;
 use crate::app::shared::Shared;
@@ -14,30 +14,30 @@ use crate::signal::{TwoEnds, apply_responses};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What reflectors leave of a recording.
+/// The part of a recording that reflectors leave unexplained.
 #[derive(Debug, Clone)]
 pub struct Unexplained {
-    /// The map of what is left, in the colours of the recording's own.
+    /// Map of the residual, on the scale of the recording's own map.
     pub map: ReadyMap,
     /// Part of the recording's power that the reflectors explain, 0 to 1.
     pub explained: f64,
 }
 
-/// The maps of one recording, seen by one radar with what is wrong with its elements.
+/// The maps of one recording, for one radar and its errors of elements.
 pub struct RecordedMaps {
-    /// The recording as the radar on screen takes it: with that radar's window and ends.
+    /// The recording with window and ends of the radar on screen.
     seen: Recording,
     ends: Arc<TwoEnds>,
     logs: [Option<LogMap>; 3],
     ready: Memo<Normalisation, [Option<ReadyMap>; 3]>,
-    /// The map of what the last scene leaves and the part that it explains, or why it can't be fitted.
+    /// Map of the last scene's residual and the explained part, or the reason why it can't be fitted.
     left: Memo<Shared<Scene>, Result<(LogMap, f64), String>>,
     shown: Memo<(Shared<Scene>, Normalisation), Result<Unexplained, String>>,
     took: Duration,
 }
 
-/// `recording` as `radar` takes it, which may have another window and, where every element was recorded, other ends; its samples
-/// multiplied with what `elements` do, where something is wrong with them.
+/// `recording` with the window of `radar` and, where every element was recorded, its ends. Where `elements` is not ideal, their responses multiply the
+/// samples.
 pub fn seen_by(recording: &Recording, radar: &Radar, elements: &BuiltArray) -> Recording {
     let mut seen = Recording { radar: radar.clone(), ..recording.clone() };
     if elements.is_ideal() {
@@ -62,7 +62,7 @@ pub fn seen_by(recording: &Recording, radar: &Radar, elements: &BuiltArray) -> R
 }
 
 impl RecordedMaps {
-    /// Transforms `recording`.
+    /// Transforms `recording` for `radar`.
     pub fn new(recording: &Arc<Recording>, radar: &Radar, elements: &BuiltArray) -> Self {
         let start = Instant::now();
         let seen = seen_by(recording, radar, elements);
@@ -79,7 +79,7 @@ impl RecordedMaps {
         }
     }
 
-    /// The maps that are wanted; what did not change since the last call is the same `Arc` as then.
+    /// The wanted maps; unchanged ones are the same `Arc` as in the last call.
     pub fn frame(&mut self, wanted: &MapRequest) -> EngineFrame {
         let start = Instant::now();
         let [first, last, full] = self.ready.of(wanted.normalisation, |normalisation| {
@@ -109,10 +109,10 @@ impl RecordedMaps {
         }
     }
 
-    /// What the reflectors of `scene` leave, in the scale of the recording's own map.
+    /// The residual of `recording` after a fit of the reflectors of `scene`, on the scale of the recording's own map.
     ///
     /// # Errors
-    /// Why they can't be fitted.
+    /// The reason why they can't be fitted.
     pub fn unexplained(&mut self, scene: &Arc<Scene>, normalisation: Normalisation) -> Result<Unexplained, String> {
         let left = self.left.of(scene.into(), |scene| {
             let found = explain(&self.seen, scene).map_err(|e| e.to_string())?;
@@ -129,7 +129,7 @@ impl RecordedMaps {
     }
 }
 
-/// A map of decades on a scale.
+/// Lambda of a map of decades on a scale.
 pub fn ready(log: &LogMap, scale: LambdaScale) -> ReadyMap {
     let lambda = RangeAngleMap { lambda: log.decades().mapv(|v| scale.lambda(v).clamp(0.0, 1.0) as f32) };
     ReadyMap { lambda: Arc::new(lambda), scale }

@@ -1,13 +1,13 @@
-//! When the scene on screen rests: nothing is dragged, and nothing that the samples depend on has changed for a moment.
+//! Detection of a scene at rest: nothing is dragged, and its samples have not changed for a moment.
 
 use super::source::Source;
 use crate::platform::Instant;
 use std::time::Duration;
 
-/// Longer than between two repeats of a held key, so that nudging stays as quick as dragging.
+/// Time without a change until a scene rests. It is longer than the time between two repeats of a held key, so that nudging stays as quick as dragging.
 const QUIET: Duration = Duration::from_millis(100);
 
-/// What was on screen last, and since when.
+/// The last source on screen and the time of its last change.
 #[derive(Default)]
 pub struct Rest {
     last: Option<Still>,
@@ -18,20 +18,20 @@ struct Still {
     since: Instant,
 }
 
-/// Whether the scene rests.
+/// State of motion of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Motion {
-    /// Something of it is held.
+    /// An object is held.
     #[default]
     Held,
-    /// It rests unless something changes within this time.
+    /// The scene rests after this time without a change.
     RestsIn(Duration),
-    /// It rests.
+    /// The scene rests.
     AtRest,
 }
 
 impl Rest {
-    /// Takes note of what is on screen at `now`; `held` while something is dragged.
+    /// Compares `source` with the last one at `now`; `held` while an object is dragged.
     pub fn look(&mut self, source: &Source, held: bool, now: Instant) -> Motion {
         if held {
             self.last = None;
@@ -59,7 +59,7 @@ mod tests {
     use crate::scene::Scene;
     use crate::signal::Floor;
 
-    /// Looks at one of two scenes, this long after the first look.
+    /// A look at one of two scenes, a duration after the first look.
     fn looks() -> impl FnMut(usize, Floor, bool, Duration) -> Motion {
         let scenes = [Scene::default(), Scene::default()].map(Shared::new);
         let (mut rest, start) = (Rest::default(), Instant::now());

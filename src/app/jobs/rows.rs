@@ -1,66 +1,66 @@
-//! Long work that finds one row after another, on a thread of its own: it can be watched and cancelled, and what it found stays.
+//! Long work on a thread of its own that finds one row after another. It can be cancelled, and its rows stay.
 
 use crate::platform;
 use crate::task::{Reply, Task, Worker};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// Why work ended early.
+/// The reason why work ended early.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Stopped {
-    /// It was asked to.
+    /// The user cancelled it.
     Cancelled,
-    /// It can't be done, and why.
+    /// It failed, for this reason.
     Failed(String),
 }
 
-/// What the work tells while it runs.
+/// The way for running work to report rows and progress.
 pub struct Teller<'a, R> {
     rows: Sender<R>,
     wake: &'a (dyn Fn() + Sync),
-    /// Where it reports its progress, and whether it is to stop.
+    /// The task that takes its progress and tells whether to stop.
     pub task: &'a Task,
 }
 
 impl<R> Teller<'_, R> {
-    /// A row is finished.
+    /// Reports a finished row.
     pub fn row(&self, row: R) {
-        // Another run may have begun, and then nothing listens.
+        // Another run may have begun; then the receiver is gone.
         let _superseded = self.rows.send(row);
         (self.wake)();
     }
 
-    /// So much is done, from 0 to 1.
+    /// Reports the finished part, 0 to 1.
     pub fn part(&self, part: f32) {
         self.task.set_progress(part);
         (self.wake)();
     }
 }
 
-/// Long work, and all that it depends on.
+/// Long work and all its inputs.
 pub trait Plan: Send + Sync + 'static {
-    /// What it finds, one after another.
+    /// A row of the result.
     type Row: Send + 'static;
-    /// What the whole run comes to.
+    /// Result of the whole run.
     type End: Send + 'static;
     /// Name of the thread.
     const THREAD: &'static str;
-    /// What fails where it panics, as a sentence begins.
+    /// Subject of the message about a panic, at the beginning of a sentence.
     const WHAT: &'static str;
-    /// What the user may do then.
+    /// The user's remedy after a panic, as a sentence.
     const ADVICE: &'static str;
 
     /// Does the work.
     ///
     /// # Errors
-    /// Why it ended early.
+    /// The reason why it ended early.
     fn run(&self, teller: &Teller<'_, Self::Row>) -> Result<Self::End, Stopped>;
 }
 
-/// A plan to carry out, and where its rows go.
+/// A plan and the channel for its rows.
 type Asked<P> = (Arc<P>, Sender<<P as Plan>::Row>);
 
-/// The worker of one kind of plan, and what it has found so far.
+/// The worker of one kind of plan, and the rows so far.
 pub struct RowJob<P: Plan> {
     worker: Worker<Asked<P>, Result<P::End, Stopped>>,
     plan: Option<Arc<P>>,
@@ -71,7 +71,7 @@ pub struct RowJob<P: Plan> {
 }
 
 impl<P: Plan> RowJob<P> {
-    /// Starts the thread, which waits; `wake` is called from it.
+    /// Starts the thread, idle at first; `wake` is called from it.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Self {
         let each = wake.clone();
         let run =
@@ -82,12 +82,12 @@ impl<P: Plan> RowJob<P> {
                     None => plan.run(&teller),
                 }
             };
-        // Threads of its own: on shared ones the maps would wait for it.
+        // Threads of its own: on shared ones the maps would wait for the work.
         let worker = Worker::spawn(P::THREAD, || platform::pool(P::THREAD), run, wake);
         RowJob { worker, plan: None, arriving: None, rows: Vec::new(), end: None, note: None }
     }
 
-    /// Begins afresh with `plan`.
+    /// Begins a run of `plan` without the earlier rows.
     pub fn begin(&mut self, plan: P) {
         let (rows, arriving) = channel();
         let plan = Arc::new(plan);
@@ -103,37 +103,37 @@ impl<P: Plan> RowJob<P> {
         self.plan.as_deref()
     }
 
-    /// Stops soon; what was found stays.
+    /// Stops soon; finished rows stay.
     pub fn cancel(&mut self) {
         self.worker.cancel();
     }
 
-    /// The part that is done, while it runs.
+    /// Finished part of the run, 0 to 1, while it runs.
     pub fn progress(&self) -> Option<f32> {
         self.worker.is_busy().then(|| self.worker.progress().unwrap_or(0.0))
     }
 
-    /// What was found so far.
+    /// The rows so far.
     pub fn rows(&self) -> &[P::Row] {
         &self.rows
     }
 
-    /// Hands over what was found since the last time; it is not among [`RowJob::rows`] any more.
+    /// Removes and returns the rows since the last call.
     pub fn take_rows(&mut self) -> Vec<P::Row> {
         std::mem::take(&mut self.rows)
     }
 
-    /// What the whole run came to, once it has ended well.
+    /// Result of the whole run, if it ended well.
     pub fn end(&self) -> Option<&P::End> {
         self.end.as_ref()
     }
 
-    /// How the last run ended, if not well.
+    /// The reason why the last run ended early, if it did.
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()
     }
 
-    /// Takes in what is finished. Returns a message for the user.
+    /// Takes in finished work. Returns a message for the user.
     pub fn poll(&mut self) -> Option<String> {
         let mut panicked = None;
         for reply in self.worker.replies() {
@@ -162,7 +162,7 @@ mod tests {
     use crate::platform::Instant;
     use std::time::Duration;
 
-    /// Finds so many rows, and ends in a way of its own.
+    /// A plan with this many rows; 3, 4 and 5 end early in different ways.
     struct Count(u32);
 
     impl Plan for Count {

@@ -4,11 +4,11 @@ use super::rows::{Plan, Stopped, Teller};
 use crate::benchmark::front::{FrontRequest, FrontRow, measure};
 use crate::radar::Radar;
 
-/// What is to be measured.
+/// A measurement of run times and errors.
 pub struct RunTimePlan {
-    /// On which radar.
+    /// Radar of the measured maps.
     pub radar: Radar,
-    /// Whether with many reflectors and repetitions.
+    /// Whether many reflectors and repetitions are measured.
     pub thorough: bool,
 }
 

@@ -1,4 +1,4 @@
-//! The maps of a scene, their pictures and their figures: what the maps worker is asked for, and what it makes.
+//! Requests to the maps' worker and its results: maps of a scene, their pictures and their figures.
 
 use super::detected::{Detected, Detector};
 use super::heard::Heard;
@@ -23,58 +23,57 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// An output and the target it aimed for: figures are always of such a pair, even where the scene has changed since.
+/// An output and its target. Figures always compare such a pair, even where the scene has changed since.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
-    /// Where the samples come from that both are made of.
+    /// The source of both maps' samples.
     pub source: Source,
-    /// The whole array's map; `None` where a recording has the two ends alone.
+    /// Map of the whole array; `None` where a recording has the two ends alone.
     pub target: Option<Shared<RangeAngleMap>>,
-    /// What the method made of the ends of the same scene.
+    /// Output of a method from the ends of the same source.
     pub output: Shared<RangeAngleMap>,
-    /// How far off the method expects that to be, where it says.
+    /// The method's expected error of each cell, where it gives one.
     pub doubt: Option<Shared<RangeAngleMap>>,
 }
 
-/// What the maps worker is asked for.
+/// A request for maps, pictures and figures.
 #[derive(Clone, PartialEq)]
 pub struct MapsRequest {
-    /// Which document all of it is of.
+    /// Id of the document.
     pub document: u64,
-    /// Where the samples come from.
+    /// The source of the samples.
     pub source: Source,
-    /// Which maps, and how.
+    /// The wanted maps, floor and normalisation.
     pub wanted: MapRequest,
-    /// Numbers of the elements that methods hear in place of the two ends, where they do: their map stands in place of the first end's, and there is
-    /// none of the last.
+    /// Numbers of the elements that methods use in place of the two ends. Their map then replaces that of the first end, and there is none of the last.
     pub layout: Option<Vec<usize>>,
-    /// Whether the scene rests: its maps are then those of the command line, bit for bit.
+    /// Whether the scene rests. Its maps are then those of the command line, bit for bit.
     pub at_rest: bool,
-    /// Maps in sight.
+    /// Kinds of the maps in sight.
     pub pictures: BTreeSet<MapKind>,
     /// The latest output of either method, if there is one, with its target.
     pub pairs: [Option<Pair>; 2],
-    /// Colours of Lambda.
+    /// Colour map of Lambda.
     pub colours: ColourMap,
-    /// Coordinates.
+    /// Coordinates of the pictures.
     pub projection: Projection,
     /// Whether inputs, target and output are drawn on one scale.
     pub one_scale: bool,
     /// Whether maps of few elements are drawn on more columns.
     pub fine_columns: bool,
-    /// How the difference is drawn.
+    /// Sign and scale of the difference.
     pub difference: DifferenceView,
     /// Whether the window is dark.
     pub dark: bool,
-    /// eta'.
+    /// The target's threshold eta'.
     pub target_eta: f32,
-    /// eta of either method.
+    /// The threshold eta of either method.
     pub etas: [f32; 2],
-    /// The detector in the place of all three, if one is in use.
+    /// The detector in place of these thresholds, if one is in use.
     pub cfar: Option<Cfar>,
-    /// Whether P_D, P_FA, SE and blobs are looked at.
+    /// Whether P_D, P_FA, SE and blobs are wanted.
     pub scores: bool,
-    /// Whether the ROC is looked at.
+    /// Whether the ROC is wanted.
     pub roc: bool,
 }
 
@@ -89,56 +88,56 @@ pub struct Scores {
     pub output_blobs: usize,
 }
 
-/// What the maps worker made.
+/// Maps, pictures and figures of one request.
 #[derive(Clone)]
 pub struct MapsResult {
-    /// What was asked for.
+    /// The request.
     pub request: MapsRequest,
-    /// The maps.
+    /// The engine's maps of the scene, or those of a recording.
     pub frame: EngineFrame,
-    /// What the elements of the layout hear.
+    /// Samples of the layout's elements, where a layout is in use.
     pub heard: Option<Shared<LayoutSamples>>,
-    /// What the scene leaves of a recording, where it is in sight, or why it can't be fitted.
+    /// The unexplained part of a recording, where its map is in sight, or the reason why it can't be fitted.
     pub unexplained: Option<Result<Unexplained, String>>,
-    /// What a detector finds in them, where one is in use.
+    /// Detections by a detector, where one is in use.
     pub detected: Detected,
-    /// Those that are drawn on one scale, where they are.
+    /// The maps on a common scale, where they are drawn so.
     pub on_one_scale: BTreeMap<MapKind, Rescaled>,
-    /// Their pictures.
+    /// The pictures in sight.
     pub pictures: BTreeMap<MapKind, Picture>,
-    /// Figures of the pairs that were asked about.
+    /// Figures of the requested pairs.
     pub scores: [Option<Scores>; 2],
-    /// P_D against P_FA of the first pair.
+    /// P_D against P_FA of the first method's pair.
     pub roc: Option<Arc<Vec<RocPoint>>>,
     /// Pictures painted since the start.
     pub painted: u64,
-    /// Time of it all.
+    /// Time of the whole request.
     pub took: Duration,
 }
 
-/// What outputs are judged by.
+/// The reference that outputs are judged by.
 #[derive(Clone, PartialEq)]
 pub struct Truth {
-    /// Where its samples come from.
+    /// The source of the samples.
     pub source: Source,
-    /// Numbers of the elements that methods hear in place of the two ends.
+    /// Numbers of the elements that methods use in place of the two ends.
     pub layout: Option<Vec<usize>>,
-    /// What all of its elements see.
+    /// Map of all elements.
     pub target: Shared<RangeAngleMap>,
     pub scale: LambdaScale,
 }
 
 impl MapsResult {
-    /// The map that a method aims for.
+    /// Map of all elements, the target of methods.
     pub fn target(&self) -> Option<Shared<RangeAngleMap>> {
         self.frame.full.as_ref().map(|full| Shared::from(&full.lambda))
     }
 }
 
-/// What scores depend on: target and output, both thresholds, the detector.
+/// Inputs of the scores: the pair, thresholds of target and output, the detector.
 type Scored = (Pair, [f32; 2], Option<Cfar>);
 
-/// State that the maps worker keeps.
+/// State of the maps' worker between requests.
 #[derive(Default)]
 pub struct MapsState {
     engine: Memo<Radar, Engine>,
@@ -147,16 +146,16 @@ pub struct MapsState {
     painter: Painter,
     one_scale: OneScale,
     detector: Detector,
-    /// Of a pair, at the thresholds of target and output or by a detector.
+    /// Scores of either method's pair.
     scores: [Memo<Scored, Scores>; 2],
     roc: Memo<Pair, Arc<Vec<RocPoint>>>,
 }
 
 impl MapsState {
-    /// Does what was asked, and nothing that was done before.
+    /// Answers a request; repeats no computation of an unchanged part.
     ///
     /// # Errors
-    /// Why a scene has no maps, or that `task` was cancelled.
+    /// The reason why a scene has no maps, or that `task` was cancelled.
     pub fn work(&mut self, request: MapsRequest, task: &Task) -> Result<MapsResult, Unfinished> {
         let (mut frame, unexplained) = self.frame(&request, task)?;
         let heard = self.heard(&request, task, &mut frame)?;
@@ -179,7 +178,7 @@ impl MapsState {
             }
         }
         self.painter.keep(|kind| request.pictures.contains(&kind));
-        // What stands in the place of a recording's echoes says nothing of them.
+        // Objects drawn over a recording tell nothing of its echoes.
         let is_silent = request.source.recording.is_none() && request.source.scene.is_silent();
         let mut scores = [None, None];
         for (slot, pair) in request.pairs.iter().enumerate().filter(|_| request.scores) {
@@ -208,7 +207,7 @@ impl MapsState {
         })
     }
 
-    /// The maps of the scene, or of the recording that stands in its place, and what the scene leaves of it.
+    /// The maps of the scene, or of the recording in its place and its unexplained part.
     fn frame(
         &mut self,
         request: &MapsRequest,
@@ -233,7 +232,7 @@ impl MapsState {
         Ok((frame, None))
     }
 
-    /// What the elements of the layout hear, where there is one; their map stands in `frame`.
+    /// Samples of the layout's elements, where there is a layout; their map becomes the first one of `frame`.
     fn heard(
         &mut self,
         request: &MapsRequest,
@@ -257,8 +256,7 @@ impl MapsState {
     }
 }
 
-/// Figures of a pair at the thresholds of target and output, or by what a detector found in them; `None` where there is nothing to compare
-/// the output with.
+/// Figures of a pair at the thresholds of target and output, or by a detector's maps; `None` where there is no target or no detector's map.
 fn scored(
     is_silent: bool,
     pair: &Pair,
@@ -271,7 +269,7 @@ fn scored(
         None => ((&**target, &*pair.output), etas),
         Some(_) => (detected?, [DETECTED; 2]),
     };
-    // What the map of the target shows is what hits and misses are counted against.
+    // Hits and misses are counted against the map that the target's picture shows.
     let truth = if cfar.is_some() { above.0 } else { target };
     let metrics = Metrics::of_echoes(!is_silent, truth, above.1, output_eta);
     Some(Scores {
@@ -281,7 +279,7 @@ fn scored(
     })
 }
 
-/// The largest difference of the other method's output, where both differences are looked at.
+/// Largest difference of the other method's output, where both differences are in sight.
 fn beside(request: &MapsRequest, slot: usize) -> f32 {
     let both = [MapKind::Difference, MapKind::SecondDifference];
     let other = request.pairs[1 - slot].as_ref().filter(|_| both.iter().all(|kind| request.pictures.contains(kind)));
@@ -289,7 +287,7 @@ fn beside(request: &MapsRequest, slot: usize) -> f32 {
     other.filter(|_| !request.difference.whole).and_then(of_pair).unwrap_or(0.0)
 }
 
-/// What the picture of one map shows; `None` where there is no such map.
+/// The maps and colours of one picture; `None` where there is no such map.
 fn subject(
     frame: &EngineFrame,
     unexplained: Option<&Result<Unexplained, String>>,

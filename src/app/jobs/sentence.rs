@@ -1,4 +1,4 @@
-//! What a map shows in one sentence, for screen readers.
+//! A sentence about a map, for screen readers.
 
 use super::subject::{Paint, Subject};
 use crate::app::state::Cursor;
@@ -9,16 +9,16 @@ use crate::picture::CellVerdict;
 use crate::radar::Radar;
 use ndarray::Array2;
 
-/// Most places that a sentence names.
+/// Most peaks that a sentence names.
 const PLACES: usize = 3;
 
-/// How far below the highest cell a peak is still named, Lambda.
+/// Largest distance of a named peak below the highest cell, in Lambda.
 const BELOW: f32 = 0.1;
 
-/// Nearer to a named peak than this part of the map's height and width there is no other.
+/// Least distance between two named peaks, as ratios of the map's height and width.
 const PEAK_DISTANCE_RATIO: [f32; 2] = [1.0 / 32.0, 1.0 / 10.0];
 
-/// Where the peaks of a map are, how many cells are detected, or where a difference is largest.
+/// The peaks of a map, the number of detected cells, or the largest difference, as a sentence.
 pub fn sentence(radar: &Radar, subject: &Subject) -> String {
     let (map, minus) = (&subject.map.lambda, subject.minus.as_ref().map(|m| &m.lambda));
     match (subject.paint, minus) {
@@ -41,7 +41,7 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
     }
 }
 
-/// How large the expected errors are, and where the largest.
+/// The mean of the expected errors and the places of the largest.
 fn doubt(radar: &Radar, map: &Array2<f32>) -> String {
     let mean = map.mean().unwrap_or_default();
     format!("Expected errors of {mean:.3} on average; {}", lowered(&peaks(radar, map)))
@@ -62,7 +62,7 @@ fn place(radar: &Radar, (bin, column): (usize, usize)) -> String {
     format!("{:.1} m, {}°", cursor.range_metres, signed(angle_degrees(cursor.cos_theta), 1))
 }
 
-/// The highest cells, each away from the ones before it, the highest first.
+/// The highest cells from the highest down, each away from the ones before it.
 fn highest(map: &Array2<f32>) -> Vec<(usize, usize)> {
     let (rows, columns) = map.dim();
     let top = map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
@@ -123,7 +123,7 @@ mod tests {
     fn a_map_is_told_by_its_highest_peaks() {
         let radar = Radar::default();
         let bin = radar.bin_of_range(20.0).round() as usize;
-        // The second is the flank of the first, the last too low to be named.
+        // The second peak is the flank of the first, and the last is too low to be named.
         let peaks = map(&[(bin, 512, 1.0), (bin + 1, 514, 0.99), (2 * bin / 3, 700, 0.95), (400, 100, 0.7)]);
         let told = said(Paint::Lambda(ColourMap::Grey), peaks, None);
         assert!(told.starts_with("Peaks, the highest first: 20.0 m, ±0.0°; 13.3 m, +2"), "{told}");

@@ -1,4 +1,4 @@
-//! One map several times, off the UI thread: the latest request wins, and each map is shown as soon as it is there.
+//! One map for several values, off the UI thread. The latest request wins, and each map is shown as soon as it is finished.
 
 use super::painter::Painter;
 use super::subject::{Paint, Subject};
@@ -17,44 +17,44 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
-/// Maps of an earlier request are given up after this, unless something is dragged: then all of them are finished, so that something moves.
+/// Longest time for maps of an earlier request; slower ones are cancelled. During a drag all are finished, so that the user sees the movement.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// What is to be made.
+/// A request for one map with several variants.
 #[derive(Clone, PartialEq)]
 struct Request {
     scene: Shared<Scene>,
     variants: Vec<Variant>,
     map: MapKind,
-    /// What methods hear in place of the two ends.
+    /// The elements that methods use in place of the two ends.
     layout: Option<LayoutKind>,
     normalisation: Normalisation,
     colours: ColourMap,
     projection: Projection,
 }
 
-/// One of the maps, or why there is none.
+/// A map's picture, or the reason why there is none.
 type Made = Result<Arc<ColorImage>, String>;
 
-/// A map that is finished: of which request, for which value, and what it is.
+/// A finished map, with its request and its value.
 struct Arrival {
     request: u64,
     label: String,
     made: Made,
 }
 
-/// One map on screen.
+/// One small map on screen.
 #[derive(Clone)]
 pub struct Small {
-    /// What is different about it.
+    /// Radar, floor and method of the map.
     pub variant: Variant,
-    /// Its picture, the latest there is, or why there is none.
+    /// The latest picture, or the reason why there is none.
     pub made: Option<Made>,
     /// Whether the picture is of the latest request.
     pub is_current: bool,
 }
 
-/// The worker, and the maps on screen.
+/// The worker of small maps, and those on screen.
 pub struct SeveralMaps {
     worker: Worker<(u64, Request), ()>,
     arriving: Receiver<Arrival>,
@@ -64,7 +64,7 @@ pub struct SeveralMaps {
 }
 
 impl SeveralMaps {
-    /// Starts the worker, which waits; `wake` is called from its thread.
+    /// Starts the worker, idle at first; `wake` is called from its thread.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> SeveralMaps {
         let (done, arriving) = channel();
         let each = wake.clone();
@@ -75,7 +75,7 @@ impl SeveralMaps {
         SeveralMaps { worker, arriving, asked: None, shown: Vec::new(), requests: 0 }
     }
 
-    /// Asks for the maps of the panel, if they changed; called while it is on screen.
+    /// Asks for the panel's maps, if they changed and the panel is in sight.
     pub fn ask(&mut self, state: &State) {
         if !state.arrangement.shown().contains(&Panel::Several) {
             return;
@@ -103,7 +103,7 @@ impl SeveralMaps {
         self.asked = Some(request);
     }
 
-    /// Nothing that is shown is taken away before its successor is there, as long as it stands for the same value.
+    /// Sets the shown maps to `variants`. Each keeps its picture until the next one is there, where a map of the same value has one.
     fn keep_pictures(&mut self, variants: &[Variant]) {
         let old = std::mem::take(&mut self.shown);
         let made =
@@ -114,21 +114,21 @@ impl SeveralMaps {
             .collect();
     }
 
-    /// The maps.
+    /// The small maps on screen.
     pub fn shown(&self) -> &[Small] {
         &self.shown
     }
 
-    /// Whether it computes.
+    /// Whether the worker is busy.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }
 
-    /// Takes in what is finished. Returns a message for the user.
+    /// Takes in finished maps. Returns a message for the user.
     pub fn poll(&mut self) -> Option<String> {
         for Arrival { request, label, made } in self.arriving.try_iter() {
             let latest = self.requests == request;
-            // While something is dragged, maps of the last but one request still show the movement.
+            // During a drag, maps of the request before the last still show the movement.
             let of_value = |small: &&mut Small| small.variant.label == label && (latest || !small.is_current);
             if let Some(small) = self.shown.iter_mut().find(of_value) {
                 small.made = Some(made);

@@ -1,4 +1,4 @@
-//! Where the samples on screen come from.
+//! The source of the samples on screen.
 
 use super::memo::Memo;
 use super::recorded::seen_by;
@@ -9,20 +9,20 @@ use crate::recording::Recording;
 use crate::scene::Scene;
 use crate::signal::{self, BeatSignal, Floor};
 
-/// What the samples depend on: two that are equal have the same samples.
+/// All that the samples depend on. Equal sources have equal samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
     pub radar: Radar,
-    /// What stands before it, or is laid over the recording.
+    /// The scene before the radar, or the one drawn over a recording.
     pub scene: Shared<Scene>,
-    /// What was measured in the place of the scene's echoes.
+    /// The recording in place of the scene's echoes.
     pub recording: Option<Shared<Recording>>,
-    /// What lies beneath the echoes of a scene.
+    /// The floor beneath the scene's echoes.
     pub floor: Floor,
 }
 
 impl Source {
-    /// Those on screen.
+    /// The source of the samples on screen.
     pub fn of(state: &State) -> Source {
         Source {
             radar: state.radar().clone(),
@@ -32,7 +32,7 @@ impl Source {
         }
     }
 
-    /// The scene and the floor beneath it, where they are simulated.
+    /// The scene and its floor, where they are simulated.
     ///
     /// # Errors
     /// A sentence for a recording.
@@ -45,7 +45,7 @@ impl Source {
         }
     }
 
-    /// The samples of every element, for what shows every element.
+    /// The samples of every element, for panels that show every element.
     ///
     /// # Errors
     /// As [`Source::signal`].
@@ -56,7 +56,7 @@ impl Source {
     /// The samples of every element.
     ///
     /// # Errors
-    /// Why a scene can't be simulated, or `ends_alone` for a recording of the two ends.
+    /// The reason why a scene can't be simulated, or `ends_alone` for a recording of the two ends.
     pub fn signal(&self, ends_alone: &str) -> Result<BeatSignal, String> {
         let Source { radar, scene, recording, floor } = self;
         match recording {
@@ -69,7 +69,7 @@ impl Source {
     }
 }
 
-/// The samples of the last source: cursor, element and colours are chosen among many of one.
+/// The samples of the last source, kept for other cursors, elements and colours.
 pub type KeptSignal = Memo<Source, BeatSignal>;
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! What a picture shows, and how.
+//! Maps, colours and coordinates of one picture.
 
 use crate::app::shared::Shared;
 use crate::app::state::{DifferenceView, Projection};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
 
-/// How a map is painted.
+/// The way a map is painted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
     /// Lambda in colours.
@@ -17,35 +17,35 @@ pub enum Paint {
         /// Whether the window is dark.
         dark: bool,
     },
-    /// Cells above a threshold, told apart by whether the target has them too: flat fills, each with an outline.
+    /// Cells above a threshold by their verdict against the target: flat fills with an outline around each patch.
     Detections {
         /// The threshold.
         eta: f32,
         /// Whether the window is dark.
         dark: bool,
     },
-    /// Expected errors, from none to the next round number.
+    /// Expected errors, from 0 to the next round number.
     Doubt(ColourMap),
     /// Differences from another map.
     Difference {
-        /// On which scale, with a sign or without.
+        /// Sign and scale of the differences.
         view: DifferenceView,
         /// Colours of differences without a sign.
         colours: ColourMap,
-        /// The largest of another difference that stands beside it: both have one scale.
+        /// Largest difference in the picture beside this one: both have one scale.
         beside: f32,
     },
 }
 
-/// What one picture shows.
+/// The maps, colours and coordinates of one picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
-    /// What is shown.
+    /// The map.
     pub map: Shared<RangeAngleMap>,
     /// Subtracted by [`Paint::Difference`]; the target of [`Paint::Detections`].
     pub minus: Option<Shared<RangeAngleMap>>,
-    /// How.
+    /// Colours and thresholds.
     pub paint: Paint,
-    /// Over which coordinates.
+    /// Coordinates.
     pub projection: Projection,
 }

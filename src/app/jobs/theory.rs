@@ -1,4 +1,4 @@
-//! What the formulas say of one reflector on every map.
+//! Predictions and position bound of one reflector by formulas, drawn over the maps.
 
 use super::bounds::subject;
 use super::derived::{Failure, Query};
@@ -10,14 +10,14 @@ use crate::scene::Reflector;
 use crate::task::Task;
 use crate::theory::{Ellipse, Overlay};
 
-/// What is looked at.
+/// A query of the theory of one reflector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TheoryRequest {
     pub radar: Radar,
-    /// What the reflector is called.
+    /// Name of the reflector.
     pub name: String,
     pub reflector: Reflector,
-    /// Which elements listen for the bound.
+    /// The elements that the bound is computed for.
     pub elements: Elements,
     /// Seed of random elements.
     pub seed: u64,
@@ -25,18 +25,18 @@ pub struct TheoryRequest {
     pub snr: Decibels,
 }
 
-/// What the formulas say.
+/// Predictions and position bound of a reflector.
 pub struct TheoryResult {
-    /// What was asked.
+    /// The query.
     pub request: TheoryRequest,
-    /// On the maps of the first end, of the last and of the whole array; `None` for a reflector without an echo.
+    /// Overlays for the maps of the first end, the last end and the whole array; `None` for a reflector without an echo.
     pub overlays: [Option<Overlay>; 3],
-    /// How well the reflector's place can be known; `None` where it isn't bounded.
+    /// Ellipse of the position bound; `None` where the position isn't bounded.
     pub ellipse: Option<Ellipse>,
 }
 
 impl TheoryRequest {
-    /// The reflector that is drawn over the maps on screen; `None` where none is.
+    /// The query of the reflector drawn over the maps on screen; `None` where none is drawn.
     pub fn of(state: &State) -> Option<Self> {
         let looked_at = state.arrangement.shown().iter().any(|panel| matches!(panel, Panel::Map(_)));
         let (name, reflector) = subject(&state.editor).filter(|_| state.settings.show_theory && looked_at)?;
@@ -69,7 +69,7 @@ impl Query for TheoryRequest {
 mod tests {
     use super::*;
 
-    /// Of a point this far ahead of the array.
+    /// The theory of a point `y_metres` ahead of the array.
     fn found(y_metres: f64) -> TheoryResult {
         let request = TheoryRequest {
             radar: Radar { elements: 64, samples: 32, ..Radar::default() },

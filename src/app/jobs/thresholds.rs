@@ -1,4 +1,4 @@
-//! The threshold at which a method keeps a rate of false alarms, looked for in the background.
+//! Search for the threshold of a method at a given rate of false alarms, in the background.
 
 use super::rows::{Plan, Stopped, Teller};
 use crate::app::state::{State, ThresholdChoice};
@@ -8,25 +8,25 @@ use crate::reconstruct::Reconstructor;
 use crate::scene::generate::Kind;
 use std::sync::Arc;
 
-/// Which method is tried on which scenes.
+/// A search for a threshold, and its method.
 pub struct ThresholdPlan {
     search: ThresholdSearch,
     method: Arc<dyn Reconstructor>,
 }
 
-/// A threshold that was found.
+/// A threshold found by a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeptEta {
     /// Name of the method.
     pub method: &'static str,
-    /// Its threshold.
+    /// The method's threshold.
     pub eta: f32,
-    /// What is known of it, in words.
+    /// Message about the threshold's rates and the scenes it was tried on.
     pub told: String,
 }
 
 impl ThresholdPlan {
-    /// For the method in use, with the radar, floor and normalisation in use; `None` where there is no method.
+    /// The search for the method in use, with the radar, floor and normalisation in use; `None` where there is no method.
     pub fn of(state: &State, choice: ThresholdChoice) -> Option<Self> {
         let ThresholdChoice { false_alarm_percent, kinds, count } = choice;
         let search = ThresholdSearch {
@@ -53,7 +53,7 @@ impl Plan for ThresholdPlan {
     fn run(&self, teller: &Teller<'_, KeptEta>) -> Result<(), Stopped> {
         let ThresholdPlan { search, method } = self;
         let found = search.run(method.as_ref(), teller.task, |part| teller.part(part));
-        // Unlike rows, half a search has found nothing that could stay.
+        // Half a search has found no threshold that could stay.
         let why =
             |cancelled: bool, said: String| if cancelled { "Cancelled; η stays as it is.".to_owned() } else { said };
         let found = found.map_err(|error| Stopped::Failed(why(error.is_cancelled(), error.to_string())))?;
@@ -63,12 +63,12 @@ impl Plan for ThresholdPlan {
     }
 }
 
-/// A threshold to three decimals, as fields show it. Rounded up, it has no more false alarms than before.
+/// A threshold rounded up to three decimals, as fields show it. A higher threshold has no more false alarms.
 fn rounded_up(eta: f32) -> f32 {
     (eta * 1000.0).ceil() / 1000.0
 }
 
-/// What is known of a threshold, and on which condition.
+/// The message about a threshold: its rates, and the scenes it was tried on.
 fn told(search: &ThresholdSearch, method: &str, found: &KeptThreshold) -> String {
     let KeptThreshold { eta, tried } = found;
     let kinds: Vec<String> = search.kinds.iter().map(Kind::to_string).collect();

@@ -1,4 +1,4 @@
-//! A training that is watched: its log, which grows.
+//! The growing log of a training.
 
 use super::derived::{Failure, Query};
 use crate::files::read_bounded;
@@ -13,14 +13,14 @@ pub const LOG_INTERVAL: Duration = Duration::from_secs(1);
 /// Most points of a curve; a longer log is thinned.
 const POINTS: usize = 4000;
 
-/// What a log says.
+/// The curves and the last line of a log.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Log {
-    /// Step and loss.
+    /// Points of step and loss.
     pub loss: Vec<[f64; 2]>,
-    /// Step and smoothed loss, where the log has it.
+    /// Points of step and smoothed loss, where the log has it.
     pub smoothed: Vec<[f64; 2]>,
-    /// Names and values of the last line.
+    /// Names and values of the last line's columns.
     pub last: Vec<(String, String)>,
     /// Last step.
     pub step: f64,
@@ -30,7 +30,7 @@ impl Log {
     /// Reads CSV with a heading that names `step` and `loss`; an unfinished last line is left out.
     ///
     /// # Errors
-    /// What is wrong, with the line.
+    /// The error, with its line.
     pub fn parse(text: &str) -> Result<Log, String> {
         let whole = text.rfind('\n').map_or("", |end| &text[..end]);
         let mut lines = whole.lines();
@@ -67,29 +67,29 @@ impl Log {
     }
 }
 
-/// Longer than the log of any training that ends in a lifetime.
+/// Largest log, bytes: larger than that of any training that ends in a lifetime.
 const MAX_LOG_BYTES: u64 = 256 << 20;
 
 /// A log that is followed.
 pub struct Watched {
-    /// Where it is.
+    /// Path of the log.
     pub path: PathBuf,
     since: Instant,
 }
 
 impl Watched {
-    /// Follows a log from now on.
+    /// Follows the log at `path` from now on.
     pub fn of(path: PathBuf) -> Watched {
         Watched { path, since: Instant::now() }
     }
 
-    /// What it says now.
+    /// The query of the log at this moment.
     pub fn query(&self) -> LogQuery {
         LogQuery { path: self.path.clone(), look: self.since.elapsed().as_secs() / LOG_INTERVAL.as_secs() }
     }
 }
 
-/// A log at one look of many.
+/// A query of a log, with the number of the look.
 #[derive(Clone, PartialEq)]
 pub struct LogQuery {
     path: PathBuf,

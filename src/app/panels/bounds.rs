@@ -1,4 +1,4 @@
-//! What no unbiased estimator can beat: the ambiguity function around a reflector, and the Cramer-Rao bound of its position.
+//! The bounds panel: the ambiguity function around a reflector, and the Cramer-Rao bound of its position.
 
 mod ellipse;
 
@@ -22,19 +22,19 @@ use eframe::egui;
 use eframe::egui::{Grid, Sense, Stroke, TextureOptions, Ui, vec2};
 use ellipse::ellipse;
 
-/// What is chosen, and what came of it.
+/// The chosen settings and the computed bounds.
 pub struct Input<'a> {
-    /// What is looked at.
+    /// Elements, SNR and extent that the user chose.
     pub settings: BoundsSettings,
-    /// Elements of the radar: the most that can be chosen at random.
+    /// Number of elements of the radar, the largest that can be chosen at random.
     pub elements: usize,
     /// Whether there is a reflector ahead of the array.
     pub has_subject: bool,
-    /// What was found last, or why nothing was.
+    /// The latest bounds, or the reason why there are none; `None` before the first result.
     pub result: Option<Result<&'a BoundsResult, &'a str>>,
 }
 
-/// The picture on the graphics card.
+/// Texture of the ambiguity function.
 #[derive(Default)]
 pub struct BoundsMemory {
     texture: Texture,
@@ -102,13 +102,13 @@ fn choices(ui: &mut Ui, settings: &mut BoundsSettings, most: usize) {
         let snr = NumberField::new(&mut settings.snr.0).range(-40.0..=120.0).speed(0.5).suffix(" dB");
         labelled(ui, "SNR", "Of one sample, averaged over the elements", snr);
         let columns = NumberField::new(&mut settings.columns).range(1.0..=512.0).speed(0.2).suffix(" columns");
-        let columns = labelled(ui, "±", "What the picture spans around the reflector", columns);
+        let columns = labelled(ui, "±", "Width of the picture around the reflector", columns);
         let bins = NumberField::new(&mut settings.bins).range(0.5..=64.0).speed(0.1).suffix(" bins");
         ui.add(bins).labelled_by(columns.id);
     });
 }
 
-/// The aperture with the elements that listen.
+/// Draws the aperture with the chosen elements.
 fn strip(ui: &mut Ui, radar: &Radar, layout: &Layout) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 14.0), egui::Sense::hover());
     let half = radar.aperture_metres() / 2.0;
@@ -123,7 +123,7 @@ fn strip(ui: &mut Ui, radar: &Radar, layout: &Layout) {
     response.on_hover_text(format!("{} elements of an aperture of {:.2} m", layout.len(), radar.aperture_metres()));
 }
 
-/// The ambiguity function over columns and metres from the reflector, and what its colours stand for.
+/// Draws the ambiguity function over columns and metres from the reflector, with its colour bar.
 fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
     let BoundsRequest { radar, columns, bins, .. } = &result.request;
     let half = [*columns, bins * radar.range_resolution_metres()];
@@ -146,7 +146,7 @@ fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
     drawn.tell(|[columns, metres]| Some(likeness_at(result, half, columns, metres)));
 }
 
-/// What is told of a place, columns and metres from the reflector.
+/// Text of direction, range and likeness at a place, in columns and metres from the reflector.
 fn likeness_at(result: &BoundsResult, half: [f64; 2], columns: f64, metres: f64) -> String {
     let cell = |v: f64, half: f64, count: usize| {
         let part = (v + half) / (2.0 * half) * (count - 1) as f64;
@@ -161,7 +161,7 @@ fn likeness_at(result: &BoundsResult, half: [f64; 2], columns: f64, metres: f64)
     format!("{}\nrange {range:.3} m{value}", direction(cos, 2))
 }
 
-/// Numbers and ellipse of the Cramer-Rao bound.
+/// Draws numbers and ellipse of the Cramer-Rao bound.
 fn bound(ui: &mut Ui, result: &BoundsResult) {
     let name = &result.request.name;
     let bound = match &result.bound {
@@ -182,7 +182,7 @@ fn bound(ui: &mut Ui, result: &BoundsResult) {
 /// Least width that has room for both bounds, points.
 const BOTH: f32 = 250.0;
 
-/// The standard deviations of both bounds side by side; in a narrow panel the second is told where the pointer rests.
+/// Draws the standard deviations of both bounds side by side; in a narrow panel those of the second are tooltips.
 fn numbers(ui: &mut Ui, bound: &PositionBound, per_end: Option<&PositionBound>, column_cos: f64) {
     let rows = |b: &PositionBound| {
         [
@@ -218,7 +218,7 @@ fn numbers(ui: &mut Ui, bound: &PositionBound, per_end: Option<&PositionBound>, 
     });
 }
 
-/// What the second bound is.
+/// The assumption of the second bound.
 const PER_END: &str =
     "Either half of the elements has an unknown gain of its own: the phase between the ends is not known";
 

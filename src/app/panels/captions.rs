@@ -1,4 +1,4 @@
-//! What maps and scene say of themselves at a first start.
+//! Captions of the maps and of the scene at a first start.
 
 use crate::app::jobs::Pipeline;
 use crate::app::panels::scene::Hint;
@@ -15,7 +15,7 @@ static STREET: LazyLock<Scene> = LazyLock::new(|| presets::default_scene().scene
 /// Index of the post that is to be dragged, in that scene.
 const STREET_POST: usize = 3;
 
-/// What a map shows, in a line; nothing where the box of the theory stands.
+/// The caption of a map in one line; `None` where captions are off or the numbers of the theory are drawn.
 pub fn of_map(state: &State, kind: MapKind) -> Option<String> {
     (state.shows_captions() && !state.settings.show_theory).then(|| {
         let method = state.method_in(kind.slot().unwrap_or(MethodSlot::First)).map_or("the method", |m| m.name());
@@ -25,7 +25,7 @@ pub fn of_map(state: &State, kind: MapKind) -> Option<String> {
 
 fn text(kind: MapKind, radar: &Radar, layout: Option<&LayoutKind>, method: &str) -> String {
     let [first, last] = End::BOTH.map(|end| radar.end_range(end).len());
-    // The middle one of three elements is of both ends.
+    // The middle one of three elements belongs to both ends.
     let (all, ends) = (radar.elements, radar.elements.min(first + last));
     match kind {
         MapKind::Input0 if let Some(layout) = layout => format!("Input 0: the elements of {layout}"),
@@ -38,12 +38,12 @@ fn text(kind: MapKind, radar: &Radar, layout: Option<&LayoutKind>, method: &str)
         MapKind::OutputAbove | MapKind::SecondAbove => "Output > η: what it finds in the output".to_owned(),
         MapKind::Difference | MapKind::SecondDifference => "Difference: output minus target".to_owned(),
         MapKind::Doubt => format!("Doubt: how far off {method} expects to be"),
-        MapKind::Unexplained => "What reflectors leave unexplained of the recording".to_owned(),
+        MapKind::Unexplained => "The part of the recording that reflectors leave unexplained".to_owned(),
     }
 }
 
-/// What to do in the scene: in the street as it opens a post is to be dragged towards the wall, elsewhere any reflector. After the first
-/// drag, what it did.
+/// The hint over the scene. At a first start the task is to drag the post of the street towards the wall, in another scene to drag any
+/// reflector. After the first drag the hint is its result in the maps.
 pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
     let scene = state.editor.scene();
     if state.shows_captions() {
@@ -61,16 +61,16 @@ pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
     Some(Hint { text: text.to_owned(), way: Vec::new() })
 }
 
-/// A dip of this much of Lambda between two blobs is seen.
+/// Least dip of Lambda between two blobs that separates them.
 const SEEN_DIP: f32 = 0.05;
 
-/// Post and wall differ by at most this in range, metres, as long as the post is on its ring.
+/// Largest difference in range between post and wall while the post is on its ring, metres.
 const SAME_RANGE_METRES: f64 = 0.5;
 
-/// What is said where the post was dragged off its ring.
+/// The hint after the post was dragged off its ring.
 const OFF_THE_RING: &str = "Post and wall now differ in range: drag the post along its ring, to the wall's range";
 
-/// What the drag did: whether either input and the target show post and wall apart.
+/// The hint after a drag, from whether input 0, input 1 and the target show post and wall apart.
 fn told([first, last, target]: [bool; 3]) -> &'static str {
     match (first, last, target) {
         (true, true, true) => "Every map still shows post and wall apart: drag on, towards the wall",
@@ -95,8 +95,8 @@ fn hint(scene: &Scene, radar: &Radar, is_recorded: bool) -> Hint {
     }
 }
 
-/// Where the post of the street stands, and the wall at the same range, metres; nothing in another scene, and no places where the post has
-/// left the ranges of the wall.
+/// Places of the street's post and of the wall's reflector nearest in range, (x, y) in metres. `None` in another scene; `Some(None)` where
+/// post and wall differ in range.
 fn post_and_wall(scene: &Scene) -> Option<Option<[[f64; 2]; 2]>> {
     let is_post = |index: usize| index == STREET_POST;
     let same = |(index, (now, then)): (usize, (&Object, &Object))| is_post(index) || now == then;
@@ -111,7 +111,7 @@ fn post_and_wall(scene: &Scene) -> Option<Option<[[f64; 2]; 2]>> {
     Some(Some([post, nearest]).filter(|_| off(&nearest) <= SAME_RANGE_METRES))
 }
 
-/// Places on a ring around the array, from one direction to another.
+/// Places on a ring around the array, from the direction of `from` to that of `to`.
 fn along_the_ring([from, to]: [[f64; 2]; 2]) -> Vec<Place> {
     const STEPS: usize = 48;
     let range = from[0].hypot(from[1]);

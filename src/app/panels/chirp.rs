@@ -1,4 +1,4 @@
-//! A chirp: frequency against time of what is sent and of what returns, the beat as its samples, and the beat's spectrum.
+//! The chirp panel: frequency against time of the sent chirp and of its echoes, the sampled beat, and the beat's spectrum.
 
 mod choices;
 
@@ -17,40 +17,40 @@ use crate::theory::chirp::{BeatTone, ChirpShape, delay_seconds, heard};
 use eframe::egui::{self, Color32, CursorIcon, FontId, Rect, Sense, Stroke, Ui, vec2};
 use egui_plot::{LineStyle, PlotPoints, Points};
 
-/// The part of the chirp that the delay from the farthest range is drawn as, where delays are shorter.
+/// Part of the chirp's duration as which the delay from the maximum range is drawn, where the delay is shorter.
 const DRAWN_DELAY: f64 = 0.25;
 
 /// Most echoes that are drawn.
 const ECHOES: usize = 60;
 
-/// Where the beats of the first objects are drawn, as parts of the time in which they are heard while the chirp is sent.
+/// Places of the dashed beats of the first objects, as parts of the time in which both chirp and echo are present.
 const LABEL_PLACES: [f64; 2] = [0.2, 0.65];
 
 /// Radius of a handle, points.
 const HANDLE: f32 = 5.0;
 
-/// Least and largest bandwidth and carrier that are dragged to, hertz.
+/// Least and largest bandwidth and carrier that dragging reaches, hertz.
 const DRAGGED_BANDWIDTH_HZ: [f64; 2] = [1e6, 2e10];
 const DRAGGED_CARRIER_HZ: [f64; 2] = [1e9, 3e11];
 
 /// Least height of a chart whose axis has its whole title, points.
 const MIN_TITLE_HEIGHT_POINTS: f32 = 170.0;
 
-/// Height in which the charts can be read, points.
+/// Least height in which the charts can be read, points.
 const LEAST_CHARTS_HEIGHT: f32 = 230.0;
 
 /// Decibels that the spectrum spans.
 const SPECTRUM_DB: f64 = 100.0;
 
-/// What is drawn.
+/// The settings and results that the panel draws.
 pub struct Input<'a> {
     pub radar: &'a Radar,
     pub scene: &'a Scene,
-    /// Which element.
+    /// The chosen element.
     pub settings: ChirpSettings,
-    /// Whether a recording stands in the place of the scene: its radar is what it was, and what stood where is unknown.
+    /// Whether a recording takes the place of the scene: its radar is fixed, and the true objects are unknown.
     pub is_recorded: bool,
-    /// The beat, or why there is none; nothing before the first.
+    /// The beat, or the reason why there is none; `None` before the first result.
     pub result: Option<Result<&'a ChirpResult, &'a str>>,
 }
 
@@ -86,7 +86,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     })
 }
 
-/// What is drawn in a panel of a height, points: in a low one the charts are scrolled to.
+/// Draws the contents of a panel `height` points high; a low panel scrolls to its charts.
 fn contents(ui: &mut Ui, input: &Input<'_>, height: f32, asked: &mut Vec<Command>) {
     let top = ui.cursor().top();
     let chirp = ChirpShape::of(input.radar);
@@ -120,7 +120,7 @@ fn contents(ui: &mut Ui, input: &Input<'_>, height: f32, asked: &mut Vec<Command
     }
 }
 
-/// Where the three charts are: beside each other the chirp over its beat, and the spectrum; below each other where there is little width.
+/// Rectangles of the three charts: the chirp over its beat with the spectrum beside them, in a narrow panel all below each other.
 fn parts(area: Rect) -> [Rect; 3] {
     let part = |left: f32, top: f32, right: f32, bottom: f32| {
         let at = |x: f32, y: f32| area.min + vec2(x * area.width(), y * area.height());
@@ -132,7 +132,7 @@ fn parts(area: Rect) -> [Rect; 3] {
     }
 }
 
-/// How many times as long delays are drawn: a chirp lasts far longer than its echoes take to return.
+/// Factor by which delays are drawn longer: a chirp lasts far longer than the delays of its echoes.
 fn stretch(radar: &Radar, chirp: &ChirpShape) -> f64 {
     let longest = delay_seconds(radar.max_range_metres());
     (DRAWN_DELAY * chirp.duration_seconds / longest).max(1.0)
@@ -155,7 +155,7 @@ fn legend(ui: &mut Ui, input: &Input<'_>, stretch: f64) {
     legend::row(ui, &entries);
 }
 
-/// What all three charts are drawn from.
+/// Data of all three charts.
 struct Shown<'a> {
     input: &'a Input<'a>,
     chirp: ChirpShape,
@@ -164,7 +164,7 @@ struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// Frequency above the carrier against time.
+    /// Draws the frequency above the carrier against time.
     fn frequencies(&self, ui: &mut Ui, area: Rect, asked: &mut Vec<Command>) {
         let (chirp, inks) = (self.chirp, Inks::of(ui.visuals()));
         let (microseconds, giga) = (1e6 * chirp.duration_seconds, chirp.bandwidth_hz / 1e9);
@@ -207,7 +207,7 @@ impl Shown<'_> {
         self.handles(ui, &drawn, [microseconds, giga], asked);
     }
 
-    /// The beats of each object in megahertz, above the lines: as many as have room there.
+    /// Writes the beat frequencies of each object in megahertz above the lines, for as many objects as have room.
     fn tell(&self, drawn: &Drawn, beats: &[(usize, [f64; 2])], ink: Color32) {
         let mut at = drawn.rect.left_top() + vec2(6.0, 3.0);
         for (object, [low, high]) in beats {
@@ -224,7 +224,7 @@ impl Shown<'_> {
         }
     }
 
-    /// Both ends of what is sent are dragged: the beginning up and down for the carrier, the end for bandwidth and duration.
+    /// Draws the handles at both ends of the sent chirp: the beginning is dragged up and down for the carrier, the end for bandwidth and duration.
     fn handles(&self, ui: &mut Ui, drawn: &Drawn, [microseconds, giga]: [f64; 2], asked: &mut Vec<Command>) {
         let mut radar = self.input.radar.clone();
         let size = vec2(6.0 * HANDLE, 6.0 * HANDLE);
@@ -260,7 +260,7 @@ impl Shown<'_> {
         choices::set(self.input.radar, radar, asked);
     }
 
-    /// The beat over the chirp, its samples as dots.
+    /// Draws the beat over the time of the chirp, its samples as dots.
     fn beat(&self, ui: &mut Ui, area: Rect, result: &ChirpResult) {
         let inks = Inks::of(ui.visuals());
         let most = result.samples.iter().map(|s| s.norm()).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
@@ -270,7 +270,7 @@ impl Shown<'_> {
         let mut chart = Chart::new("Beat", x, Axis::new(-1.1, 1.1, &title));
         let points = || result.samples.iter().enumerate().map(|(k, s)| [k as f64, s.re / most]);
         chart.line(points(), Stroke::new(1.0, inks.grid_text), LineStyle::Solid);
-        // Where samples stand closer than their dots, dots would be a band.
+        // Dots that overlap would be a band.
         if f64::from(area.width()) > 2.0 * count {
             let dots: PlotPoints<'static> = points().collect();
             chart.add(Points::new("", dots).radius(1.6).color(inks.ends[0]));
@@ -278,7 +278,7 @@ impl Shown<'_> {
         chart.show(ui, area, Sense::hover());
     }
 
-    /// Decibels of every range bin, and where the formulas have each echo.
+    /// Draws the level of every range bin in decibels, and the predicted bin of each echo.
     fn spectrum(&self, ui: &mut Ui, area: Rect, result: &ChirpResult) {
         let inks = Inks::of(ui.visuals());
         let peak = result.spectrum.iter().copied().fold(0.0, f64::max).max(f64::MIN_POSITIVE);

@@ -1,4 +1,4 @@
-//! Two methods on the scene on screen: side by side, or flipped in place.
+//! The panel that compares two methods on the scene on screen: side by side, or flipped in place.
 
 use super::map::{self, MapMemory, caption_of as caption, is_updating, map_input, marks_of, verdict};
 use crate::app::content::{Content, Cx, Nothing, offered};
@@ -12,19 +12,19 @@ use crate::app::widgets::padded::padded;
 use crate::app::widgets::progress::progress;
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 
-/// A map, and what stands above it.
+/// A map and its title.
 pub struct Titled<'a> {
-    /// Whose it is, and how good.
+    /// The method and its figures.
     pub title: String,
     pub map: map::Input<'a>,
 }
 
-/// What is compared.
+/// The compared maps, and the methods to choose from.
 pub struct Input<'a> {
-    /// What was chosen.
+    /// The chosen second method, layout and maps to flip.
     pub compare: &'a Compare,
     pub methods: Offered<'a>,
-    /// Names of the first and of the second.
+    /// Names of the first and of the second method.
     pub chosen: [&'static str; 2],
     /// The maps of [`Compare::maps`].
     pub maps: Vec<Titled<'a>>,
@@ -32,7 +32,7 @@ pub struct Input<'a> {
     pub progress: Option<f32>,
 }
 
-/// Height of what stands above a map, points.
+/// Height of a map's title, points.
 const TITLE: f32 = 18.0;
 
 pub struct ComparePanel;
@@ -68,7 +68,7 @@ impl Content for ComparePanel {
     }
 }
 
-/// What stands above a compared map: whose it is, and how good.
+/// The title of a compared map: method, verdict and figures.
 fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     let method = kind.slot().and_then(|slot| state.method_in(slot)).map_or("", |m| m.name());
     let shown = kind.slot().and_then(|slot| jobs.pipeline.method(slot).of_another_method());
@@ -116,7 +116,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map:
             let (above, below) = place.split_top_bottom_at_y(place.top() + TITLE);
             ui.scope_builder(UiBuilder::new().max_rect(above).id_salt(("title", index)), |ui| {
                 let title = RichText::new(title).size(12.0);
-                // As dim as the map beneath it.
+                // With the opacity of the map below.
                 let title =
                     if is_old { title.color(ui.visuals().weak_text_color().gamma_multiply(0.55)) } else { title };
                 ui.add(Label::new(title).truncate().selectable(false));
@@ -128,7 +128,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map:
     })
 }
 
-/// Two columns of maps, as many rows as it takes.
+/// Rectangles of the maps, in two columns.
 fn grid(area: Rect, count: usize) -> Vec<Rect> {
     let size: Vec2 = vec2(area.width() / 2.0, area.height() / count.div_ceil(2).max(1) as f32);
     let corner = |i: usize| area.min + vec2((i % 2) as f32 * size.x, (i / 2) as f32 * size.y);
@@ -160,7 +160,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             }
         }
         button(ui, "Flip maps", ViewCommand::Flip, true, asked);
-        // Its room is kept: what stands below must not jump when a reconstruction begins.
+        // The room is kept, so that the maps below don't jump when a reconstruction begins.
         let room = vec2(170.0, ui.spacing().interact_size.y);
         ui.allocate_ui(room, |ui| {
             ui.set_min_size(room);
@@ -176,7 +176,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     }
 }
 
-/// A method to choose.
+/// Draws the list of methods.
 fn method(
     ui: &mut Ui,
     label: &str,
@@ -266,7 +266,7 @@ mod tests {
         assert!(panel.query_by_label("Output map").is_none());
     }
 
-    /// The comparison that was asked for last.
+    /// The comparison of the last command.
     fn asked_for(panel: &Harness<'_, Held>) -> Compare {
         match panel.state().asked.last() {
             Some(Command::View(ViewCommand::SetCompare(compare))) => Compare::clone(compare),

@@ -1,4 +1,4 @@
-//! Settings: radar and floor, display, reconstruction with its live figures.
+//! The settings panel: reconstruction with its current figures, maps, and display.
 
 mod choices;
 mod detector;
@@ -27,52 +27,52 @@ use eframe::egui;
 use eframe::egui::{ComboBox, Grid, Slider, SliderClamping, Ui};
 use std::time::Duration;
 
-/// Between one figure and the next, points.
+/// Gap between two figures, points.
 const FIGURES_GAP: f32 = 20.0;
 
-/// What is chosen, and what came of it.
+/// Settings, and the state of the reconstruction.
 pub struct Input<'a> {
-    /// Whether a recording stands in the place of the scene: its floor is its own.
+    /// Whether a recording takes the place of the scene: its floor is fixed.
     pub is_recorded: bool,
-    /// What the user chose.
+    /// The user's settings.
     pub settings: &'a Settings,
     /// The radar, which has the carrier and the window.
     pub radar: &'a Radar,
-    /// The scene's own seed of the noise beneath it.
+    /// Seed of the scene's noise.
     pub noise_seed: u64,
     /// The methods to choose from.
     pub methods: Offered<'a>,
     /// The method in use.
     pub method: Option<&'a dyn Reconstructor>,
     pub eta: f32,
-    /// What the target's Lambda spans, decibels, where that is known.
+    /// Decibels that the target's Lambda spans, where its scale is known.
     pub range_db: Option<f64>,
-    /// What it does.
+    /// State of the reconstruction.
     pub run: Run<'a>,
-    /// What the lesson being taken uses: the rest is not shown.
+    /// Settings that the current lesson uses; the others are hidden.
     pub uses: Uses,
 }
 
-/// How the reconstruction goes.
+/// State of the reconstruction and of the threshold search.
 #[derive(Default)]
 pub struct Run<'a> {
-    /// The part that is done, while it runs.
+    /// Completed part of the reconstruction, 0 to 1, while it runs.
     pub progress: Option<f32>,
-    /// Why there is no output.
+    /// The method's refusal, the reason for a missing output.
     pub refusal: Option<&'a Refusal>,
-    /// The method whose output is shown, and its time.
+    /// The method whose output is shown, and its run time.
     pub output: Option<(&'static str, Duration)>,
     /// Figures of that output against the target of the same scene.
     pub scores: Option<Scores>,
-    /// How many echoes that output has of a recording.
+    /// Text with the number of echoes found, where the output is of a recording.
     pub echoes: Option<String>,
-    /// Whether that scene is an earlier one.
+    /// Whether the output is of an earlier scene or of another method.
     pub outdated: bool,
-    /// Whether a panel shows an output, or would if there were one.
+    /// Whether a visible panel needs an output.
     pub wanted: bool,
-    /// Why the detector in use finds nothing.
+    /// The error of the detector in use.
     pub detector_error: Option<&'a str>,
-    /// How the search for a threshold goes.
+    /// State of the threshold search.
     pub search: Search<'a>,
 }
 
@@ -89,7 +89,7 @@ impl Content for ControlsPanel {
             progress: pipeline.method(MethodSlot::First).progress(),
             refusal: pipeline.method(MethodSlot::First).refusal(),
             output: pipeline.output().map(|o| (o.method, o.took)),
-            // How many blobs there are answers many a question.
+            // Hidden while a question is open: the number of blobs answers many questions.
             scores: map::scores(state, jobs, MethodSlot::First),
             echoes: map::echoes_found(state, jobs, MethodSlot::First),
             outdated: pipeline.output_is_outdated(),
@@ -146,7 +146,7 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, memory: &mut FalseAlarmsMemory
     figures(ui, method, &input.run, asked);
 }
 
-/// What says which cells are detections: thresholds for the whole map, or a detector.
+/// Draws the choice between thresholds for the whole map and a detector, with their fields.
 fn thresholds(
     ui: &mut Ui,
     input: &Input<'_>,
@@ -169,7 +169,7 @@ fn thresholds(
     }
 }
 
-/// The threshold of the method's output.
+/// Draws the threshold of the method's output.
 fn output_eta(ui: &mut Ui, input: &Input<'_>, method: &dyn Reconstructor, asked: &mut Vec<Command>) {
     row(ui, "η", "Cells of the output above this count as detections", |ui| {
         let mut eta = input.eta;
@@ -191,7 +191,7 @@ fn output_eta(ui: &mut Ui, input: &Input<'_>, method: &dyn Reconstructor, asked:
     });
 }
 
-/// The threshold of the target.
+/// Draws the threshold of the target.
 fn target_eta(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
         let mut eta = input.settings.target_eta;
@@ -202,19 +202,19 @@ fn target_eta(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     });
 }
 
-/// A threshold in decibels relative to the target's peak, where these are chosen and known.
+/// Writes a threshold in decibels relative to the target's peak, where decibels are chosen and the scale is known.
 fn in_decibels(ui: &mut Ui, input: &Input<'_>, eta: f32) {
     if let Some(range_db) = input.range_db.filter(|_| input.settings.units == Units::Decibels) {
         ui.weak(with_unit(&level(range_db * (f64::from(eta) - 1.0), range_db)));
     }
 }
 
-/// The new eta, if it is another.
+/// The new eta, if it differs.
 fn moved(before: f32, after: f32) -> Option<f32> {
     (before != after).then_some(after)
 }
 
-/// A slider, and beside it a field called `name` that shows every digit: P_FA is of what is shown.
+/// A slider, and beside it a field called `name` that shows every digit, so that P_FA can be reproduced.
 fn threshold(ui: &mut Ui, name: &str, eta: &mut f32) -> egui::Response {
     let slider = Slider::new(eta, 0.0..=1.0).clamping(SliderClamping::Edits).show_value(false);
     let slider = ui.add(slider);
@@ -225,9 +225,9 @@ fn threshold(ui: &mut Ui, name: &str, eta: &mut f32) -> egui::Response {
     slider
 }
 
-/// P_D, P_FA and SE, or why there are none.
+/// Draws P_D, P_FA and SE, or the reason why there are none.
 fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut Vec<Command>) {
-    // As high with the bar as without: what stands below must not jump when a reconstruction begins.
+    // The height is the same with and without the progress bar, so that the rows below don't jump when a reconstruction begins.
     ui.horizontal(|ui| {
         ui.set_min_height(ui.spacing().interact_size.y);
         if let Some(part) = run.progress {

@@ -1,4 +1,4 @@
-//! What disturbs the scene: another radar, and a wall that mirrors.
+//! The disturbances panel: an interfering radar, and a wall that mirrors.
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
@@ -8,12 +8,11 @@ use crate::radar::Radar;
 use crate::scene::{Disturbances, Interferer, Mirror};
 use eframe::egui::{Grid, Ui};
 
-/// What is shown.
+/// The scene's disturbances, and the radar.
 pub struct Input<'a> {
-    /// What disturbs the scene.
     pub disturbances: &'a Disturbances,
     pub radar: &'a Radar,
-    /// Whether a recording stands in the place of the scene: nothing is added to what was measured.
+    /// Whether a recording takes the place of the scene: no disturbance can be added to it.
     pub is_recorded: bool,
 }
 
@@ -50,7 +49,7 @@ fn percent(name: &'static str, tooltip: &'static str, low: f64, high: f64) -> Qu
     metres(name, tooltip).with(" %", [low, high], 0.5, 4)
 }
 
-/// A row: the name, the number. Percents are parts of 1 in `value`.
+/// Draws a row: name and number. A percentage is a part of 1 in `value`.
 fn number(ui: &mut Ui, quantity: Quantity, value: &mut f64) {
     let scale = if quantity.unit == " %" { 100.0 } else { 1.0 };
     let mut shown = *value * scale;
@@ -140,7 +139,7 @@ mod tests {
         panel.run();
     }
 
-    /// The panel with both switched on.
+    /// The panel with interferer and mirror switched on.
     fn panel_of_both() -> Harness<'static, Disturbances> {
         let mut panel = panel(false);
         ["Interferer", "Mirror"].into_iter().for_each(|label| click(&mut panel, label));

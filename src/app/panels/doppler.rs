@@ -1,4 +1,4 @@
-//! The range-Doppler map: range against radial velocity, the radar's chirps, and the timeline on which the scene plays.
+//! The range-Doppler panel: the map of range against radial velocity, the radar's chirps, and the timeline on which the scene plays.
 
 use super::recording::frame_slider;
 use crate::app::content::{Content, Cx};
@@ -22,7 +22,7 @@ use crate::theory::doppler::{DopplerBlob, folded};
 use eframe::egui::{self, Rect, Sense, Slider, Stroke, TextureOptions, Ui, vec2};
 use egui_plot::{LineStyle, VLine};
 
-/// Chirps that the button of an empty map asks for.
+/// Number of chirps that the button of an empty map sets.
 const FIRST_CHIRPS: usize = 128;
 
 /// Most objects that are marked.
@@ -31,32 +31,32 @@ const MARKS: usize = 200;
 /// Longest interval of chirps that the field takes, microseconds, unless a chirp lasts longer.
 const MOST_INTERVAL_MICROSECONDS: f64 = 1e5;
 
-/// What is drawn.
+/// The map and the settings that the panel draws.
 pub struct Input<'a> {
     pub radar: &'a Radar,
-    /// The scene at the time that is looked at.
+    /// The scene at `seconds`.
     pub scene: &'a Scene,
-    /// That time, seconds.
+    /// Time of the scene, seconds.
     pub seconds: f64,
-    /// Whether time goes on.
+    /// Whether the scene plays.
     pub is_playing: bool,
     /// Whether true objects are marked.
     pub marks: bool,
     /// Colours of maps.
     pub colours: ColourMap,
-    /// What the colours stand for.
+    /// Normalisation of the coloured levels.
     pub normalisation: Normalisation,
-    /// Whether a recording stands in the place of the scene: its chirps are those of the file.
+    /// Whether a recording takes the place of the scene: its file sets the chirps.
     pub is_recorded: bool,
-    /// Which frame of the recording is looked at, and how many it has, where it has several.
+    /// Index of the shown frame of the recording, and the number of frames, where there are several.
     pub frames: Option<[u64; 2]>,
-    /// Whether what stands still is left out of a recording's map.
+    /// Whether static clutter is removed from a recording's map.
     pub static_clutter_out: bool,
-    /// The map, or why there is none; nothing before the first.
+    /// The map, or the reason why there is none; `None` before the first result.
     pub result: Option<Result<&'a DopplerResult, &'a str>>,
 }
 
-/// What the panel keeps from frame to frame.
+/// Texture of the map, kept between frames.
 #[derive(Default)]
 pub struct DopplerMemory {
     texture: Texture,
@@ -113,7 +113,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Co
     })
 }
 
-/// How many chirps, how far apart, and what follows.
+/// Draws the fields of the chirps' number and interval, and the velocities that follow.
 fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let mut radar = input.radar.clone();
     ui.add_enabled_ui(!input.is_recorded, |ui| {
@@ -139,7 +139,7 @@ fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     }
 }
 
-/// What follows from the chirps.
+/// Text of the unambiguous velocity and of the velocity resolution.
 fn follows(radar: &Radar) -> String {
     let most = radar.unambiguous_velocity_metres_per_second();
     match radar.chirps {
@@ -148,7 +148,7 @@ fn follows(radar: &Radar) -> String {
     }
 }
 
-/// Plays the scene and goes to a time.
+/// Draws the time of the scene, and the buttons that play it.
 fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     ui.add_enabled_ui(input.scene.is_moving(), |ui| {
         ui.horizontal_wrapped(|ui| {
@@ -166,7 +166,7 @@ fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     });
 }
 
-/// Plays the frames of a recording and goes to one.
+/// Draws the frames of a recording, and the button that plays them.
 fn frames_played(ui: &mut Ui, input: &Input<'_>, frames: [u64; 2], asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         play(ui, input.is_playing, "Show one frame after another; all maps and methods follow", asked);
@@ -174,12 +174,12 @@ fn frames_played(ui: &mut Ui, input: &Input<'_>, frames: [u64; 2], asked: &mut V
     });
 }
 
-/// Lets time go on, or stops it.
+/// Draws the button that plays or pauses.
 fn play(ui: &mut Ui, is_playing: bool, tip: &str, asked: &mut Vec<Command>) {
     press(ui, if is_playing { "Pause" } else { "Play" }, tip, || ViewCommand::TogglePlay, asked);
 }
 
-/// Why there is no map, or what to know of it.
+/// Writes why there is no map, or a note on the map.
 fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     if input.is_recorded {
         let text = match input.result {
@@ -211,7 +211,7 @@ fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     }
 }
 
-/// Where a map's axes reach: velocities to the edges of the outer columns and a little further, ranges to the edges of the bins.
+/// Limits of a map's axes: velocities in m/s to the edges of the outer columns, ranges in metres to the edges of the bins.
 fn reach(radar: &Radar) -> ([f64; 2], [f64; 2]) {
     let velocity = |column: f64| radar.velocity_of_column_metres_per_second(column);
     let range = |bin: f64| radar.range_of_bin_metres(bin);
@@ -245,7 +245,7 @@ fn map(ui: &mut Ui, input: &Input<'_>, result: &DopplerResult, texture: egui::Te
     drawn.tell(|[velocity, range]| told(result, velocity, range));
 }
 
-/// A ring where the formulas have each object; dashed where its velocity folds.
+/// Draws a ring at the predicted place of each object, dashed where its velocity folds.
 fn marks(ui: &Ui, input: &Input<'_>, drawn: &Drawn, radar: &Radar) {
     for (index, object) in input.scene.objects.iter().take(MARKS).enumerate() {
         let blob = DopplerBlob::of(radar, object);
@@ -263,7 +263,7 @@ fn marks(ui: &Ui, input: &Input<'_>, drawn: &Drawn, radar: &Radar) {
     }
 }
 
-/// What is told of a place: velocity, range and level of its cell.
+/// Text of velocity, range and level of the cell at a place.
 fn told(result: &DopplerResult, velocity: f64, range: f64) -> Option<String> {
     let radar = &result.radar;
     let column = (velocity / radar.velocity_resolution_metres_per_second() + (radar.chirps / 2) as f64).round();

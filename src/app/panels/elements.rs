@@ -1,4 +1,5 @@
-//! Elements: which are heard, and how they are built: a strip to click, numbers to type, a seed to draw from, and calibration on the selected reflector.
+//! The elements panel: the elements that methods use, and the elements' errors: a strip to click, numbers to type, random errors from a seed,
+//! and calibration on the selected reflector.
 
 mod heard;
 mod input;
@@ -20,9 +21,9 @@ use crate::radar::{BuiltArray, Decibels, ElementError, Tolerances};
 use eframe::egui::{Grid, Ui};
 use std::sync::Arc;
 
-/// What the panel remembers.
+/// State of the fields, kept between frames.
 pub struct ElementsMemory {
-    /// The element whose numbers are shown.
+    /// The element whose numbers are drawn.
     chosen: usize,
     tolerances: Tolerances,
     seed: u64,
@@ -77,7 +78,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ElementsMemory) -> Vec<C
     })
 }
 
-/// The array with one element changed.
+/// The command for an array with element `n` changed.
 fn with(input: &Input<'_>, n: usize, change: impl FnOnce(&mut ElementError)) -> Command {
     let mut elements = input.elements.elements.clone();
     elements.resize(input.radar.elements, ElementError::default());
@@ -100,7 +101,7 @@ fn summary(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     });
 }
 
-/// What an array is off by.
+/// Text of an array's errors: dead elements, and the spread of gain, phase and place.
 fn told(elements: &BuiltArray) -> String {
     let Tolerances { gain, phase_degrees, position_millimetres } = elements.spread();
     let dead = match elements.dead() {
@@ -117,7 +118,7 @@ fn told(elements: &BuiltArray) -> String {
     )
 }
 
-/// Why what was drawn differs from what was asked for.
+/// Tooltip of the spread, with its usual random difference from the chosen standard deviation.
 fn spread_tooltip(living: usize) -> String {
     let percent = 100.0 / (2.0 * living.max(1) as f64).sqrt();
     format!(
@@ -126,7 +127,7 @@ fn spread_tooltip(living: usize) -> String {
     )
 }
 
-/// A number that is typed or dragged; what the focus only passes through keeps its decimals.
+/// A number field for typing or dragging. Returns the new number after an edit; focus alone keeps all decimals.
 fn number(ui: &mut Ui, name: &str, unit: &str, value: f64, most: f64, speed: f64) -> Option<f64> {
     let mut edited = value;
     let drag = NumberField::new(&mut edited).range(-most..=most).clamp_existing_to_range(false);
@@ -134,7 +135,7 @@ fn number(ui: &mut Ui, name: &str, unit: &str, value: f64, most: f64, speed: f64
     (changed && (edited - value).abs() >= 0.5e-3).then_some(edited)
 }
 
-/// Numbers of the chosen element.
+/// Draws the fields of the chosen element.
 fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
     let n = memory.chosen;
     let error = input.elements.element(n);
@@ -160,7 +161,7 @@ fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut ElementsMemory, asked: &mut 
     });
 }
 
-/// Errors of all elements at once, from a seed.
+/// Draws the fields of random errors for all elements, from a seed.
 fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let Tolerances { gain, phase_degrees, position_millimetres } = &mut memory.tolerances;
@@ -199,7 +200,7 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         let unexplained = format!("{:.1} % of the power comes from elsewhere", 100.0 * found.calibration.unexplained);
         let rows = [
             ("found", told(&found.calibration.array), "Gain and phase that the reflector's echo tells of each element"),
-            ("left", told(&found.left), "What is wrong with the elements once that is taken off: places can't be"),
+            ("left", told(&found.left), "Errors of the elements that stay once that is taken off: places can't be"),
             ("residual", unexplained, "Other reflectors, noise, and errors that are no gain and no phase"),
         ];
         for (name, text, tooltip) in rows {

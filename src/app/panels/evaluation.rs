@@ -1,4 +1,4 @@
-//! Methods on the tables' test scenes, beside what the thesis prints.
+//! The evaluation panel: methods on the test sets of the tables, beside the figures that the thesis prints.
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{EvaluationRow, Memo, evaluated};
@@ -11,27 +11,27 @@ use crate::radar::{Radar, counted};
 use crate::scene::generate::Kind;
 use eframe::egui::{Grid, Ui};
 
-/// The printed columns with their names.
+/// The printed columns with their headings.
 const PRINTED: [(&str, [Printed; 3]); 3] = [
     ("thesis: baseline", PRINTED_BASELINE),
     ("thesis: exp. 1", PRINTED_EXPERIMENT_1),
     ("thesis: exp. 2", PRINTED_EXPERIMENT_2),
 ];
 
-/// What the test sets hold.
+/// Contents of the test sets.
 const SETS: [&str; 3] = ["one point", "3 to 6 points", "points and lines"];
 
-/// What was found, and what can be tried.
+/// The summarised rows, and the state of the current run.
 pub struct Input<'a> {
     /// The method in use, which can be tried on the test sets from here.
     pub method: Option<&'static str>,
-    /// The radar of what was found, or else of what would be.
+    /// Radar of the rows, or of the next run where there are no rows.
     pub radar: &'a Radar,
-    /// The part that is done, while methods are tried.
+    /// Completed part of the run, 0 to 1, while methods are tried.
     pub progress: Option<f32>,
-    /// What the rows come to.
+    /// Figures of each method on each test set.
     pub rows: &'a [EvaluationRow],
-    /// How the last run ended, if not well.
+    /// Message of the last run, where it did not succeed.
     pub note: Option<&'a str>,
 }
 
@@ -42,7 +42,7 @@ pub struct EvaluationPanel;
 
 impl Content for EvaluationPanel {
     type Asks = Nothing;
-    /// What the rows of this version come to.
+    /// The summary of the rows, kept for one version of them.
     type Remembers = Memo<u64, Vec<EvaluationRow>>;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
@@ -73,7 +73,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     })
 }
 
-/// How the radar differs from the one that the printed figures are of.
+/// Sentence on the radar's difference from that of the printed figures; `None` where both are the same.
 fn unlike_the_thesis(radar: &Radar) -> Option<String> {
     let thesis = Radar::default();
     let what = match radar {
@@ -163,7 +163,7 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
     }
 }
 
-/// A method's name, its threshold, and the optimisers of its weights.
+/// Text of a method's name, its threshold, and the optimisers of its weights.
 fn label(row: &EvaluationRow) -> String {
     let eta = if row.one_eta { eta_text(row.eta) } else { format!("{:.4}, mean", row.eta) };
     let optimiser =
@@ -171,7 +171,7 @@ fn label(row: &EvaluationRow) -> String {
     format!("{}\nη = {eta}{optimiser}", row.method)
 }
 
-/// A mean, and beneath it its standard error and the median: beside it there would be no room for the other columns.
+/// Text of a mean, with its standard error and the median in lines of their own, which keeps the column narrow.
 fn with_error(Estimate { mean, standard_error, median }: Estimate, scale: f64, digits: usize) -> String {
     let [mean, standard_error, median] = [mean, standard_error, median].map(|v| format!("{:.digits$}", scale * v));
     format!("{mean}\n± {standard_error}\n({median})")

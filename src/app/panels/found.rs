@@ -1,4 +1,4 @@
-//! What the method found, as a list: angle, range, strength.
+//! The found panel: the method's echoes as a list of angle, range and strength.
 
 mod attempts;
 
@@ -16,30 +16,30 @@ use eframe::egui::{Align, Grid, Layout, ScrollArea, Ui};
 /// Most lines that are shown.
 const LINES: usize = 200;
 
-/// How strong a list is drawn that belongs to an earlier scene.
+/// Opacity of a list that belongs to an earlier scene.
 const OLD_OPACITY: f32 = 0.45;
 
-/// What the last column says.
+/// Tooltip of the last column.
 const NEEDED: &str = "How far the samples need this echo: of the energy around its range that the other echoes leave unexplained, the part \
     that it explains. Low: the other echoes, noise or side lobes would do without it. – where the method does not say";
 
-/// What is listed.
+/// The list of echoes, and the state of the method.
 pub struct Input<'a> {
-    /// The method in use, where it draws a map and finds nothing that could be listed.
+    /// Name of the method in use, where it draws a map and lists no echoes.
     pub draws_only: Option<&'static str>,
     /// The method whose output is shown.
     pub method: Option<&'static str>,
-    /// What it found, the strongest first; `None` until the list is there.
+    /// The found echoes, the strongest first; `None` until the list is computed.
     pub found: Option<&'a [Detection]>,
-    /// What the method tried, the first first.
+    /// Attempts of the method's search, in their order.
     pub attempts: &'a [Attempt],
     /// The objects of the scene on screen.
     pub objects: &'a [Object],
-    /// Why there is no output.
+    /// The method's refusal, the reason for a missing output.
     pub refusal: Option<&'a str>,
-    /// Whether it is of an earlier scene, and has been for long enough to be told.
+    /// Whether the list has belonged to an earlier scene for so long that the panel says so.
     pub stale: bool,
-    /// Whether a range was measured: one sample tells none.
+    /// Whether the echoes have ranges; a single sample measures none.
     pub has_ranges: bool,
 }
 

@@ -1,4 +1,4 @@
-//! A guide: what the maps show and why, each paragraph with a button that sets it up.
+//! The guide panel: chapters on the maps, with buttons that set up their examples.
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{
@@ -16,13 +16,13 @@ use egui_commonmark::{CommonMarkCache, CommonMarkViewer};
 /// The text: chapters that begin with a heading, in the order of [`CHAPTERS`].
 const TEXT: &str = include_str!("../../../assets/guide.md");
 
-/// Something to try: what the button says and what it does.
+/// A button: its label and its commands.
 struct Step {
     label: &'static str,
     commands: fn() -> Vec<Command>,
 }
 
-/// The buttons beneath each chapter of the text.
+/// The buttons below each chapter of the text.
 const CHAPTERS: &[&[Step]] = &[
     &[Step { label: "Open the street", commands: || scene("street", thesis()) }],
     &[
@@ -105,16 +105,16 @@ const CHAPTERS: &[&[Step]] = &[
     ],
 ];
 
-/// Opens a preset, then does the rest.
+/// Commands that open a preset, followed by `then`.
 fn scene(id: &str, then: Vec<Command>) -> Vec<Command> {
     let Some(index) = presets::ALL.iter().position(|p| p.id == id) else { return then };
-    // A chapter speaks of the default radar, whichever is on screen.
+    // The chapters describe the default radar.
     let radar = (!presets::ALL[index].has_radar()).then(|| Command::Radar(RadarCommand::Set(Box::default())));
     let preset = Command::Document(DocumentCommand::Preset(index));
     [preset].into_iter().chain(radar).chain(then).collect()
 }
 
-/// A scene on which a method fails, its output in sight and marked.
+/// Commands for a scene on which a method fails, with its output in sight and the kinds of failure marked.
 fn failure(which: &str, method: &'static str) -> Vec<Command> {
     let mut then = thesis();
     then.extend(output_by(method));
@@ -122,7 +122,7 @@ fn failure(which: &str, method: &'static str) -> Vec<Command> {
     scene(&format!("failure-{which}"), then)
 }
 
-/// A method, its map in sight.
+/// Commands that choose a method and open its map.
 fn output_by(method: &'static str) -> Vec<Command> {
     vec![
         Command::Window(WindowCommand::OpenPanel(Panel::Map(MapKind::Output))),
@@ -130,7 +130,7 @@ fn output_by(method: &'static str) -> Vec<Command> {
     ]
 }
 
-/// The thesis' conventions.
+/// Commands that set the thesis' conventions.
 fn thesis() -> Vec<Command> {
     vec![
         Command::View(ViewCommand::SetFloor(Floor::Thesis)),
@@ -140,13 +140,13 @@ fn thesis() -> Vec<Command> {
     ]
 }
 
-/// The true reflectors over the maps besides.
+/// `then`, followed by the command that marks the true reflectors in the maps.
 fn rings(mut then: Vec<Command>) -> Vec<Command> {
     then.push(ViewCommand::MarkReflectors.into());
     then
 }
 
-/// A window without a floor, so that its side lobes are all there is to see.
+/// Commands for a window without a floor, so that its side lobes are all there is to see.
 fn window(window: WindowFunction) -> Vec<Command> {
     vec![
         Command::View(ViewCommand::SetFloor(Floor::Exact)),
@@ -172,16 +172,15 @@ fn chapters() -> impl Iterator<Item = &'static str> {
     })
 }
 
-/// What a chapter is about: its heading.
 fn heading(chapter: &str) -> &str {
     chapter.lines().next().unwrap_or_default().trim_start_matches('#').trim()
 }
 
-/// What the guide remembers from frame to frame.
+/// State of the guide, kept between frames.
 #[derive(Default)]
 pub struct GuideMemory {
     cache: CommonMarkCache,
-    /// The chapter that is open, from 0.
+    /// Index of the open chapter.
     open: usize,
 }
 
@@ -196,13 +195,13 @@ impl Content for GuidePanel {
     }
 }
 
-/// Draws the panel: one chapter, and the way to the others.
+/// Draws the panel: one chapter, and the buttons to the others.
 pub fn show(ui: &mut Ui, memory: &mut GuideMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         turn(ui, &mut memory.open);
         ui.separator();
         let Some((chapter, steps)) = chapters().zip(CHAPTERS).nth(memory.open) else { return };
-        // Each chapter begins at its top, and is found again where it was left.
+        // Each chapter keeps its own scroll position.
         let area = ScrollArea::vertical().id_salt(("chapter", memory.open)).auto_shrink([false, false]);
         area.show(ui, |ui| {
             ui.set_max_width(ui.available_width().min(620.0));
@@ -219,7 +218,7 @@ pub fn show(ui: &mut Ui, memory: &mut GuideMemory) -> Vec<Command> {
     })
 }
 
-/// Previous, contents, next.
+/// Draws the buttons Previous, Next and Contents.
 fn turn(ui: &mut Ui, open: &mut usize) {
     let last = CHAPTERS.len().saturating_sub(1);
     *open = (*open).min(last);

@@ -1,4 +1,4 @@
-//! Numbers of what is selected, with units: of one object, or those that several have in common.
+//! The inspector panel: the numbers of a selected object with their units, or those that several selected objects share.
 
 mod look;
 mod number;
@@ -17,14 +17,14 @@ use eframe::egui;
 use eframe::egui::{Grid, TextEdit, Ui};
 use number::number;
 
-/// What the numbers are of, and turned into.
+/// The selected objects, and how their numbers are shown.
 pub struct Input<'a> {
-    /// The scene, and what of it is selected.
+    /// The scene with its selection.
     pub editor: &'a Editor,
     pub radar: &'a Radar,
-    /// In which numbers places are told.
+    /// Coordinates in which places are shown.
     pub coordinates: Coordinates,
-    /// What a point of the scene's canvas covers: lengths are told as exactly as that.
+    /// Length in the scene that a point of the canvas covers; shown lengths are rounded to it.
     pub metres_per_point: f64,
 }
 
@@ -61,7 +61,7 @@ fn nothing(ui: &mut Ui, scene: &Scene, asked: &mut Vec<Command>) {
     ui.weak("Click an object to see and edit its numbers; drag a box around several.");
 }
 
-/// What the scene, or the recording under it, is called and meant to show.
+/// Draws the name and the notes of the scene, or of the recording under it.
 fn named(ui: &mut Ui, scene: &Scene) {
     if !scene.name.is_empty() {
         ui.strong(&scene.name);
@@ -85,7 +85,7 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         }
         toggle(ui, coordinates, asked);
     });
-    // Another selection has fields of its own: what is typed into one is never taken for another's.
+    // Another selection has fields of its own: text typed for one is never taken for the other.
     ui.push_id((editor.selection().latest(), editor.selection().len()), |ui| {
         Grid::new("numbers").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
             for shared in editor.shared_fields(coordinates) {
@@ -103,7 +103,7 @@ fn selected(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     });
 }
 
-/// The object's name, to be typed; its kind and number stand there while it has none.
+/// Draws the field of the object's name, with kind and number as its hint.
 fn title(ui: &mut Ui, object: &Object, index: usize, asked: &mut Vec<Command>) {
     let (mut name, kind) = (object.name().to_owned(), format!("{} {}", capital(object.noun()), index + 1));
     let hint = egui::RichText::new(&kind).strong();
@@ -128,7 +128,7 @@ fn toggle(ui: &mut Ui, shown: Coordinates, asked: &mut Vec<Command>) {
     });
 }
 
-/// Where the maps show an object, and what is odd about it.
+/// Writes an object's place in the other coordinates with its bin and column, and a warning where the maps show it elsewhere.
 fn seen(ui: &mut Ui, radar: &Radar, [x, y]: [f64; 2], coordinates: Coordinates) {
     let polar = radar.polar_of(x, y);
     let blob = radar.blob_of(0.0, x, y);
@@ -170,7 +170,7 @@ mod tests {
         asked: Vec<Command>,
     }
 
-    /// The panel, and an editor that does what it asks for.
+    /// The panel, with an editor that executes its commands.
     fn panel(editor: Editor, coordinates: Coordinates) -> Harness<'static, Held> {
         let draw = |ui: &mut Ui, held: &mut Held| {
             let input = Input {
@@ -239,7 +239,7 @@ mod tests {
 
     const THREE: [[f64; 2]; 3] = [[1.0, 10.0], [2.0, 12.0], [3.0, 12.0]];
 
-    /// All three selected.
+    /// The panel with all three points selected.
     fn panel_of_three() -> Harness<'static, Held> {
         let inspector = panel(of(&THREE.map(|[x, y]| (x, y))), Coordinates::Cartesian);
         assert!(inspector.query_by_label("3 objects").is_some());

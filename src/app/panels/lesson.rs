@@ -1,4 +1,4 @@
-//! Lessons: predict first, then look, then change something until a condition holds.
+//! The lesson panel: predict first, then look, then change something until a condition holds.
 
 mod answer;
 mod challenge;
@@ -19,15 +19,15 @@ use large::{LARGE_TEXT_RATIO, large};
 use list::list;
 pub use memory::LessonMemory;
 
-/// What is shown.
+/// The lesson, the learner's progress and the map to reproduce.
 pub struct Input<'a> {
-    /// The lesson being taken; the list of lessons without.
+    /// The running lesson; `None` for the list of lessons.
     pub run: Option<&'a LessonRun>,
-    /// What the learner did so far.
+    /// The learner's progress in all lessons.
     pub progress: &'a Progress,
-    /// The map that is to be explained, where the step hides something.
+    /// Texture of the map to reproduce, where a challenge hides its scene.
     pub hidden: Option<TextureId>,
-    /// Whether lessons have the whole screen.
+    /// Whether the lesson has the whole screen.
     pub presenting: bool,
 }
 
@@ -53,7 +53,7 @@ impl Content for LessonPanel {
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut LessonMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     if input.presenting {
-        // Read from the last row of a lecture hall, as long as there is room.
+        // Larger text for the last row of a lecture hall, as far as there is room.
         let times = (ui.available_height() / PROJECTED_HEIGHT).clamp(1.0, 1.4);
         ui.style_mut().text_styles.values_mut().for_each(|font| font.size *= times);
     }
@@ -93,26 +93,26 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut LessonMemory) -> Vec<Com
     asked
 }
 
-/// The question at the foot of the panel, in view however long the text above is.
+/// Draws the question at the foot of the panel, in view for any length of the text above.
 fn pinned_question(ui: &mut Ui, run: &LessonRun, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
     let Some(question) = run.current().and_then(|step| step.predict.as_ref()) else { return };
     let most = MOST_OF_HEIGHT * ui.available_height();
     let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 6));
     egui::Panel::bottom("question").frame(frame).show(ui, |ui| {
-        // As high as the question: what remains is for the text above.
+        // The height is that of the question, so that the rest is left for the text above.
         let scroll = ScrollArea::vertical().max_height(most).min_scrolled_height(most).auto_shrink([false, true]);
         scroll.show(ui, |ui| {
             ui.label(large(ui, &question.ask).strong());
-            // In rows, for the text's sake.
+            // In rows, which leaves more height for the text.
             ui.horizontal_wrapped(|ui| answer(ui, question, memory, asked));
         });
     });
 }
 
-/// The most of the panel's height that a question takes which is kept in view.
+/// Largest part of the panel's height that the pinned question takes.
 const MOST_OF_HEIGHT: f32 = 0.7;
 
-/// Height of the panel for each time that its text is enlarged on the whole screen, points.
+/// Height of the panel on the whole screen for which text has its usual size, points; text grows with the height.
 const PROJECTED_HEIGHT: f32 = 380.0;
 
 fn step(
@@ -150,7 +150,7 @@ fn step(
     }
 }
 
-/// The way through the lesson: always in sight, however long the text is.
+/// Draws the buttons that lead through the lesson, in sight for any length of the text.
 fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         if ui.add_enabled(run.step > 0, egui::Button::new("Previous")).clicked() {
@@ -162,14 +162,14 @@ fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command
         }
         let leave = if is_last { "Finish" } else { "Exit lesson" };
         press(ui, leave, "Your scene, settings, panels and zoom come back", || LessonCommand::Leave, asked);
-        // The bar at the top ends a presentation.
+        // In a presentation the button is in the bar at the top.
         if !presenting {
             whole_screen(ui, presenting, asked);
         }
     });
 }
 
-/// For a projector.
+/// Draws the button of the whole screen, for a projector.
 fn whole_screen(ui: &mut Ui, presenting: bool, asked: &mut Vec<Command>) {
     let label = if presenting { "Back to the window" } else { "Whole screen" };
     button(ui, label, LessonCommand::Present, true, asked);

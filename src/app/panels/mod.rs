@@ -1,4 +1,4 @@
-//! The panels, one a file: each a function of what it shows, which answers with what was asked for.
+//! The panels, one a file: each draws its input and returns commands.
 
 pub mod bounds;
 mod captions;

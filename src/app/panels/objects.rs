@@ -1,4 +1,4 @@
-//! The list of the scene's objects: what each is, where it stands, how strongly it reflects; a click selects it.
+//! The objects panel: a list of the scene's objects, with place and reflectivity. A click selects an object.
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand};
@@ -11,21 +11,20 @@ use eframe::egui::{
     Align2, EventFilter, FontId, Key, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
 };
 
-/// What is listed.
+/// The scene, its selection, and the coordinates of places.
 pub struct Input<'a> {
     pub scene: &'a Scene,
-    /// What of it is selected.
     pub selection: &'a Selection,
-    /// In which numbers places are told.
+    /// Coordinates in which places are shown.
     pub coordinates: Coordinates,
 }
 
-/// What the list remembers from frame to frame.
+/// State of the list, kept between frames.
 #[derive(Default)]
 pub struct ObjectsMemory {
-    /// The object that was picked last, when it was last drawn.
+    /// The object that was selected last, at the last drawing.
     latest: Option<usize>,
-    /// Whether a row was clicked, so that the list is to have the keys.
+    /// Whether a row was clicked, so that the list takes the keyboard focus.
     was_clicked: bool,
 }
 
@@ -67,7 +66,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ObjectsMemory) -> Vec<Co
     asked
 }
 
-/// Arrow keys walk along the list, with shift they take along what lies between.
+/// Handles the arrow keys: an arrow selects the next object, with Shift the objects between, too.
 fn keys(ui: &Ui, list: &Response, input: &Input<'_>) -> Option<Command> {
     let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|m| m.set_focus_lock_filter(list.id, filter));
@@ -96,7 +95,7 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>) -> Option<Command> {
     })
 }
 
-/// Where the columns end, as parts of the width, and what is in them.
+/// Right ends of the columns, as parts of the width.
 const COLUMNS: [f32; 4] = [0.34, 0.56, 0.78, 1.0];
 
 fn place_fields(coordinates: Coordinates) -> [(Field, &'static str); 2] {
@@ -118,7 +117,7 @@ fn heading(ui: &mut Ui, coordinates: Coordinates) {
     );
 }
 
-/// The first cell from the left, numbers from the right.
+/// Draws the cells of a row, the first aligned to the left, the numbers to the right.
 fn cells(ui: &Ui, rect: Rect, texts: [String; 4], ink: egui::Color32) {
     for (column, text) in texts.into_iter().enumerate() {
         let (at, align) = match column {
@@ -136,7 +135,7 @@ fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut ObjectsMemory, asked: &mut 
     if latest != memory.latest
         && let Some(row) = latest
     {
-        // What was selected elsewhere comes into sight, where it isn't.
+        // An object that was selected elsewhere is scrolled into sight.
         if let Some(window) = ui.data(|d| d.get_temp::<Window>(list_window(ui))) {
             area = bring_in_sight(area, row, ROW_HEIGHT, window);
         }
@@ -159,7 +158,7 @@ fn list_window(ui: &Ui) -> egui::Id {
     ui.scope_id().with("rows in sight")
 }
 
-/// Draws a row; how its object is to be selected, if it was clicked.
+/// Draws a row. Returns the mode of selection, if it was clicked.
 fn row(ui: &mut Ui, input: &Input<'_>, index: usize, object: &Object) -> Option<SelectionMode> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::CLICK);
     let selected = input.selection.contains(index);

@@ -1,4 +1,4 @@
-//! Phasors: what every element contributes to the cell under the cursor, added head to tail in the complex plane.
+//! The phasors panel: the contribution of every element to the cell under the cursor, added head to tail in the complex plane.
 
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::PhasorsResult;
@@ -18,29 +18,29 @@ use eframe::egui::{self, Color32, Sense, Slider, Stroke, Ui, emath::Rot2};
 use egui_plot::LineStyle;
 use num_complex::Complex64;
 
-/// Time in which the whole array is played, seconds.
+/// Duration of playing the whole array, seconds.
 const PLAY_SECONDS: f32 = 4.0;
 
 /// Length of the arrow's head, points.
 const HEAD: f32 = 12.0;
 
-/// What is drawn.
+/// The chains and the settings that the panel draws.
 pub struct Input<'a> {
     pub radar: &'a Radar,
-    /// What is chosen.
+    /// The chosen map, window and chains.
     pub settings: PhasorSettings,
-    /// Whether the chosen method names reflectors, which a residual needs.
+    /// Whether the chosen method lists reflectors, which the residual chain needs.
     pub finds_reflectors: bool,
-    /// Whether a recording stands in the place of the scene's echoes.
+    /// Whether a recording takes the place of the scene's echoes.
     pub is_recorded: bool,
-    /// The chains, or why there are none; nothing before the first.
+    /// The chains, or the reason why there are none; `None` before the first result.
     pub result: Option<Result<&'a PhasorsResult, &'a str>>,
 }
 
-/// How far the chain is drawn.
+/// Progress of playing the chain.
 #[derive(Default)]
 pub struct PhasorsMemory {
-    /// The part of the elements that is drawn; all where `None`.
+    /// Part of the elements that is drawn; `None` for all.
     part: Option<f32>,
     is_playing: bool,
 }
@@ -106,7 +106,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, settings: &mut PhasorSettings) {
     });
 }
 
-/// How many elements are drawn: a slider, and a button that moves it.
+/// Draws the slider of the number of drawn elements, and the button that plays them.
 fn play(ui: &mut Ui, result: &PhasorsResult, memory: &mut PhasorsMemory) {
     let count = result.measured.contributions.len();
     ui.horizontal(|ui| {
@@ -136,7 +136,7 @@ fn drawn_count(part: f32, count: usize) -> usize {
     (part * count as f32).round() as usize
 }
 
-/// The cell in numbers.
+/// Writes place, amplitude and phase of the cell.
 fn said(ui: &mut Ui, radar: &Radar, result: &PhasorsResult) {
     let [bin, column] = result.cell;
     let (sum, length) = (result.measured.sum(), whole_length(&result.measured));
@@ -155,7 +155,7 @@ fn whole_length(chain: &Phasors) -> f64 {
     chain.contributions.iter().map(|c| c.norm()).sum()
 }
 
-/// The chains in the complex plane, both axes to one scale.
+/// Draws the chains in the complex plane, both axes to one scale.
 fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
     let entry =
         |(_, kind): (&Phasors, Kind)| Entry { sign: Sign::Line, colour: kind.colour(ui), name: kind.name().to_owned() };
@@ -190,7 +190,7 @@ fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
     }
 }
 
-/// Axes that hold every corner.
+/// Axes that contain every corner.
 fn spans(corners: impl Iterator<Item = [f64; 2]>) -> [Axis<'static>; 2] {
     let (mut low, mut high) = ([0.0f64; 2], [0.0f64; 2]);
     for corner in corners {
@@ -205,7 +205,7 @@ fn spans(corners: impl Iterator<Item = [f64; 2]>) -> [Axis<'static>; 2] {
     [axis(0, "real part, of the length of all contributions"), axis(1, "imaginary part")]
 }
 
-/// What a chain is of.
+/// The samples that a chain is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Measured,
@@ -241,7 +241,7 @@ fn drawn(result: &PhasorsResult) -> impl Iterator<Item = (&Phasors, Kind)> {
     std::iter::once((&result.measured, Kind::Measured)).chain(others)
 }
 
-/// A chain; the pieces of the two ends of the array in their colours.
+/// Draws a chain, the pieces of the two ends of the array in their colours.
 fn line(ui: &Ui, chart: &mut Chart<'_>, radar: &Radar, chain: &[[f64; 2]], kind: Kind, first_element: usize) {
     let style = if kind == Kind::Echoes { LineStyle::dashed_dense() } else { LineStyle::Solid };
     chart.line(chain.iter().copied(), Stroke::new(1.4, kind.colour(ui)), style);
@@ -258,7 +258,7 @@ fn line(ui: &Ui, chart: &mut Chart<'_>, radar: &Radar, chain: &[[f64; 2]], kind:
     }
 }
 
-/// From the origin to the end of the chain: the cell.
+/// Draws an arrow from the origin to the end of the chain, the value of the cell.
 fn arrow(drawn: &Drawn, end: [f64; 2]) {
     let (from, to) = (drawn.at([0.0, 0.0]), drawn.at(end));
     let back = HEAD * (from - to).normalized();

@@ -1,4 +1,4 @@
-//! The radar: every constant of it, and what follows from each.
+//! The radar panel: every constant of the radar, and its consequences.
 
 mod antennas;
 mod budget;
@@ -16,19 +16,19 @@ pub use budget::Selected;
 use eframe::egui::{ComboBox, Grid, Label, RichText, Ui};
 use table::{GAP, Table, number};
 
-/// What is shown.
+/// The radar, its recording and the selected object.
 pub struct Input<'a> {
     pub radar: &'a Radar,
-    /// What was recorded with it, where something was: then its constants are what they were.
+    /// The recording made with the radar, if there is one; its constants are fixed.
     pub measured: Option<Measured>,
-    /// What is selected in the scene, where it is one object that is made of points.
+    /// The selected object, where it is a single one and made of points.
     pub selected: Option<Selected>,
 }
 
 /// A recording made with the radar.
 #[derive(Debug, Clone, Copy)]
 pub struct Measured {
-    /// Whether all its elements were recorded: then its ends can be chosen.
+    /// Whether all elements were recorded, so that the size of the ends can be chosen.
     pub by_all_elements: bool,
 }
 
@@ -41,7 +41,7 @@ impl Measured {
     }
 }
 
-/// Which fields can be edited.
+/// Kinds of fields that can be edited.
 #[derive(Clone, Copy)]
 struct Free {
     constants: bool,
@@ -103,7 +103,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     })
 }
 
-/// Radars to start from.
+/// Draws the list of presets.
 fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
     let chosen = presets::ALL.iter().find(|p| p.radar == *radar);
     ui.horizontal(|ui| {
@@ -126,12 +126,12 @@ fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
         };
         labelled(ui, "Start from", "Radars that are built, and radars that show what a constant does", menu);
     });
-    // One line, whichever radar it is: the table below stays where it is. The pointer shows the whole text.
+    // One line for every radar, so that the table below stays in place. The tooltip has the whole text.
     let about = chosen.map_or(OF_YOUR_OWN, |preset| preset.about);
     ui.add(Label::new(RichText::new(about).weak()).truncate());
 }
 
-/// What is told of a radar that is no preset.
+/// Description of a radar that is no preset.
 const OF_YOUR_OWN: &str = "Its constants are those of no radar in the list.";
 
 const CARRIER: Quantity = Quantity::metres(
@@ -182,7 +182,7 @@ const NAMES: [&str; 14] = [
     "range migration",
 ];
 
-/// What follows from the bandwidth of a snapshot.
+/// Consequence of the bandwidth of a snapshot.
 const NO_RANGES: &str = "one sample has no range resolution";
 
 fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, free: Free) {
@@ -239,7 +239,7 @@ fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, fr
     choices(ui, table, radar, follows, is_free);
 }
 
-/// How many columns lie between a blob and its first grating lobe, and whether that is within sight.
+/// Text of the number of columns between a blob and its first grating lobe, and whether that lobe is visible.
 fn grating(follows: &Consequences) -> String {
     let columns = follows.grating_columns;
     if follows.grating_cos < 2.0 {
@@ -250,7 +250,7 @@ fn grating(follows: &Consequences) -> String {
     }
 }
 
-/// Which convention the samples follow. Choosing one fills the elements for it.
+/// Draws the choice of convention. Choosing one sets the element spacing that belongs to it.
 fn convention(ui: &mut Ui, table: Table, radar: &mut Radar, is_free: bool) {
     let tooltip = "How the phases of echoes follow their ranges. Choosing a convention sets the phase and the spacing that belong to it";
     let own = radar.convention();
@@ -302,7 +302,7 @@ fn choices(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences,
         None => "no range resolution".to_owned(),
     };
     table.row(ui, ("windows", "Weights of samples and elements in the two transforms"), &text, |ui, label| {
-        // In pairs: all in one row would push the consequences out of a narrow panel.
+        // In pairs: all names in one row would push the consequences out of a narrow panel.
         ui.vertical(|ui| {
             for pair in WindowFunction::ALL.chunks(2) {
                 ui.horizontal(|ui| {
@@ -330,7 +330,7 @@ fn choices(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences,
     table.row(ui, ("range migration", tooltip), &text, |ui, label| _ = ui.label("").labelled_by(label));
 }
 
-/// A length in the unit that reads best.
+/// Text of a length, in the unit that suits it.
 fn metres(metres: f64) -> String {
     match metres {
         m if m < 1.0 => format!("{:.2} cm", m * 100.0),

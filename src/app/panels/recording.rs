@@ -1,4 +1,4 @@
-//! How the file of a recording was read: the layouts it could have as small range profiles, its frames, its antennas, and what is doubtful.
+//! The recording panel: the layouts that the file may have, as small range profiles, its frames, its antennas, and doubts about it.
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{CardPlan, Command, DocumentCommand, Purpose, Way, WorkCommand};
@@ -14,11 +14,11 @@ use crate::recording::{Offer, Origin, Recording};
 use eframe::egui::{self, Sense, Slider, Ui, vec2};
 use egui_plot::{Line, Plot, PlotPoints};
 
-/// Size of a small range profile, and how far below its peak it is drawn, decibels.
+/// Size of a small range profile, points, and the decibels below its peak that it shows.
 const PROFILE: egui::Vec2 = vec2(180.0, 44.0);
 const SHOWN_DB: f64 = 80.0;
 
-/// What is drawn.
+/// The recording and the capture card that the panel draws.
 pub struct Input<'a> {
     /// The recording in place of a scene, where there is one.
     pub recording: Option<&'a Recording>,
@@ -26,16 +26,16 @@ pub struct Input<'a> {
     pub card: Option<CardInput<'a>>,
 }
 
-/// What is drawn of a capture card.
+/// State of a capture card.
 #[derive(Clone, Copy)]
 pub struct CardInput<'a> {
-    /// With what it is listened to, if it is.
+    /// Port and configuration of the card; `None` while the program doesn't listen.
     pub plan: Option<&'a CardPlan>,
-    /// What came since it is.
+    /// Numbers of frames and packets since listening began.
     pub summary: CardSummary,
 }
 
-/// The port that is asked for.
+/// The UDP port in the field.
 pub struct CardMemory {
     port: u16,
 }
@@ -94,7 +94,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CardMemory) -> Vec<Comma
     })
 }
 
-/// What comes from a capture card, or with what to listen to one.
+/// Draws the state of a capture card, or the fields to listen to one.
 fn card(
     ui: &mut Ui,
     input: CardInput<'_>,
@@ -121,7 +121,7 @@ fn card(
     });
 }
 
-/// Frames that came, and those that were dropped or lack bytes.
+/// Text of the numbers of received, dropped and incomplete frames.
 fn told(summary: CardSummary) -> String {
     let CardSummary { frames, dropped, packets } = summary;
     if packets.packets == 0 {
@@ -135,7 +135,7 @@ fn told(summary: CardSummary) -> String {
     told
 }
 
-/// The layouts to choose from, the most likely first.
+/// Draws the layouts to choose from, the most likely first.
 fn layouts(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
     let best = origin.offers.first().map_or(0.0, |offer| offer.log_odds);
     for (n, offer) in origin.offers.iter().enumerate() {
@@ -179,7 +179,7 @@ fn frames(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
     }
 }
 
-/// A slider over the frames of a file; the frame that was chosen.
+/// Draws a slider over the frames of a file. Returns the chosen frame.
 pub fn frame_slider(ui: &mut Ui, [frame, count]: [u64; 2]) -> Option<Way> {
     let mut chosen = frame;
     let slider = Slider::new(&mut chosen, 0..=count - 1);

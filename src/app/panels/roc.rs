@@ -1,4 +1,4 @@
-//! Detection against false alarm of the scene on screen, over every threshold.
+//! The ROC panel: detection against false alarm of the scene on screen, over every threshold.
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
@@ -14,26 +14,26 @@ use eframe::egui;
 use eframe::egui::{Sense, Stroke, Ui};
 use egui_plot::LineStyle;
 
-/// P_FA below this is drawn at this: a logarithmic axis has no zero.
+/// Least P_FA of the logarithmic axis; smaller ones are drawn there.
 const MIN_DRAWN_P_FA: f64 = 1e-5;
 
 /// Marks of P_FA: powers of ten.
 const POWERS: [(f64, &str); 6] =
     [(-5.0, "≤0.001"), (-4.0, "0.01"), (-3.0, "0.1"), (-2.0, "1"), (-1.0, "10"), (0.0, "100")];
 
-/// What is drawn.
+/// The characteristic, and the threshold in use.
 pub struct Input<'a> {
-    /// Every threshold's rates, if there are any.
+    /// Rates of every threshold, if there are any.
     pub points: Option<&'a [RocPoint]>,
-    /// The method whose output it is.
+    /// Name of the method whose output it is.
     pub method: &'a str,
     /// The threshold in use.
     pub eta: f32,
-    /// The detector in its place, if one is in use.
+    /// The detector in place of the threshold, if one is in use.
     pub cfar: Option<Cfar>,
-    /// The figures on screen, where they are of this output: the characteristic has thresholds near that in use only.
+    /// Figures of the output at the threshold in use; the characteristic may only have thresholds near it.
     pub metrics: Option<Metrics>,
-    /// Why there is no output.
+    /// The method's refusal, the reason for a missing output.
     pub refusal: Option<&'a str>,
 }
 

@@ -1,4 +1,4 @@
-//! Run time against error on this machine, measured while one watches.
+//! The run-time panel: run time against error on this machine, drawn while it is measured.
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, WorkCommand};
@@ -16,24 +16,24 @@ use eframe::egui::{Color32, Sense, Ui};
 use egui_plot::{HLine, LineStyle, MarkerShape, Points};
 use std::collections::BTreeSet;
 
-/// Errors below this are drawn at this: a logarithmic axis has no zero.
+/// Least error of the logarithmic axis; smaller ones are drawn there.
 const SMALLEST_ERROR: f64 = 1e-16;
 
-/// What was measured.
+/// The measurements, and the state of the current one.
 pub struct Input<'a> {
-    /// The radar of what was measured, or else of what would be.
+    /// Radar of the measurements, or of the next one where there are none.
     pub radar: &'a Radar,
-    /// The part that is done, while it measures.
+    /// Completed part of the measurement, 0 to 1, while it runs.
     pub progress: Option<f32>,
     /// Rows measured so far.
     pub rows: &'a [FrontRow],
     /// Time of one bare transform, milliseconds.
     pub bare_fft_ms: Option<f64>,
-    /// How the last run ended, if not well.
+    /// Message of the last measurement, where it did not succeed.
     pub note: Option<&'a str>,
 }
 
-/// What is chosen.
+/// The chosen measurement, and the rows to draw.
 pub struct RunTimeMemory {
     thorough: bool,
     task: FrontTask,
@@ -96,7 +96,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Co
     })
 }
 
-/// Which rows are drawn.
+/// Draws the choice of the rows.
 fn filter(ui: &mut Ui, rows: &[FrontRow], memory: &mut RunTimeMemory) {
     let counts: BTreeSet<usize> = rows.iter().map(|r| r.reflectors).collect();
     ui.horizontal_wrapped(|ui| {
@@ -131,12 +131,12 @@ fn colour(entrant: Entrant, dark: bool) -> Color32 {
 /// The measurements of one algorithm in one precision.
 struct Series {
     entry: Entry,
-    /// Powers of ten: error, milliseconds.
+    /// Decimal logarithms of error and milliseconds.
     places: Vec<[f64; 2]>,
     is_planned: bool,
 }
 
-/// What is drawn, algorithm by algorithm.
+/// The drawn measurements, algorithm by algorithm.
 fn series(rows: &[FrontRow], memory: &RunTimeMemory, dark: bool) -> Vec<Series> {
     let drawn = |r: &&FrontRow| r.task == memory.task && memory.reflectors.is_none_or(|count| count == r.reflectors);
     let shown: Vec<&FrontRow> = rows.iter().filter(drawn).collect();
@@ -200,7 +200,7 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// What clicks on these labels ask for while a measurement has come this far.
+    /// Commands that clicks on these labels send, while the measurement has this progress.
     fn asked(progress: Option<f32>, labels: &[&str]) -> Vec<Command> {
         let radar = Radar { elements: 128, ..Radar::default() };
         let draw = |ui: &mut Ui, state: &mut (RunTimeMemory, Vec<Command>)| {

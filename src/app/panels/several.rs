@@ -1,4 +1,4 @@
-//! One map several times, side by side: what one constant does to it.
+//! The panel that compares settings: one map several times, side by side, for several values of one constant.
 
 use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::Small;
@@ -13,17 +13,17 @@ use crate::radar::Radar;
 use eframe::egui;
 use eframe::egui::{Align2, Color32, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
 
-/// What is shown.
+/// The maps, and the choice of what differs between them.
 pub struct Input<'a> {
-    /// What was chosen.
+    /// The chosen parameter, its values, and the kind of map.
     pub several: &'a Several,
-    /// The radar before the scene.
+    /// The radar of the scene.
     pub radar: &'a Radar,
     pub methods: Offered<'a>,
     pub maps: &'a [Small],
 }
 
-/// Pictures on the graphics card.
+/// Textures of the maps.
 #[derive(Default)]
 pub struct SeveralMemory {
     textures: Vec<Texture>,
@@ -51,7 +51,7 @@ impl Content for SeveralPanel {
     }
 }
 
-/// Draws the panel. A click on a map puts its value before the scene.
+/// Draws the panel. A click on a map gives the scene its value.
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut SeveralMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         choices(ui, &input, asked);
@@ -70,7 +70,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut SeveralMemory) -> Vec<Co
     })
 }
 
-/// How many columns make the largest maps twice as wide as high, and the size of each.
+/// Number of columns that makes the largest maps twice as wide as high, and the size of each map.
 fn grid(count: usize, area: Vec2) -> (usize, Vec2) {
     let size = |columns: usize| vec2(area.x / columns as f32, area.y / count.div_ceil(columns) as f32);
     let width = |columns: usize| size(columns).x.min(2.0 * (size(columns).y - NAME));
@@ -166,7 +166,7 @@ fn tile(
     }
 }
 
-/// The command that gives the scene's radar, floor or method this value.
+/// The command that sets the scene's radar, floor or method to this value.
 fn take(variant: &Variant, parameter: Parameter) -> Option<Command> {
     Some(match parameter {
         Parameter::Window => Command::Radar(RadarCommand::SetWindow(variant.radar.window)),

@@ -1,4 +1,4 @@
-//! What each stage of the last update cost, and what was skipped and why.
+//! The timing panel: duration of each stage of the last update, and the skipped stages with their reasons.
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::Command;
@@ -7,7 +7,7 @@ use crate::engine::{EngineReport, StageOutcome};
 use eframe::egui::{Grid, Label, RichText, Ui};
 use std::time::Duration;
 
-/// What is shown.
+/// The last update to list.
 pub struct Input<'a> {
     /// The last update, if there was one.
     pub update: Option<Update<'a>>,
@@ -15,15 +15,15 @@ pub struct Input<'a> {
 
 /// An update of the maps.
 pub struct Update<'a> {
-    /// Stage by stage.
+    /// Durations of the stages.
     pub report: &'a EngineReport,
-    /// Time with pictures.
+    /// Duration of the update with its pictures.
     pub took: Duration,
     /// Pictures painted since the start.
     pub painted: u64,
-    /// The method whose output is shown, and its time.
+    /// The method whose output is shown, and its run time.
     pub output: Option<(&'static str, Duration)>,
-    /// Whether that output is of an earlier scene.
+    /// Whether that output is of an earlier scene or of another method.
     pub outdated: bool,
 }
 
@@ -52,7 +52,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         return Vec::new();
     };
     scrolled(ui, |ui, _| {
-        // What a stage says may take several lines.
+        // The text of a stage may take several lines.
         Grid::new("stages").num_columns(3).striped(true).show(ui, |ui| table(ui, &update));
     })
 }

@@ -1,4 +1,4 @@
-//! A training watched: its loss.
+//! The training panel: the loss in the log of a training.
 
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, LOG_INTERVAL, Log, LogQuery, Watched};
@@ -13,13 +13,13 @@ use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
 use std::path::Path;
 
-/// What is watched.
+/// The log of the training.
 pub struct Input<'a> {
-    /// The log that is followed.
+    /// Path of the log.
     pub path: Option<&'a Path>,
-    /// What it says.
+    /// Contents of the log.
     pub log: Option<&'a Log>,
-    /// What is wrong with it.
+    /// Error of the last reading.
     pub note: Option<&'a str>,
 }
 
@@ -54,10 +54,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     })
 }
 
-/// What stands where there is no curve yet.
+/// Text in place of the curve, while there is none.
 fn waiting(input: &Input<'_>) -> String {
     match input.path {
-        // A log that can't be read is not waited for.
+        // There is no waiting for a log that can't be read.
         Some(path) if input.note.is_none() => format!("Waiting for the first line of {}…", path.display()),
         Some(path) => format!("{} has no line.", path.display()),
         None => "Open the log.csv of a training (apertura train), and watch its loss while it learns.".to_owned(),
@@ -96,7 +96,7 @@ fn curves(ui: &mut Ui, log: &Log) {
     drawn.tell(|[step, power]| Some(format!("step {step:.0}\nloss {:.3e}", 10f64.powf(power))));
 }
 
-/// A number with as many digits as one looks at.
+/// Text of a number: a whole one with all digits, others with five.
 fn short(value: f64) -> String {
     if value == value.trunc() && value.abs() < 1e9 { format!("{value}") } else { format!("{value:.4e}") }
 }

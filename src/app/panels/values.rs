@@ -1,4 +1,4 @@
-//! What every map has under the pointer, in one small table.
+//! The values panel: the value of every map under the pointer, in one small table.
 
 use super::map::Cells;
 use super::map::{cells, is_updating};
@@ -23,22 +23,21 @@ pub const LISTED: [MapKind; 9] = [
     MapKind::Unexplained,
 ];
 
-/// A map of which there are numbers.
+/// A map whose values are listed.
 pub struct Row<'a> {
-    /// Which.
     pub kind: MapKind,
-    /// The method that made it, if one did.
+    /// The method that made the map, if one did.
     pub method: Option<&'static str>,
-    /// Its numbers.
+    /// Values of the map's cells.
     pub cells: Cells<'a>,
-    /// Whether they are of an earlier scene.
+    /// Whether the map is of an earlier scene or of another method.
     pub updating: bool,
 }
 
-/// What is listed.
+/// The maps to list, and the place of their values.
 pub struct Input<'a> {
     pub radar: &'a Radar,
-    /// Where: under the pointer, or where it was last.
+    /// Place of the pointer, or its last place.
     pub cursor: Cursor,
     /// The maps.
     pub rows: &'a [Row<'a>],

@@ -1,4 +1,4 @@
-//! Where the panels are: tiles that can be moved, resized, hidden and maximised.
+//! Arrangement of the panels: tiles that can be moved, resized, hidden and maximised.
 
 use super::panel::{MapKind, Panel};
 use super::room::{self, Taken};
@@ -17,30 +17,30 @@ struct Left {
     taken: Vec<Taken>,
 }
 
-/// Where the panels are.
+/// Tiles of the panels, for the task on screen and for others.
 #[derive(Serialize, Deserialize)]
 pub struct Arrangement {
     tree: Tree<Panel>,
     maximised: Option<Panel>,
-    /// What the panels are arranged for.
+    /// The task on screen.
     #[serde(default)]
     task: Task,
-    /// What they were arranged for before a panel brought its own arrangement.
+    /// The task before a panel switched to its own.
     #[serde(default)]
     before: Option<Task>,
-    /// The panels of other tasks, as they were left.
+    /// The panels of other tasks, as the user left them.
     #[serde(default)]
     others: Vec<Left>,
-    /// Room that opened panels took from others.
+    /// Divisions of containers before opened panels took room.
     #[serde(default)]
     taken: Vec<Taken>,
-    /// The view in front of each tile that several share, where it is not the first.
+    /// The view in front of each tile with several views, where it is not the first.
     #[serde(default)]
     views: BTreeMap<Panel, Panel>,
-    /// A panel that was opened in this frame: once it was laid out, it is given the room it needs.
+    /// A panel opened in this frame, which gets its least size once laid out.
     #[serde(skip)]
     opened: Option<Panel>,
-    /// Panels drawn in the last frame: only these are computed.
+    /// Panels drawn in the last frame. Only their values are computed.
     #[serde(skip)]
     shown: BTreeSet<Panel>,
 }
@@ -66,27 +66,27 @@ impl Arrangement {
         }
     }
 
-    /// A lesson large, with the scene and the maps that lessons ask about: for a projector.
+    /// A large lesson with the scene and the maps that lessons ask about, for a projector.
     pub fn of_a_lesson() -> Self {
         Arrangement::of(task_layouts::lesson("lesson"))
     }
 
-    /// An arrangement of nothing, to stand in for one that is being drawn.
+    /// An arrangement without panels, in place of one that is being drawn.
     pub fn empty() -> Self {
         Arrangement::of(Tree::empty(egui::Id::unique("no panels")))
     }
 
-    /// What is shown to many people at once: the scene, an end's map, the target and the output, large.
+    /// Scene, the ends' maps, target and output, large, for an audience.
     pub fn presentation() -> Self {
         Arrangement::of(task_layouts::presentation())
     }
 
-    /// What the panels are arranged for.
+    /// The task on screen.
     pub fn task(&self) -> Task {
         self.task
     }
 
-    /// Arranges the panels for a task, as they were left when it was on screen last.
+    /// Switches to the panels of a task, as the user left them.
     pub fn switch(&mut self, task: Task) {
         self.before = None;
         self.change(task);
@@ -108,7 +108,7 @@ impl Arrangement {
         self.task = task;
     }
 
-    /// Arranges the panels for what a panel is for, until it is closed.
+    /// Switches to the task that a panel needs, until the panel is closed.
     fn change_for(&mut self, panel: Panel, task: Task) {
         let before = self.before.unwrap_or(self.task);
         self.change(task);
@@ -116,12 +116,12 @@ impl Arrangement {
         self.set_open(panel, true);
     }
 
-    /// The tiles.
+    /// The tiles of the task on screen.
     pub fn tree_mut(&mut self) -> &mut Tree<Panel> {
         &mut self.tree
     }
 
-    /// Says which panels this frame drew; whether they are others than before.
+    /// Sets the panels drawn in this frame; true where they changed.
     pub fn set_shown(&mut self, shown: BTreeSet<Panel>) -> bool {
         let changed = shown != self.shown;
         self.shown = shown;
@@ -133,7 +133,7 @@ impl Arrangement {
         &self.shown
     }
 
-    /// The panel that fills the window, if one does.
+    /// The panel that fills the window, if any.
     pub fn maximised(&self) -> Option<Panel> {
         self.maximised
     }
@@ -150,7 +150,7 @@ impl Arrangement {
         self.maximised = Some(panel.tile()).filter(|_| !is_maximised);
     }
 
-    /// The view in front of each tile that several share, where it is not the first.
+    /// The view in front of each tile with several views, where it is not the first.
     pub fn views(&self) -> &BTreeMap<Panel, Panel> {
         &self.views
     }
@@ -165,7 +165,7 @@ impl Arrangement {
         self.view(panel.tile()) == panel
     }
 
-    /// Puts a view in front of the tile that it shares with others.
+    /// Brings a view to the front of its shared tile.
     pub fn bring_to_front(&mut self, view: Panel) {
         if view.tile() == view {
             self.views.remove(&view);
@@ -174,8 +174,7 @@ impl Arrangement {
         }
     }
 
-    /// Takes out tiles of panels that became views of another's tile, as layouts kept from older versions have them. A view that was in
-    /// sight is in front.
+    /// Removes tiles of panels that are now views of another tile, as layouts of older versions have them. A view that was in sight comes to the front.
     pub fn join_views(&mut self) {
         let trees = self.others.iter_mut().map(|left| &mut left.tree).chain([&mut self.tree]);
         for tree in trees {
@@ -210,24 +209,23 @@ impl Arrangement {
         self.maximised = None;
     }
 
-    /// Whether a panel has a visible tile (its tab may be behind another), and is in front of it where it shares it.
+    /// Whether a panel has a visible tile, possibly behind another tab, and is the view in front of it.
     pub fn is_open(&self, panel: Panel) -> bool {
         self.has_tile(panel) && self.is_in_front_of_tile(panel)
     }
 
-    /// Whether the tile that shows a panel, or another view in its place, is visible.
+    /// Whether the tile of a panel is visible, with this or another view in front.
     pub fn has_tile(&self, panel: Panel) -> bool {
         self.tree.tiles.find_pane(&panel.tile()).is_some_and(|id| self.tree.tiles.is_visible(id))
     }
 
-    /// Hides a panel that is in sight; shows any other, its tab in front.
+    /// Hides a panel in sight; shows any other with its tab in front.
     pub fn toggle(&mut self, panel: Panel) {
         let in_sight = self.is_open(panel) && self.shown.contains(&panel);
         self.set_open(panel, !in_sight);
     }
 
-    /// Shows or hides a panel; a shown one comes to the front. One that needs much room and maps beside it brings an arrangement of its own,
-    /// and its end brings the last one back.
+    /// Shows or hides a panel; a shown one comes to the front. A large panel that needs maps beside it switches to its own task, and closing it switches back.
     pub fn set_open(&mut self, panel: Panel, open: bool) {
         self.maximised = None;
         if open {
@@ -248,13 +246,13 @@ impl Arrangement {
         }
         match self.tree.tiles.find_pane(&panel) {
             Some(id) => self.set_pane_open(id, panel, open),
-            // An arrangement for a task, or a layout kept from an older version, may lack a panel.
+            // An arrangement for a task, or one kept from an older version, may lack a panel.
             None if open => self.insert(panel),
             None => {}
         }
     }
 
-    /// Whether a panel opens in its own arrangement: a lesson stands beside the settings where there is a place for it.
+    /// Whether a panel opens in its own task. A lesson does not where the task on screen has a tile for it.
     fn wants_own(&self, panel: Panel) -> bool {
         panel != Panel::Lesson || self.tree.tiles.find_pane(&panel).is_none()
     }
@@ -270,7 +268,7 @@ impl Arrangement {
         }
     }
 
-    /// Puts a panel that has no tile among the tabs of one that is like it.
+    /// Adds a tab for a panel without a tile, beside the settings, the inspector or the scene.
     fn insert(&mut self, panel: Panel) {
         let tiles = &mut self.tree.tiles;
         let like = [Panel::Controls, Panel::Inspector, Panel::Scene].iter().find_map(|p| tiles.find_pane(p));
@@ -283,7 +281,7 @@ impl Arrangement {
         self.opened = Some(panel);
     }
 
-    /// Puts a map into the largest place that a map has, and what stood there into its place.
+    /// Swaps a map with the map in the largest tile.
     pub fn put_large(&mut self, kind: MapKind) {
         let asked = Panel::Map(kind);
         if !self.is_open(asked) || !self.is_in_front(asked) {
@@ -294,7 +292,7 @@ impl Arrangement {
             let place = tiles.find_pane(panel).filter(|_| self.is_open(*panel) && self.is_in_front(*panel));
             place.and_then(|id| tiles.rect(id)).map_or(0.0, |rect| rect.area())
         };
-        // Where nothing was laid out yet, the target has the largest place.
+        // Before a layout the target counts as the largest.
         let maps = MapKind::ALL.map(Panel::Map).into_iter().chain([Panel::Map(MapKind::Target)]);
         let Some(large) = maps.max_by(|a, b| area(a).total_cmp(&area(b))) else { return };
         let (Some(to), Some(from)) = (tiles.find_pane(&large), tiles.find_pane(&asked)) else { return };
@@ -304,7 +302,7 @@ impl Arrangement {
         }
     }
 
-    /// Gives a panel that was opened the room it needs, once it was laid out; whether anything moved.
+    /// Gives an opened panel its least size, once laid out; true where sizes changed.
     pub fn make_room(&mut self) -> bool {
         let in_sight = |tile: &Panel| self.shown.contains(&self.views.get(tile).copied().unwrap_or(*tile));
         let Some(panel) = self.opened.take_if(|panel| in_sight(panel)) else { return false };
@@ -314,7 +312,7 @@ impl Arrangement {
         moved
     }
 
-    /// Closes what a lesson doesn't use; each panel that was open, and whether its tab was in front.
+    /// Closes the panels that a lesson doesn't use. Returns each closed panel, and whether its tab was in front.
     pub fn close_unused(&mut self, uses: Uses) -> Vec<(Panel, bool)> {
         let unused = |panel: &Panel| match panel {
             Panel::Map(MapKind::TargetAbove) => !uses.threshold,
@@ -332,7 +330,7 @@ impl Arrangement {
         closed
     }
 
-    /// Whether no other tab is over a panel's.
+    /// Whether a panel's tab is the front one.
     fn is_in_front(&self, panel: Panel) -> bool {
         let tiles = &self.tree.tiles;
         let Some(id) = tiles.find_pane(&panel) else { return false };
@@ -342,7 +340,7 @@ impl Arrangement {
         }
     }
 
-    /// Opens again what [`Arrangement::close_unused`] closed; what was in front is in front again.
+    /// Opens the panels closed by [`Arrangement::close_unused`]; tabs that were in front are so again.
     pub fn open_again(&mut self, closed: &[(Panel, bool)]) {
         for (panel, was_in_front) in closed {
             let Some(id) = self.tree.tiles.find_pane(panel) else { continue };
@@ -353,7 +351,7 @@ impl Arrangement {
         }
     }
 
-    /// The container of the columns, one of which holds the settings.
+    /// The container of the columns, one of which has the settings.
     fn columns(&self) -> Option<TileId> {
         let tiles = &self.tree.tiles;
         let of = |id: TileId| tiles.parent_of(id);
@@ -365,8 +363,8 @@ impl Arrangement {
         std::iter::successors(controls, |id| of(*id)).find(across).or(self.tree.root())
     }
 
-    /// Moves a panel that is read while settings change from the settings' tabs to a place beside them: that is where layouts kept from
-    /// older versions have it.
+    /// Moves a panel from the settings' tabs to a place beside them, so that it can be read while settings change. Arrangements of older versions have it
+    /// among the tabs.
     fn take_from_over_settings(&mut self, panel: Panel) {
         let tiles = &self.tree.tiles;
         let [of_panel, of_settings] =

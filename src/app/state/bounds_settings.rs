@@ -1,9 +1,9 @@
-//! What the bounds of a reflector are computed for.
+//! Settings of the bounds of a reflector.
 
 use crate::radar::{Decibels, End, Layout, LayoutError, Mimo, Radar};
 use serde::{Deserialize, Serialize};
 
-/// Which elements listen.
+/// The elements that listen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Elements {
     /// Both ends of the array.
@@ -11,7 +11,7 @@ pub enum Elements {
     TwoEnds,
     /// The first end alone.
     OneEnd,
-    /// So many elements at random places of the aperture.
+    /// This many elements at random places of the aperture.
     Random(usize),
     /// The 12 virtual elements of 3 transmitters and 4 receivers.
     Mimo,
@@ -31,7 +31,7 @@ impl Elements {
         }
     }
 
-    /// Where they stand.
+    /// Positions of the elements.
     ///
     /// # Errors
     /// [`LayoutError`] for more random elements than the array has.
@@ -46,19 +46,19 @@ impl Elements {
     }
 }
 
-/// What the user chose to look at.
+/// The user's settings of the panel Bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct BoundsSettings {
-    /// Which elements listen.
+    /// The elements that listen.
     pub elements: Elements,
     /// Seed of random elements.
     pub seed: u64,
     /// Signal-to-noise ratio of a sample.
     pub snr: Decibels,
-    /// Columns to each side of the reflector.
+    /// Columns to each side of the reflector in the picture.
     pub columns: f64,
-    /// Range bins to each side.
+    /// Range bins to each side of the reflector in the picture.
     pub bins: f64,
 }
 

@@ -1,11 +1,11 @@
-//! Which element's chirp is drawn.
+//! Settings of the drawn chirp.
 
 use serde::{Deserialize, Serialize};
 
-/// What the user chose to look at.
+/// The user's settings of the panel Chirp.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ChirpSettings {
-    /// The element; the last one where the array has fewer.
+    /// Number of the drawn element from 0; the last one where the array has fewer.
     pub element: usize,
 }

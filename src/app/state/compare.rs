@@ -1,32 +1,32 @@
-//! Two methods on one scene: which, which maps of them, and how they are laid beside each other or flipped.
+//! Settings of the comparison of two methods: their maps, side by side or flipped.
 
 use super::panel::MapKind;
 use serde::{Deserialize, Serialize};
 
 named! {
-    /// How the maps are laid out.
+    /// Layout of the compared maps.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     pub enum Layout {
         /// Both outputs above, their differences from the target below.
         #[default]
         Beside = "Side by side",
-        /// One of two maps, in the same place as the other.
+        /// One of two maps at a time, in the same place.
         #[serde(alias = "Swipe")]
         Flip = "Flip",
     }
 }
 
-/// What is compared.
+/// Settings of the panel Compare.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Compare {
-    /// Name of the second method; another than the first where empty.
+    /// Name of the second method; where empty, one other than the first is chosen.
     pub second: String,
-    /// How the maps are laid out.
+    /// Layout of the maps.
     pub layout: Layout,
-    /// The two maps that flip.
+    /// The two maps to flip.
     pub maps: [MapKind; 2],
-    /// Which of them is on screen where they flip, 0 or 1.
+    /// Index of the flipped map on screen, 0 or 1.
     pub front: usize,
 }
 
@@ -37,7 +37,7 @@ impl Default for Compare {
 }
 
 impl Compare {
-    /// The maps that may flip.
+    /// The maps offered for flipping.
     pub const OFFERED: [MapKind; 9] = [
         MapKind::Input0,
         MapKind::Input1,
@@ -50,7 +50,7 @@ impl Compare {
         MapKind::SecondDifference,
     ];
 
-    /// The maps that are looked at. Those that flip are both among them, so that the other is there at once.
+    /// The maps to be made. They include both flipped ones, so that the other is there at once.
     pub fn maps(&self) -> Vec<MapKind> {
         match self.layout {
             Layout::Beside => {
@@ -60,7 +60,7 @@ impl Compare {
         }
     }
 
-    /// Puts the other map in the place of the one on screen; the first one where none was alone there.
+    /// Shows the other flipped map; shows the first where the maps were side by side.
     pub fn flip(&mut self) {
         self.front = if self.layout == Layout::Flip { (self.front + 1) % 2 } else { 0 };
         self.layout = Layout::Flip;

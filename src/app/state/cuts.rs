@@ -1,4 +1,4 @@
-//! Cuts that stay while the cursor moves on.
+//! Cuts pinned while the cursor moves on.
 
 use super::panel::MapKind;
 use super::view::Cursor;
@@ -6,26 +6,26 @@ use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Radar;
 use std::sync::Arc;
 
-/// Most pinned cuts: the oldest makes room. Each holds on to maps that would be forgotten otherwise.
+/// Most pinned cuts; a new one replaces the oldest. Each keeps its maps in memory.
 const PINS: usize = 3;
 
-/// A map that can be cut.
+/// A map available for cuts.
 #[derive(Debug, Clone)]
 pub struct CutMap {
-    /// Which.
+    /// Kind of the map.
     pub kind: MapKind,
     /// Lambda, `[range bins, columns]`.
     pub map: Arc<RangeAngleMap>,
-    /// From Lambda to decades of amplitude, where it is known.
+    /// Scale from Lambda to decades of amplitude, where it is known.
     pub scale: Option<LambdaScale>,
 }
 
-/// A cut as it was when it was pinned.
+/// A pinned cut with its radar, cursor and maps.
 #[derive(Debug, Clone)]
 pub struct PinnedCut {
     /// The radar of the maps.
     pub radar: Radar,
-    /// Where they were cut.
+    /// Cursor of the cut.
     pub cursor: Cursor,
     /// The maps.
     pub maps: Vec<CutMap>,
@@ -43,19 +43,19 @@ impl Pins {
         self.0.drain(..excess);
     }
 
-    /// Lets a cut go, if there is one of that number.
+    /// Removes the cut of this index, if there is one.
     pub fn remove(&mut self, index: usize) {
         if index < self.0.len() {
             self.0.remove(index);
         }
     }
 
-    /// Lets all go.
+    /// Removes all cuts.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// All of them.
+    /// All pinned cuts.
     pub fn all(&self) -> &[PinnedCut] {
         &self.0
     }

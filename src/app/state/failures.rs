@@ -1,4 +1,4 @@
-//! Rows of an evaluation as the app holds them: how they were made, which is open, which are in sight.
+//! State of the rows in the app: their conditions, the opened row, the rows in sight.
 
 use super::view::MapView;
 use crate::evaluate::campaign::Campaign;
@@ -13,24 +13,24 @@ use crate::scene::generate::Kind;
 use crate::signal::Floor;
 use serde::{Deserialize, Serialize};
 
-/// Whether maps are to show where the method fails, and whether they do.
+/// Documents whose failing part of the maps is to be shown, and is shown.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FailureView {
-    /// Of this document, once it is known.
+    /// Id of a document whose failure is to be shown once it is known.
     pub wanted: Option<u64>,
-    /// Of this document, and the part that is shown.
+    /// Id of the document whose failure is shown, and the visible part of its maps.
     pub shown: Option<(u64, MapView)>,
 }
 
-/// How rows were made: what a scene needs beside its row to be made again.
+/// Conditions of rows: the values needed beside a row to make its scene again.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Conditions {
-    /// What lay beneath the reflectors.
+    /// The floor beneath the reflectors.
     pub floor: Floor,
-    /// How maps were normalised.
+    /// Normalisation of the maps.
     pub normalisation: Normalisation,
-    /// The radar of generated scenes; a file says itself which it is for.
+    /// Radar of generated scenes. A file has its own.
     pub radar: Radar,
 }
 
@@ -44,13 +44,13 @@ impl Conditions {
     /// The scene of a row, and its radar.
     ///
     /// # Errors
-    /// Why it can't be had any more: its folder or file is gone.
+    /// The reason why there is none: its folder or file is gone.
     pub fn case(&self, row: &Row) -> Result<Case, String> {
         let set = SceneSet::by_name(&row.set).map_err(|e| e.to_string())?;
         set.case(&self.radar, &self.campaign(row.seed).generator(), row.index).map_err(|e| e.to_string())
     }
 
-    /// The scene of a row as a document: its own file's where it has one.
+    /// The scene of a row as a document; that of its own file where it has one.
     ///
     /// # Errors
     /// As [`Conditions::case`].
@@ -61,58 +61,58 @@ impl Conditions {
             return Document::read(path).map_err(|e| e.to_string());
         }
         let Case { radar, scene } = self.case(row)?;
-        // It can be had again as easily, so that walking through rows leaves no unsaved scenes behind.
+        // The scene can be made again, so opening many rows leaves no unsaved scenes behind.
         Ok(Document::shipped(SceneFile { scene, radar }))
     }
 }
 
-/// Which methods are to be tried, and on which scenes.
+/// The methods to try and the scenes to try them on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FailureChoice {
     /// Names of methods.
     pub methods: Vec<&'static str>,
     /// Kinds of generated scenes.
     pub kinds: Vec<Kind>,
-    /// Whether the folder of one's own scenes is among the sets.
+    /// Whether the user's own scenes are among the sets.
     pub own: bool,
     /// Generated scenes of each kind.
     pub count: u32,
-    /// Their seed.
+    /// Seed of the generated scenes.
     pub seed: u64,
 }
 
-/// What is to be looked for near the scene on screen.
+/// Aim and limits of a search near the scene on screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchChoice {
-    /// Worse scenes, or a repair.
+    /// A worse scene, or a repair.
     pub aim: Aim,
-    /// What worse means.
+    /// The measure of a worse scene.
     pub measure: WorseningMeasure,
-    /// How far objects may move, metres.
+    /// Largest distance that objects may move, metres.
     pub within_metres: f64,
-    /// Scenes to try.
+    /// Number of scenes to try.
     pub tries: u32,
 }
 
-/// The row whose scene was put on screen last.
+/// The row whose scene was opened last.
 #[derive(Debug, Clone)]
 pub struct OpenedRow {
-    /// The row as it was.
+    /// The row when it was opened.
     pub row: Row,
     /// Its index in the table.
     pub index: usize,
-    /// The table that it stands in.
+    /// Generation of the table.
     pub generation: u64,
-    /// The document that its scene became.
+    /// Id of the document of its scene.
     pub document: u64,
 }
 
-/// What the app knows of rows beside the rows themselves.
+/// State of the rows in the app beside the table itself.
 #[derive(Debug, Default)]
 pub struct Failures {
-    /// The part of the maps in which the scene's method fails.
+    /// Documents whose failing part of the maps is shown.
     pub view: FailureView,
-    /// The row whose scene was put on screen last.
+    /// The row whose scene was opened last.
     pub opened: Option<OpenedRow>,
     /// Indices of the rows that the panel showed last, from top to bottom.
     pub in_sight: Vec<usize>,

@@ -1,40 +1,40 @@
-//! What the guide set up, so that undo takes all of it back: the scene, its radar, and how they are looked at.
+//! Undo and redo of the guide's buttons, which change scene, radar and view together.
 
 use crate::radar::Radar;
 use crate::scene::Scene;
 use crate::view::View;
 use std::sync::Arc;
 
-/// Everything that a button of the guide changes, at one moment.
+/// Scene, radar and view at one moment.
 #[derive(Debug, Clone)]
 pub struct Setup {
-    /// How it was looked at.
+    /// The view of the scene.
     pub view: View,
     /// The radar.
     pub radar: Radar,
     /// The scene.
     pub scene: Arc<Scene>,
-    /// Steps of the scene's history.
+    /// Number of steps in the editor's history.
     pub depth: usize,
 }
 
 impl Setup {
-    /// Whether nothing was edited between this and `now`.
+    /// Whether scene and radar are the same as in `now`.
     fn is(&self, now: &Setup) -> bool {
         Arc::ptr_eq(&self.scene, &now.scene) && self.radar == now.radar
     }
 }
 
-/// A button's doing.
+/// The change made by a button of the guide.
 #[derive(Debug, Clone)]
 pub struct GuidedStep {
-    /// As it was before.
+    /// State before the change.
     pub before: Setup,
-    /// As it was after.
+    /// State after the change.
     pub after: Setup,
 }
 
-/// What the guide did, and what of it was undone.
+/// The guide's changes and those that were undone.
 #[derive(Debug, Default)]
 pub struct Guided {
     done: Vec<GuidedStep>,
@@ -42,27 +42,27 @@ pub struct Guided {
 }
 
 impl Guided {
-    /// Notes a step.
+    /// Adds a change.
     pub fn push(&mut self, before: Setup, after: Setup) {
         self.undone.clear();
         self.done.push(GuidedStep { before, after });
     }
 
-    /// The step that undo takes back, if the guide did the last thing.
+    /// The change to undo, if the guide made the last one.
     pub fn undo(&mut self, now: &Setup) -> Option<GuidedStep> {
         let step = self.done.pop_if(|step| step.after.is(now))?;
         self.undone.push(step.clone());
         Some(step)
     }
 
-    /// The step that redo does again, if undo of it was the last thing.
+    /// The change to redo, if its undo was the last change.
     pub fn redo(&mut self, now: &Setup) -> Option<GuidedStep> {
         let step = self.undone.pop_if(|step| step.before.is(now))?;
         self.done.push(step.clone());
         Some(step)
     }
 
-    /// Whether undo would take a step of the guide back.
+    /// Whether undo would take back a change of the guide.
     pub fn can_undo(&self, now: &Setup) -> bool {
         self.done.last().is_some_and(|step| step.after.is(now))
     }

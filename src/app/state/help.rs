@@ -1,13 +1,13 @@
-//! Pages of help that are short enough for a window of their own.
+//! Pages of help, each for a window of its own.
 
-/// Which page.
+/// A page of help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HelpPage {
-    /// Every key, and what the pointer does.
+    /// Every key, and the actions of the pointer.
     Keys,
-    /// Where the figures on screen come from.
+    /// Origin of the figures on screen.
     Figures,
-    /// What this program is.
+    /// Version, licence and description of the program.
     About,
 }
 
@@ -15,7 +15,7 @@ impl HelpPage {
     /// Every page, in the order of the menu.
     pub const ALL: [HelpPage; 3] = [HelpPage::Keys, HelpPage::Figures, HelpPage::About];
 
-    /// Its title, which is its name in the menu.
+    /// Title of the page, and its name in the menu.
     pub fn title(self) -> &'static str {
         match self {
             HelpPage::Keys => "Keys and pointer",
@@ -24,7 +24,7 @@ impl HelpPage {
         }
     }
 
-    /// What it tells, for tooltips.
+    /// The page's content in a sentence, for tooltips.
     pub fn describe(self) -> &'static str {
         match self {
             HelpPage::Keys => "Every key, and what the pointer does in the scene and the maps",

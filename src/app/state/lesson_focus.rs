@@ -1,4 +1,4 @@
-//! What a step of a lesson puts in front: the map that it asks about, the control that its challenge needs, the part of the map where it happens.
+//! The map, the control and the part of the map that a lesson's step is about.
 
 use super::panel::{MapKind, Panel};
 use super::view::MapView;
@@ -9,11 +9,11 @@ use crate::radar::Radar;
 use crate::scene::{Object, Scene};
 use eframe::egui::{Pos2, Vec2, pos2, vec2};
 
-/// The least that is shown around two blobs: a part of all columns, and metres of range, to either side.
+/// Least part shown to either side of two blobs: a ratio of all columns, and metres of range.
 const LEAST_ACROSS: f32 = 0.15;
 const LEAST_RANGE_METRES: f64 = 4.0;
 
-/// To either side of their middle, this many times as much is shown as two blobs are apart.
+/// Part shown to either side of the middle of two blobs, as a multiple of their distance.
 const TIMES_APART: f32 = 2.0;
 
 /// The map that a lesson's file names.
@@ -26,7 +26,7 @@ pub fn kind_of(map: MapName) -> MapKind {
     }
 }
 
-/// The map that a step is about: the one that is asked for, or that its challenge measures.
+/// The map that a step's question or challenge is about.
 pub fn map_of(step: &Step) -> MapKind {
     let asked = step.predict.as_ref().and_then(|question| match &question.answer {
         Answer::Click { map, .. } | Answer::Threshold { map, .. } => Some(*map),
@@ -41,7 +41,7 @@ pub fn map_of(step: &Step) -> MapKind {
     asked.or_else(measured).map_or(MapKind::Target, kind_of)
 }
 
-/// The panel with the control that a step's challenge needs, and the object that is to be changed there.
+/// The panel with the control for a step's challenge, and the index of the object to change there.
 pub fn control_of(step: &Step) -> Option<(Panel, Option<usize>)> {
     let solution = &step.challenge.as_ref()?.solution;
     if solution.radar.as_ref().is_some_and(|radar| *radar != step.radar) {
@@ -57,7 +57,7 @@ pub fn control_of(step: &Step) -> Option<(Panel, Option<usize>)> {
     Some(changed.map_or((Panel::Scene, None), |object| (Panel::Inspector, Some(object))))
 }
 
-/// The part of the maps in which a challenge tells two objects apart, as the scene and the radar are; nothing where all of a map counts.
+/// The part of the maps in which a challenge tells two objects apart, for this scene and radar; `None` where the whole map counts.
 pub fn part_of(challenge: &Challenge, radar: &Radar, scene: &Scene) -> Option<MapView> {
     let (map, pair) = challenge.requirements.iter().find_map(|requirement| match &requirement.measure {
         Measure::Dip { map, objects } => Some((*map, *objects)),
@@ -74,7 +74,7 @@ pub fn part_of(challenge: &Challenge, radar: &Radar, scene: &Scene) -> Option<Ma
     let (a, b) = (at(object(0)?), at(object(1)?));
     let apart = TIMES_APART * (a - b).abs();
     let least_range = (LEAST_RANGE_METRES / radar.max_range_metres()) as f32;
-    // A beam of an end is as wide as a part of the map: all directions stay in sight.
+    // An end's beam is as wide as part of the map, so all directions stay in sight.
     let across = if matches!(map, MapName::Target | MapName::Output) { apart.x.max(LEAST_ACROSS) } else { 1.0 };
     let half = vec2(across, apart.y.max(least_range)).min(Vec2::splat(0.5));
     let middle = (a + b.to_vec2()) / 2.0;

@@ -1,4 +1,4 @@
-//! The lesson being taken: its step, what was predicted, and what came of it.
+//! The lesson in progress: its step, predictions and measurements.
 
 use super::guided::Setup;
 use super::lesson_focus::{kind_of, part_of};
@@ -12,10 +12,10 @@ use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What was predicted in a step, and what that was worth.
+/// The prediction of a step, and its judgement.
 type Answered = (Guess, Option<Result<Judgement, String>>);
 
-/// How the window was before a lesson.
+/// State of the window before a lesson.
 pub struct Before {
     /// Scene, radar and settings.
     pub setup: Setup,
@@ -23,37 +23,37 @@ pub struct Before {
     pub scene_view: SceneView,
     /// The visible part of the maps.
     pub map_views: MapViews,
-    /// What the panels were arranged for.
+    /// The task on screen.
     pub task: Task,
 }
 
 /// A lesson in progress.
 pub struct LessonRun {
-    /// What its progress is kept under.
+    /// Key under which its progress is kept.
     pub id: String,
     /// The lesson.
     pub lesson: Arc<Lesson>,
     /// The step, from 0.
     pub step: usize,
-    /// What was predicted.
+    /// The prediction in this step.
     pub guess: Option<Guess>,
-    /// What that was worth, or why it can't be told.
+    /// The judgement of the prediction, or the reason why it can't be judged.
     pub judgement: Option<Result<Judgement, String>>,
-    /// The challenge's requirements as they stand, or why they can't be measured.
+    /// The challenge's requirements with their measured values, or the reason why they can't be measured.
     pub measured: Option<Result<Vec<Measured>, String>>,
-    /// Whether the challenge's solution was shown: then it counts as unsolved.
+    /// Whether the challenge's solution was shown, so that it counts as unsolved.
     pub gave_up: bool,
-    /// The scene as the step set it up.
+    /// The scene of the step before the learner's edits.
     pub set_up: Option<Arc<Scene>>,
-    /// Number of changes in the history once the step was set up: undo goes back no farther.
+    /// Number of changes in the history once the step was set up. Undo goes back no farther.
     pub depth: usize,
-    /// Panels that the lesson closed, since it doesn't use them, and whether each tab was in front.
+    /// Panels closed because the lesson doesn't use them, and whether each tab was in front.
     pub closed: Vec<(Panel, bool)>,
-    /// As everything was before the lesson.
+    /// State of the window before the lesson.
     pub before: Before,
-    /// The part of the maps that was shown for the challenge last, until the learner zooms.
+    /// The part of the maps last shown for the challenge, until the learner zooms.
     pub part: Option<MapView>,
-    /// What was predicted in other steps.
+    /// Predictions of other steps, by step.
     answered: BTreeMap<usize, Answered>,
 }
 
@@ -82,7 +82,7 @@ impl LessonRun {
         self.lesson.steps.get(self.step)
     }
 
-    /// Goes to a step, past the last one to the last. What was predicted there before is still predicted.
+    /// Goes to a step, at most to the last. A prediction made there before comes back.
     pub fn go_to(&mut self, step: usize) {
         if let Some(guess) = self.guess.take() {
             self.answered.insert(self.step, (guess, self.judgement.take()));
@@ -93,7 +93,7 @@ impl LessonRun {
         (self.measured, self.gave_up, self.part) = (None, false, None);
     }
 
-    /// The part of the maps that the challenge is about; nothing while a prediction is asked for, and where all of a map counts.
+    /// The part of the maps that the challenge is about; `None` while a prediction is asked for, and where the whole map counts.
     pub fn challenged_part(&self, radar: &Radar, scene: &Scene) -> Option<MapView> {
         let challenge = self.current()?.challenge.as_ref().filter(|_| !self.is_predicting())?;
         part_of(challenge, radar, scene)
@@ -104,7 +104,7 @@ impl LessonRun {
         self.guess.is_none() && self.current().is_some_and(|s| s.predict.is_some())
     }
 
-    /// The map that is to be clicked, if the prediction is made so.
+    /// The map to be clicked, if the prediction is a place in one.
     pub fn clicked_map(&self) -> Option<MapKind> {
         self.asked_map().filter(|_| self.is_predicting())
     }
@@ -115,7 +115,7 @@ impl LessonRun {
         Some(kind_of(*map))
     }
 
-    /// The place that was guessed in a map and the true one, as long as the scene and the radar are the step's.
+    /// The predicted cell of a map and the true one, as long as the scene and the radar are the step's.
     pub fn places(&self, kind: MapKind, radar: &Radar, scene: &Arc<Scene>) -> Option<(Cell, Cell)> {
         let is_step = self.set_up.as_ref().is_some_and(|set_up| Arc::ptr_eq(set_up, scene));
         let is_asked = self.asked_map() == Some(kind) && self.current()?.radar == *radar;

@@ -1,4 +1,4 @@
-//! What stands in the menus of the bar, in groups: drawn as they are listed, and named by the palette beside what it finds.
+//! Commands of the menus in groups, for the menu bar and for the paths in the palette.
 
 use super::command::{Command, DocumentCommand, EditCommand, ExportCommand, Purpose, ViewCommand, WindowCommand};
 use super::panel::Panel;
@@ -6,7 +6,7 @@ use crate::recording::card::USUAL_PORT;
 use crate::scene::presets;
 use Command::{AskFile, Document, Edit, Export, View, Window};
 
-/// *File*: what opens, what listens, what saves and shares, what exports, what ends.
+/// *File*: open, listen, save and share, export, quit.
 pub const FILE: [&[Command]; 5] = [
     &[Document(DocumentCommand::New), AskFile(Purpose::Open)],
     &[AskFile(Purpose::Listen(USUAL_PORT))],
@@ -20,7 +20,7 @@ pub const FILE: [&[Command]; 5] = [
     &[Window(WindowCommand::Quit)],
 ];
 
-/// *Edit*: what goes back and forward, and the rest.
+/// *Edit*: undo and redo, then the rest.
 pub const EDIT: [&[Command]; 2] = [
     &[Edit(EditCommand::Undo), Edit(EditCommand::Redo)],
     &[
@@ -61,7 +61,7 @@ pub const VIEW: [&[Command]; 3] = [
 /// Panels that *Help* lists.
 pub const HELP: [Panel; 2] = [Panel::Guide, Panel::Lesson];
 
-/// Menus that lead to a command, from the bar on; nothing for one that only buttons, keys and the palette have.
+/// Path of menus to a command, from the bar on; empty for a command in no menu.
 pub fn menu_path(command: &Command) -> &'static [&'static str] {
     match command {
         Document(DocumentCommand::Preset(index)) if presets::ALL.get(*index).is_some_and(|p| p.is_failure()) => {
@@ -77,7 +77,7 @@ pub fn menu_path(command: &Command) -> &'static [&'static str] {
         Window(WindowCommand::ArrangeFor(_)) => &["View", "Arrangement"],
         Window(WindowCommand::Help(_) | WindowCommand::ToggleCaptions) => &["Help"],
         Window(WindowCommand::TogglePanel(panel)) if HELP.contains(panel) => &["Help"],
-        // A tile of several views stands in the menu by a name of its own.
+        // A shared tile is in the menu under its own name.
         Window(WindowCommand::TogglePanel(panel)) if panel.title() != panel.tile_title() => &[],
         Window(WindowCommand::TogglePanel(panel)) if panel.is_tool() => &["Tools"],
         Window(WindowCommand::TogglePanel(_)) => &["View", "Panels"],

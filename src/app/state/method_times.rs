@@ -1,14 +1,14 @@
-//! How long each method takes on this machine: measured whenever one reconstructs, kept from one start to the next.
+//! Times of each method on this machine, measured with every reconstruction and kept between starts.
 
 use crate::radar::Radar;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
-/// So many of the latest times of a method are kept.
+/// Number of the latest times kept of a method.
 const KEPT_TIMES: usize = 5;
 
-/// Elements and samples: what decides most of a method's time.
+/// Elements and samples, which decide most of a method's time.
 type Shape = (usize, usize);
 
 /// Times of methods, for each shape of radar.
@@ -24,7 +24,7 @@ fn shape_of(radar: &Radar) -> Shape {
 }
 
 impl MethodTimes {
-    /// A method took so long on samples of a radar.
+    /// Adds the time of a method on samples of a radar.
     pub fn record(&mut self, radar: &Radar, method: &str, took: Duration) {
         let (shape, of_method) = (shape_of(radar), self.measured.entry(method.to_owned()).or_default());
         let index = of_method.iter().position(|(of, _)| *of == shape).unwrap_or_else(|| {
@@ -38,7 +38,7 @@ impl MethodTimes {
         }
     }
 
-    /// The times on samples of a radar.
+    /// The times of methods on samples of a radar.
     pub fn on<'a>(&'a self, radar: &Radar) -> Times<'a> {
         Times { of: Some(self), shape: shape_of(radar) }
     }

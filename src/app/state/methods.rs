@@ -4,24 +4,24 @@ use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
 use std::sync::Arc;
 
-/// Methods that work for any radar and any scene, where the one preferred for the radar doesn't.
+/// Methods for any radar and scene, in place of one that refuses the radar.
 const ROBUST: [&str; 2] = ["capon", "baseline"];
 
-/// Every method, in order, and which is shown where none was chosen.
+/// Every method, and the preferred one.
 pub struct Methods {
     /// Every method, in order.
     pub all: Vec<Arc<dyn Reconstructor>>,
-    /// Name of the method that is used where none was chosen.
+    /// Name of the method in use where the user chose none.
     preferred: &'static str,
 }
 
 impl Methods {
-    /// Offers `all`.
+    /// The methods `all`, with the crate's preferred one.
     pub fn new(all: Vec<Arc<dyn Reconstructor>>) -> Self {
         Methods { all, preferred: crate::methods::preferred().name() }
     }
 
-    /// Offers `method` too, in place of one of its name.
+    /// Adds `method`, or replaces the one of its name.
     #[cfg(feature = "live")]
     pub fn add(&mut self, method: Arc<dyn Reconstructor>) {
         self.all.retain(|other| other.name() != method.name());
@@ -34,7 +34,7 @@ impl Methods {
         named(name).or_else(|| named(self.preferred)).or_else(|| self.all.first())
     }
 
-    /// A method that works on samples of `radar` where the one called `name` didn't, if there is one.
+    /// A method that works on samples of `radar`, other than the one called `name`, if there is one.
     pub fn instead_of(&self, name: &str, radar: &Radar) -> Option<&'static str> {
         let preferred = crate::methods::preferred_for(radar).name();
         let works = |other: &&str| {
@@ -44,7 +44,7 @@ impl Methods {
         [preferred].into_iter().chain(ROBUST).find(|other| works(other))
     }
 
-    /// A method that makes maps of what the elements of `layout` hear, if there is one.
+    /// A method that makes maps from the elements of `layout`, if there is one.
     pub fn hearing(&self, radar: &Radar, layout: &[usize]) -> Option<&'static str> {
         let preferred = crate::methods::preferred_hearing(radar, layout).name();
         let mut able = self.all.iter().filter(|method| method.check_elements(radar, layout).is_ok());
@@ -52,7 +52,7 @@ impl Methods {
         able.find(|method| method.name() == preferred).or(first).map(|method| method.name())
     }
 
-    /// The method to set beside the one called `first`: the one called `name`, or else a plain one, or else any other.
+    /// The method to compare with the one called `first`: the one called `name`, else a robust one, else any other.
     pub fn second_to(&self, first: Option<&str>, name: &str) -> Option<&Arc<dyn Reconstructor>> {
         let named = |name: &str| self.all.iter().find(|m| m.name() == name);
         let other = |m: &&Arc<dyn Reconstructor>| Some(m.name()) != first;
@@ -60,7 +60,7 @@ impl Methods {
         named(name).or_else(plain).or_else(|| self.all.iter().find(other)).or_else(|| self.all.first())
     }
 
-    /// The first that `is_able` after the method called `name`; the first of all comes after the last.
+    /// The next method after the one called `name` that `is_able`; the first follows the last.
     pub fn after(&self, name: &str, is_able: impl Fn(&dyn Reconstructor) -> bool) -> Option<&'static str> {
         let index = self.all.iter().position(|m| m.name() == name).unwrap_or(0);
         let others = self.all.iter().cycle().skip(index + 1).take(self.all.len());

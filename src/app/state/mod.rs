@@ -1,5 +1,4 @@
-//! What the app holds, without any drawing and without any work: the scene, what the user chose, where the panels are, and every
-//! command by name.
+//! State of the app without drawing and without work: the scene, the user's settings, the arrangement, and every command.
 
 #[macro_use]
 mod named;
@@ -74,59 +73,59 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How many recent files are remembered.
+/// Most recent files in the list.
 const RECENT: usize = 10;
 
-/// Everything that commands change.
+/// All state that commands change.
 pub struct State {
-    /// The document being edited: the scene, the radar before it, and the file they are kept in.
+    /// The document in the editor: scene, radar and file.
     pub editor: Editor,
-    /// What the user chose.
+    /// The user's settings.
     pub settings: Settings,
     /// The reconstruction methods.
     pub methods: Methods,
-    /// How long each method takes on this machine.
+    /// Times of each method on this machine.
     pub method_times: MethodTimes,
-    /// Where the panels are.
+    /// Arrangement of the panels.
     pub arrangement: Arrangement,
     /// Messages on screen.
     pub notices: Notices,
-    /// What part of the scene is shown.
+    /// The visible part of the scene.
     pub scene_view: SceneView,
-    /// What part of the maps is shown.
+    /// The visible part of the maps.
     pub map_views: MapViews,
-    /// Where the pointer is.
+    /// The pointer's place.
     pub pointer: Pointer,
-    /// Cuts that stay.
+    /// Pinned cuts.
     pub pins: Pins,
-    /// What the guide did.
+    /// Changes made by the guide.
     pub guided: Guided,
-    /// A file that can't hold all of the scene, if it is to be written.
+    /// The question before a scene is written to a file that can't hold all of it or was changed.
     pub save_question: Option<SaveQuestion>,
-    /// Rows: which is open, which are in sight.
+    /// The opened row and the rows in sight.
     pub failures: Failures,
-    /// The lesson being taken.
+    /// The lesson in progress.
     pub lesson: Option<LessonRun>,
-    /// Where the panels were before a lesson or a presentation took the whole screen.
+    /// The arrangement before a lesson or a presentation took the whole screen.
     pub before_presenting: Option<Arrangement>,
-    /// Who has answered what.
+    /// The learners' answers in lessons.
     pub progress: Progress,
     /// Files opened or saved lately, latest first.
     pub recent: Vec<PathBuf>,
-    /// Whether maps and scene say what they show, until the first drag.
+    /// Whether maps and scene have captions, until the first drag.
     pub captions: bool,
-    /// Whether the scene says what the first drag did.
+    /// Whether the scene explains the first drag.
     pub tells_first_drag: bool,
-    /// The time at which the scene is looked at.
+    /// The time of the scene, and of the recording's next frame.
     pub timeline: Timeline,
-    /// The page of help that is open.
+    /// The open page of help.
     pub help: Option<HelpPage>,
-    /// Whether the window is dark at the moment.
+    /// Whether the window is dark now.
     pub dark: bool,
 }
 
 impl State {
-    /// Puts another document on screen; undo brings the last one back, its file and all.
+    /// Opens another document; undo brings the last one back with its file.
     pub fn set_document(&mut self, label: &str, document: Document) {
         self.editor.open(label, document);
         self.scene_view.fit = true;
@@ -142,18 +141,17 @@ impl State {
         self.lesson.as_ref().is_some_and(LessonRun::is_predicting)
     }
 
-    /// Whether axes and rings tell ranges and directions: while a prediction is asked for only where a place is asked for, since they
-    /// tell some of the answers otherwise.
+    /// Whether axes and rings have ranges and directions. During a prediction they have them only where a place is asked for: they would tell other answers.
     pub fn shows_axes(&self) -> bool {
         !self.is_predicting() || self.lesson.as_ref().is_some_and(|run| run.clicked_map().is_some())
     }
 
-    /// What the lesson being taken uses of the window; everything without one.
+    /// The parts of the window that the lesson uses; all without a lesson.
     pub fn uses(&self) -> Uses {
         self.lesson.as_ref().map_or(Uses::ALL, |run| run.lesson.uses())
     }
 
-    /// Whether a lesson has the whole screen, as against a presentation of the scene.
+    /// Whether a lesson has the whole screen, and not a presentation of the scene.
     pub fn presents_lesson(&self) -> bool {
         self.is_presenting() && self.arrangement.is_open(Panel::Lesson)
     }
@@ -174,7 +172,7 @@ impl State {
         }
     }
 
-    /// Arranges the panels for a task; those that the lesson doesn't use are closed there too.
+    /// Switches to the panels of a task, without those that the lesson doesn't use.
     pub fn arrange_for(&mut self, task: Task) {
         self.stop_presenting();
         if let Some(run) = &mut self.lesson {
@@ -184,8 +182,7 @@ impl State {
         self.close_unused();
     }
 
-    /// Where the pointer is, as every panel shows it: none does while a prediction is asked for, since what is under it in one is the
-    /// answer in another.
+    /// The pointer's place, as every panel shows it. It is `None` during a prediction, since its place in one panel would tell the answer in another.
     pub fn shown_cursor(&self) -> Option<Cursor> {
         self.pointer.now.filter(|_| !self.is_predicting())
     }
@@ -195,7 +192,7 @@ impl State {
         self.before_presenting.is_some()
     }
 
-    /// Gives lessons the whole screen, or ends that.
+    /// Gives the lesson the whole screen, or ends that.
     pub fn present_lesson(&mut self) {
         match self.is_presenting() {
             true => self.stop_presenting(),
@@ -208,7 +205,7 @@ impl State {
         }
     }
 
-    /// Gives the scene and the maps the whole screen, in large type, or takes it from what has it.
+    /// Gives the scene and the maps the whole screen in large type, or ends a presentation or a lesson on the whole screen.
     pub fn present(&mut self) {
         match self.is_presenting() {
             true => self.stop_presenting(),
@@ -219,14 +216,14 @@ impl State {
         }
     }
 
-    /// Puts the panels back to where they were before a lesson or a presentation had the whole screen.
+    /// Restores the arrangement before a lesson or a presentation took the whole screen.
     pub fn stop_presenting(&mut self) {
         if let Some(before) = self.before_presenting.take() {
             self.arrangement = before;
         }
     }
 
-    /// Where the panels are to be at the next start.
+    /// The arrangement to keep for the next start.
     pub fn kept_arrangement(&mut self) -> &mut Arrangement {
         self.before_presenting.as_mut().unwrap_or(&mut self.arrangement)
     }
@@ -236,18 +233,18 @@ impl State {
         self.editor.radar()
     }
 
-    /// The scene that is looked at: the document's, moved to the time that was chosen.
+    /// The document's scene at the timeline's time.
     pub fn scene(&self) -> &Arc<Scene> {
         self.timeline.scene(self.editor.scene())
     }
 
-    /// Which frame of the recording on screen is looked at, and how many it has; `None` where it has one.
+    /// Number of the recording's frame on screen, from 0, and the count of frames; `None` where it has one.
     pub fn frames(&self) -> Option<[u64; 2]> {
         let origin = self.editor.document().recording()?.origin.as_ref()?;
         (origin.frames > 1).then_some([origin.frame, origin.frames])
     }
 
-    /// Everything that the guide may change, as it is.
+    /// The scene, radar and view now.
     pub fn setup(&self) -> Setup {
         Setup {
             view: self.settings.view.clone(),
@@ -257,14 +254,14 @@ impl State {
         }
     }
 
-    /// Whether there is something to undo.
+    /// Whether a change can be undone.
     pub fn can_undo(&self) -> bool {
-        // A lesson's step stays on screen.
+        // Undo does not leave a lesson's step.
         let is_left = self.lesson.as_ref().is_none_or(|run| self.editor.history().depth() > run.depth);
         is_left && (self.editor.history().undo_label().is_some() || self.guided.can_undo(&self.setup()))
     }
 
-    /// Undoes the last change of the scene, or all that a button of the guide did.
+    /// Undoes the last change of the scene, or all changes of a button of the guide.
     pub fn undo(&mut self) {
         if !self.can_undo() {
             return;
@@ -277,7 +274,7 @@ impl State {
         self.settings.take_back(&step.before.view, &step.after.view);
     }
 
-    /// Does again what was undone last.
+    /// Redoes the last undone change.
     pub fn redo(&mut self) {
         let Some(step) = self.guided.redo(&self.setup()) else {
             self.editor.redo();
@@ -287,7 +284,7 @@ impl State {
         self.settings.take_back(&step.after.view, &step.before.view);
     }
 
-    /// Puts a file among the recent ones.
+    /// Adds a file to the recent ones.
     pub fn remember(&mut self, path: &Path) {
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         self.recent.retain(|p| *p != path);
@@ -305,18 +302,18 @@ impl State {
         self.methods.named(&self.settings.method)
     }
 
-    /// Whether the method in use finds places of echoes; some only draw a map.
+    /// Whether the method in use finds places of echoes; some only make a map.
     pub fn finds_reflectors(&self) -> bool {
         self.method().is_some_and(|method| method.finds_reflectors())
     }
 
-    /// The method that the panel "Compare" sets beside it: the one that was chosen, or a plain one, or any other.
+    /// The second method of the panel "Compare": the chosen one, else a robust one, else any other.
     pub fn second_method(&self) -> Option<&Arc<dyn Reconstructor>> {
         let first = self.method().map(|m| m.name());
         self.methods.second_to(first, &self.settings.compare.second)
     }
 
-    /// Either of the two.
+    /// The method of a slot.
     pub fn method_in(&self, slot: MethodSlot) -> Option<&Arc<dyn Reconstructor>> {
         match slot {
             MethodSlot::First => self.method(),
@@ -324,19 +321,19 @@ impl State {
         }
     }
 
-    /// eta of either of the two methods: the user's, or what fits the `answer` on screen, or the method's own.
+    /// eta of a slot's method: the user's, else that of the `answer` on screen, else the method's own.
     pub fn eta_in(&self, slot: MethodSlot, answer: Option<f32>) -> f32 {
         let Some(method) = self.method_in(slot) else { return crate::evaluate::TARGET_ETA };
         self.settings.method_eta.get(method.name()).copied().or(answer).unwrap_or_else(|| method.eta())
     }
 
-    /// Whether places where the method found something are drawn: over a recording always.
+    /// Whether reflectors found by the method are drawn: over a recording always.
     pub fn draws_found(&self) -> bool {
         let is_recorded = self.editor.document().recording().is_some();
         !self.is_predicting() && (is_recorded || (self.settings.show_found && self.finds_reflectors()))
     }
 
-    /// Whether a panel in sight marks something of the method's output, which it then needs as if it drew the output.
+    /// Whether a panel in sight marks results of the method's output, which must then be made.
     pub fn marks_output(&self) -> bool {
         let shown = self.arrangement.shown();
         let marks_found = self.draws_found() && shown.contains(&Panel::Scene);
@@ -345,7 +342,7 @@ impl State {
         told || marks_found || (marks_kinds && self.pictured().contains(&MapKind::Target))
     }
 
-    /// The maps that a panel in sight draws.
+    /// The maps drawn by panels in sight.
     pub fn pictured(&self) -> BTreeSet<MapKind> {
         let shown = self.arrangement.shown();
         let own = shown.iter().filter_map(|panel| if let Panel::Map(kind) = panel { Some(*kind) } else { None });
@@ -353,7 +350,7 @@ impl State {
         own.chain(compared.into_iter().flatten()).collect()
     }
 
-    /// Where cuts are taken: under the pointer, where it was last, or through the first object.
+    /// The cursor of cuts: the pointer's place, else its last one, else the first object's centre.
     pub fn cut_cursor(&self) -> Cursor {
         let first =
             || self.editor.scene().objects.first().map(|o| Cursor::at_place(self.radar(), o.centre_metres().into()));

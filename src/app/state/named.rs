@@ -1,4 +1,4 @@
-//! Choices among a few things that have names.
+//! A macro for enums whose variants have names.
 
 /// An enum with the name of each variant, `ALL` of them in this order, and `name`.
 macro_rules! named {
@@ -9,10 +9,10 @@ macro_rules! named {
         }
 
         impl $choice {
-            /// All of them, in the order they are offered.
+            /// All variants, in the order of menus.
             pub const ALL: [$choice; [$($name),*].len()] = [$($choice::$variant),*];
 
-            /// Its name.
+            /// Name of the variant.
             pub fn name(self) -> &'static str {
                 match self {
                     $($choice::$variant => $name,)*

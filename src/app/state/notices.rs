@@ -1,26 +1,26 @@
-//! Messages on screen: what was done, and what could not be done.
+//! Messages on screen about finished work and errors.
 
-/// Most messages on screen; the oldest make room.
+/// Most messages on screen; a new one replaces the oldest.
 const MAX_NOTICES: usize = 5;
 
-/// What a message is about.
+/// The kind of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoticeKind {
-    /// Something was done.
+    /// Success of a command, or another fact.
     Info,
-    /// Something could not be done.
+    /// An error.
     Error,
 }
 
 /// One message.
 pub struct Notice {
-    /// Its own, never used again.
+    /// A number that no other message has.
     pub number: u64,
-    /// What it is about.
+    /// The kind of message.
     pub kind: NoticeKind,
-    /// What it says.
+    /// The message's text.
     pub text: String,
-    /// Seconds of egui's clock; set when it is first drawn.
+    /// Time at which it goes away, seconds of egui's clock; set when it is first drawn.
     pub until: Option<f64>,
 }
 
@@ -32,7 +32,7 @@ pub struct Notices {
 }
 
 impl Notices {
-    /// Shows a message; one that is there already stays longer instead of standing there twice.
+    /// Shows a message. The same message already on screen stays longer instead.
     pub fn add(&mut self, kind: NoticeKind, text: String) {
         match self.list.iter_mut().find(|m| m.kind == kind && m.text == text) {
             Some(same) => same.until = None,
@@ -45,19 +45,19 @@ impl Notices {
         }
     }
 
-    /// Shows a message that passes.
+    /// Shows a message for a short time.
     pub fn info(&mut self, text: impl Into<String>) {
         self.add(NoticeKind::Info, text.into());
     }
 
-    /// Shows a message that stays a while.
+    /// Shows an error for a longer time, and logs it.
     pub fn error(&mut self, text: impl Into<String>) {
         let text = text.into();
         tracing::warn!("{text}");
         self.add(NoticeKind::Error, text);
     }
 
-    /// How many there are.
+    /// Number of messages.
     pub fn len(&self) -> usize {
         self.list.len()
     }
@@ -67,7 +67,7 @@ impl Notices {
         &mut self.list
     }
 
-    /// Closes all.
+    /// Closes all messages.
     pub fn clear(&mut self) {
         self.list.clear();
     }

@@ -1,10 +1,10 @@
-//! The list of commands as a page in a browser has it: some keys belong to the browser, and some commands to a desktop.
+//! The commands of a page in a browser: some keys belong to the browser, and some commands to a desktop.
 
 use super::command::{Command, DocumentCommand, ExportCommand, LessonCommand, Purpose, WindowCommand};
 use super::panel::Panel;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
-/// What a page can't do: train, list a folder, close itself.
+/// Whether a command needs a desktop: a training log, a folder, a capture card, or a window to close.
 fn needs_a_desktop(command: &Command) -> bool {
     matches!(
         command,
@@ -16,12 +16,12 @@ fn needs_a_desktop(command: &Command) -> bool {
     )
 }
 
-/// What only a page can do: it has an address.
+/// Whether a command needs a page's address.
 fn needs_a_page(command: &Command) -> bool {
     matches!(command, Command::Export(ExportCommand::CopyLink))
 }
 
-/// Keys that a browser keeps for itself (reload, whole screen, its tools, tabs and windows), and the commands' keys in their place.
+/// The key of a command whose usual key belongs to the browser (reload, whole screen, tools, tabs and windows), pressed with Shift.
 fn free_key(command: &Command) -> Option<Key> {
     Some(match command {
         Command::Document(DocumentCommand::New) => Key::N,
@@ -33,13 +33,13 @@ fn free_key(command: &Command) -> Option<Key> {
     })
 }
 
-/// The key that a command has on a page, where it has one; `None` where a page can't do it.
+/// The key of a command on a page, if any; the outer `None` where a page can't do it.
 pub fn on_a_page(command: &Command, key: Option<KeyboardShortcut>) -> Option<Option<KeyboardShortcut>> {
     let free = free_key(command).map(|key| KeyboardShortcut::new(Modifiers::SHIFT, key));
     (!needs_a_desktop(command)).then_some(free.or(key))
 }
 
-/// The same on a desktop; `None` where only a page can do it.
+/// The key of a command on a desktop, if any; the outer `None` where only a page can do it.
 pub fn on_a_desktop(command: &Command, key: Option<KeyboardShortcut>) -> Option<Option<KeyboardShortcut>> {
     (!needs_a_page(command)).then_some(key)
 }

@@ -1,24 +1,24 @@
-//! Everything that can be shown in a tile, by name.
+//! The panels and maps of the app, by name.
 
 use eframe::egui::Key;
 use serde::{Deserialize, Serialize};
 
-/// Where a panel stands.
+/// The place of a panel in arrangement and menus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
-    /// It edits, and has a tile at first.
+    /// A panel that edits, with a tile at first.
     Editing,
-    /// It shows what came of the scene, and has a tile at first.
+    /// A panel of results, with a tile at first.
     Result,
-    /// It is a tool for a question of its own: closed at first.
+    /// A tool, closed at first.
     Tool,
-    /// It is for developers of the program and of methods: menus list it where *Developer* is ticked.
+    /// A tool for developers of the program and of methods, listed in menus where *Developer* is ticked.
     Developer,
-    /// It shares the tile of another.
+    /// A view in the tile of another panel.
     ViewOf(Panel),
 }
 
-/// What is known of a panel without drawing it.
+/// Facts of a panel from its line of the list.
 struct Facts {
     panel: Panel,
     place: Place,
@@ -27,7 +27,7 @@ struct Facts {
     help: &'static str,
 }
 
-/// A tile of several views: the panel that stands for it, its title, that panel's name among the views, and what the tile is for.
+/// A tile of several views: its first panel, its title, that panel's name among the views, and the tile's purpose.
 struct SharedTile {
     tile: Panel,
     title: &'static str,
@@ -52,13 +52,13 @@ const SHARED: [SharedTile; 5] = [
         tile: Panel::Chirp,
         title: "Waveform",
         view: "Chirp",
-        help: "What is sent and what returns, the beat, and range against radial velocity",
+        help: "The chirp sent and its echoes, the beat signal, and range against radial velocity",
     },
     SharedTile {
         tile: Panel::Compare,
         title: "Compare",
         view: "Methods",
-        help: "What two methods make of this scene, or what a window, a floor or a radar does to its maps",
+        help: "Two methods on this scene, or its maps with another window, floor or radar",
     },
     SharedTile {
         tile: Panel::Failures,
@@ -68,7 +68,7 @@ const SHARED: [SharedTile; 5] = [
     },
 ];
 
-/// What a line of the list says of its place and its key.
+/// Place or key of a panel, from the words of its line.
 macro_rules! listed_as {
     (editing) => {
         Place::Editing
@@ -93,10 +93,10 @@ macro_rules! listed_as {
     };
 }
 
-/// The names of all panels, and what is known of each.
+/// The enum of all panels, and the facts of each.
 macro_rules! ids {
     ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:ident $(of $tile:ident)?, $key:ident, $title:literal, $help:literal;)*) => {
-        /// Everything that can be shown, each in a tile of its own or as one of several views of a tile.
+        /// A panel, in a tile of its own or as one of several views of a tile.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         pub enum Panel {
             /// A map.
@@ -117,7 +117,7 @@ macro_rules! ids {
 every_panel!(ids);
 
 impl Panel {
-    /// What the list says of it; nothing of maps.
+    /// The panel's line of the list; `None` for a map.
     fn facts(self) -> Option<&'static Facts> {
         FACTS.iter().find(|facts| facts.panel == self)
     }
@@ -126,22 +126,22 @@ impl Panel {
         self.facts().map(|facts| facts.place)
     }
 
-    /// Whether it is a tool for a question of its own, which is closed at first.
+    /// Whether the panel is a tool, closed at first.
     pub fn is_tool(self) -> bool {
         matches!(self.place(), Some(Place::Tool | Place::Developer))
     }
 
-    /// Whether it is for developers of the program and of methods: menus list it where *Developer* is ticked.
+    /// Whether the panel is for developers of the program and of methods, listed in menus where *Developer* is ticked.
     pub fn is_developer(self) -> bool {
         self.place() == Some(Place::Developer)
     }
 
-    /// All panels that have a tile, in the order menus list them.
+    /// All panels with a tile, in the order of menus.
     pub fn tiles() -> Vec<Panel> {
         Panel::all().into_iter().filter(|panel| panel.tile() == *panel).collect()
     }
 
-    /// All panels, the views of a tile side by side, the maps behind what edits.
+    /// All panels: editing ones, then maps, then the others, the views of a tile side by side.
     pub fn all() -> Vec<Panel> {
         let listed = |is_editing: bool| {
             let chosen = FACTS.iter().filter(move |facts| (facts.place == Place::Editing) == is_editing);
@@ -150,7 +150,7 @@ impl Panel {
         listed(true).chain(MapKind::ALL.map(Panel::Map)).chain(listed(false)).collect()
     }
 
-    /// The views of the tile that this is one of; none where it has a tile to itself.
+    /// The views of the panel's tile; empty where it has a tile to itself.
     pub fn views(self) -> Vec<Panel> {
         let tile = self.tile();
         let others = FACTS.iter().filter(|facts| facts.place == Place::ViewOf(tile)).map(|facts| facts.panel);
@@ -170,12 +170,12 @@ impl Panel {
         SHARED.iter().find(|shared| shared.tile == self.tile())
     }
 
-    /// Title of its tile.
+    /// Title of the panel's tile.
     pub fn tile_title(self) -> &'static str {
         self.shared().map_or_else(|| self.title(), |shared| shared.title)
     }
 
-    /// Its name among the views of its tile.
+    /// Name of the panel among the views of its tile.
     pub fn view_title(self) -> &'static str {
         match self {
             Panel::Several => "Settings",
@@ -183,17 +183,17 @@ impl Panel {
         }
     }
 
-    /// What its tile is for.
+    /// Purpose of the panel's tile.
     pub fn describe_tile(self) -> &'static str {
         self.shared().map_or_else(|| self.describe(), |shared| shared.help)
     }
 
-    /// The key that shows and hides it.
+    /// The key that shows and hides the panel.
     pub fn key(self) -> Option<Key> {
         self.facts().and_then(|facts| facts.key)
     }
 
-    /// Its title.
+    /// Title of the panel.
     pub fn title(self) -> &'static str {
         match (self, self.facts()) {
             (Panel::Map(kind), _) => kind.title(),
@@ -201,7 +201,7 @@ impl Panel {
         }
     }
 
-    /// What it is for.
+    /// Purpose of the panel.
     pub fn describe(self) -> &'static str {
         match (self, self.facts()) {
             (Panel::Map(kind), _) => kind.describe(),
@@ -210,7 +210,7 @@ impl Panel {
     }
 }
 
-/// The maps on screen: the name of each, its title, and what it shows.
+/// The enum of maps, with the title and the content of each.
 macro_rules! map_kinds {
     ($($kind:ident, $title:literal, $help:literal;)*) => {
         /// One of the maps on screen.
@@ -220,12 +220,12 @@ macro_rules! map_kinds {
         }
 
         impl MapKind {
-            /// Title of its panel.
+            /// Title of the map's panel.
             pub fn title(self) -> &'static str {
                 match self { $(MapKind::$kind => $title,)* }
             }
 
-            /// What it shows, for tooltips.
+            /// Content of the map in a sentence, for tooltips.
             pub fn describe(self) -> &'static str {
                 match self { $(MapKind::$kind => $help,)* }
             }
@@ -234,35 +234,35 @@ macro_rules! map_kinds {
 }
 
 map_kinds! {
-    Input0, "Input 0", "What the elements at the left end of the array see";
-    Input1, "Input 1", "What the elements at the right end of the array see";
-    Target, "Target", "What all elements see: the map that a reconstruction aims for";
-    Output, "Output", "What the chosen method makes of the two ends";
+    Input0, "Input 0", "The map of the elements at the left end of the array";
+    Input1, "Input 1", "The map of the elements at the right end of the array";
+    Target, "Target", "The map of all elements: a reconstruction aims for it";
+    Output, "Output", "The chosen method's map, from the two ends";
     TargetAbove, "Target > η'", "Cells where the target exceeds η'";
     OutputAbove, "Output > η", "Cells where the output exceeds η: hits, false alarms, and what it misses of the target";
     Difference, "Difference", "Output minus target: red where the output is too bright, blue where it is too dark";
-    Unexplained, "Unexplained", "What reflectors laid over a recording leave of it: their echoes are fitted and taken off";
+    Unexplained, "Unexplained", "The rest of a recording, once the echoes of the reflectors laid over it are fitted and taken off";
     Doubt, "Doubt", "How far off the method expects its output to be: nine of ten cells are nearer to the target than this, on scenes and over \
         noise like those it was trained on";
-    Second, "Second output", "What the second method makes of the two ends";
+    Second, "Second output", "The second method's map, from the two ends";
     SecondAbove, "Second output > η", "Cells where the second output exceeds its η";
     SecondDifference, "Second difference", "Second output minus target";
 }
 
-/// Which of the two methods on screen.
+/// One of the two methods on screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MethodSlot {
-    /// The one that was chosen for the whole window.
+    /// The method of the whole window.
     First,
-    /// The one that the panel "Compare" sets beside it.
+    /// The second method, of the panel "Compare".
     Second,
 }
 
 impl MethodSlot {
-    /// Both.
+    /// Both slots.
     pub const BOTH: [MethodSlot; 2] = [MethodSlot::First, MethodSlot::Second];
 
-    /// The map that its method makes.
+    /// The map of the slot's output.
     pub fn map(self) -> MapKind {
         match self {
             MethodSlot::First => MapKind::Output,
@@ -272,7 +272,7 @@ impl MethodSlot {
 }
 
 impl MapKind {
-    /// All that have a panel of their own, in reading order.
+    /// All maps with a panel of their own, in reading order.
     pub const ALL: [MapKind; 9] = [
         MapKind::Input0,
         MapKind::Input1,
@@ -285,7 +285,7 @@ impl MapKind {
         MapKind::Unexplained,
     ];
 
-    /// The method of whose output it is made, if it is made of one.
+    /// The slot of the method whose output the map is made of, if any.
     pub fn slot(self) -> Option<MethodSlot> {
         match self {
             MapKind::Output | MapKind::OutputAbove | MapKind::Difference | MapKind::Doubt => Some(MethodSlot::First),
@@ -294,17 +294,17 @@ impl MapKind {
         }
     }
 
-    /// Whether it is made of a method's output.
+    /// Whether the map is made of a method's output.
     pub fn needs_output(self) -> bool {
         self.slot().is_some()
     }
 
-    /// Whether it shows a difference.
+    /// Whether the map is a difference.
     pub fn is_difference(self) -> bool {
         matches!(self, MapKind::Difference | MapKind::SecondDifference)
     }
 
-    /// Whether it shows cells above a threshold.
+    /// Whether the map has cells above a threshold.
     pub fn is_above(self) -> bool {
         matches!(self, MapKind::TargetAbove | MapKind::OutputAbove | MapKind::SecondAbove)
     }

@@ -1,25 +1,25 @@
-//! Which phasors are drawn, and how.
+//! Settings of the drawn phasors.
 
 use crate::maps::Aperture;
 use crate::radar::End;
 use serde::{Deserialize, Serialize};
 
 named! {
-    /// The map whose cell is taken apart.
+    /// The map whose cell is split into phasors.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     pub enum PhasorMap {
-        /// That of the first end.
+        /// Map of the first end.
         Input0 = "Input 0",
-        /// That of the last end.
+        /// Map of the last end.
         Input1 = "Input 1",
-        /// That of the whole array.
+        /// Map of the whole array.
         #[default]
         Target = "Target",
     }
 }
 
 impl PhasorMap {
-    /// The elements that make it.
+    /// The elements of the map.
     pub fn aperture(self) -> Aperture {
         match self {
             PhasorMap::Target => Aperture::Full,
@@ -29,7 +29,7 @@ impl PhasorMap {
     }
 }
 
-/// What the user chose to look at.
+/// The user's settings of the panel Phasors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PhasorSettings {
@@ -41,7 +41,7 @@ pub struct PhasorSettings {
     pub focused: bool,
     /// Whether the chain of the echoes alone, without noise, is drawn beside it.
     pub echoes: bool,
-    /// Whether the chain of what the method's reflectors leave is drawn beside it.
+    /// Whether the chain left after subtracting the method's reflectors is drawn beside it.
     pub residual: bool,
 }
 

@@ -1,28 +1,28 @@
-//! Room for a panel that is opened: at least as much as it can be used in, taken from its neighbours and given back when it is closed.
+//! Room for an opened panel: its least size, taken from its neighbours and returned when it is closed.
 
 use super::panel::{MapKind, Panel};
 use eframe::egui::Vec2;
 use egui_tiles::{Container, LinearDir, Shares, Tile, TileId, Tiles};
 use serde::{Deserialize, Serialize};
 
-/// Neighbours keep at least this much, points.
+/// Least size that neighbours keep, points.
 const LEAST_OF_NEIGHBOURS: f32 = 120.0;
 
-/// What tabs take of a panel's height, points.
+/// Height of the tabs above a panel, points.
 const TABS: f32 = 24.0;
 
-/// How a container was divided before a panel took room in it.
+/// Shares of a container before a panel took room in it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Taken {
     /// The panel.
     panel: Panel,
     /// The container.
     container: TileId,
-    /// How its children shared it.
+    /// Shares of its children.
     before: Shares,
 }
 
-/// The least room in which a panel can be used, points.
+/// The least useful size of a panel, points.
 pub fn least_size(panel: Panel) -> Vec2 {
     let [width, height] = match panel {
         Panel::Map(MapKind::Input0 | MapKind::Input1 | MapKind::Target | MapKind::Output) => [200.0, 140.0],
@@ -40,7 +40,7 @@ pub fn least_size(panel: Panel) -> Vec2 {
     Vec2::new(width, height)
 }
 
-/// Gives an opened panel its least size, where its containers have room for it; what was taken for it. Sizes are those of the last frame.
+/// Gives an opened panel its least size, where its containers have room for it. Returns the changed containers. Sizes are those of the last frame.
 pub fn make(tiles: &mut Tiles<Panel>, panel: Panel) -> Vec<Taken> {
     let least = least_size(panel);
     let across = grow(tiles, panel, LinearDir::Horizontal, least.x);
@@ -48,7 +48,7 @@ pub fn make(tiles: &mut Tiles<Panel>, panel: Panel) -> Vec<Taken> {
     across.into_iter().chain(down).collect()
 }
 
-/// Gives back what was taken for a panel. Where another one took room in the same container later, that one gives it back instead.
+/// Returns the room taken for a panel. Where another panel took room in the same container later, that panel will return it.
 pub fn give_back(tiles: &mut Tiles<Panel>, taken: &mut Vec<Taken>, panel: Panel) {
     while let Some(index) = taken.iter().position(|t| t.panel == panel) {
         let Taken { container, before, .. } = taken.remove(index);
@@ -63,13 +63,13 @@ pub fn give_back(tiles: &mut Tiles<Panel>, taken: &mut Vec<Taken>, panel: Panel)
     }
 }
 
-/// The children of a row or a column that are in sight.
+/// The visible children of a row or a column.
 fn in_sight(tiles: &Tiles<Panel>, container: TileId) -> Vec<TileId> {
     let Some(Tile::Container(Container::Linear(linear))) = tiles.get(container) else { return Vec::new() };
     linear.children.iter().copied().filter(|id| tiles.is_visible_in_layout(*id)).collect()
 }
 
-/// The columns beside one whose rows begin where its own begin: they keep doing so, for the frames of maps.
+/// The columns beside one with rows at the same heights, which stay aligned for the frames of maps.
 fn aligned(tiles: &Tiles<Panel>, column: TileId) -> Vec<TileId> {
     let tops = |id: TileId| -> Vec<i64> {
         in_sight(tiles, id)
@@ -83,7 +83,7 @@ fn aligned(tiles: &Tiles<Panel>, column: TileId) -> Vec<TileId> {
     beside.into_iter().filter(|id| *id != column && tops(*id) == own).collect()
 }
 
-/// Along one direction, from the innermost container outwards, until the panel has `need` points.
+/// Enlarges the panel along one direction, from the innermost container outwards, until it has `need` points.
 fn grow(tiles: &mut Tiles<Panel>, panel: Panel, dir: LinearDir, need: f32) -> Vec<Taken> {
     let mut taken = Vec::new();
     let extent = |tiles: &Tiles<Panel>, id: TileId| {

@@ -3,31 +3,31 @@
 use crate::scene::file::FileLoss;
 use std::path::PathBuf;
 
-/// What would be written where, and what speaks against it.
+/// A file to be written, and the doubt about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SaveQuestion {
     /// The file.
     pub path: PathBuf,
-    /// Why it isn't written at once.
+    /// The reason why the file isn't written at once.
     pub doubt: Doubt,
 }
 
-/// Why a file isn't written at once.
+/// The reason why a file isn't written at once.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Doubt {
-    /// It would not give these back.
+    /// The file would lose these parts of the scene.
     Losses(Vec<FileLoss>),
-    /// Another program has written something else to it.
+    /// Another program has changed the file.
     Changed,
 }
 
-/// What the user wants.
+/// The user's answer to the question.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SaveAnswer {
-    /// Write it, and lose what must be lost.
+    /// Write the file without the parts that it would lose.
     Anyway,
-    /// Write all of it to another file.
+    /// Write the whole scene to another file.
     Elsewhere,
-    /// Write nothing.
+    /// Write no file.
     Cancel,
 }

@@ -1,4 +1,4 @@
-//! What the user chose: kept from one start to the next. What the radar is belongs to the scene's file instead.
+//! The user's settings, kept between starts. The radar belongs to the scene's file instead.
 
 use super::bounds_settings::BoundsSettings;
 use super::chirp_settings::ChirpSettings;
@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
 
-/// Light or dark.
+/// Theme of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Brightness {
-    /// As the system says.
+    /// As the system has it.
     #[default]
     System,
     /// Light.
@@ -23,36 +23,36 @@ pub enum Brightness {
     Dark,
 }
 
-/// Everything the user chose: how scenes are looked at, and what is the window's own.
+/// The user's settings of view, panels and window.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// How scenes are looked at; kept beside the rest.
+    /// View of the scenes; kept beside the other settings.
     #[serde(skip)]
     pub view: View,
-    /// Where dragged objects come to rest.
+    /// Grid that dragged objects snap to.
     pub snap: Snap,
-    /// In which numbers places are told and entered.
+    /// Coordinates in which places are shown and entered.
     pub coordinates: Coordinates,
-    /// Light or dark.
+    /// Theme of the window.
     pub theme: Brightness,
-    /// What the bounds are computed for.
+    /// Settings of the bounds.
     pub bounds: BoundsSettings,
-    /// Which phasors are drawn.
+    /// Settings of the phasors.
     pub phasors: PhasorSettings,
-    /// Which element's chirp is drawn.
+    /// Settings of the chirp.
     pub chirp: ChirpSettings,
-    /// Which map is shown several times, and what differs.
+    /// Settings of several maps.
     pub several: Several,
-    /// Two methods side by side.
+    /// Settings of the comparison of two methods.
     pub compare: Compare,
     /// Whether menus list the panels for developers.
     pub developer: bool,
-    /// Folder of one's own scenes, where another than the usual one was chosen.
+    /// The user's own folder of scenes, where it isn't the usual one.
     pub own_scenes: Option<PathBuf>,
     /// Seed of the next random scene.
     pub random_seed: u64,
-    /// Its number among the scenes of that seed.
+    /// Number of the next random scene in the stream of that seed.
     pub random_number: u32,
 }
 

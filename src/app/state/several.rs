@@ -1,4 +1,4 @@
-//! One map several times: which constant differs from one to the next, and by what.
+//! Settings of one map shown for several values of a parameter.
 
 use super::panel::MapKind;
 use crate::app::shared::Shared;
@@ -21,7 +21,7 @@ const FLOORS: [(&str, Floor); 4] = [
 ];
 
 named! {
-    /// What differs from map to map.
+    /// The parameter that differs from map to map.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     pub enum Parameter {
         /// The window of both transforms.
@@ -33,7 +33,7 @@ named! {
         EndElements = "elements of an end",
         /// Distance between elements, wavelengths.
         Spacing = "element spacing",
-        /// What lies beneath the reflectors.
+        /// The floor beneath the reflectors.
         Floor = "floor",
         /// Signal-to-noise ratio of a sample, dB.
         Snr = "SNR",
@@ -45,7 +45,7 @@ named! {
 }
 
 impl Parameter {
-    /// Unit of its numbers, where it has numbers.
+    /// Unit of the parameter's values, where they are numbers.
     pub fn unit(self) -> Option<&'static str> {
         match self {
             Parameter::Window | Parameter::Method | Parameter::Floor | Parameter::Radar => None,
@@ -56,7 +56,7 @@ impl Parameter {
         }
     }
 
-    /// From where to where it goes at first, around what the radar has.
+    /// Default first and last value, around the radar's own.
     pub fn usual(self, radar: &Radar) -> [f64; 2] {
         let spacing = radar.element_spacing_metres / radar.wavelength_metres();
         match self {
@@ -68,7 +68,7 @@ impl Parameter {
         }
     }
 
-    /// The map that shows its effect best.
+    /// The map that shows the parameter's effect best.
     pub fn usual_map(self) -> MapKind {
         match self {
             Parameter::EndElements => MapKind::Input0,
@@ -78,21 +78,21 @@ impl Parameter {
     }
 }
 
-/// What is shown several times.
+/// Settings of several maps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Several {
-    /// What differs.
+    /// The parameter that differs.
     pub parameter: Parameter,
-    /// Which map.
+    /// Kind of the map.
     pub map: MapKind,
     /// The first value, in the parameter's unit.
     pub low: f64,
     /// The last value.
     pub high: f64,
-    /// How many maps, where the parameter is a number.
+    /// Number of maps, where the parameter is a number.
     pub count: usize,
-    /// Names of methods, where it is the method; the first eight of the list where empty.
+    /// Names of methods, where the parameter is the method; the first eight of the list where empty.
     pub methods: BTreeSet<String>,
 }
 
@@ -110,27 +110,27 @@ impl Default for Several {
     }
 }
 
-/// One of the maps.
+/// Label, radar, floor and method of one map.
 #[derive(Clone, PartialEq)]
 pub struct Variant {
-    /// What is different about it.
+    /// Value of the parameter in words.
     pub label: String,
-    /// Its radar.
+    /// Radar of the map.
     pub radar: Radar,
-    /// What lies beneath the reflectors.
+    /// Floor beneath the reflectors.
     pub floor: Floor,
-    /// The method, where it has a name of its own here.
+    /// The method that makes the map, if it needs one.
     pub method: Option<Shared<dyn Reconstructor>>,
 }
 
 impl Several {
-    /// This with another parameter, its usual values and its usual map.
+    /// These settings for another parameter, with its usual values and its usual map.
     pub fn with(&self, parameter: Parameter, radar: &Radar) -> Several {
         let [low, high] = parameter.usual(radar);
         Several { parameter, map: parameter.usual_map(), low, high, ..self.clone() }
     }
 
-    /// The maps to make of a scene before `radar` over `floor`; at most [`MAX_MAPS`], and none whose radar is not valid.
+    /// The maps of a scene before `radar` over `floor`: at most [`MAX_MAPS`], without those of invalid radars.
     pub fn variants(
         &self,
         radar: &Radar,
@@ -178,7 +178,7 @@ impl Several {
         variants
     }
 
-    /// The values of a number: decibels in even steps, all others in even ratios.
+    /// The values of a numeric parameter: SNR in even steps, others in even ratios.
     fn values(&self) -> Vec<f64> {
         let count = self.count.clamp(2, MAX_MAPS);
         let part = |i: usize| i as f64 / (count - 1) as f64;
@@ -190,7 +190,7 @@ impl Several {
 }
 
 impl Parameter {
-    /// The radar and the floor with this value; `None` for a value that no radar can have.
+    /// The radar and the floor with this value; `None` for an impossible value.
     fn set(self, radar: &Radar, floor: Floor, value: f64) -> Option<(Radar, Floor)> {
         let mut radar = radar.clone();
         match self {
@@ -213,7 +213,7 @@ impl Parameter {
     }
 }
 
-/// Three digits, as many of them behind the point as that leaves.
+/// A number with three digits, fewer of them behind the point the larger it is.
 fn number(value: f64) -> String {
     match value.abs() {
         v if v >= 100.0 => format!("{value:.0}"),

@@ -1,4 +1,4 @@
-//! Other words that may be typed in the palette.
+//! Further search words for commands in the palette.
 
 use super::command::{
     Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, Purpose, RadarCommand, ViewCommand,
@@ -6,7 +6,7 @@ use super::command::{
 };
 use super::panel::Panel;
 
-/// Words for a command that its name doesn't hold.
+/// Search words for a command that its name lacks.
 pub fn synonyms(command: &Command) -> &'static str {
     match command {
         Command::Document(command) => match command {

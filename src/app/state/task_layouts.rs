@@ -1,4 +1,4 @@
-//! Where the panels stand at first: for each task, for a presentation, and for a lesson on the whole screen.
+//! Default arrangement of the panels for each task, for a presentation, and for a lesson on the whole screen.
 
 use super::panel::{MapKind, Panel};
 use eframe::egui;
@@ -6,7 +6,7 @@ use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
 named! {
-    /// What the window is used for: each task has an arrangement of panels of its own, kept as the user leaves it.
+    /// A use of the window. Each task has its own arrangement of panels, kept as the user leaves it.
     #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
     pub enum Task {
         /// The scene, its settings and all maps.
@@ -14,7 +14,7 @@ named! {
         Explore = "Explore",
         /// Two methods on one scene, large.
         Compare = "Compare",
-        /// Rows of scenes on which methods fail, with the maps of the one that is open.
+        /// Rows of scenes on which methods fail, with the maps of the opened one.
         Failures = "Failures",
         /// A lesson, the scene and the maps that lessons ask about.
         Teach = "Teach",
@@ -22,7 +22,7 @@ named! {
 }
 
 impl Task {
-    /// What it shows.
+    /// The task's panels in a sentence, for tooltips.
     pub fn describe(self) -> &'static str {
         match self {
             Task::Explore => "Arrange panels: the scene, its settings and all maps",
@@ -34,7 +34,7 @@ impl Task {
         }
     }
 
-    /// The task that opens with a panel which needs much room and maps beside it.
+    /// The task of a large panel that needs maps beside it.
     pub fn of(panel: Panel) -> Option<Task> {
         match panel {
             Panel::Compare => Some(Task::Compare),
@@ -44,7 +44,7 @@ impl Task {
         }
     }
 
-    /// Its panels as they stand at first.
+    /// The default tiles of the task.
     pub fn tree(self) -> Tree<Panel> {
         match self {
             Task::Explore => explore(),
@@ -55,7 +55,7 @@ impl Task {
     }
 }
 
-/// The scene, its settings and all maps; tools are there and closed.
+/// The scene, its settings and all maps; tools have closed tiles.
 fn explore() -> Tree<Panel> {
     let mut tiles = Tiles::default();
     let mut pane = |panel| tiles.insert_pane(panel);
@@ -74,7 +74,7 @@ fn explore() -> Tree<Panel> {
     let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
     let scene = tabs(&mut tiles, vec![scene]);
     let controls = tabs(&mut tiles, vec![controls, radar, timing]);
-    // What is read while settings change stands beside them.
+    // Panels that are read while settings change are beside them.
     let beside = tabs(&mut tiles, vec![guide, lesson, recording]);
     let inspector = tabs(&mut tiles, vec![inspector, objects]);
     let left = column(&mut tiles, vec![scene, controls, inspector], &[0.40, 0.37, 0.23]);
@@ -90,7 +90,7 @@ fn explore() -> Tree<Panel> {
     Tree::new(egui::Id::unique("panels"), root, tiles)
 }
 
-/// Two methods large; beside them what they work on and aim for.
+/// Two methods large, with scene, target and settings beside them.
 fn compare() -> Tree<Panel> {
     let mut tiles = Tiles::default();
     let scene = tabs(&mut tiles, &[Panel::Scene]);
@@ -102,7 +102,7 @@ fn compare() -> Tree<Panel> {
     Tree::new(egui::Id::unique("compare"), root, tiles)
 }
 
-/// Rows on the whole width, since they are long; above them the maps of the one that is open.
+/// Rows on the whole width, since they are long, with the maps of the opened one above.
 fn failures() -> Tree<Panel> {
     let mut tiles = Tiles::default();
     let scene = tabs(&mut tiles, &[Panel::Scene, Panel::Inspector]);
@@ -114,8 +114,7 @@ fn failures() -> Tree<Panel> {
     Tree::new(egui::Id::unique("failures"), root, tiles)
 }
 
-/// A lesson large, with the scene and the controls of challenges, one map large, the others that lessons ask about, and the target above
-/// its threshold.
+/// A large lesson, the scene with the controls of challenges, one large map, the other maps that lessons ask about, and the target above its threshold.
 pub fn lesson(name: &'static str) -> Tree<Panel> {
     let mut tiles = Tiles::default();
     let lesson = tabs(&mut tiles, &[Panel::Lesson]);
@@ -133,7 +132,7 @@ pub fn lesson(name: &'static str) -> Tree<Panel> {
     Tree::new(egui::Id::unique(name), root, tiles)
 }
 
-/// What is shown to many people at once: target and output equally large, below them the scene and the ends' maps.
+/// Panels for an audience: target and output equally large, scene and the ends' maps below them.
 pub fn presentation() -> Tree<Panel> {
     let mut tiles = Tiles::default();
     let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output];
@@ -145,7 +144,7 @@ pub fn presentation() -> Tree<Panel> {
     Tree::new(egui::Id::unique("presentation"), root, tiles)
 }
 
-/// Panels behind each other, the first in front.
+/// Tabs of these panels, the first in front.
 fn tabs(tiles: &mut Tiles<Panel>, panels: &[Panel]) -> TileId {
     let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
     tiles.insert_tab_tile(panes)

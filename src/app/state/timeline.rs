@@ -1,26 +1,25 @@
-//! The time at which a scene of moving objects is looked at. The document is not changed: it is the scene at time 0. Of a recording it says when
-//! the next frame is due.
+//! The time of a scene of moving objects. The document is the scene at time 0 and is not changed. For a recording, the time of the next frame.
 
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// The longest time that is looked at, seconds.
+/// End of the timeline, seconds.
 pub const TIMELINE_SECONDS: f64 = 5.0;
 
-/// Where on the timeline the scene is looked at.
+/// Time and motion of the scene on screen.
 #[derive(Default)]
 pub struct Timeline {
-    /// The document's scene, and the same at the time; `None` at time 0.
+    /// The document's scene, and the scene at the chosen time; `None` at time 0.
     moved: Option<(Arc<Scene>, Arc<Scene>)>,
     seconds: f64,
     is_playing: bool,
-    /// Until a recording's next frame is due, seconds.
+    /// Time until a recording's next frame is due, seconds.
     until_frame: f64,
 }
 
-/// Time from frame to frame of a recording that plays, seconds, unless reading one takes longer.
+/// Least time between frames of a playing recording, seconds; a slow file takes longer.
 const FRAME_SECONDS: f64 = 0.1;
-/// Part of the time that reading a recording's frames may take.
+/// Ratio of the time that reading a recording's frames may take.
 const READING_PART: f64 = 0.5;
 
 impl Timeline {
@@ -29,12 +28,12 @@ impl Timeline {
         self.seconds
     }
 
-    /// Whether time goes on by itself.
+    /// Whether the scene or the recording plays.
     pub fn is_playing(&self) -> bool {
         self.is_playing
     }
 
-    /// Looks at the scene at a time. The end of the timeline stops what plays.
+    /// Sets the time of the scene. The end of the timeline stops playing.
     pub fn set(&mut self, document: &Arc<Scene>, seconds: f64) {
         self.seconds = if seconds.is_finite() { seconds.clamp(0.0, TIMELINE_SECONDS) } else { 0.0 };
         self.is_playing &= self.seconds < TIMELINE_SECONDS;
@@ -42,7 +41,7 @@ impl Timeline {
         self.moved = is_moved.then(|| (document.clone(), Arc::new(document.at(self.seconds))));
     }
 
-    /// Lets time go on, from the beginning where it is at its end, or stops it.
+    /// Plays the scene's motion, from the beginning where it is at its end, or stops it.
     pub fn play(&mut self, document: &Arc<Scene>, is_playing: bool) {
         if is_playing && self.seconds >= TIMELINE_SECONDS {
             self.set(document, 0.0);
@@ -56,24 +55,24 @@ impl Timeline {
         self.until_frame <= 0.0
     }
 
-    /// The next frame of a recording took `seconds` to read: the frame after it is due that much later.
+    /// Notes that a recording's frame took `seconds` to read, which delays the next one.
     pub fn frame_took(&mut self, seconds: f64) {
         self.until_frame = FRAME_SECONDS.max(seconds / READING_PART);
     }
 
-    /// Lets a recording's frames go on, or stops them.
+    /// Plays a recording's frames, or stops them.
     pub fn play_frames(&mut self, is_playing: bool) {
         (self.is_playing, self.until_frame) = (is_playing, 0.0);
     }
 
-    /// Goes back to time 0 where the document's scene has changed since the time was set.
+    /// Returns to time 0 where the document's scene has changed since the time was set.
     pub fn follow(&mut self, document: &Arc<Scene>) {
         if self.moved.as_ref().is_some_and(|(of, _)| !Arc::ptr_eq(of, document)) {
             *self = Timeline::default();
         }
     }
 
-    /// The scene at the time; at time 0 the document's own.
+    /// The scene at the chosen time; at time 0 the document's own.
     pub fn scene<'a>(&'a self, document: &'a Arc<Scene>) -> &'a Arc<Scene> {
         match &self.moved {
             Some((of, moved)) if Arc::ptr_eq(of, document) => moved,
@@ -81,7 +80,7 @@ impl Timeline {
         }
     }
 
-    /// The scene at the time, where it isn't the document's.
+    /// The scene at the chosen time, where it isn't the document's.
     pub fn moved(&self) -> Option<Arc<Scene>> {
         self.moved.as_ref().map(|(_, moved)| moved.clone())
     }

@@ -1,11 +1,11 @@
-//! Which commands switch something, and whether it is on: menus tick it.
+//! State of the switches among the commands, which menus tick.
 
 use super::command::{Command, EditCommand, ViewCommand, WindowCommand};
 use super::settings::Brightness;
 use super::{Panel, Projection, State, Units};
 
 impl State {
-    /// Whether what a command switches is on; `None` for a command that switches nothing.
+    /// Whether the switch of a command is on; `None` where the command is no switch.
     pub fn is_on(&self, command: &Command) -> Option<bool> {
         let settings = &self.settings;
         match command {
@@ -48,13 +48,13 @@ impl State {
         }
     }
 
-    /// A drag ends the captions: the maps were seen to follow. The scene then says what the drag did.
+    /// Ends the captions at the first drag, in which the user saw the maps follow. The scene then explains the drag.
     pub fn note_first_drag(&mut self) {
         self.tells_first_drag |= self.shows_captions();
         self.captions = false;
     }
 
-    /// Whether maps and scene say what they show: not while a lesson does.
+    /// Whether maps and scene have captions; they have none during a lesson.
     pub fn shows_captions(&self) -> bool {
         self.captions && self.lesson.is_none() && !self.arrangement.is_open(Panel::Lesson)
     }

@@ -1,4 +1,4 @@
-//! What part of the maps and of the scene is shown, and where the pointer is in all of them.
+//! The visible parts of maps and scene, and the pointer's place in all of them.
 
 use crate::interact::Place;
 use crate::radar::{Polar, Radar};
@@ -8,9 +8,9 @@ use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
 /// The visible part of a map, as fractions of its width and height; y counts upwards.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapView {
-    /// Its lower left corner.
+    /// Lower left corner.
     pub low: Pos2,
-    /// Its upper right corner.
+    /// Upper right corner.
     pub high: Pos2,
 }
 
@@ -25,19 +25,19 @@ impl MapView {
         self.high - self.low
     }
 
-    /// Fraction at a place of `rect`.
+    /// The fraction of the map at the place `pos` in `rect`.
     pub fn at(&self, rect: Rect, pos: Pos2) -> Pos2 {
         let part = vec2((pos.x - rect.left()) / rect.width(), (rect.bottom() - pos.y) / rect.height());
         self.low + part * self.size()
     }
 
-    /// Place in `rect` of a fraction.
+    /// The place in `rect` of a fraction of the map.
     pub fn to_screen(self, rect: Rect, fraction: Pos2) -> Pos2 {
         let part = (fraction - self.low) / self.size();
         pos2(rect.left() + part.x * rect.width(), rect.bottom() - part.y * rect.height())
     }
 
-    /// Zooms by `factor`, keeping `fixed` where it is.
+    /// Zooms by `factor` around the fraction `fixed`.
     pub fn zoom(&mut self, factor: f32, fixed: Pos2) {
         let size = (self.size() / factor).clamp(Vec2::splat(0.01), Vec2::splat(1.0));
         let part = (fixed - self.low) / self.size();
@@ -63,17 +63,17 @@ impl MapView {
 /// The visible part of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneView {
-    /// What is in the middle.
+    /// Place in the middle.
     pub centre: Place,
-    /// What a point on screen covers.
+    /// Scale: metres per point on screen.
     pub metres_per_point: f64,
-    /// Fit to the window at the next opportunity.
+    /// Whether to fit the scene to the panel in the next frame.
     pub fit: bool,
-    /// Size on screen that it was fitted to, until the user zooms or pans: it is fitted again when that changes.
+    /// Size on screen that the scene was fitted to, until the user zooms or pans. Another size fits it again.
     pub fitted: Option<Vec2>,
-    /// Corner where a selection box began, while one is drawn.
+    /// First corner of a selection box, while one is drawn.
     pub box_start: Option<Place>,
-    /// Where the pointer let go of an object last: no tooltip comes over the object until the pointer has left that place.
+    /// Place where the pointer last released an object. No tooltip of the object appears until the pointer leaves the place.
     pub dropped: Option<Pos2>,
 }
 
@@ -91,14 +91,14 @@ impl Default for SceneView {
 }
 
 impl SceneView {
-    /// Place on screen of a place of the scene; y points up.
+    /// The place on screen of a place of the scene; y points up.
     pub fn to_screen(self, rect: Rect, place: Place) -> Pos2 {
         let dx = (place.x_metres - self.centre.x_metres) / self.metres_per_point;
         let dy = (place.y_metres - self.centre.y_metres) / self.metres_per_point;
         rect.center() + vec2(dx as f32, -dy as f32)
     }
 
-    /// Place of the scene at a place on screen.
+    /// The place of the scene at a place on screen.
     pub fn to_scene(self, rect: Rect, pos: Pos2) -> Place {
         let d = pos - rect.center();
         Place::new(
@@ -107,12 +107,12 @@ impl SceneView {
         )
     }
 
-    /// Whether the pointer is still where it let go of an object.
+    /// Whether the pointer is still where it released an object.
     pub fn was_just_dropped(&self, ctx: &eframe::egui::Context) -> bool {
         self.dropped.zip(ctx.pointer_latest_pos()).is_some_and(|(dropped, now)| dropped.distance(now) < 12.0)
     }
 
-    /// Shows everything between two corners, with a little room around.
+    /// Fits the rectangle between two corners into `rect`, with a little room around it.
     pub fn show(&mut self, rect: Rect, low: Place, high: Place) {
         let width = (high.x_metres - low.x_metres).max(1.0);
         let height = (high.y_metres - low.y_metres).max(1.0);
@@ -121,7 +121,7 @@ impl SceneView {
         self.centre = Place::new((low.x_metres + high.x_metres) / 2.0, (low.y_metres + high.y_metres) / 2.0);
     }
 
-    /// Zooms by `factor`, keeping the place under `pos`.
+    /// Zooms by `factor` around the place under `pos`.
     pub fn zoom(&mut self, factor: f64, rect: Rect, pos: Pos2) {
         let fixed = self.to_scene(rect, pos);
         self.metres_per_point = (self.metres_per_point / factor).clamp(1e-4, 1.0);
@@ -131,16 +131,16 @@ impl SceneView {
     }
 }
 
-/// Where the pointer is, in the coordinates of all panels.
+/// The pointer's place, in the coordinates of all panels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cursor {
-    /// In the scene.
+    /// Place in the scene.
     pub place: Place,
-    /// From the middle of the array.
+    /// Range from the middle of the array.
     pub range_metres: f64,
-    /// Cosine of the angle to the array's axis: the true one, not that of the column.
+    /// Cosine of the true angle to the array's axis, not that of the column.
     pub cos_theta: f64,
-    /// Range bin, fractional; beyond the last one for what is out of range.
+    /// Range bin, fractional; beyond the last one for a place out of range.
     pub bin: f64,
     /// Column, fractional.
     pub column: f64,
@@ -149,14 +149,14 @@ pub struct Cursor {
 /// The visible part of the maps, in either kind of coordinates.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MapViews {
-    /// Over cos(theta) and range.
+    /// Maps over cos(theta) and range.
     pub range_angle: MapView,
-    /// Over x and y.
+    /// Maps over x and y.
     pub cartesian: MapView,
 }
 
 impl MapViews {
-    /// The one that is on screen.
+    /// The visible part of maps over these coordinates.
     pub fn of(&mut self, projection: Projection) -> &mut MapView {
         match projection {
             Projection::RangeAngle => &mut self.range_angle,
@@ -166,7 +166,7 @@ impl MapViews {
 }
 
 impl MapViews {
-    /// What is seen of maps over these coordinates.
+    /// The visible part of maps over these coordinates.
     pub fn seen(&self, projection: Projection) -> MapView {
         match projection {
             Projection::RangeAngle => self.range_angle,
@@ -175,24 +175,24 @@ impl MapViews {
     }
 }
 
-/// Where the pointer is and was.
+/// The pointer's place in this frame and earlier ones.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Pointer {
-    /// In the last frame: what every panel draws.
+    /// Place in the last frame, which every panel draws.
     pub now: Option<Cursor>,
-    /// Said by a panel of this frame.
+    /// Place set by a panel of this frame.
     next: Option<Cursor>,
-    /// Where it was last within the maps, for panels that need a place even when it is elsewhere.
+    /// Last place within the maps, for panels that need one while the pointer is elsewhere.
     last: Option<Cursor>,
 }
 
 impl Pointer {
-    /// A panel has it.
+    /// Sets the pointer's place, from the panel under it.
     pub fn hover(&mut self, cursor: Cursor) {
         self.next = Some(cursor);
     }
 
-    /// Ends a frame; whether the pointer moved, so that panels drawn before the one under it still show the old place.
+    /// Ends a frame. True where the pointer moved, so that panels drawn before the one under it still show its old place.
     pub fn turn(&mut self, radar: &Radar) -> bool {
         let moved = self.next != self.now;
         self.now = self.next.take();
@@ -200,14 +200,14 @@ impl Pointer {
         moved
     }
 
-    /// Where it was last within the maps.
+    /// Last place within the maps.
     pub fn last(&self) -> Option<Cursor> {
         self.last
     }
 }
 
 impl Cursor {
-    /// At a place of the scene: in the cell where the whole array's map shows what stands there.
+    /// The cursor at a place of the scene, in the cell of its blob in the whole array's map.
     pub fn at_place(radar: &Radar, place: Place) -> Self {
         let (polar, blob) =
             (radar.polar_of(place.x_metres, place.y_metres), radar.blob_of(0.0, place.x_metres, place.y_metres));
@@ -220,13 +220,13 @@ impl Cursor {
         }
     }
 
-    /// At a cell of a map: where the reflector stands whose blob is there.
+    /// The cursor at a cell of a map, at the place of the reflector whose blob is there.
     pub fn at_cell(radar: &Radar, bin: f64, column: f64) -> Self {
         let blob = Polar { range_metres: radar.range_of_bin_metres(bin), cos_theta: radar.cos_of_column(column) };
         Cursor { column, ..Cursor::at_blob(radar, blob) }
     }
 
-    /// At a range and direction of a map.
+    /// The cursor at a range and direction of a map.
     pub fn at_blob(radar: &Radar, blob: Polar) -> Self {
         let Polar { range_metres, cos_theta } = blob;
         let column = radar.column_of_cos(cos_theta);
@@ -235,7 +235,7 @@ impl Cursor {
         Cursor { place, range_metres, cos_theta, bin: radar.bin_of_range(range_metres), column }
     }
 
-    /// The cell it lies in, if the maps have it.
+    /// Range bin and column of the cell, if the maps have it.
     pub fn cell(&self, radar: &Radar) -> Option<(usize, usize)> {
         let bin = self.bin.round();
         let inside = bin >= 0.0 && bin < radar.samples as f64;

@@ -1,16 +1,16 @@
-//! Axes of maps, charts and of the scene: ticks at round numbers, labels that neither collide nor leave the panel.
+//! Axes of maps, charts and the scene, with ticks at round numbers and labels that neither collide nor leave the panel.
 
 use eframe::egui;
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
-/// Space for tick labels and an axis title.
+/// Space for tick labels and an axis title, points.
 pub const LEFT: f32 = 46.0;
 pub const BOTTOM: f32 = 36.0;
 
-/// Space right of a map for its bar of colours, or for what stands in its place: the same beside every map.
+/// Space right of a map for its colour bar or its controls, points; the same beside every map.
 pub const RIGHT: f32 = 62.0;
 
-/// Between a side of the plot and its labels.
+/// Gap between a side of the plot and its labels, points.
 const GAP: f32 = 5.0;
 
 /// Font of tick labels.
@@ -32,7 +32,7 @@ pub fn ticks(low: f64, high: f64, count: f32) -> Vec<f64> {
     (first..=last).map(|i| i as f64 * step).collect()
 }
 
-/// A number with as many digits as neighbouring ticks need; all of an axis have the same.
+/// A number with as many decimals as ticks `step` apart need.
 pub fn tick_text(value: f64, step: f64) -> String {
     let digits = (-step.abs().log10() - 1e-9).ceil().clamp(0.0, 6.0) as usize;
     let text = format!("{value:.digits$}");
@@ -45,9 +45,9 @@ pub fn tick_text(value: f64, step: f64) -> String {
 /// A mark of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
-    /// Where.
+    /// Value of the mark.
     pub value: f64,
-    /// What stands there.
+    /// Label of the mark.
     pub text: String,
 }
 
@@ -61,47 +61,47 @@ pub fn round_ticks(low: f64, high: f64, count: f32) -> Vec<Tick> {
 /// An axis: the values at the two ends of a side of the plot, and its title.
 #[derive(Debug, Clone, Copy)]
 pub struct Axis<'a> {
-    /// Left, or below.
+    /// Value at the left or lower end.
     pub low: f64,
-    /// Right, or above.
+    /// Value at the right or upper end.
     pub high: f64,
-    /// What it counts, with its unit.
+    /// Quantity and unit.
     pub title: &'a str,
-    /// Marks; at round numbers where `None`.
+    /// Marks; those at round numbers where `None`.
     pub ticks: Option<&'a [Tick]>,
-    /// How far beyond an end a round number still has its mark there, in what is counted.
+    /// Largest distance of a round number beyond an end that still has its mark at the end, in the axis' unit.
     pub slack: f64,
 }
 
 impl<'a> Axis<'a> {
-    /// With marks at round numbers.
+    /// An axis with marks at round numbers.
     pub fn new(low: f64, high: f64, title: &'a str) -> Self {
         Axis { low, high, title, ticks: None, slack: 0.0 }
     }
 
-    /// Round numbers up to `slack` beyond an end have their mark at the end: half a cell, where the ends are the edges of cells.
+    /// The axis with marks at its ends for round numbers up to `slack` beyond. Where the ends are the edges of cells, `slack` is half a cell.
     pub fn with_slack(self, slack: f64) -> Self {
         Axis { slack: slack.abs(), ..self }
     }
 
-    /// Where a value is, 0 to 1.
+    /// Position of a value along the axis, 0 to 1.
     pub fn part(&self, value: f64) -> f32 {
         let part = ((value - self.low) / (self.high - self.low)) as f32;
         if self.slack > 0.0 { part.clamp(0.0, 1.0) } else { part }
     }
 
-    /// Its marks along `length` points to the right: as many as have room for their labels.
+    /// Marks along `length` points to the right, as many as have room for their labels.
     pub fn across(&self, painter: &Painter, length: f32) -> Vec<Tick> {
         let room = |ticks: &[Tick]| ticks.iter().map(|t| width(painter, &t.text) + 10.0).fold(0.0, f32::max);
         self.marks(length, 60.0, room)
     }
 
-    /// Its marks along `length` points upwards.
+    /// Marks along `length` points upwards.
     pub fn upwards(&self, length: f32) -> Vec<Tick> {
         self.marks(length, 36.0, |_| 18.0)
     }
 
-    /// About one mark every `spacing` points, more where that would be only two, but none without the `room` that its label needs.
+    /// Marks about every `spacing` points, at least about four where each has the `room` of its label.
     fn marks(&self, length: f32, spacing: f32, room: impl Fn(&[Tick]) -> f32) -> Vec<Tick> {
         if let Some(ticks) = self.ticks {
             let inside = |t: &&Tick| (-1e-4..=1.0 + 1e-4).contains(&self.part(t.value));
@@ -115,12 +115,12 @@ impl<'a> Axis<'a> {
     }
 }
 
-/// Marks of an axis that leads to the right, and of one that leads up.
+/// Marks of a horizontal and of a vertical axis around `rect`.
 pub fn marks_of(painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) -> (Vec<Tick>, Vec<Tick>) {
     (x.across(painter, rect.width()), y.upwards(rect.height()))
 }
 
-/// Draws a frame around `rect`, ticks and titles left of it and below it, all of it within the painter's clip rectangle.
+/// Draws a frame around `rect` with ticks and titles left of it and below it, inside the painter's clip rectangle.
 pub fn draw(ui: &Ui, painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) {
     let ink = ui.visuals().weak_text_color();
     let stroke = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
@@ -141,7 +141,7 @@ pub fn draw(ui: &Ui, painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) {
         let at = rect.bottom() - y.part(tick.value) * rect.height();
         painter.hline(rect.left() - 3.0..=rect.left(), at, Stroke::new(1.0, ink));
         let label = place(painter, pos2(rect.left() - GAP, at), Align2::RIGHT_CENTER, &tick.text);
-        // The lowest label must not run into that of the other axis.
+        // The lowest label must not overlap that of the other axis.
         let label = label.translate(vec2(0.0, (rect.bottom() + 2.0 - label.bottom()).min(0.0)));
         text(painter, label.min, Align2::LEFT_TOP, &tick.text, ink);
     }
@@ -152,7 +152,7 @@ pub fn draw(ui: &Ui, painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) {
     let left = |wide: f32| (rect.left() - GAP - labels - 3.0 - wide).max(painter.clip_rect().left() + 1.0);
     let Vec2 { x: long, y: high } = galley.size();
     if y.title.chars().count() == 1 {
-        // A letter that lies on its side is another one.
+        // A single letter on its side would look like another letter.
         painter.galley(pos2(left(long), rect.center().y - high / 2.0), galley, ink);
     } else if long <= rect.height() {
         let at = pos2(left(high), rect.center().y + long / 2.0);
@@ -160,18 +160,18 @@ pub fn draw(ui: &Ui, painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) {
     }
 }
 
-/// Width of small text.
+/// Width of small text, points.
 pub fn width(painter: &Painter, text: &str) -> f32 {
     painter.layout_no_wrap(text.to_owned(), tick_font(), Color32::PLACEHOLDER).size().x
 }
 
-/// The first of several titles for which there is room; the last where there is for none.
+/// The first title that fits `room` points; the last where none fits.
 pub fn fitting<'a>(painter: &Painter, room: f32, titles: &[&'a str]) -> &'a str {
     let fits = titles.iter().find(|title| width(painter, title) <= room);
     fits.or(titles.last()).copied().unwrap_or_default()
 }
 
-/// Where small text goes so that nothing of it is cut off.
+/// Rectangle of small text, moved so that it is not cut off.
 fn place(painter: &Painter, at: Pos2, align: Align2, text: &str) -> Rect {
     let galley = painter.layout_no_wrap(text.to_owned(), tick_font(), Color32::PLACEHOLDER);
     let (rect, room) = (align.anchor_size(at, galley.size()), painter.clip_rect().shrink(1.0));
@@ -179,12 +179,12 @@ fn place(painter: &Painter, at: Pos2, align: Align2, text: &str) -> Rect {
     rect.translate(vec2(back(rect.left(), rect.right(), room.left(), room.right()), 0.0))
 }
 
-/// Small text.
+/// Draws small text.
 pub fn text(painter: &Painter, at: Pos2, align: Align2, text: &str, colour: Color32) -> Rect {
     painter.text(at, align, text, tick_font(), colour)
 }
 
-/// Small text on a patch that makes it readable over any picture.
+/// Draws small text on a dark patch, which makes it readable over any picture.
 pub fn text_on_patch(painter: &Painter, at: Pos2, align: Align2, text: &str) {
     let galley = painter.layout_no_wrap(text.to_owned(), FontId::monospace(12.0), Color32::WHITE);
     let rect = align.anchor_size(at, galley.size()).expand2(vec2(4.0, 2.0));

@@ -7,10 +7,10 @@ use eframe::egui::{Color32, Painter, Pos2, Rect, Response, RichText, Sense, Stro
 use egui_plot::{AxisHints, GridInput, GridMark, Line, LineStyle, Plot, PlotImage, PlotItem, PlotPoint, PlotPoints};
 use egui_plot::{PlotTransform, Points, VLine};
 
-/// Room above a chart, and at its right where no label needs more, points.
+/// Margins above a chart, and at its right where no label needs more, points.
 const MARGINS_POINTS: [f32; 2] = [8.0, 12.0];
 
-/// Room left of the title of an axis that leads up, and what the title itself takes, points.
+/// Space left of a vertical axis' title, and width of the title itself, points.
 const TITLE_ROOM_POINTS: [f32; 2] = [4.0, 20.0];
 
 /// A chart before it is drawn.
@@ -24,11 +24,11 @@ pub struct Chart<'a> {
     items: Vec<Box<dyn PlotItem>>,
 }
 
-/// A chart on screen, to read places off and to draw over.
+/// A drawn chart, for reading values off and drawing over.
 pub struct Drawn {
-    /// Where its lines are.
+    /// Rectangle of its lines.
     pub rect: Rect,
-    /// What the pointer does there.
+    /// The pointer's response on it.
     pub response: Response,
     transform: PlotTransform,
     painter: Painter,
@@ -40,23 +40,22 @@ impl<'a> Chart<'a> {
         Chart { name, x, y, has_one_scale: false, has_grid: true, is_zoomable: false, items: Vec::new() }
     }
 
-    /// The same, with both axes to one scale: one of them shows more than was asked for.
+    /// The chart with one scale for both axes; one of them then covers more than its range.
     pub fn with_one_scale(self) -> Self {
         Chart { has_one_scale: true, ..self }
     }
 
-    /// The same, which a drag pans and a pinch or Ctrl and the wheel zooms; a double click shows all again.
+    /// The chart with zoom: a drag pans, a pinch or Ctrl and the wheel zooms, a double click shows all again.
     pub fn with_zoom(self) -> Self {
         Chart { is_zoomable: true, ..self }
     }
 
-    /// Adds an item of egui_plot, over those before.
+    /// Adds an item of egui_plot over the earlier ones.
     pub fn add(&mut self, item: impl PlotItem + 'static) {
         self.items.push(Box::new(item));
     }
 
-    /// A line from point to point. Points far outside are drawn just outside: a dashed line that leads away by millions of points would be
-    /// made of as many dashes.
+    /// Adds a line from point to point. Points far outside are moved to just outside: a dashed line millions of points long would have as many dashes.
     pub fn line(&mut self, points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke, style: LineStyle) {
         let within = |v: f64, axis: &Axis<'_>| v.min(2.0 * axis.high - axis.low).max(2.0 * axis.low - axis.high);
         let points = points.into_iter().filter(|p| !(p[0].is_nan() || p[1].is_nan()));
@@ -64,24 +63,24 @@ impl<'a> Chart<'a> {
         self.add(Line::new("", points).stroke(stroke).style(style));
     }
 
-    /// A line from bottom to top.
+    /// Adds a line from bottom to top.
     pub fn upright(&mut self, x: f64, stroke: Stroke) {
         self.add(VLine::new("", x).stroke(stroke));
     }
 
-    /// A dot.
+    /// Adds a dot.
     pub fn dot(&mut self, at: [f64; 2], radius: f32, colour: Color32) {
         self.add(Points::new("", vec![at]).radius(radius).color(colour));
     }
 
-    /// A picture between two corners, without a grid over it.
+    /// Adds a picture between two corners, without a grid over it.
     pub fn image(&mut self, texture: TextureId, [left, bottom]: [f64; 2], [right, top]: [f64; 2]) {
         self.has_grid = false;
         let middle = PlotPoint::new((left + right) / 2.0, (bottom + top) / 2.0);
         self.add(PlotImage::new("", texture, middle, [(right - left) as f32, (top - bottom) as f32]));
     }
 
-    /// Draws it into `area`.
+    /// Draws the chart into `area`.
     pub fn show(mut self, ui: &mut Ui, area: Rect, sense: Sense) -> Drawn {
         let (left, right) = self.beside(ui.painter(), area);
         let Chart { name, x, y, has_one_scale, has_grid, is_zoomable, items } = self;
@@ -128,8 +127,8 @@ impl<'a> Chart<'a> {
         Drawn { rect, response, transform, painter }
     }
 
-    /// What labels and titles take left and right of the chart. Leaves out a title that has no room, and begins below the lowest label
-    /// where that would run into one of the other axis.
+    /// Widths of labels and titles left and right of the chart. Removes a title without room. Starts below the lowest label where it would overlap one of the
+    /// other axis.
     fn beside(&mut self, painter: &Painter, area: Rect) -> (f32, f32) {
         let Chart { x, y, .. } = self;
         let height = (area.height() - MARGINS_POINTS[0] - axes::BOTTOM).max(20.0);
@@ -141,7 +140,7 @@ impl<'a> Chart<'a> {
         let left = labels + 8.0 + if y.title.is_empty() { 0.0 } else { TITLE_ROOM_POINTS[1] };
         let width = (area.width() - TITLE_ROOM_POINTS[0] - left - MARGINS_POINTS[1]).max(20.0);
         let x_marks = x.across(painter, width);
-        // What half a label reaches beyond a place, points.
+        // Length of half a label beyond `room`, points.
         let beyond = |t: &Tick, room: f32| axes::width(painter, &t.text) / 2.0 - room;
         let right =
             x_marks.last().map_or(0.0, |t| beyond(t, (1.0 - x.part(t.value)) * width) + 1.0).max(MARGINS_POINTS[1]);
@@ -153,7 +152,7 @@ impl<'a> Chart<'a> {
     }
 }
 
-/// Title, font and labels of an axis.
+/// Sets title, font and labels of an axis.
 fn hints<'a>(ui: &Ui, hints: AxisHints<'a>, axis: Axis<'a>) -> AxisHints<'a> {
     let ink = ui.visuals().weak_text_color();
     let text = move |mark: GridMark, _: &_| match axis.ticks {
@@ -164,7 +163,7 @@ fn hints<'a>(ui: &Ui, hints: AxisHints<'a>, axis: Axis<'a>) -> AxisHints<'a> {
     hints.label_spacing(0.0..=1.0).tick_label_color(ink).tick_label_font(axes::tick_font())
 }
 
-/// The marks of an axis of which a part is in sight.
+/// The marks of an axis in its visible part.
 fn marks(axis: Axis<'_>, input: GridInput, of: impl Fn(Axis<'_>, f32) -> Vec<Tick>) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let ticks = of(Axis { low, high, ..axis }, ((high - low) / input.base_step_size) as f32);
@@ -173,22 +172,22 @@ fn marks(axis: Axis<'_>, input: GridInput, of: impl Fn(Axis<'_>, f32) -> Vec<Tic
 }
 
 impl Drawn {
-    /// Where a point is.
+    /// The place on screen of a point of the chart.
     pub fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
         self.transform.position_from_point(&PlotPoint::new(x, y))
     }
 
-    /// The x of a place.
+    /// The x value at a place on screen.
     pub fn x_at(&self, at: Pos2) -> f64 {
         self.transform.value_from_position(at).x
     }
 
-    /// The y of a place.
+    /// The y value at a place on screen.
     pub fn y_at(&self, at: Pos2) -> f64 {
         self.transform.value_from_position(at).y
     }
 
-    /// Tells at the pointer what is at its place.
+    /// Shows a text at the pointer, made of the values there.
     pub fn tell(self, what: impl FnOnce([f64; 2]) -> Option<String>) {
         let told = self.response.hover_pos().and_then(|pos| what([self.x_at(pos), self.y_at(pos)]));
         if let Some(told) = told {
@@ -196,23 +195,23 @@ impl Drawn {
         }
     }
 
-    /// What else is drawn over the lines, cut off at the frame.
+    /// A painter for marks over the lines, clipped at the frame.
     pub fn painter(&self) -> &Painter {
         &self.painter
     }
 }
 
-/// The part of an axis that is in sight.
+/// The visible part of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Its lower end.
+    /// Lower end.
     pub low: f64,
-    /// Its upper end.
+    /// Upper end.
     pub high: f64,
 }
 
 impl Span {
-    /// Follows wheel, pinch and drag over a chart, and arrow keys, `+` and `-` in one that has the focus; a double click shows `whole` again.
+    /// The span after the wheel, pinch and drag over a chart, and arrow keys, `+` and `-` with the focus; a double click gives `whole`.
     pub fn navigate(self, ui: &Ui, drawn: &Drawn, whole: Span, may_drag: bool) -> Span {
         if drawn.response.double_clicked() {
             return whole;
@@ -239,13 +238,13 @@ impl Span {
         Span { low, high }.within(whole)
     }
 
-    /// The place in the span that is nearest to `x`; where nothing is spanned, its beginning.
+    /// The value in the span that is nearest to `x`; the lower end of an empty span.
     pub fn nearest(self, x: f64) -> f64 {
         x.min(self.high).max(self.low)
     }
 
     fn within(self, whole: Span) -> Span {
-        // What has no cells yet spans nothing.
+        // A chart without cells has an empty span.
         let all = (whole.high - whole.low).max(0.0);
         let size = (self.high - self.low).clamp(1e-3 * all, all);
         let low = self.low.clamp(whole.low, whole.low + (all - size));

@@ -1,41 +1,41 @@
-//! A bar of colours and what they stand for.
+//! A bar of colours with the scale of their values.
 
 use super::axes::{self, Axis, Tick};
 use eframe::egui::{Align2, Color32, Mesh, Painter, Rect, Shape, Stroke, Ui, pos2};
 
-/// Width of the colours.
+/// Width of the colours, points.
 const COLOURS: f32 = 9.0;
 
-/// Between map and colours, and between colours and labels.
+/// Gaps between map and colours, and between colours and labels, points.
 const GAPS: [f32; 2] = [7.0, 5.0];
 
-/// Right of its labels and its title.
+/// Margin right of labels and title, points.
 const END: f32 = 4.0;
 
-/// What the shortest title of a map's axis needs beneath it.
+/// Width of the shortest title of a map's axis, points.
 const AXIS_TITLE: f32 = 60.0;
 
 /// A scale of colours.
 pub struct Bar {
-    /// Its colours, from the lowest to the highest.
+    /// Colours from the lowest to the highest value.
     pub table: [Color32; 256],
-    /// What the first stands for.
+    /// Value of the first colour.
     pub low: f64,
-    /// What the last stands for.
+    /// Value of the last colour.
     pub high: f64,
-    /// What is counted, and after a comma how.
+    /// Quantity, and after a comma its scale.
     pub title: &'static str,
-    /// The lowest value that has a label: what is below it is no echo.
+    /// The lowest value with a label: lower ones are no echoes.
     pub told_from: f64,
 }
 
 impl Bar {
-    /// From `low` to `high`, all of it labelled.
+    /// A bar from `low` to `high` with labels everywhere.
     pub fn new(table: [Color32; 256], low: f64, high: f64, title: &'static str) -> Bar {
         Bar { table, low, high, title, told_from: f64::NEG_INFINITY }
     }
 
-    /// Its labels for a height.
+    /// Labels of a bar `height` points high.
     fn labels(&self, height: f32) -> Vec<Tick> {
         let mut labels = self.axis().upwards(height);
         labels.retain(|tick| tick.value >= self.told_from);
@@ -46,7 +46,7 @@ impl Bar {
         Axis::new(self.low, self.high, self.title)
     }
 
-    /// Draws it right of a map.
+    /// Draws the bar right of a map.
     pub fn draw(&self, ui: &Ui, painter: &Painter, map: Rect) {
         let left = map.right() + GAPS[0];
         let rect = Rect::from_x_y_ranges(left..=left + COLOURS, map.y_range());
@@ -75,13 +75,13 @@ impl Bar {
         axes::text(painter, at, Align2::RIGHT_TOP, self.title_for(painter, map.width()), ink);
     }
 
-    /// The title, or its first word where a map of `width` points leaves no room for more beside the title of its axis.
+    /// The title, or its first part where a map of `width` points has no room for more beside its axis' title.
     fn title_for(&self, painter: &Painter, width: f32) -> &'static str {
         let short = self.title.split(',').next().unwrap_or_default();
         axes::fitting(painter, axes::RIGHT - END + (width - AXIS_TITLE) / 2.0, &[self.title, short])
     }
 
-    /// How far its title reaches beneath a map of `width` points.
+    /// Width of the title's part beneath a map of `width` points.
     pub fn overhang(&self, painter: &Painter, width: f32) -> f32 {
         (axes::width(painter, self.title_for(painter, width)) + GAPS[0] - (axes::RIGHT - END)).max(0.0)
     }

@@ -1,13 +1,13 @@
-//! Directions as every panel tells them: degrees from straight ahead, positive to the right, and cos θ beside them.
+//! Directions as text: degrees from straight ahead, positive to the right, with cos θ.
 //!
 //! θ is the angle to the array's axis, so cos θ is the sine of the angle from straight ahead.
 
 use super::numbers::signed;
 
-/// What the degrees are counted from, for tooltips.
+/// Zero and sign of the degrees, for tooltips.
 pub const CONVENTION: &str = "0° is straight ahead, positive to the right";
 
-/// Degrees from straight ahead of a direction ahead of the array, by its cosine to the array's axis; -90 to 90.
+/// Degrees from straight ahead, -90 to 90, of a direction with this cosine to the array's axis.
 pub fn angle_degrees(cos_theta: f64) -> f64 {
     cos_theta.clamp(-1.0, 1.0).asin().to_degrees()
 }
@@ -17,7 +17,7 @@ pub fn angle_of_place_degrees(x_metres: f64, y_metres: f64) -> f64 {
     x_metres.atan2(y_metres).to_degrees()
 }
 
-/// "+6.9° · cos θ +0.120"; every digit of the angle is one more of the cosine, which has two to begin with.
+/// A direction like "+6.9° · cos θ +0.120": the angle has `digits` decimals, the cosine two more.
 pub fn direction(cos_theta: f64, digits: usize) -> String {
     format!("{}° · cos θ {}", signed(angle_degrees(cos_theta), digits), signed(cos_theta, digits + 2))
 }

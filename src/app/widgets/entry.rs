@@ -1,16 +1,16 @@
-//! Menu entries and buttons of commands: name, tooltip and key come from the one list.
+//! Menu entries and buttons of commands, with name, tooltip and key from the list of commands.
 
 use crate::app::state::{Command, Entry};
 use eframe::egui::{Atom, Button, IdSalt, Response, Role, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 
-/// A menu entry; a click asks for the command and closes the menu.
+/// A menu entry; a click sends the command and closes the menu.
 pub fn entry(ui: &mut Ui, command: impl Into<Command>, enabled: bool, asked: &mut Vec<Command>) {
     let command = command.into();
     let name = command.entry().map_or("", |listed| listed.name.as_ref());
     entry_called(ui, name, command, enabled, asked);
 }
 
-/// A menu entry with a name of its own, where the menu's title says the rest.
+/// A menu entry with its own name, for a menu whose title has the rest of it.
 pub fn entry_called(ui: &mut Ui, name: &str, command: impl Into<Command>, enabled: bool, asked: &mut Vec<Command>) {
     let command = command.into();
     let Some(listed) = command.entry() else { return };
@@ -30,7 +30,7 @@ fn with_key<'a>(ui: &Ui, button: Button<'a>, listed: &Entry) -> Button<'a> {
 /// Side of the place for a tick, points.
 const TICK: f32 = 12.0;
 
-/// A menu entry of something that is `on` or off, with a tick while it is on.
+/// A menu entry of a switch, with a tick while it is `on`.
 pub fn ticked(ui: &mut Ui, name: &str, command: impl Into<Command>, on: bool, asked: &mut Vec<Command>) {
     let command = command.into();
     let Some(listed) = command.entry() else { return };
@@ -49,7 +49,7 @@ pub fn ticked(ui: &mut Ui, name: &str, command: impl Into<Command>, on: bool, as
     }
 }
 
-/// A button with a label of its own where there is no room for the command's name; its tooltip tells the key.
+/// A button with a label shorter than the command's name; its tooltip has the key.
 pub fn button(ui: &mut Ui, label: &str, command: impl Into<Command>, enabled: bool, asked: &mut Vec<Command>) {
     let command = command.into();
     if ui.add_enabled(enabled, Button::new(label)).on_hover_text(tooltip(ui, &command)).clicked() {
@@ -57,7 +57,7 @@ pub fn button(ui: &mut Ui, label: &str, command: impl Into<Command>, enabled: bo
     }
 }
 
-/// A button that asks for what no menu lists.
+/// A button for a command that no menu lists.
 pub fn press<C: Into<Command>>(
     ui: &mut Ui,
     name: impl Into<WidgetText>,
@@ -70,7 +70,7 @@ pub fn press<C: Into<Command>>(
     }
 }
 
-/// A box that is ticked while something is `on`; `command` asks for the other.
+/// A box that is ticked while a switch is `on`; a click sends the `command` with the opposite value.
 pub fn tick<C: Into<Command>>(
     ui: &mut Ui,
     mut on: bool,
@@ -84,12 +84,12 @@ pub fn tick<C: Into<Command>>(
     }
 }
 
-/// With a tooltip; an empty one is none.
+/// The response with a tooltip, unless that is empty.
 pub fn tipped(response: Response, tooltip: &str) -> Response {
     if tooltip.is_empty() { response } else { response.on_hover_text(tooltip) }
 }
 
-/// What a command does, and its key.
+/// Tooltip of a command, with its key.
 pub fn tooltip(ui: &Ui, command: &Command) -> String {
     let Some(listed) = command.entry() else { return String::new() };
     let key = listed.key.map(|key| format!(" ({})", ui.ctx().format_shortcut(&key))).unwrap_or_default();

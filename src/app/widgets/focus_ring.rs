@@ -1,20 +1,20 @@
-//! A ring around what has the keyboard's focus: the same one, well visible, around every control.
+//! A ring around the control with the keyboard's focus, alike for all controls.
 
 use super::theme::focus;
 use eframe::egui::{Context, LayerId, Rect, Stroke, StrokeKind};
 
-/// What has the focus: on which layer, and where. `None` where nothing has it, or what has it is out of sight.
+/// Layer and rectangle of the control with the focus; `None` where none has it or it is out of sight.
 pub fn place(ctx: &Context) -> Option<(LayerId, Rect)> {
     let id = ctx.memory(|m| m.focused())?;
     let response = ctx.read_response(id)?;
     Some((response.layer_id, response.interact_rect)).filter(|(_, rect)| rect.is_positive())
 }
 
-/// Draws the ring, over everything that was drawn before it on the same layer.
+/// Draws the ring over the earlier content of the same layer.
 pub fn draw(ctx: &Context) {
     let Some((layer, rect)) = place(ctx) else { return };
     let stroke = Stroke::new(2.0, focus(ctx.style_of(ctx.theme()).visuals.dark_mode));
-    // Inside the window, even around what reaches its edge.
+    // Inside the window, even around a control at its edge.
     let around = rect.expand(1.5).intersect(ctx.content_rect().shrink(1.0));
     ctx.layer_painter(layer).rect_stroke(around, 3.0, stroke, StrokeKind::Middle);
 }

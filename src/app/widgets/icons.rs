@@ -3,15 +3,15 @@
 use super::theme::{MARK, MARK_EDGE};
 use eframe::egui::{self, Painter, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-/// What is drawn on the button.
+/// The picture on a drawn button.
 pub enum Icon {
     /// A rectangle.
     Maximise,
     /// A cross.
     Close,
-    /// Half a disc with a ring and a spoke: places over x and y.
+    /// Half a disc with a ring and a spoke, for Cartesian maps.
     Fan,
-    /// A rectangle with lines: places over direction and range.
+    /// A rectangle with lines, for range-angle maps.
     Grid,
 }
 
@@ -28,7 +28,7 @@ pub fn icon(ui: &mut Ui, icon: Icon, name: &str) -> egui::Response {
     response.on_hover_text(name)
 }
 
-/// A drawn button over a picture, at a place of its own.
+/// A drawn button over a picture, in `rect`.
 pub fn over_picture(ui: &mut Ui, rect: Rect, icon: Icon, name: &str) -> Response {
     let response = ui.interact(rect, ui.scope_id().with(name), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));

@@ -1,10 +1,10 @@
-//! Text with names of methods and commands in it, written between backticks, and of panels, between asterisks.
+//! Text with names of methods and commands between backticks, and of panels between asterisks.
 
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{FontId, TextFormat, TextStyle, Ui};
 
-/// The text, so many times as large as others, without line breaks inside paragraphs. What stands between backticks is in the font of code, what stands
-/// between asterisks in the colour of strong text, both without them.
+/// The text at `times` the normal size, without line breaks inside paragraphs. Words between backticks are in the font of code, words between asterisks in the
+/// colour of strong text. Backticks and asterisks are left out.
 pub fn inline(ui: &Ui, text: &str, times: f32) -> LayoutJob {
     let (visuals, size) = (ui.visuals(), times * TextStyle::Body.resolve(ui.style()).size);
     let plain = TextFormat::simple(FontId::proportional(size), visuals.text_color());
@@ -28,12 +28,12 @@ pub fn inline(ui: &Ui, text: &str, times: f32) -> LayoutJob {
     job
 }
 
-/// The text with each paragraph on one line: a line of the file ends where its author's editor ended it.
+/// The text with each paragraph on one line.
 fn unwrapped(text: &str) -> String {
     text.split("\n\n").map(|paragraph| paragraph.replace('\n', " ")).collect::<Vec<_>>().join("\n\n")
 }
 
-/// The text before the first words between asterisks, the words, and the text behind them. `2 * 3` has none.
+/// The text before the first words between asterisks, those words, and the text behind them. `2 * 3` has no such words.
 fn emphasis(text: &str) -> Option<(&str, &str, &str)> {
     let mut stars = text.match_indices('*').map(|(at, _)| at);
     let opens = |at: &usize| text[at + 1..].starts_with(|c: char| !c.is_whitespace() && c != '*');

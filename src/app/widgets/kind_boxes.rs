@@ -5,9 +5,9 @@ use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{Button, Grid, Label, PopupCloseBehavior, Response, RichText, Ui, vec2};
 use std::collections::BTreeSet;
 
-/// Width of what is said of a kind, points.
+/// Width of a kind's description, points.
 const SENTENCE_WIDTH: f32 = 420.0;
-/// Least width of a button with such a menu, points.
+/// Least width of a button with a ticking menu, points.
 const TITLE_WIDTH: f32 = 160.0;
 
 /// Name of a kind in menus.
@@ -15,7 +15,7 @@ fn name(kind: &Kind) -> String {
     if kind.test_set().is_some() { format!("set {kind}") } else { kind.to_string() }
 }
 
-/// A button with a menu that a click into it leaves open; the button's response.
+/// A button with a menu that stays open at clicks into it; returns the button's response.
 pub fn ticking_menu(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) -> Response {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     // A tall menu opens beside its button. A button of constant width keeps it in place while the title grows.
@@ -36,7 +36,7 @@ pub fn member_box<T: Ord>(ui: &mut Ui, name: impl Into<String>, value: T, chosen
     response
 }
 
-/// A box to tick for each of `kinds`, with a sentence beside it; what is ticked is in `chosen`.
+/// A box for each of `kinds` with its description; `chosen` has the ticked ones.
 pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &mut BTreeSet<Kind>) {
     let room = SENTENCE_WIDTH.min((ui.ctx().content_rect().width() - 220.0).max(120.0));
     Grid::new("kinds").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
@@ -51,9 +51,9 @@ pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &m
     });
 }
 
-/// The names of `chosen` kinds and of what stands beside them, or how many they are where they are many.
+/// The names of `chosen` kinds and of the set `beside` them, or their number where there are more than four.
 pub fn kind_names(chosen: &BTreeSet<Kind>, beside: Option<&str>) -> String {
-    // A number alone could be a count.
+    // A number alone could be read as a count.
     let of = |kind: &Kind| if chosen.len() == 1 { name(kind) } else { kind.to_string() };
     let names: Vec<String> = chosen.iter().map(of).chain(beside.map(str::to_owned)).collect();
     if names.len() > 4 { format!("{} kinds", names.len()) } else { names.join(", ") }

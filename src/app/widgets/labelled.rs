@@ -1,10 +1,10 @@
-//! Fields and menus behind their names, and how a number is shown.
+//! Fields and menus with a name before them, and the format of numbers.
 
 use super::entry::tipped;
 use super::number_field::NumberField;
 use eframe::egui::{ComboBox, Response, Ui, Widget, WidgetText};
 
-/// A widget behind its name, which labels it for screen readers. The tooltip is that of both; an empty one is none.
+/// A widget after its name, which labels it for screen readers. Both have the tooltip, unless that is empty.
 pub fn labelled(ui: &mut Ui, name: impl Into<WidgetText>, tooltip: &str, widget: impl Widget) -> Response {
     let label = ui.label(name);
     let response = ui.add(widget).labelled_by(label.id);
@@ -12,7 +12,7 @@ pub fn labelled(ui: &mut Ui, name: impl Into<WidgetText>, tooltip: &str, widget:
     tipped(response, tooltip)
 }
 
-/// A menu behind its name, in which one of several values is chosen. `text` is what a value is called.
+/// A menu after its name, for choosing one of `values`; `text` makes their names.
 pub fn choice<T: PartialEq>(
     ui: &mut Ui,
     name: &str,
@@ -24,7 +24,7 @@ pub fn choice<T: PartialEq>(
     choice_told(ui, name, tooltip, chosen, values, |value| (text(value), ""));
 }
 
-/// The same, of values that have a tooltip each.
+/// The same for values with a tooltip each.
 pub fn choice_told<T: PartialEq>(
     ui: &mut Ui,
     name: &str,
@@ -44,34 +44,34 @@ pub fn choice_told<T: PartialEq>(
     });
 }
 
-/// How a number is called, shown and edited.
+/// Name, unit and range of a number, for its field.
 #[derive(Clone, Copy)]
 pub struct Quantity {
     pub name: &'static str,
-    /// What it is.
+    /// Meaning of the number.
     pub tooltip: &'static str,
-    /// Its unit, with the space before it.
+    /// Unit, with the space before it.
     pub unit: &'static str,
-    /// The smallest and the largest that are taken.
+    /// Smallest and largest allowed value.
     pub range: [f64; 2],
-    /// Change for each point of a drag.
+    /// Change for each point of a drag, in the unit.
     pub speed: f64,
-    /// Decimals that are shown.
+    /// Decimals shown.
     pub decimals: usize,
 }
 
 impl Quantity {
-    /// A number of this name, with this tooltip; in metres.
+    /// A number in metres with this name and tooltip.
     pub const fn metres(name: &'static str, tooltip: &'static str) -> Self {
         Quantity { name, tooltip, unit: " m", range: [-1e4, 1e4], speed: 0.02, decimals: 3 }
     }
 
-    /// The same in another unit, with other ends, changed faster or slower, and with other decimals.
+    /// The number with another unit, range, speed and number of decimals.
     pub const fn with(self, unit: &'static str, range: [f64; 2], speed: f64, decimals: usize) -> Self {
         Quantity { unit, range, speed, decimals, ..self }
     }
 
-    /// A field for it; a value out of range stays until it is edited.
+    /// A field for the number; a value out of range stays until it is edited.
     pub fn field<'a>(&self, value: &'a mut f64) -> NumberField<'a> {
         let [low, high] = self.range;
         let field = NumberField::new(value).range(low..=high).clamp_existing_to_range(false);

@@ -1,12 +1,12 @@
-//! What the lines and marks of a chart stand for: a row of its own, not over the data.
+//! Legend of a chart, in a row of its own and not over the data.
 
 use eframe::egui::{Color32, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
-/// Width of a sign, and what is between it and the name, points.
+/// Width of a sign, and its gap to the name, points.
 const SIGN: f32 = 14.0;
 const GAP: f32 = 4.0;
 
-/// How something is drawn.
+/// The sign of an entry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
     /// A line.
@@ -26,20 +26,20 @@ pub enum Sign {
 /// One entry of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
-    /// What is drawn.
+    /// Sign of the entry.
     pub sign: Sign,
-    /// In which colour.
+    /// Colour of the sign.
     pub colour: Color32,
-    /// What it is.
+    /// Name of the entry.
     pub name: String,
 }
 
-/// Draws the entries, row after row where they are many.
+/// Draws the entries, in several rows where one is too short.
 pub fn row(ui: &mut Ui, entries: &[Entry]) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 12.0;
         for entry in entries {
-            // Sign and name in one piece, so that no row ends between them.
+            // Sign and name are one piece, so that no row ends between them.
             let (font, ink) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
             let name = ui.painter().layout_no_wrap(entry.name.clone(), font, ink);
             let size = vec2(SIGN + GAP + name.size().x, name.size().y);

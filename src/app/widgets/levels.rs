@@ -1,18 +1,18 @@
-//! Levels of a map in decibels, as every panel tells them.
+//! Levels of a map in decibels as text.
 
 use super::numbers::signed;
 
-/// No lower level is told, decibels relative to the peak. Samples of 24 bits reach 144 dB, and the transforms of 512 x 1024 samples add
-/// 57 dB: what a map has below 200 dB is rounding, and no echo.
+/// Lowest level that is shown, decibels relative to the peak. Samples of 24 bits reach 144 dB, and the transforms of 512 x 1024 samples add 57 dB. Lower
+/// values of a map are rounding, not echoes.
 pub const LOWEST_DB: f64 = -200.0;
 
-/// The lowest level that is told of a map whose Λ spans `range_db`.
+/// The lowest level that is shown of a map whose Λ spans `range_db`.
 pub fn lowest_db(range_db: f64) -> f64 {
     LOWEST_DB.max(-range_db)
 }
 
-/// A level relative to the map's peak, of a map whose Λ spans `range_db`: "−23.4", "≤ −200" at the floor or beneath what is told, "no echo"
-/// where nothing was heard at all. The caller adds "dB" with [`with_unit`].
+/// A level relative to the map's peak, for a map whose Λ spans `range_db`: "−23.4", "≤ −200" at or below the lowest level shown, "no echo" for a silent map.
+/// The caller adds "dB" with [`with_unit`].
 pub fn level(db: f64, range_db: f64) -> String {
     let lowest = lowest_db(range_db);
     match () {
@@ -24,7 +24,7 @@ pub fn level(db: f64, range_db: f64) -> String {
     }
 }
 
-/// A difference of two levels: "+25.0", "≥ +200" beyond what is told.
+/// A difference of two levels: "+25.0", "≥ +200" beyond the largest shown.
 pub fn difference(db: f64) -> String {
     match () {
         () if db <= LOWEST_DB => format!("≤ −{:.0}", -LOWEST_DB),

@@ -1,17 +1,17 @@
-//! What lists of rows of one height share: scrolling to a row, the colours behind one, and the keys after a click on one.
+//! Scrolling, colours and keyboard focus of lists with rows of equal height.
 
 use eframe::egui::{Color32, Response, ScrollArea, Visuals};
 
-/// The part of a list in sight, points: how far it is scrolled, and how much room rows have.
+/// The visible part of a list.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Window {
-    /// Above the first row in sight.
+    /// Height above the first visible row, points.
     pub offset: f32,
-    /// Height of what is in sight.
+    /// Height of the visible part, points.
     pub room: f32,
 }
 
-/// Scrolls so far that `row`, of `height` points as all are, is in sight.
+/// Scrolls until `row` is in sight, where each row is `height` points high.
 pub fn bring_in_sight(area: ScrollArea, row: usize, height: f32, window: Window) -> ScrollArea {
     let (top, bottom) = (row as f32 * height, (row + 1) as f32 * height);
     if top < window.offset {
@@ -23,7 +23,7 @@ pub fn bring_in_sight(area: ScrollArea, row: usize, height: f32, window: Window)
     }
 }
 
-/// What is painted behind a row that is selected or under the pointer.
+/// The colour behind a row that is selected or under the pointer.
 pub fn colour_behind(visuals: &Visuals, response: &Response, is_selected: bool) -> Option<Color32> {
     if is_selected {
         Some(visuals.selection.bg_fill)
@@ -32,8 +32,8 @@ pub fn colour_behind(visuals: &Visuals, response: &Response, is_selected: bool) 
     }
 }
 
-/// Gives `list` the keys once the click on one of its rows is over, if one `was_clicked`. Not at once: egui takes the focus from what
-/// a click did not hit, once more in a frame that is laid out anew, and what the click brings up may have moved the rows away.
+/// Gives `list` the keyboard's focus after a click on one of its rows, if one `was_clicked`. It waits for the frame after the click: egui takes the focus away
+/// from a widget that the click did not hit, and the click may have moved the rows.
 pub fn focus_after_click(list: &Response, was_clicked: &mut bool) {
     if *was_clicked {
         if list.ctx.input(|i| i.pointer.any_click()) {

@@ -1,4 +1,4 @@
-//! Lists of methods by family, each with a line that says what it is and the time it takes here: one to choose, or several.
+//! Menus of methods by family with description and time, for one choice or several.
 
 use super::kind_boxes::{member_box, ticking_menu};
 use super::numbers::significant;
@@ -12,16 +12,16 @@ use std::sync::Arc;
 /// Height of a popup that lists methods, points.
 pub const LIST_HEIGHT: f32 = 420.0;
 
-/// Width of what is said of each, points: most are one line.
+/// Width of a method's description, points: most take one line.
 const DESCRIPTION_WIDTH: f32 = 440.0;
 
 /// Width of a time, points.
 const TIME_WIDTH: f32 = 56.0;
 
-/// More methods than this are counted, not named.
+/// Most methods that the menu's title names; more are counted.
 const MOST_NAMED: usize = 2;
 
-/// The methods to choose from, and what is known of their times.
+/// The methods to choose from, with their times.
 #[derive(Clone, Copy)]
 pub struct Offered<'a> {
     /// Every method.
@@ -29,14 +29,14 @@ pub struct Offered<'a> {
     /// The radar of the scene on screen, where there is one.
     #[cfg_attr(not(feature = "live"), allow(dead_code, reason = "the networks for it are listed"))]
     pub radar: Option<&'a Radar>,
-    /// The layout that methods are to hear; the two ends where there is none.
+    /// The layout that methods are to use; the two ends where `None`.
     pub layout: Option<&'a LayoutKind>,
-    /// How long each takes on this machine.
+    /// Times of the methods on this machine.
     pub times: Times<'a>,
 }
 
 impl<'a> Offered<'a> {
-    /// Why each method that can't hear the layout can't.
+    /// Refusals of methods that can't use the layout, by the method's name.
     fn refusals(&self) -> BTreeMap<&'static str, String> {
         let Some((radar, layout)) = self.radar.zip(self.layout) else { return BTreeMap::new() };
         let Ok(layout) = layout.numbers(radar) else { return BTreeMap::new() };
@@ -46,14 +46,14 @@ impl<'a> Offered<'a> {
         self.all.iter().filter_map(refusal).collect()
     }
 
-    /// These methods, of whose times nothing is known.
+    /// Methods without known times.
     #[cfg(test)]
     pub fn untimed(all: &'a [Arc<dyn Reconstructor>]) -> Self {
         Offered { all, radar: None, layout: None, times: Times::default() }
     }
 }
 
-/// Draws the menu, which is called by the methods of `chosen`.
+/// Draws a menu of methods with a box for each; its title names those of `chosen`.
 pub fn method_menu(ui: &mut Ui, offered: Offered<'_>, chosen: &mut BTreeSet<&'static str>, tip: &str) {
     let title = match chosen.len() {
         count if count > MOST_NAMED => format!("{count} methods"),
@@ -65,8 +65,7 @@ pub fn method_menu(ui: &mut Ui, offered: Offered<'_>, chosen: &mut BTreeSet<&'st
     menu.on_hover_text(tip);
 }
 
-/// The contents of a popup in which one of the methods is chosen, scrolled to the one that is; what is asked for: another method by
-/// `choose`.
+/// The content of a popup for choosing one method, scrolled to the chosen one. Another choice adds the command of `choose` to `asked`.
 pub fn method_list(
     ui: &mut Ui,
     offered: Offered<'_>,
@@ -101,7 +100,7 @@ pub fn method_list(
     }
 }
 
-/// Whether a popup was drawn for the first times: its size is known in the second.
+/// Whether a popup was opened within the last two passes: its size is known in the second.
 fn has_opened(ui: &Ui) -> bool {
     let (id, now) = (ui.scope_id().with("opened"), ui.ctx().cumulative_pass_nr());
     let (first, last) =
@@ -110,7 +109,7 @@ fn has_opened(ui: &Ui) -> bool {
     now <= first + 2
 }
 
-/// A row for each method, by family: what `name` draws of it, what it is, and its time. The method whose description was clicked.
+/// A row for each method by family: the widget drawn by `name`, description and time. Returns the method whose description was clicked.
 pub fn method_lines(
     ui: &mut Ui,
     offered: Offered<'_>,
@@ -159,7 +158,7 @@ fn time(ui: &mut Ui, typical_ms: Option<f64>) {
     });
 }
 
-/// A time in the unit in which it has one to three digits before the point.
+/// A time in milliseconds or seconds, with three significant digits.
 fn time_text(ms: f64) -> String {
     if ms >= 999.5 { format!("{} s", significant(ms / 1e3)) } else { format!("{} ms", significant(ms)) }
 }
@@ -183,7 +182,7 @@ mod tests {
         popup_of(chosen, None)
     }
 
-    /// The same where methods are to hear a layout.
+    /// The same popup, with a layout in use.
     fn popup_of(chosen: &'static str, layout: Option<LayoutKind>) -> Harness<'static, Popup> {
         let mut times = MethodTimes::default();
         times.record(&Radar::default(), chosen, Duration::from_millis(1240));

@@ -1,5 +1,5 @@
-//! What panels draw with: axes, charts, directions and levels as texts, colours of the interface, buttons of commands, small drawn
-//! buttons, kinds of scenes to tick, fields for numbers, bars of progress, the ring around what has the focus, pictures on the graphics card.
+//! Widgets of panels: axes, charts, directions and levels as text, colours, buttons of commands, drawn buttons, boxes of scene kinds, number fields, progress
+//! bars, the focus ring, textures.
 
 pub mod axes;
 pub mod chart;

@@ -1,4 +1,4 @@
-//! The networks for the radar on screen, in the menu of methods; where there is none, how one is trained.
+//! The networks for the radar on screen, in the menu of methods, or the commands that train one.
 
 use crate::app::state::{Command, Purpose};
 use crate::network::live::size::LiveSize;
@@ -7,10 +7,10 @@ use crate::reconstruct::{Family, Reconstructor};
 use eframe::egui::{RichText, Ui};
 use std::sync::Arc;
 
-/// Maps of a training whose time is told: with so many the second edition of `live` was near its end (training/README.md).
+/// Number of maps in the training time that is shown. With so many the second edition of `live` was near its end (training/README.md).
 const TOLD_MAPS: f64 = 50_000.0;
 
-/// Cores whose time is told.
+/// Number of cores in the training time that is shown.
 const CORES: f64 = 2.0;
 
 /// Names the networks that take the radar, or shows the commands that train one.

@@ -1,12 +1,12 @@
-//! Keys that do what dragging does: arrows move the selection or a grip, pan and zoom a view.
+//! Arrow keys that move the selection or a grip, and pan and zoom a view, as dragging does.
 
 use crate::app::state::{Command, EditCommand};
 use eframe::egui::{Context, EventFilter, Key, Modifiers, Response, Vec2, vec2};
 
-/// Part of a view that an arrow key pans by.
+/// Ratio of a view that an arrow key pans by.
 const PAN: f32 = 0.1;
 
-/// Steps to the right and upwards that arrow keys ask for: with Shift ten times as far, with Alt a tenth.
+/// Steps to the right and upwards by arrow keys; with Shift ten times as far, with Alt a tenth.
 fn steps(ctx: &Context) -> Option<(f64, f64)> {
     let (mut dx, mut dy) = (0.0, 0.0);
     ctx.input_mut(|input| {
@@ -19,13 +19,13 @@ fn steps(ctx: &Context) -> Option<(f64, f64)> {
     ((dx, dy) != (0.0, 0.0)).then_some((dx, dy))
 }
 
-/// Arrow keys move the selection by one range bin, with Shift by ten, with Alt by a tenth.
+/// The command of arrow keys that move the selection by one range bin, with Shift by ten, with Alt by a tenth.
 pub fn nudge(ctx: &Context, bin_metres: f64) -> Option<Command> {
     steps(ctx)
         .map(|(dx, dy)| Command::Edit(EditCommand::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres }))
 }
 
-/// The same for something that has the focus, as steps to the right and upwards.
+/// Steps to the right and upwards by arrow keys for a widget with the focus.
 pub fn focused_steps(response: &Response) -> Option<(f64, f64)> {
     if !response.has_focus() {
         return None;
@@ -34,7 +34,7 @@ pub fn focused_steps(response: &Response) -> Option<(f64, f64)> {
     steps(&response.ctx)
 }
 
-/// Parts of a view's width and height that arrow keys pan it by while it has the focus: with Ctrl, or without where they are `free`.
+/// Ratios of a view's width and height that arrow keys pan it by while it has the focus: with Ctrl, or without where they are `free`.
 pub fn pan_keys(response: &Response, free: bool) -> Option<Vec2> {
     if !response.has_focus() {
         return None;
@@ -52,8 +52,7 @@ pub fn pan_keys(response: &Response, free: bool) -> Option<Vec2> {
     (by != vec2(0.0, 0.0)).then_some(by)
 }
 
-/// Steps in and out that `+` and `-` ask for in a view that has the focus, as a factor; its arrow keys are its own then, and don't move
-/// the focus.
+/// Zoom factor of `+` and `-` for a view with the focus. Its arrow keys then don't move the focus.
 pub fn zoom_keys(response: &Response) -> Option<f32> {
     if !response.has_focus() {
         return None;
@@ -66,7 +65,7 @@ pub fn zoom_keys(response: &Response) -> Option<f32> {
     (steps != 0).then(|| 1.25f32.powi(steps))
 }
 
-/// Arrow keys don't move the focus away from what uses them.
+/// Keeps arrow keys from moving the focus away from a widget that uses them.
 fn keep_arrows(response: &Response) {
     let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
     response.ctx.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));

@@ -1,24 +1,24 @@
-//! A number to type or to drag. Every field of the window that takes a number is one.
+//! A field for a number to type or to drag. Every field of the window for a number is one.
 //!
-//! What is typed counts when Enter, Tab or a click elsewhere ends it, never before. A wrong entry changes nothing: it stays in the field, in
-//! red, and a message beside the field says what is wanted. After Enter the field keeps the focus, so that the next key goes to it.
+//! A typed number counts once Enter, Tab or a click elsewhere ends it. A wrong entry changes nothing: it stays in the field, in red, with a message about the
+//! expected number beside it. After Enter the field keeps the focus, so that the next key goes to it.
 
 use eframe::egui::{self, DragValue, Id, Key, Popup, PopupKind, RectAlign, Response, RichText, Ui, Widget, emath};
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
 use std::rc::Rc;
 
-/// Beyond this a bound of a range tells nothing, and is not told.
+/// A bound of a range beyond this is not shown in messages.
 const LARGEST_TOLD: f64 = 1e15;
 
-/// What a field takes.
+/// The numbers that a field accepts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {
-    /// From the smallest to the largest number.
+    /// Smallest and largest number.
     pub range: RangeInclusive<f64>,
-    /// Whether only whole numbers are taken.
+    /// Whether only whole numbers are accepted.
     pub is_whole: bool,
-    /// The unit, as it stands behind the number.
+    /// Unit behind the number, with the space before it.
     pub unit: String,
 }
 
@@ -28,10 +28,10 @@ impl Wanted {
         Wanted { range: f64::NEG_INFINITY..=f64::INFINITY, is_whole: false, unit: String::new() }
     }
 
-    /// Reads what was typed. A comma may stand for the decimal point, and the unit may follow.
+    /// Reads a typed number. A comma may stand for the decimal point, and the unit may follow.
     ///
     /// # Errors
-    /// A sentence for the user: what is wrong with the entry, and what is wanted.
+    /// A sentence for the user with the error and the expected number.
     pub fn read(&self, text: &str) -> Result<f64, String> {
         let wrong = |what: &str| format!("{} {what}. {}", shortened(text), self.told());
         let letters: String =
@@ -59,7 +59,7 @@ impl Wanted {
         }
     }
 
-    /// What is wanted, as a sentence.
+    /// The expected number, as a sentence.
     fn told(&self) -> String {
         let number = if self.is_whole { "a whole number" } else { "a number" };
         let bound =
@@ -75,7 +75,7 @@ impl Wanted {
     }
 }
 
-/// Units that a number may be entered in where another one of the same row is asked for, each with its size.
+/// Units by quantity with their sizes. A number may be entered in another unit of the field's row.
 const UNITS: [&[(&str, f64)]; 4] = [
     &[("km", 1e3), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("m", 1.0)],
     &[("GHz", 1e9), ("MHz", 1e6), ("kHz", 1e3), ("Hz", 1.0)],
@@ -83,14 +83,14 @@ const UNITS: [&[(&str, f64)]; 4] = [
     &[("km/h", 1.0 / 3.6), ("cm/s", 1e-2), ("m/s", 1.0)],
 ];
 
-/// A number in another unit of the same quantity: what stands before that unit, and how many of the unit that is asked for it is.
+/// The digits of a number in another unit of the quantity, and the size of that unit in the field's unit.
 fn in_other_unit<'a>(letters: &'a str, unit: &str) -> Option<(&'a str, f64)> {
     let row = UNITS.iter().find(|row| row.iter().any(|(name, _)| *name == unit))?;
     let wanted = row.iter().find(|(name, _)| *name == unit)?.1;
     row.iter().find_map(|(name, size)| Some((letters.strip_suffix(name)?, size / wanted)))
 }
 
-/// What was typed, in quotation marks, as much of it as fits a message.
+/// The entry in quotation marks, cut to fit a message.
 fn shortened(text: &str) -> String {
     let text = text.trim();
     match text.chars().count() > 24 {
@@ -100,18 +100,18 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// An entry that the field did not take.
+/// An entry that the field refused.
 #[derive(Debug, Clone, PartialEq)]
 struct Wrong {
     text: String,
     message: String,
-    /// The value that the field kept: once it changes by other means, the entry is forgotten.
+    /// The value that the field kept. Another value drops the entry.
     kept: f64,
-    /// The pass in which the field was drawn last: an entry of a field that went away is forgotten.
+    /// The pass in which the field was last drawn. An entry of a field that went away is dropped.
     drawn: u64,
 }
 
-/// What the field showed, and what became of its text when it was read.
+/// The shown text of a field, and the result of reading it.
 #[derive(Default)]
 struct Reading {
     shown: String,
@@ -128,12 +128,12 @@ pub struct NumberField<'a> {
     speed: f64,
     min_decimals: usize,
     max_decimals: Option<usize>,
-    /// What stands in the place of the number.
+    /// Text shown in place of the number.
     standing_for: Option<&'a str>,
 }
 
 impl<'a> NumberField<'a> {
-    /// For `value`.
+    /// A field for `value`.
     pub fn new<Num: emath::Numeric>(value: &'a mut Num) -> Self {
         let field = Self::from_get_set(move |new| {
             if let Some(new) = new {
@@ -147,55 +147,55 @@ impl<'a> NumberField<'a> {
         }
     }
 
-    /// For a value that is read and written by a function.
+    /// A field for a value that a function reads and writes.
     pub fn from_get_set(get_set: impl 'a + FnMut(Option<f64>) -> f64) -> Self {
         let (clamps, speed, min_decimals, max_decimals, standing_for) = (true, 1.0, 0, None, None);
         let wanted = Wanted::any();
         NumberField { get_set: Box::new(get_set), wanted, clamps, speed, min_decimals, max_decimals, standing_for }
     }
 
-    /// Numbers that are taken; a drag stops at the ends.
+    /// Sets the accepted numbers; a drag stops at the ends.
     pub fn range<Num: emath::Numeric>(mut self, range: RangeInclusive<Num>) -> Self {
         self.wanted.range = range.start().to_f64()..=range.end().to_f64();
         self
     }
 
-    /// Whether a value out of range that is there already is moved into it.
+    /// Sets whether an existing value out of range is moved into it.
     pub fn clamp_existing_to_range(mut self, clamps: bool) -> Self {
         self.clamps = clamps;
         self
     }
 
-    /// Change of the number for each point of a drag.
+    /// Sets the change of the number for each point of a drag.
     pub fn speed(mut self, speed: f64) -> Self {
         self.speed = speed;
         self
     }
 
-    /// Decimals that are always shown.
+    /// Sets the least number of decimals shown.
     pub fn min_decimals(mut self, decimals: usize) -> Self {
         self.min_decimals = decimals;
         self
     }
 
-    /// Most decimals that are shown; with 0 only whole numbers are taken.
+    /// Sets the most decimals shown; with 0 only whole numbers are accepted.
     pub fn max_decimals(mut self, decimals: usize) -> Self {
         (self.max_decimals, self.wanted.is_whole) = (Some(decimals), decimals == 0);
         self
     }
 
-    /// Decimals that are shown, no more and no fewer.
+    /// Sets the number of decimals shown.
     pub fn fixed_decimals(self, decimals: usize) -> Self {
         self.min_decimals(decimals).max_decimals(decimals)
     }
 
-    /// The unit, with the space before it.
+    /// Sets the unit, with the space before it.
     pub fn suffix(mut self, unit: impl Into<String>) -> Self {
         self.wanted.unit = unit.into();
         self
     }
 
-    /// Shows `text` in the place of the number, until another is entered.
+    /// Shows `text` in place of the number, until another is entered.
     pub fn standing_for(mut self, text: &'a str) -> Self {
         self.standing_for = Some(text);
         self
@@ -235,7 +235,7 @@ impl Widget for NumberField<'_> {
                 return None;
             }
             if !is_wrong && text == reading.shown {
-                // Only looked at: it keeps the decimals that are not shown.
+                // An unedited text keeps the value's hidden decimals.
                 return None;
             }
             let read = wanted.read(text);
@@ -260,25 +260,25 @@ impl Widget for NumberField<'_> {
     }
 }
 
-/// Where the entry that a field did not take is kept.
+/// Key under which egui keeps a field's refused entry.
 fn key(id: Id) -> Id {
     id.with("wrong entry")
 }
 
-/// Whether Escape ended the entry a moment ago: egui reads the text once more in the next pass, as if the focus had gone elsewhere.
+/// Whether Escape ended the entry in the last passes. egui reads the text once more in the next pass, as if the focus had gone elsewhere.
 fn was_given_up(ui: &Ui, id: Id) -> bool {
     let pass = ui.ctx().cumulative_pass_nr();
     ui.data(|d| d.get_temp::<u64>(id.with("given up"))).is_some_and(|given_up| given_up + 2 >= pass)
 }
 
-/// The entry that the field did not take, if it still stands there.
+/// The refused entry that is still in the field, if any.
 fn wrong_of(ui: &Ui, id: Id, value: f64) -> Option<Wrong> {
     let pass = ui.ctx().cumulative_pass_nr();
     let wrong: Option<Wrong> = ui.data(|d| d.get_temp(key(id)));
     wrong.filter(|w| w.kept == value && w.drawn + 1 >= pass)
 }
 
-/// Remembers what was not taken, for the next frame; forgets it where it was taken, given up by Escape, or dragged away.
+/// Keeps a refused entry for the next frame; drops it after an accepted entry, Escape or a drag.
 fn keep(ui: &Ui, id: Id, kept: f64, before: Option<Wrong>, reading: Reading, response: &Response) {
     let drawn = ui.ctx().cumulative_pass_nr();
     let (escaped, entered) = ui.input(|i| (i.key_pressed(Key::Escape), i.key_pressed(Key::Enter)));
@@ -290,7 +290,7 @@ fn keep(ui: &Ui, id: Id, kept: f64, before: Option<Wrong>, reading: Reading, res
     let wrong = match reading.wrong {
         Some((text, message)) => {
             if entered {
-                // What is typed next is meant for the field.
+                // The next typed text is meant for the field.
                 response.request_focus();
             }
             Some(Wrong { text, message, kept, drawn })
@@ -299,7 +299,7 @@ fn keep(ui: &Ui, id: Id, kept: f64, before: Option<Wrong>, reading: Reading, res
     };
     let text = |wrong: &Option<Wrong>| wrong.as_ref().map(|w| w.text.clone());
     if text(&wrong) != text(&before) {
-        // This frame still showed what was there before.
+        // This frame still showed the earlier text.
         ui.request_repaint();
     }
     ui.data_mut(|d| match wrong {
@@ -308,7 +308,7 @@ fn keep(ui: &Ui, id: Id, kept: f64, before: Option<Wrong>, reading: Reading, res
     });
 }
 
-/// Says beside the field what is wanted; nothing moves for it.
+/// Shows the message beside the field, without moving other widgets.
 fn tell(ui: &Ui, response: &Response, wrong: &Wrong) {
     if !ui.is_rect_visible(response.rect) {
         return;

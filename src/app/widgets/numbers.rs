@@ -1,21 +1,21 @@
-//! Numbers as they are shown: the same digits for the same quantity, whichever panel shows it.
+//! Numbers as text, with the same digits for the same quantity in every panel.
 
-/// A part of one as a percentage, two decimals.
+/// A ratio as a percentage with two decimals.
 pub fn percent(part: f64) -> String {
     format!("{:.2} %", 100.0 * part)
 }
 
-/// With its sign, and a minus as wide as the plus.
+/// A number with its sign, and a minus as wide as the plus.
 pub fn signed(value: f64, digits: usize) -> String {
     let text = format!("{value:+.digits$}");
-    // Rounding leaves a minus before nothing.
+    // Rounding leaves a minus before zero.
     match text.chars().all(|c| !c.is_ascii_digit() || c == '0') {
         true => text.replace(['-', '+'], "±"),
         false => text.replace('-', "−"),
     }
 }
 
-/// With a minus as wide as a plus, and none before nothing.
+/// A number with a minus as wide as a plus, and no minus before zero.
 pub fn plain(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     match text.chars().any(|c| c.is_ascii_digit() && c != '0') {
@@ -24,7 +24,7 @@ pub fn plain(value: f64, digits: usize) -> String {
     }
 }
 
-/// Three significant digits.
+/// A number with three significant digits.
 pub fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

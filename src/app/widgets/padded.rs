@@ -1,31 +1,31 @@
-//! The margin of panels, and the scroll bars of those that grow with their content.
+//! The margin of panels, and scroll bars where the content is too large.
 
 use crate::app::state::Command;
 use eframe::egui::{Frame, Margin, ScrollArea, Ui};
 
-/// Draws a panel's content within a margin; what it asks for.
+/// Draws a panel's content with a margin; returns its commands.
 pub fn padded(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
     within(ui, Margin::symmetric(10, 6), content)
 }
 
-/// The same, scrolled upwards and downwards where there is little room.
+/// The same with vertical scrolling.
 pub fn scrolled(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
     scrolled_by(ScrollArea::vertical(), ui, content)
 }
 
-/// The same, scrolled to all sides.
+/// The same with scrolling in both directions.
 pub fn scrolled_both(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
     scrolled_by(ScrollArea::both(), ui, content)
 }
 
-/// What is to be known, in the colour of warnings; nothing where there is no such thing.
+/// A text in the colour of warnings, if there is one.
 pub fn warning(ui: &mut Ui, said: Option<&str>) {
     if let Some(said) = said {
         ui.colored_label(ui.visuals().warn_fg_color, said);
     }
 }
 
-/// What was computed for a panel; where there is nothing, it says why, or that it is under way.
+/// The computed value of a panel. Without a value it draws the error, or that the value is being computed.
 pub fn computed<'a, T>(ui: &mut Ui, value: Option<Result<&'a T, &str>>) -> Option<&'a T> {
     match value {
         None => _ = ui.weak("computing…"),

@@ -1,15 +1,15 @@
-//! Long work: a bar that shows how far it is, beside the button that stops it.
+//! Progress bars of long work, and the buttons that start and cancel it.
 
 use crate::app::state::Command;
 use eframe::egui::{Button, ProgressBar, Ui, vec2};
 
-/// What is shown at the most: a bar that stands says that the work goes on.
+/// Largest shown part. The work goes on, so the bar never reads 100 %.
 const MAX_PART: f32 = 0.99;
 
-/// Least width of a button that changes its name: what stands beside it doesn't move.
+/// Least width of a button that changes its name, points, so that its neighbours don't move.
 const BUTTON: f32 = 64.0;
 
-/// A button that starts work and, in the same place, asks to `cancel` it while it `runs`. `tips` say what each does. Whether work is to start.
+/// A button that starts work, or sends `cancel` while the work `runs`; `tips` are its two tooltips. Returns whether to start the work.
 pub fn start_or_cancel(
     ui: &mut Ui,
     (start, cancel): (&str, impl Into<Command>),
@@ -26,7 +26,7 @@ pub fn start_or_cancel(
     is_pressed && !runs
 }
 
-/// The bar alone.
+/// Draws a progress bar; `part` is 0 to 1, and 0 stands for an unknown part.
 pub fn bar(ui: &mut Ui, part: f32, width: f32) {
     let bar = if part > 0.0 {
         ProgressBar::new(part.min(MAX_PART)).show_percentage()
@@ -36,8 +36,8 @@ pub fn bar(ui: &mut Ui, part: f32, width: f32) {
     ui.add(bar.desired_width(width));
 }
 
-/// Draws both; whether the button was pressed. `part` is from 0 to 1; 0 says that it is not known yet. It never reads 100 %: who draws it knows
-/// that there is more to come.
+/// Draws a progress bar and a button beside it; returns whether the button was pressed. `part` is 0 to 1, and 0 stands for an unknown part. The bar never
+/// reads 100 %, since the work goes on.
 pub fn progress(ui: &mut Ui, part: f32, width: f32, cancel_tooltip: &str) -> bool {
     ui.horizontal(|ui| {
         bar(ui, part, width);

@@ -1,4 +1,4 @@
-//! What tests see of a frame: every text, where it is, and whether it can be read.
+//! Texts of a drawn frame, for tests: their places, and whether they are readable.
 
 use eframe::egui::epaint::{ClippedShape, Shape};
 use eframe::egui::{FullOutput, Rect};
@@ -6,17 +6,17 @@ use eframe::egui::{FullOutput, Rect};
 /// A text on screen.
 #[derive(Debug, Clone)]
 pub struct Seen {
-    /// What it says.
+    /// The text.
     pub text: String,
-    /// Where.
+    /// Rectangle of the text.
     pub rect: Rect,
-    /// What may be drawn to at all there.
+    /// Clip rectangle of the text.
     pub clip: Rect,
-    /// Whether its end is left out for want of room.
+    /// Whether the text is cut short for lack of room.
     pub is_shortened: bool,
 }
 
-/// Every text of a frame of which anything can be seen.
+/// Every text of a frame that is at least partly visible.
 pub fn texts(output: &FullOutput) -> Vec<Seen> {
     let mut found = Vec::new();
     for ClippedShape { clip_rect, shape, .. } in &output.shapes {
@@ -38,7 +38,7 @@ fn gather(clip: Rect, shape: &Shape, found: &mut Vec<Seen>) {
     }
 }
 
-/// That no text is cut off and none lies over another.
+/// Asserts that no text is cut off and none overlaps another.
 pub fn assert_readable(output: &FullOutput) {
     let texts = texts(output);
     for (i, a) in texts.iter().enumerate() {

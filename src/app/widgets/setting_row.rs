@@ -5,7 +5,7 @@ use eframe::egui::{Align, CollapsingHeader, Layout, Response, RichText, Ui, vec2
 /// Width of the names, points.
 const NAMES: f32 = 78.0;
 
-/// Between a name and its widgets, points.
+/// Gap between a name and its widgets, points.
 const GAP: f32 = 8.0;
 
 /// A row: its name, then its widget. The name labels the widget for screen readers.
@@ -15,7 +15,7 @@ pub fn row(ui: &mut Ui, name: &str, tooltip: &str, widget: impl FnOnce(&mut Ui) 
     });
 }
 
-/// A row of choices, each of which is called what it says; more lines where there is no room.
+/// A row of several choices, whose own texts are their names; wraps into more lines where there is no room.
 pub fn row_of(ui: &mut Ui, name: &str, tooltip: &str, widgets: impl FnOnce(&mut Ui)) {
     named(ui, name, tooltip, |ui, _| widgets(ui));
 }
@@ -34,13 +34,13 @@ fn named(ui: &mut Ui, name: &str, tooltip: &str, widgets: impl FnOnce(&mut Ui, &
     });
 }
 
-/// A group with a title, open at first.
+/// A group with a title, open by default.
 pub fn group(ui: &mut Ui, title: &str, content: impl FnOnce(&mut Ui)) {
     fold(ui, RichText::new(title).strong(), title, true, content);
     ui.add_space(4.0);
 }
 
-/// Settings that are rarely changed, folded away at first; the title names them.
+/// Settings that are rarely changed, folded by default under a title that names them.
 pub fn rarely(ui: &mut Ui, title: &str, content: impl FnOnce(&mut Ui)) {
     fold(ui, RichText::new(title).weak(), title, false, content);
 }

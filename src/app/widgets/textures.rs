@@ -1,15 +1,15 @@
-//! Pictures on the graphics card: sent there only when they changed.
+//! Textures on the graphics card, uploaded only after a change.
 
 use crate::picture::ColourMap;
 use eframe::egui::{Color32, ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use std::sync::Arc;
 
-/// A picture that was sent to the graphics card, if one was.
+/// A picture and its texture on the graphics card, once uploaded.
 #[derive(Default)]
 pub struct Texture(Option<(Arc<ColorImage>, TextureHandle)>);
 
 impl Texture {
-    /// The texture of `image`, which is sent only where it isn't the one that is there.
+    /// The texture of `image`, which is uploaded unless it is the same `Arc` as before.
     pub fn of(&mut self, ctx: &Context, name: &str, image: &Arc<ColorImage>, options: TextureOptions) -> TextureId {
         match &mut self.0 {
             Some((shown, handle)) => {
@@ -24,7 +24,7 @@ impl Texture {
     }
 }
 
-/// The table of a colour map as egui's colours.
+/// The table of a colour map in egui's colours.
 pub fn colour_table(colours: ColourMap) -> [Color32; 256] {
     colours.table().map(|[r, g, b]| Color32::from_rgb(r, g, b))
 }

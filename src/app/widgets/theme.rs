@@ -10,7 +10,7 @@ use eframe::egui::{Color32, Context, CornerRadius, Visuals};
 pub struct Inks {
     /// Ground that the radar can see.
     pub ground: Color32,
-    /// Ground beyond it.
+    /// Ground beyond the radar's view.
     pub beyond: Color32,
     /// Range rings and angle spokes.
     pub grid: Color32,
@@ -18,7 +18,7 @@ pub struct Inks {
     pub grid_text: Color32,
     /// Reflectors.
     pub reflector: Color32,
-    /// What is selected.
+    /// Selected objects.
     pub selected: Color32,
     /// The array's first and last end.
     pub ends: [Color32; 2],
@@ -29,7 +29,7 @@ pub struct Inks {
 }
 
 impl Inks {
-    /// The inks for light or dark.
+    /// The inks of the light or dark theme.
     pub fn of(visuals: &Visuals) -> Self {
         let ink = |dark: [u8; 3], light: [u8; 3]| {
             let [r, g, b] = if visuals.dark_mode { dark } else { light };
@@ -54,7 +54,7 @@ pub const MARK: Color32 = Color32::WHITE;
 pub const MARK_SELECTED: Color32 = Color32::from_rgb(255, 176, 59);
 pub const MARK_EDGE: Color32 = Color32::from_black_alpha(200);
 
-/// Captions over maps and scene: what they are written on, and in what.
+/// Background and text of captions over maps and scene.
 pub const CAPTION: Color32 = Color32::from_rgb(24, 64, 120);
 pub const CAPTION_INK: Color32 = Color32::WHITE;
 
@@ -66,7 +66,7 @@ pub fn mask(dark: bool) -> [Color32; 2] {
     }
 }
 
-/// What says that an answer is right, or that it isn't.
+/// Colour of a right or a wrong answer.
 pub fn verdict(visuals: &Visuals, is_right: bool) -> Color32 {
     let rgb = Color32::from_rgb;
     match (is_right, visuals.dark_mode) {
@@ -76,12 +76,12 @@ pub fn verdict(visuals: &Visuals, is_right: bool) -> Color32 {
     }
 }
 
-/// The ring around what has the keyboard's focus.
+/// Colour of the ring around the control with the keyboard's focus.
 pub fn focus(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(120, 190, 255) } else { Color32::from_rgb(0, 92, 200) }
 }
 
-/// Scroll bars that are always seen, and a faded edge where there is more.
+/// Scroll bars that are always visible, with faded edges of scrolled content.
 fn scroll() -> ScrollStyle {
     ScrollStyle {
         floating_width: 4.0,
@@ -93,7 +93,7 @@ fn scroll() -> ScrollStyle {
     }
 }
 
-/// Sets both themes up and chooses one.
+/// Sets up both themes and selects `theme`.
 pub fn apply(ctx: &Context, theme: Brightness) {
     for of in [egui::Theme::Dark, egui::Theme::Light] {
         ctx.style_mut_of(of, |style| {

@@ -1,4 +1,4 @@
-//! Measuring a front, row by row.
+//! Measurement of a front, row by row.
 
 use super::super::times::{bare_ms, quantile};
 use super::reference::{Reference, SEED, maps_of, profile};
@@ -15,10 +15,10 @@ use crate::signal::{Plan, Precision, beat_signal};
 
 /// Updates before the timed ones: the first two moves of a drag let the dragged reflector leave the sum at rest.
 const WARM_UP: usize = 3;
-/// The slow algorithms are repeated so often at most, by whether the scene is large.
+/// Most repeats of the slow algorithms: for small scenes, for large ones.
 const SLOW_REPEATS: [usize; 2] = [3, 1];
 
-/// More reflectors than this take the slow algorithms minutes: they are left out.
+/// Most reflectors for the slow algorithms: more take them minutes.
 const MAX_PLAIN_REFLECTORS: usize = 1000;
 
 #[derive(Clone, Copy)]
@@ -29,10 +29,10 @@ struct Job {
     plan: Plan,
 }
 
-/// Measures what `request` names on `radar`, on reflectors scattered before the array.
+/// Measures every combination of `request` on `radar`, with reflectors scattered before the array.
 ///
-/// `on_row` is called with the part that is done (0 to 1) and each new row, in order. As soon as `cancelled` says so, what is measured by
-/// then is returned. Everything runs on the calling thread and rayon's.
+/// `on_row` is called with the part that is done (0 to 1) and each new row, in order. Once `cancelled` is true, the rows so far are returned.
+/// Everything runs on the calling thread and rayon's.
 /// # Errors
 /// [`SceneError`] when the radar can't see the scenes.
 pub fn measure(
@@ -72,7 +72,7 @@ pub fn measure(
     Ok(front)
 }
 
-/// `count` reflectors on a lattice in front of the array; from the 2013th on they coincide with earlier ones.
+/// `count` reflectors on a lattice in front of the array; from the 2013th on reflectors coincide with earlier ones.
 pub fn scattered(count: usize) -> Scene {
     let lattice = |i: usize, step: usize, span: usize| (i * step % span) as f64;
     Scene::of_points((0..count).map(|i| (lattice(i, 37, 61) - 30.0, 2.37 + lattice(i, 53, 33))))
@@ -154,7 +154,7 @@ fn fast_row(
     let mut frame = engine.update(scene, &wanted(convention))?;
     for left in (0..repeats + WARM_UP).rev() {
         let next = match job.task {
-            // The last move leads back to where the reference was computed.
+            // The last move returns to the scene of the reference.
             FrontTask::Drag if left % 2 == 1 => &moved,
             FrontTask::Drag => scene,
             FrontTask::Scratch => {
@@ -250,7 +250,7 @@ mod tests {
             assert!(r.fastest_ms <= r.median_ms && r.median_ms <= milliseconds, "{r:?}");
             assert_eq!(r.lambda.len(), 2);
         }
-        // What was timed is a part of all that passed, and not a thousandth of it, as seconds taken for milliseconds would be.
+        // The timed part is most of the elapsed time, and not a thousandth of it, as seconds taken for milliseconds would be.
         let timed: f64 = front.rows.iter().map(|r| r.fastest_ms * r.repeats as f64).sum();
         assert!((milliseconds / 1e3..milliseconds).contains(&timed), "{timed} of {milliseconds} ms");
         let coarse = front.rows.iter().find(|r| r.tolerance == 1e-3 && r.chosen == Algorithm::Gridded).unwrap();

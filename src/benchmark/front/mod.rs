@@ -1,11 +1,10 @@
-//! The front of run time against error: how long three Lambda maps take, and how far they are from the truth, by algorithm,
-//! precision, tolerance and number of reflectors.
+//! The front of run time against error: the time of three Lambda maps and their error, by algorithm, precision, tolerance and number of reflectors.
 //!
-//! [`measure`] does the work for `apertura bench` and for the window, which draws the front while it grows: it calls back with every row and
-//! stops when asked to. [`FrontRequest::short`] takes a second or two, [`FrontRequest::full`] about a minute.
+//! [`measure`] serves `apertura bench` and the window, which draws the front while it grows: it calls back with every row and can be stopped.
+//! [`FrontRequest::short`] takes a second or two, [`FrontRequest::full`] about a minute.
 //!
-//! The floor's noise is made beforehand, for the plain algorithms as for the fast ones; it is scaled to the scene's level inside the time.
-//! Times are for three Lambda maps ready, on all threads; [`Front::bare_fft_ms`] is one bare two-dimensional transform on one thread,
+//! The floor's noise is made beforehand, for the plain algorithms as for the fast ones; its scaling to the scene's level is timed.
+//! Times end when three Lambda maps are ready, on all threads; [`Front::bare_fft_ms`] is one bare two-dimensional transform on one thread,
 //! measured in the same run.
 
 mod measurement;
@@ -20,12 +19,12 @@ use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
-/// What is measured. Every combination gives a row, but for [`Algorithm::Direct`] and [`Algorithm::Exact`]: they know neither
-/// tolerance nor single precision nor dragging, and give one row for each number of reflectors up to 1000.
+/// The combinations to measure. Each gives a row, except for [`Algorithm::Direct`] and [`Algorithm::Exact`], which have neither tolerance nor
+/// single precision nor dragging: they give one row for each number of reflectors up to 1000.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontRequest {
     pub reflectors: Vec<usize>,
-    /// Errors allowed, relative to the peak.
+    /// Tolerances, relative to the peak.
     pub tolerances: Vec<f64>,
     pub entrants: Vec<Entrant>,
     pub tasks: Vec<FrontTask>,
@@ -44,7 +43,7 @@ impl FrontRequest {
         }
     }
 
-    /// A second or two: few reflectors, few repeats, the fast algorithms alone, from scratch.
+    /// A request of a second or two: few reflectors, few repeats, the fast algorithms alone, from scratch.
     pub fn short() -> Self {
         FrontRequest {
             entrants: [Entrant::Planned]
@@ -57,7 +56,7 @@ impl FrontRequest {
     }
 }
 
-/// Who is measured: the planner, or an algorithm forced upon it. Written and read as "plan" or the algorithm's name.
+/// The measured choice of algorithm: the planner's, or a forced one. Written and read as "plan" or the algorithm's name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(into = "String")]
 pub enum Entrant {
@@ -94,11 +93,11 @@ impl From<Entrant> for String {
     }
 }
 
-/// What is timed, until three Lambda maps are ready.
+/// The timed task, until three Lambda maps are ready.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrontTask {
-    /// Nothing of the scene is known before.
+    /// The scene is new to the engine.
     Scratch,
     Drag,
 }
@@ -112,7 +111,7 @@ impl FrontTask {
     }
 }
 
-/// What lies beneath the reflectors, and how decades become Lambda: no error of Lambda means anything without both.
+/// Floor beneath the reflectors, and normalisation from decades to Lambda: an error of Lambda has a meaning only with both.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MapConvention {
     #[serde(serialize_with = "as_text")]
@@ -122,9 +121,9 @@ pub struct MapConvention {
 }
 
 impl MapConvention {
-    /// The thesis': its rounding floor, normalised from the smallest to the largest cell.
+    /// The thesis' convention: its rounding floor, normalised from the smallest to the largest cell.
     pub const THESIS: MapConvention = MapConvention { floor: Floor::Thesis, normalisation: Normalisation::MinMax };
-    /// Stable in any precision: no floor, 100 dB below the peak.
+    /// A convention that is stable in any precision: no floor, normalised from 100 dB below the peak.
     pub const FIXED_RANGE: MapConvention = MapConvention {
         floor: Floor::Exact,
         normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)),
@@ -133,7 +132,7 @@ impl MapConvention {
     pub const NO_FLOOR: MapConvention = MapConvention { floor: Floor::Exact, normalisation: Normalisation::MinMax };
     pub const BOTH: [MapConvention; 2] = [MapConvention::FIXED_RANGE, MapConvention::THESIS];
 
-    /// The convention that maps of this tolerance are good for, and timed with.
+    /// The convention in which maps of this tolerance are accurate, and in which they are timed.
     pub fn for_tolerance(tolerance: f64) -> MapConvention {
         if tolerance >= 1e-6 { MapConvention::FIXED_RANGE } else { MapConvention::THESIS }
     }
@@ -145,12 +144,12 @@ impl fmt::Display for MapConvention {
     }
 }
 
-/// A floor or a normalisation as the command line writes it.
+/// Serialises a floor or a normalisation as the command line writes it.
 fn as_text<S: Serializer>(value: &impl fmt::Display, to: S) -> Result<S::Ok, S::Error> {
     to.collect_str(value)
 }
 
-/// How far three maps are from the exact path's, over one floor and normalisation.
+/// Error of three maps against the exact path's, over one floor and normalisation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LambdaError {
     #[serde(flatten)]
@@ -164,16 +163,16 @@ pub struct FrontRow {
     pub task: FrontTask,
     pub reflectors: usize,
     pub algorithm: Entrant,
-    /// What the planner chose for the whole scene, or the algorithm again.
+    /// The planner's choice for the whole scene, or the forced algorithm.
     pub chosen: Algorithm,
     /// Precision of everything after the phase.
     pub precision: Precision,
-    /// Error asked for, relative to the peak.
+    /// Tolerance, relative to the peak.
     pub tolerance: f64,
     #[serde(flatten)]
     pub convention: MapConvention,
     pub median_ms: f64,
-    /// From the first to the third quartile of the repeats.
+    /// Distance between the first and the third quartile of the repeats, milliseconds.
     pub spread_ms: f64,
     pub fastest_ms: f64,
     pub repeats: usize,
@@ -183,7 +182,7 @@ pub struct FrontRow {
     pub lambda: Vec<LambdaError>,
 }
 
-/// A measured front, as it stands in `bench.json`.
+/// A measured front, as `bench.json` has it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Front {
     /// Median time of a bare 512 x 1024 single-precision transform on one thread, in the same run.

@@ -1,4 +1,4 @@
-//! What the rows of a front are measured against.
+//! The reference of a front's rows: the judge's range profiles and the exact path's maps.
 
 use super::{LambdaError, MapConvention};
 use crate::engine::EngineFrame;
@@ -14,11 +14,11 @@ use rayon::prelude::*;
 /// Elements whose range profiles are compared with the judge's, spread over the array.
 const JUDGED_ELEMENTS: usize = 4;
 const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
-/// Picks the floor's noise in every measurement.
+/// Seed of the floor's noise in every measurement.
 pub(in crate::benchmark) const SEED: u64 = 0;
 
-/// Up to so many reflectors the exact path, phasor by phasor, is what maps are compared with; beyond, its time grows out of hand, and the
-/// phasor split in f64 stands in, which the tests hold to the last bits.
+/// Most reflectors for which the exact path, phasor by phasor, gives the reference maps; beyond, it takes too long, and the phasor split in f64
+/// replaces it, which tests compare with the exact path to the last bits.
 const MAX_EXACT_REFLECTORS: usize = 300;
 
 pub(in crate::benchmark) struct Reference {
@@ -55,7 +55,7 @@ impl Reference {
     }
 }
 
-/// Range profiles of a few elements, from the judge's samples.
+/// Range profiles of a few elements, of the judge's samples.
 pub(in crate::benchmark) struct JudgedProfiles {
     /// `[judged elements, range bins]`.
     profiles: Array2<Complex64>,
@@ -103,7 +103,7 @@ fn elements(radar: &Radar) -> impl Iterator<Item = usize> {
     (0..JUDGED_ELEMENTS).map(move |i| i * last / (JUDGED_ELEMENTS - 1))
 }
 
-/// White noise of unit variance, made once: making it takes longer than most maps, and every floor scales the same.
+/// White noise of unit variance, made once: making it takes longer than most maps, and every floor is a multiple of it.
 pub(in crate::benchmark) struct UnitNoise {
     /// `[elements, samples]`.
     samples: Array2<Complex64>,

@@ -15,7 +15,7 @@ fn lambda(f: &EngineFrame) -> Arc<RangeAngleMap> {
     f.full.as_ref().expect("the whole array's map was wanted").lambda.clone()
 }
 
-/// What a stage computed, or why it computed nothing.
+/// The outcome of a stage in words.
 fn said(frame: &EngineFrame, stage: EngineStage) -> String {
     match &frame.report.stages.iter().find(|s| s.stage == stage).unwrap().outcome {
         StageOutcome::Computed(what) => what.clone(),
@@ -23,7 +23,7 @@ fn said(frame: &EngineFrame, stage: EngineStage) -> String {
     }
 }
 
-/// Largest difference between the range profiles that two engines hold, relative to the other's largest cell.
+/// Largest difference between the range profiles of two engines, relative to the other's largest cell.
 fn profile_difference(engine: &Engine, other: &Engine) -> f64 {
     let (mut worst, mut peak) = (0.0f64, 0.0f64);
     for element in 0..engine.radar().elements {
@@ -146,7 +146,7 @@ fn an_empty_scene_without_noise_is_dark() {
     }
 }
 
-/// What every command computes of a scene: ends, and Lambda of the first end, the last end and the whole array.
+/// Ends, and Lambda of the first end, the last end and the whole array, as a command computes them.
 fn by_command(radar: &Radar, scene: &Scene, wanted: &MapRequest) -> (signal::TwoEnds, [RangeAngleMap; 3]) {
     let signal = signal::simulate(radar, scene, wanted.floor, wanted.seed).unwrap();
     let maps = LogMaps::of_signal(radar, &signal);
@@ -188,7 +188,7 @@ fn a_scene_at_rest_does_not_depend_on_what_came_before() {
             let found = [&rests.first, &rests.last, &rests.full].map(|m| (*m.as_ref().unwrap().lambda).clone());
             assert!(rests.settled && found == maps, "history {i}, {wanted:?}");
             assert_eq!(*rests.ends.clone().unwrap(), ends);
-            // Until something changes, this is what is shown.
+            // The settled maps stay until the scene changes.
             let still = engine.update(&scene, &wanted).unwrap();
             assert!(still.settled && Arc::ptr_eq(&lambda(&still), &lambda(&rests)));
             assert!(!engine.update(&moved, &wanted).unwrap().settled);
@@ -230,7 +230,7 @@ fn taking_away_a_giant_leaves_nothing_of_it() {
     assert!(off < 1e-12, "{off:e}");
 }
 
-/// Over no floor too, where quiet echoes are taken as more than they are.
+/// Also without a floor, where quiet echoes have few rows.
 #[test]
 fn dragging_one_of_three_leaves_two_as_they_were() {
     let normalisation = Normalisation::DynamicRange(Decibels(100.0));
@@ -246,7 +246,7 @@ fn dragging_one_of_three_leaves_two_as_they_were() {
     }
 }
 
-/// All three maps of two frames.
+/// Largest difference of Lambda between two frames, over all three maps.
 fn worst_lambda(a: &EngineFrame, b: &EngineFrame) -> f32 {
     let apertures = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
     let maps = |f: &EngineFrame| apertures.map(|aperture| f.map(aperture).unwrap().lambda.clone());
@@ -262,7 +262,7 @@ fn what_is_cancelled_leaves_nothing_half_made() {
     let cancelled = Task::default();
     cancelled.cancel();
     let is_cancelled = |frame: Result<EngineFrame, Unfinished>| matches!(frame, Err(Unfinished::Cancelled(_)));
-    // Without the samples of the ends it is cancelled among the range profiles.
+    // Without the samples of the ends the cancellation happens among the range profiles.
     for ends in [true, false] {
         let wanted = MapRequest { ends, ..MapRequest::default() };
         let mut engine = Engine::new(small());
@@ -281,7 +281,7 @@ fn what_is_cancelled_leaves_nothing_half_made() {
     assert!(is_cancelled(Engine::new(small()).update_for(&cancelled, &built, &MapRequest::default())));
 }
 
-/// Over no floor, a drag recomputes those rows alone in which the dragged reflector is heard, and the maps are those of a fresh build.
+/// Without a floor, a drag recomputes only rows with an echo of the dragged reflector, and the maps are those of a fresh build.
 #[test]
 fn only_rows_that_changed_are_recomputed() {
     let radar = Radar { elements: 128, samples: 512, end_elements: 12, ..Radar::default() };
@@ -293,7 +293,7 @@ fn only_rows_that_changed_are_recomputed() {
     for step in 0..7 {
         scene.objects[20].translate(0.03, 0.05);
         let frame = match step {
-            // A hidden map misses a move, and catches up.
+            // A hidden map misses a move, and is updated when shown again.
             2 => {
                 engine.update(&scene, &MapRequest { full: false, ..wanted }).unwrap();
                 scene.objects[20].translate(0.3, 0.0);
@@ -308,7 +308,7 @@ fn only_rows_that_changed_are_recomputed() {
         };
         let rows = said(&frame, EngineStage::FullMap);
         match step {
-            // What was dragged over the noise touched every row, and leaves them.
+            // A move over noise changes every row, and so does the return to no floor.
             4 | 5 => assert_eq!(rows, "512 rows"),
             _ => assert!(rows.contains("of 512 rows"), "step {step}: {rows}"),
         }
@@ -321,7 +321,7 @@ fn only_rows_that_changed_are_recomputed() {
     assert!(rows.contains("floor"), "{rows}");
 }
 
-/// f32 with min-max and no floor would draw f32's rounding: it is refused, even where it is forced.
+/// f32 with min-max and no floor would show the rounding of f32, so it is refused even where it is forced.
 #[test]
 fn single_precision_is_refused_below_its_rounding() {
     let scene = Scene::of_points([(0.3, 1.0), (-0.2, 1.4)]);

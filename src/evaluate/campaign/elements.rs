@@ -1,22 +1,22 @@
-//! The elements that hear the scenes of a campaign.
+//! The elements that measure the scenes of a campaign.
 
 use crate::files::sha256;
 use crate::radar::{BuiltArray, Radar, Tolerances};
 
-/// The elements that hear the scenes of a campaign.
+/// The elements that measure the scenes of a campaign.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Elements {
-    /// Those that each scene names.
+    /// The elements that each scene names.
     #[default]
     OfScenes,
-    /// The same for all.
+    /// The same elements for all scenes.
     Built(BuiltArray),
-    /// Drawn anew for each scene with these standard deviations.
+    /// Elements drawn anew for each scene with these standard deviations.
     Drawn(Tolerances),
 }
 
 impl Elements {
-    /// Those of scene `index`, in the place of its own; the seed of the scenes picks them.
+    /// The elements of scene `index` in place of its own, `None` for [`Elements::OfScenes`]; `seed` is that of the scenes.
     pub(super) fn of(&self, radar: &Radar, seed: u64, index: u32) -> Option<BuiltArray> {
         match self {
             Elements::OfScenes => None,

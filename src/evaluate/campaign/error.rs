@@ -1,4 +1,4 @@
-//! Why a campaign stopped, and what messages call its sets.
+//! The errors of a campaign, and the names of its sets in messages.
 
 use crate::evaluate::rows::GivenTwice;
 use crate::evaluate::sets::{FolderError, SceneSet};
@@ -8,7 +8,7 @@ use crate::scene::SceneError;
 use crate::scene::file::SceneFileError;
 use crate::scene::generate::NoRoom;
 
-/// Why a campaign stopped.
+/// The error that stopped a campaign.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum CampaignError {
@@ -37,7 +37,7 @@ pub enum CampaignError {
 }
 
 impl CampaignError {
-    /// Whether it was cancelled.
+    /// Whether the campaign was cancelled.
     pub fn is_cancelled(&self) -> bool {
         matches!(self, CampaignError::Method { source: ReconstructError::Cancelled, .. })
     }
@@ -50,14 +50,14 @@ pub struct Unfit {
     pub method: &'static str,
     /// The set.
     pub set: String,
-    /// On how many of its scenes.
+    /// Number of the set's scenes on which it failed.
     pub scenes: u32,
-    /// Why, on the first of them.
+    /// The method's error on the first of them.
     pub reason: String,
 }
 
 impl Unfit {
-    /// Takes in a method's failure on a scene.
+    /// Adds a method's failure on a scene to `all`.
     /// # Errors
     /// Any other error, and a failure that is the cancellation of the campaign.
     pub(super) fn note(all: &mut Vec<Unfit>, error: CampaignError) -> Result<(), CampaignError> {

@@ -17,12 +17,12 @@ pub(super) struct SceneJob<'a> {
     pub index: u32,
     pub trial: &'a Trial,
     pub request: &'a Request,
-    /// One row a method, without figures.
+    /// The rows without figures, one a method.
     pub empty: &'a [Row],
 }
 
 impl SceneJob<'_> {
-    /// What a method makes of the scene.
+    /// The method's answer for the scene, timed and judged.
     pub fn answer(&self, method: &dyn Reconstructor) -> Result<TimedAnswer, CampaignError> {
         self.trial.ask(method, self.request).map_err(|source| CampaignError::Method {
             method: method.name(),
@@ -44,7 +44,7 @@ impl SceneJob<'_> {
         Ok(Row { cfar_detection: by_cfar.detection, cfar_false_alarm: Some(by_cfar.false_alarm), ..row })
     }
 
-    /// The rows of the methods of these places, in their order; `on_failure` says whether it goes on without one that failed.
+    /// The rows of the methods with the indices `order`, in the order of the indices; `on_failure` decides whether the job continues after a failure.
     pub fn rows(
         &self,
         methods: &[&dyn Reconstructor],

@@ -2,7 +2,7 @@
 
 use crate::radar::Radar;
 
-/// What a radar is known by in rows: each constant that differs from table 3.1, the carrier's reading left out. Empty for table 3.1.
+/// The radar as rows name it: each constant that differs from table 3.1, without the carrier's reading. Empty for table 3.1.
 pub(super) fn text(radar: &Radar) -> String {
     let fields = |radar: &Radar| match serde_json::to_value(radar) {
         Ok(serde_json::Value::Object(fields)) => fields,
@@ -15,7 +15,7 @@ pub(super) fn text(radar: &Radar) -> String {
         .filter(|(name, value)| *name != "carrier" && usual.get(*name) != Some(*value))
         .flat_map(|(name, value)| match value {
             serde_json::Value::String(text) => vec![format!("{name}={text}")],
-            // Those of the budget.
+            // The constants of the link budget.
             serde_json::Value::Object(numbers) => numbers.iter().map(|(key, v)| format!("{name}.{key}={v}")).collect(),
             value => vec![format!("{name}={value}")],
         })

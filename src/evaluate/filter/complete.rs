@@ -3,18 +3,18 @@
 use super::tokens::is_name;
 use crate::evaluate::rows::Column;
 
-/// What may take the place of the word before the cursor.
+/// Candidates that may replace the word before the cursor.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Completion {
-    /// Where the word begins, in characters from 0; it ends at the cursor.
+    /// First character of the word, counted from 0; the word ends at the cursor.
     pub start: usize,
-    /// What may stand there, likeliest first. A method's name ends with a dot: a column follows.
+    /// The candidates, likeliest first. A method's name ends with a dot: a column follows.
     pub candidates: Vec<String>,
 }
 
 /// Candidates for the word that ends at `cursor` (characters from 0) in an expression about rows of `methods`.
 ///
-/// In quotes they are methods; after a method and a dot, columns; else both.
+/// Inside quotes the candidates are methods; after a method and a dot, columns; elsewhere both.
 pub fn complete(text: &str, cursor: usize, methods: &[impl AsRef<str>]) -> Completion {
     let before: Vec<char> = text.chars().take(cursor).collect();
     let methods = methods.iter().map(AsRef::as_ref);
@@ -27,7 +27,7 @@ pub fn complete(text: &str, cursor: usize, methods: &[impl AsRef<str>]) -> Compl
         Some((method, column)) => (start + method.chars().count() + 1, column.to_owned(), columns().collect()),
         None => (start, word, columns().chain(methods.map(|m| format!("{m}."))).collect()),
     };
-    // Those that begin so before those that have it somewhere.
+    // Names that begin with the word stand before names that contain it.
     let (begin, rest): (Vec<String>, Vec<String>) = all.into_iter().partition(|name| name.starts_with(&word));
     let inside = rest.into_iter().filter(|name| name.contains(&word));
     let candidates = begin.into_iter().chain(inside).filter(|name| *name != word).collect();

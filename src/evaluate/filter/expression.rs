@@ -3,7 +3,7 @@
 use crate::evaluate::rows::{Column, Row, Value};
 use std::collections::HashMap;
 
-/// What is true or false.
+/// A parsed expression that is true or false.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Predicate {
     Or(Box<[Predicate; 2]>),
@@ -12,12 +12,12 @@ pub enum Predicate {
     Compare(Box<Term>, Comparison, Box<Term>),
 }
 
-/// What has a value.
+/// A parsed expression with a value.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Term {
     Number(f64),
     Text(String),
-    /// Of the row itself, or of a method's row on the same scene.
+    /// A column of the row itself, or of a method's row on the same scene.
     Column(Option<String>, Column),
     Arithmetic(Box<Term>, Arithmetic, Box<Term>),
     Negative(Box<Term>),
@@ -43,7 +43,7 @@ pub enum Arithmetic {
 
 type Key<'a> = (&'a str, u64, u32);
 
-/// Every row by its scene and method.
+/// All rows by scene and method.
 pub struct Scenes<'a> {
     rows: HashMap<(Key<'a>, &'a str), &'a Row>,
 }
@@ -82,7 +82,7 @@ impl Comparison {
             (Value::Number(a), Value::Number(b)) => a.partial_cmp(&b),
             (Value::Text(a), Value::Text(b)) => Some(a.cmp(&b)),
             (Value::Missing, _) | (_, Value::Missing) => None,
-            // A set's number and another's name.
+            // A set's number against another set's name.
             _ => return self == Comparison::Unequal,
         };
         order.is_some_and(|order| match self {

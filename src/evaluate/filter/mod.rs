@@ -8,8 +8,8 @@
 //! |---|---|
 //! | `\|` `&` `!` | or, and, not, binding more in this order; also `\|\|` and `&&` |
 //! | `=` `!=` `<` `<=` `>` `>=` | comparisons; also `==` |
-//! | `+` `-` `*` `/` | of numbers; a minus after a name wants a space before it, since methods' names have hyphens |
-//! | `( )` | as always |
+//! | `+` `-` `*` `/` | arithmetic on numbers; a minus after a name wants a space before it, since methods' names have hyphens |
+//! | `( )` | grouping |
 //!
 //! A figure that a scene doesn't have makes any comparison false.
 
@@ -39,7 +39,7 @@ impl Filter {
         parse::parse(text, &methods).map(|root| Filter { root })
     }
 
-    /// Indices of the rows of which it is true, in order.
+    /// Indices of the rows for which the expression is true, in order.
     pub fn matching(&self, rows: &[Row]) -> Vec<usize> {
         let scenes = Scenes::new(rows);
         (0..rows.len()).filter(|&i| self.root.holds(&rows[i], &scenes)).collect()

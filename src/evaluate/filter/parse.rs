@@ -31,7 +31,7 @@ enum Part {
 }
 
 impl Part {
-    /// `start` is where it begins, `end` where something is missing if it is a value only.
+    /// The part as a predicate. An error points at `start`, the part's first character, or at `end`, where a comparison is missing after a column.
     fn truth(self, start: usize, end: usize) -> Result<Predicate, FilterError> {
         match self {
             Part::Truth(truth) => Ok(truth),

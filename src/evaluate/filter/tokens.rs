@@ -1,12 +1,12 @@
 //! The tokens of an expression.
 
-/// What is wrong with an expression, and where.
+/// A mistake in an expression, with its place.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("column {column}: {message}")]
 pub struct FilterError {
-    /// Where, in characters from 1; just after the text where something is missing at its end.
+    /// Place of the mistake, in characters from 1; just after the text where its end is missing something.
     pub column: usize,
-    /// What was expected there.
+    /// The mistake, and what was expected in its place.
     pub message: String,
 }
 
@@ -20,7 +20,7 @@ pub(super) enum Token {
     End,
 }
 
-/// Signs, longer ones before those they begin with; each with what it is the same as.
+/// Signs, longer ones before those they begin with; each with its canonical form.
 pub(super) const SIGNS: [(&str, &str); 18] = [
     ("&&", "&"),
     ("||", "|"),
@@ -42,7 +42,7 @@ pub(super) const SIGNS: [(&str, &str); 18] = [
     (")", ")"),
 ];
 
-/// What may stand where a value is wanted.
+/// Message for a place where a value is expected.
 pub(super) const OPERAND: &str = "expected a column, a number, a name in quotes or (";
 
 pub(super) fn error<T>(at: usize, message: impl Into<String>) -> Result<T, FilterError> {

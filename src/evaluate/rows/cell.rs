@@ -1,4 +1,4 @@
-//! The types of cells: how each is written, read, compared and shared.
+//! Types of cells: writing, reading, comparing and sharing.
 
 use super::super::echoes::EchoCounts;
 use crate::evaluate::shard::Shard;
@@ -62,7 +62,7 @@ impl fmt::Display for Text {
     }
 }
 
-/// What the cells of a column hold.
+/// The type of a column's cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CellKind {
     /// A text.
@@ -73,7 +73,7 @@ pub enum CellKind {
     Real,
 }
 
-/// What stands in a cell of the table.
+/// The content of a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value<'a> {
     /// A number.
@@ -85,7 +85,7 @@ pub enum Value<'a> {
 }
 
 impl Value<'_> {
-    /// The number, if it is one.
+    /// The number; `None` for a text and a missing figure.
     pub fn number(&self) -> Option<f64> {
         match self {
             Value::Number(number) => Some(*number),
@@ -110,7 +110,7 @@ pub(super) trait CellValue {
 
     fn value(&self) -> Value<'_>;
 
-    /// Takes its text from `texts` where that is there, and adds it where not: equal texts of many rows take memory once.
+    /// Replaces the text by its equal in `texts`, or adds it there: equal texts of many rows take memory once.
     fn share(&mut self, _texts: &mut HashSet<Text>) {}
 }
 
@@ -173,7 +173,7 @@ fn serde_name(value: impl Serialize) -> String {
     serde_json::to_value(value).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
-/// Cells that are written as they are shown.
+/// Serialisation of cells by their `Display` and `FromStr`.
 pub(super) mod by_text {
     use super::{Deserialize, Deserializer, Serializer, de, fmt};
     use std::str::FromStr;
@@ -195,7 +195,7 @@ pub(super) mod by_text {
     }
 }
 
-/// A cell that is empty for the scenes of a folder; "file" stood there in format 1.
+/// A cell that is empty for the scenes of a folder; format 1 wrote "file" in it.
 pub(super) fn unless_file<'de, T, D>(deserializer: D) -> Result<Option<T>, D::Error>
 where
     T: Deserialize<'de>,

@@ -1,12 +1,12 @@
 //! The macro that makes the struct of a row and the list of its columns out of one table.
 
-/// Makes `Row` and `Column`. A line is a field of `Row`, its type, and the name of its column in code: `name: Type = Name`.
+/// Makes `Row` and `Column`. A line of the table is a field of `Row`, its type, and the name of its column in code: `name: Type = Name`.
 macro_rules! columns {
     (
         figures { $($(#[$of_figure:meta])* $figure:ident: $figure_type:ty = $Figure:ident,)+ }
         origin { $($(#[$of_origin:meta])* $origin:ident: $origin_type:ty = $Origin:ident,)+ }
     ) => {
-        /// What one method made of one scene, and what made it so. The fields are the columns of the file.
+        /// The result of one method on one scene, and its origin. The fields are the columns of the file.
         #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
         #[serde(default)]
         pub struct Row {
@@ -25,7 +25,7 @@ macro_rules! columns {
         impl Column {
             /// The columns of scenes, methods and figures, in the file's order.
             pub const FIGURES: &[Column] = &[$(Column::$Figure),+];
-            /// The columns that say what made a row; they stand behind the figures.
+            /// The columns of a row's origin; they stand behind the figures.
             pub const ORIGIN: &[Column] = &[$(Column::$Origin),+];
 
             /// Name in the file's first line and in filters.
@@ -36,7 +36,7 @@ macro_rules! columns {
                 }
             }
 
-            /// What its cells hold.
+            /// The type of its cells.
             pub fn kind(self) -> CellKind {
                 match self {
                     $(Column::$Figure => <$figure_type as CellValue>::KIND,)+
@@ -44,7 +44,7 @@ macro_rules! columns {
                 }
             }
 
-            /// Whether a table may lack it: older ones do.
+            /// Whether a table may lack the column: older tables do.
             pub fn is_optional(self) -> bool {
                 match self {
                     $(Column::$Figure => <$figure_type as CellValue>::IS_OPTIONAL,)+
@@ -52,7 +52,7 @@ macro_rules! columns {
                 }
             }
 
-            /// Whether two rows have the same there.
+            /// Whether two rows have the same cell in the column.
             pub fn is_same(self, a: &Row, b: &Row) -> bool {
                 match self {
                     $(Column::$Figure => a.$figure == b.$figure,)+

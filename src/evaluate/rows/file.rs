@@ -11,10 +11,10 @@ pub fn header() -> String {
     Column::all().map(Column::name).collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// Writes each row that is [serialised](csv::Writer::serialize) as a line; `begins` with the names of the columns, or goes on beneath other
-/// rows. [`csv::Writer::flush`] after a row hands on whole lines, so that a run that is stopped keeps what it has found.
+/// A writer whose [`csv::Writer::serialize`] writes a row as a line; `begins` writes the names of the columns first. [`csv::Writer::flush`]
+/// after a row hands on whole lines, so that a run that is stopped keeps its rows.
 /// # Errors
-/// What `out` says.
+/// [`io::Error`] of `out`.
 pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<W>> {
     if begins {
         out.write_all(header().as_bytes())?;
@@ -24,18 +24,18 @@ pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<
 
 /// Writes a whole table.
 /// # Errors
-/// What `out` says.
+/// [`io::Error`] of `out`.
 pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) -> io::Result<()> {
     let mut writer = row_writer(out, true)?;
     rows.into_iter().try_for_each(|row| writer.serialize(row))?;
     writer.flush()
 }
 
-/// Why a file's rows can't be used.
+/// The reason why a file's rows can't be used.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum RowError {
-    /// It can't be read.
+    /// The file can't be read.
     #[error("{0}")]
     Io(io::Error),
     #[error("line 1: there is no column \"{missing}\"; expected {}", header().trim_end())]
@@ -51,18 +51,18 @@ pub enum RowError {
     TooMany,
 }
 
-/// Rows as a file has them.
+/// The rows of a file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RowTable {
     /// The rows of whole lines.
     pub rows: Vec<Row>,
-    /// Whether the file ends within a line: its writer was stopped, or the file was cut.
+    /// Whether the file ends within a line, since its writer was stopped or the file was cut.
     pub is_cut: bool,
-    /// How many bytes the whole lines have.
+    /// Number of bytes of the whole lines.
     pub whole_bytes: u64,
 }
 
-/// Reads what [`write_rows`] wrote, also in format 1 and before. Columns may stand in any order, and others beside them; those that are
+/// Reads a table of [`write_rows`], also in format 1 and before. Columns may stand in any order, and others beside them; those that are
 /// [optional](Column::is_optional) may be missing.
 /// # Errors
 /// [`RowError`] names the line and the column.

@@ -9,19 +9,19 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// Why a file of rows can't be read, or isn't written.
+/// The reason why a file of rows can't be read or isn't written.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum KeptError {
-    /// What the system says.
+    /// The system's error.
     #[error("{}: {source}", path.display())]
     File { path: PathBuf, source: io::Error },
-    /// It holds what would be lost. The caller says how to write over it.
+    /// The file has content that would be lost. The caller adds how to overwrite it.
     #[error("{}: {why}", path.display())]
     Other { path: PathBuf, why: String },
     #[error("{}: another run writes it; wait for that run, or name another file", _0.display())]
     Busy(PathBuf),
-    /// Its rows don't fit together.
+    /// The rows don't belong to one run.
     #[error(transparent)]
     Merge(#[from] MergeError),
 }
@@ -33,18 +33,18 @@ fn on_file(path: &Path) -> impl FnOnce(io::Error) -> KeptError {
 /// Scene and method of a row.
 pub type Key = (Text, u32, Text);
 
-/// What tells a row from the others of its run.
+/// Set, scene and method of a row, which no other row of its run has together.
 pub fn key(row: &Row) -> Key {
     (row.set.clone(), row.index, row.method.clone())
 }
 
-/// The rows that a run makes.
+/// The rows that belong to a run.
 pub struct RunRows {
     empty: HashMap<(Text, Text), Row>,
 }
 
 impl RunRows {
-    /// The rows of a run whose [`Campaign::empty_rows`](crate::evaluate::campaign::Campaign::empty_rows) these are.
+    /// The rows of a run, from its [`Campaign::empty_rows`](crate::evaluate::campaign::Campaign::empty_rows).
     pub fn new(empty: &[Vec<Row>]) -> RunRows {
         let named = |row: &Row| ((row.set.clone(), row.method.clone()), row.clone());
         RunRows { empty: empty.iter().flatten().map(named).collect() }
@@ -85,7 +85,7 @@ pub struct RowFile {
 }
 
 impl RowFile {
-    /// Opens the file, or begins it. Rows of the same run stay and half a last line goes; `overwrite` begins anew over any content.
+    /// Opens the file, or creates it. Rows of the same run stay and half a last line is cut; `overwrite` replaces any content.
     /// # Errors
     /// [`KeptError`] for a file that holds anything else, and for one that another process writes.
     pub fn open(path: &Path, wanted: &RunRows, overwrite: bool) -> Result<RowFile, KeptError> {
@@ -95,7 +95,7 @@ impl RowFile {
         }
         let mut file =
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(on_file(path))?;
-        // Where the system has no locks the file is written all the same.
+        // On a system without locks the file is written without one.
         if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
             return Err(KeptError::Busy(path.to_owned()));
         }
@@ -106,7 +106,7 @@ impl RowFile {
         Ok(RowFile { path: path.to_owned(), out, present: table.rows, appended: Vec::new(), failed: None })
     }
 
-    /// Appends a row. Whether that went well; [`RowFile::finish`] says why not.
+    /// Appends a row and tells whether that succeeded; the error is [`RowFile::failure`].
     pub fn append(&mut self, row: &Row) -> bool {
         let wrote = self.out.serialize(row).map_err(io::Error::from).and_then(|()| self.out.flush());
         self.appended.push(row.clone());
@@ -114,12 +114,12 @@ impl RowFile {
         self.failed.is_none()
     }
 
-    /// Why rows could not be appended, if so.
+    /// The first error of appending; `None` where there was none.
     pub fn failure(&mut self) -> Option<KeptError> {
         self.failed.take().map(on_file(&self.path))
     }
 
-    /// All rows, sorted as a run that was never stopped has them; so is the file then.
+    /// All rows, in the order of a run that was never stopped, in which they are also written to the file.
     /// # Errors
     /// [`KeptError`] for a file that can't be written.
     pub fn finish(self) -> Result<Vec<Row>, KeptError> {

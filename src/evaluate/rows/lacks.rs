@@ -39,7 +39,7 @@ impl fmt::Display for Lack {
     }
 }
 
-/// Scenes that the runs of `rows` are missing: by the whole run that rows record, or else the gaps below their highest scene number.
+/// Scenes that `rows` lack, by the whole run that rows record, or else by the gaps below their highest scene number.
 pub fn lacks(rows: &[Row]) -> Vec<Lack> {
     let mut present: BTreeMap<(&str, &str), BTreeSet<u32>> = BTreeMap::new();
     let mut runs: Vec<(&Text, &Text)> = Vec::new();

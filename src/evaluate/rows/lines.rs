@@ -1,4 +1,4 @@
-//! Files read line by line, none longer than a line may be.
+//! Reading of files line by line, with a limit to the length of a line.
 
 use std::io::{self, BufRead, BufReader, Read};
 
@@ -13,16 +13,16 @@ pub(super) struct LongLine {
     pub line: u64,
 }
 
-/// Passes on what it reads line by line, as long as lines are short, so that no file can ask for more memory than a line may have.
+/// A reader that passes on lines up to the limit and refuses longer ones, so that no file can ask for more memory than a line.
 pub(super) struct ShortLines<R> {
     input: BufReader<R>,
     whole_only: bool,
     line: Vec<u8>,
     passed: usize,
     number: u64,
-    /// Whether the last line had no end.
+    /// Whether the last line had no end of line.
     pub is_cut: bool,
-    /// Bytes of the lines that had one.
+    /// Bytes of the lines with an end of line.
     pub whole_bytes: u64,
 }
 

@@ -1,9 +1,9 @@
-//! Rows of several runs as those of one, in any order.
+//! Merging of the rows of several runs, in any order, into those of one run.
 
 use super::{Column, Row, Text, WHY_NO_OTHER_FORMAT};
 use std::collections::BTreeMap;
 
-/// Why rows are no table of one run: a row stands there twice, or two were not made alike.
+/// The reason why rows are no table of one run: a row stands there twice, or two rows have different origins.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct MergeError(String);
@@ -12,10 +12,10 @@ fn named(row: &Row) -> String {
     format!("scene {} of set {}, seed {}, by {}", row.index, row.set, row.seed, row.method)
 }
 
-/// Joins tables, each with its name, as if all had been made in one run: sorted by set, seed and scene, methods as their runs name them,
-/// or else in the order they come.
+/// Joins tables, each with its name, into that of one run. Rows are sorted by set, seed and scene; methods stand in the order of their runs, or
+/// else in the order in which they come.
 /// # Errors
-/// [`MergeError`] when a row stands in two tables or twice in one, and when two rows were not made alike.
+/// [`MergeError`] when a row stands in two tables or twice in one, and when two rows have different origins.
 pub fn merge(tables: Vec<(String, Vec<Row>)>) -> Result<Vec<Row>, MergeError> {
     let names: Vec<String> = tables.iter().map(|(name, _)| name.clone()).collect();
     let mut all: Vec<(usize, Row)> = Vec::new();
@@ -34,7 +34,7 @@ pub fn merge(tables: Vec<(String, Vec<Row>)>) -> Result<Vec<Row>, MergeError> {
     Ok(all.into_iter().map(|(_, row)| row).collect())
 }
 
-/// Places of sets and of methods: first as the runs name them, then as rows come.
+/// Ranks of sets and of methods: first in the order of the runs, then in that of the rows.
 fn orders(rows: &[(usize, Row)]) -> [BTreeMap<Text, usize>; 2] {
     let mut orders = [BTreeMap::new(), BTreeMap::new()];
     let add = |order: &mut BTreeMap<Text, usize>, name: &Text| {
@@ -56,8 +56,7 @@ fn orders(rows: &[(usize, Row)]) -> [BTreeMap<Text, usize>; 2] {
     orders
 }
 
-/// Checks that rows were made alike: each is held against the first row, the first generated one, the first of its method, and the first of
-/// its set.
+/// Checks that rows have one origin: each is compared with the first row, the first generated one, the first of its method, and the first of its set.
 fn check_alike(names: &[String], rows: &[(usize, Row)]) -> Result<(), MergeError> {
     let mut generated = None;
     let (mut methods, mut sets) = (BTreeMap::new(), BTreeMap::new());

@@ -1,6 +1,6 @@
-//! One row a scene and method: what an evaluation found, kept as CSV so that it can be sorted, sliced, merged and reproduced.
+//! Rows of an evaluation, one a scene and method, kept as CSV so that they can be sorted, sliced, merged and reproduced.
 //!
-//! [`Row`] is the one place where a column stands: the file's first line, writing, reading, [`Column`], and the module's dicts come from it.
+//! [`Row`] is the one definition of the columns: the file's first line, writing, reading, [`Column`], and the module's dicts come from it.
 
 mod cell;
 mod columns;
@@ -32,10 +32,10 @@ use cell::{CellValue, by_text, unless_file};
 use columns::columns;
 
 /// Number of the format of rows, which stands in each. Before format 2 the floor "thesis" had another level ([`WHY_NO_OTHER_FORMAT`]). Tables
-/// from before the formats were counted have no such column, and don't say what made them.
+/// from before the formats were counted have no such column, and record no origin.
 pub const FORMAT: u32 = 2;
 
-/// Why rows of two formats are not put together.
+/// The reason why rows of two formats are not merged.
 pub const WHY_NO_OTHER_FORMAT: &str = "the floor \"thesis\" is 1.8 dB quieter from format 2 on, so that figures of older rows don't compare with newer ones";
 
 columns! {
@@ -62,15 +62,15 @@ columns! {
         milliseconds: f64 = Milliseconds,
         /// Objects of the scene.
         objects: usize = Objects,
-        /// Their reflectors.
+        /// Reflectors of the objects.
         reflectors: usize = Reflectors,
         /// Objects that the method misses.
         missed: usize = Missed,
-        /// Blobs of its output where nothing is.
+        /// Ghosts: blobs of the method's output where the scene has nothing.
         ghosts: usize = Ghosts,
         /// Columns between the nearest two reflectors of different objects; `None` for fewer than two objects.
         nearest_pair_columns: Option<f64> = NearestPairColumns,
-        /// Range bins between them.
+        /// Range bins between the same two reflectors.
         nearest_pair_bins: Option<f64> = NearestPairBins,
         /// Range of the nearest reflector, metres; `None` for an empty scene.
         min_range_metres: Option<f64> = MinRangeMetres,
@@ -85,11 +85,11 @@ columns! {
         /// Echoes that stand out in the target, by their strength; `None` for scenes without bodies, and in tables from before they were counted.
         #[serde(with = "by_text")]
         echoes: Option<EchoCounts> = Echoes,
-        /// Those of them that the method shows.
+        /// Echoes among them that the method shows.
         #[serde(with = "by_text")]
         echoes_found: Option<EchoCounts> = EchoesFound,
-        /// SE if every cell were off by its doubt ([`squared_doubt`](super::squared_doubt)); `None` for methods that say no doubt, and in tables
-        /// from before it was kept.
+        /// SE if every cell were off by its doubt ([`squared_doubt`](super::squared_doubt)); `None` for methods without doubt, and in tables
+        /// from before doubt was kept.
         doubt: Option<f64> = Doubt,
         /// Part of the cells whose error is at most their doubt ([`part_within`](super::part_within)); `None` as for `doubt`.
         within_doubt: Option<f64> = WithinDoubt,
@@ -99,34 +99,34 @@ columns! {
         cfar_false_alarm: Option<f64> = CfarFalseAlarm,
     }
     origin {
-        /// The format of the row, [`FORMAT`] or an older one; `None` in tables that don't say what made them.
+        /// The format of the row, [`FORMAT`] or an older one; `None` in tables without an origin.
         version: Option<u32> = Version,
         /// Version of the program.
         program: Text = Program,
-        /// What lay beneath the reflectors.
+        /// Noise of the scenes.
         #[serde(with = "by_text")]
         floor: Option<Floor> = Floor,
-        /// How maps were normalised.
+        /// Normalisation of maps.
         #[serde(with = "by_text")]
         normalisation: Option<Normalisation> = Normalisation,
-        /// What generated scenes are for; `None` for a folder's.
+        /// Purpose of generated scenes; `None` for a folder's.
         #[serde(deserialize_with = "unless_file")]
         purpose: Option<Purpose> = Purpose,
-        /// After which description they were generated.
+        /// Description after which scenes were generated; `None` for a folder's.
         #[serde(deserialize_with = "unless_file")]
         reading: Option<Reading> = Reading,
-        /// How the carrier's phase was read for them; the scenes of a folder say it themselves.
+        /// Reading of the carrier's phase for generated scenes; `None` for a folder's, which have their own.
         #[serde(deserialize_with = "unless_file")]
         carrier: Option<Carrier> = Carrier,
-        /// Each constant of their radar that differs from table 3.1, the carrier's reading left out.
+        /// Each constant of the radar that differs from table 3.1, without the carrier's reading.
         radar: Text = Radar,
         /// The fingerprint of a folder's files.
         scenes: Text = Scenes,
         /// The fingerprint of the method's weights for the campaign's radar; empty for a method that learns nothing.
         weights: Text = Weights,
-        /// The optimisers that trained them.
+        /// The optimisers that trained the weights.
         optimiser: Text = Optimiser,
-        /// Which scenes were this run's.
+        /// The shard of the scenes that this run tried.
         #[serde(with = "by_text")]
         shard: Option<Shard> = Shard,
         /// The sets of the whole run with their numbers of scenes, as [`Whole`] writes them.
@@ -135,12 +135,12 @@ columns! {
         methods: Text = Methods,
         /// The detector of constant false-alarm rate that was tried on every output; empty where none was.
         cfar: Text = Cfar,
-        /// The elements that heard the scenes in place of the scenes' own; empty where those did.
+        /// The elements that measured the scenes in place of the scenes' own; empty where those did.
         elements: Text = Elements,
         /// The map that outputs were held against: measured, calibrated or ideal ([`Target`](super::Target)); empty in tables from before targets
         /// had names, where it is the measured one.
         target: Text = Target,
-        /// Numbers of the elements that methods heard; empty where they heard the two ends.
+        /// Numbers of the elements whose samples methods got; empty where methods got the two ends.
         layout: Text = Layout,
     }
 }
@@ -156,7 +156,7 @@ impl Column {
         Column::FIGURES.iter().copied().find(|column| column.name() == name)
     }
 
-    /// What stands in this column of `row`, for messages; empty where nothing does.
+    /// The cell of `row` in this column as text, for messages; empty where the figure is missing.
     pub fn text(self, row: &Row) -> String {
         match self {
             Column::Seed => row.seed.to_string(),
@@ -164,7 +164,7 @@ impl Column {
         }
     }
 
-    /// What stands in this column of `row`. A set that is a number is one. Echoes of all classes are added up.
+    /// The cell of `row` in this column. A set named by a number is a number. Echoes of all classes are added up.
     pub fn of(self, row: &Row) -> Value<'_> {
         match self.cell(row) {
             Value::Text(text) if self == Column::Set => text.parse().map_or(Value::Text(text), Value::Number),
@@ -174,12 +174,12 @@ impl Column {
 }
 
 impl Row {
-    /// Whether its set lies over a floor of its own, not the run's: scenes of noise alone do.
+    /// Whether the row's set has a floor of its own, not the run's, as scenes of noise alone do.
     pub fn has_own_floor(&self) -> bool {
         self.set == "noise"
     }
 
-    /// Whether a generator made its scene.
+    /// Whether the row's scene was generated.
     pub fn is_generated(&self) -> bool {
         match self.version {
             Some(_) => self.carrier.is_some(),
@@ -187,19 +187,19 @@ impl Row {
         }
     }
 
-    /// Echoes that stand out in the target, and those that the method shows; `None` where they are not counted.
+    /// Echoes that stand out in the target, and those that the method shows; `None` where the row has no counts.
     pub fn echo_tally(&self) -> Option<EchoTally> {
         Some(EchoTally { there: self.echoes?.0, found: self.echoes_found?.0 })
     }
 
-    /// The run that it is of; `None` where the row doesn't say.
+    /// The run of the row; `None` where the row doesn't record it.
     pub fn whole_run(&self) -> Option<Whole> {
         self.version.and_then(|_| Whole::read(&self.whole, &self.methods))
     }
 
-    /// Checks what the types of the cells leave open.
+    /// Checks the values of cells beyond their types.
     /// # Errors
-    /// The column that can't be used, and what was expected there.
+    /// The first column with a bad value, and what was expected there.
     fn check(&self) -> Result<(), (Column, &'static str)> {
         let is_finite = |column: &Column| column.cell(self).number().is_none_or(f64::is_finite);
         let endless = Column::FIGURES.iter().find(|column| !is_finite(column));
@@ -246,7 +246,7 @@ impl Row {
 pub(super) mod tests {
     use super::*;
 
-    /// A row in whose figures every digit counts, of a table that doesn't say what made it.
+    /// A row in whose figures every digit counts, of a table without an origin.
     pub(in crate::evaluate) fn row(set: &str, index: u32, method: &str) -> Row {
         Row {
             set: set.into(),
@@ -274,7 +274,7 @@ pub(super) mod tests {
         }
     }
 
-    /// The same as a usual run of four scenes makes it.
+    /// The row of [`row`] with the origin of a usual run of four scenes.
     pub(in crate::evaluate) fn made(set: &str, index: u32, method: &str) -> Row {
         Row {
             version: Some(FORMAT),

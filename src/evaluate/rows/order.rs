@@ -1,9 +1,9 @@
-//! Rows in the order of a column, and figures of a column.
+//! Sorting of rows by a column, and figures of a column.
 
 use super::{Column, Row, Value};
 use crate::evaluate::Estimate;
 
-/// Indices of `rows`, sorted by a column; rows without a figure come last either way. Equal ones stay in order.
+/// Indices of `rows`, sorted by a column; rows without a figure come last in both directions. Equal rows stay in order.
 pub fn sorted_by(rows: &[Row], column: Column, descending: bool) -> Vec<usize> {
     let mut indices: Vec<usize> = (0..rows.len()).collect();
     indices.sort_by(|&a, &b| {
@@ -12,7 +12,7 @@ pub fn sorted_by(rows: &[Row], column: Column, descending: bool) -> Vec<usize> {
             (Value::Text(a), Value::Text(b)) => a.cmp(&b),
             (Value::Number(_), Value::Text(_)) => std::cmp::Ordering::Less,
             (Value::Text(_), Value::Number(_)) => std::cmp::Ordering::Greater,
-            // In both directions.
+            // Missing figures are last in both directions.
             (a, b) => return (a == Value::Missing).cmp(&(b == Value::Missing)),
         };
         if descending { order.reverse() } else { order }
@@ -20,12 +20,12 @@ pub fn sorted_by(rows: &[Row], column: Column, descending: bool) -> Vec<usize> {
     indices
 }
 
-/// How often the figures of a column fall into each of `counts.len()` equal parts between the smallest and the largest.
+/// Numbers of figures of a column in each of `counts.len()` equal parts between the smallest and the largest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Histogram {
-    /// Where the first part begins.
+    /// Lower limit of the first part.
     pub low: f64,
-    /// Where the last part ends.
+    /// Upper limit of the last part.
     pub high: f64,
     /// Figures in each part.
     pub counts: Vec<usize>,

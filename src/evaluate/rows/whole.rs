@@ -1,10 +1,10 @@
-//! All that a run was to find: its sets and methods, and how rows write them down.
+//! The sets and methods of a whole run, and their text in rows.
 
 use super::lines::MAX_ROWS;
 
 const MAX_PAIRS: usize = 10_000;
 
-/// All that a run was to find, shards of other machines included.
+/// The sets and methods of a whole run, shards of other machines included.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Whole {
     /// Name and number of scenes of each set.
@@ -24,7 +24,7 @@ pub struct GivenTwice {
 impl Whole {
     /// The run over these sets, each with its number of scenes, by these methods.
     /// # Errors
-    /// [`GivenTwice`] names the first set or method that is there already.
+    /// [`GivenTwice`] names the first set or method that is given a second time.
     pub fn new(sets: Vec<(String, u32)>, methods: Vec<String>) -> Result<Whole, GivenTwice> {
         let names: Vec<&String> = sets.iter().map(|(name, _)| name).collect();
         if let Some(name) = first_repeated(&names) {
@@ -36,19 +36,18 @@ impl Whole {
         }
     }
 
-    /// The sets as they are written in their column.
+    /// The sets as text, for [`Row::whole`](super::Row::whole).
     pub fn sets_text(&self) -> String {
         let sets = self.sets.iter().map(|(name, count)| format!("{} x {count}", listed(name)));
         sets.collect::<Vec<_>>().join("; ")
     }
 
-    /// The methods as they are written in theirs.
+    /// The methods as text, for [`Row::methods`](super::Row::methods).
     pub fn methods_text(&self) -> String {
         self.methods.iter().map(|m| listed(m)).collect::<Vec<_>>().join("; ")
     }
 
-    /// Reads what [`Whole::sets_text`] and [`Whole::methods_text`] wrote; `None` where it is something else, and where it asks for more work
-    /// than a run can be.
+    /// Reads the texts of [`Whole::sets_text`] and [`Whole::methods_text`]; `None` for other text, and for more scenes than a run can have.
     pub fn read(sets: &str, methods: &str) -> Option<Whole> {
         let set = |text: &str| {
             let (name, count) = text.rsplit_once(" x ")?;

@@ -4,7 +4,7 @@
 pub struct Factorials(Vec<f64>);
 
 impl Factorials {
-    /// Up to that of `most`.
+    /// Logarithms of the factorials up to that of `most`.
     pub fn up_to(most: usize) -> Factorials {
         let mut logs = Vec::with_capacity(most + 1);
         let mut sum = 0.0;
@@ -61,7 +61,7 @@ mod tests {
         assert!((factorials.at_least(4, 4, 4, 8) - 1.0 / 70.0).abs() < 1e-12);
         assert!((factorials.at_least(3, 4, 4, 8) - 17.0 / 70.0).abs() < 1e-12);
         assert!((factorials.at_least(0, 4, 4, 8) - 1.0).abs() < 1e-12);
-        // Where all but one are bad, one of two drawn is.
+        // Where seven of eight are bad, one of two drawn is.
         assert!((factorials.at_least(1, 2, 7, 8) - 1.0).abs() < 1e-12);
     }
 }

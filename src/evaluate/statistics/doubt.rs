@@ -1,22 +1,22 @@
-//! Does doubt find the failures? The area under the ROC curve of "the rows with the largest doubt have the largest squared errors".
+//! The area under the ROC curve of doubt as a predictor of failures, the rows with the largest squared errors.
 
 use crate::evaluate::rows::Row;
 
-/// Failures are the rows with the largest squared errors, one of so many, unless a limit says which they are.
+/// Failures are the rows with the largest squared errors, one of so many, unless a limit is given.
 pub const ONE_OF: usize = 10;
 
-/// How well a score tells failures from other rows.
+/// Area under the ROC curve of a score that separates failures from other rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RocArea {
-    /// Probability that a failure has a larger score than another row; equal scores count half (Mann and Whitney). 0.5 says that the score
-    /// tells nothing, 1 that every failure has a larger score than every other row.
+    /// Probability that a failure has a larger score than another row; equal scores count half (Mann and Whitney). At 0.5 the score is no better
+    /// than chance, at 1 every failure has a larger score than every other row.
     pub area: f64,
-    /// Its standard error (DeLong, DeLong and Clarke-Pearson, Biometrics 44, 1988); `None` with fewer than two failures or two others.
+    /// Standard error of the area (DeLong, DeLong and Clarke-Pearson, Biometrics 44, 1988); `None` with fewer than two failures or two others.
     pub standard_error: Option<f64>,
 }
 
 impl RocArea {
-    /// Of a score and whether it is of a failure; `None` where all are failures, or none. Scores are finite.
+    /// The area of pairs of a score and whether its row is a failure; `None` where all are failures, or none. Scores are finite.
     pub fn of(scores: &[(f64, bool)]) -> Option<RocArea> {
         let of = |wanted: bool| scores.iter().filter(move |(_, failed)| *failed == wanted).map(|(score, _)| *score);
         let (failures, others): (Vec<f64>, Vec<f64>) = (sorted(of(true)), sorted(of(false)));
@@ -51,12 +51,12 @@ fn variance_of_mean(values: &[f64]) -> Option<f64> {
     (values.len() > 1).then(|| squares / (n - 1.0) / n)
 }
 
-/// How well the doubt of one method finds its failures.
+/// Area under the ROC curve of one method's doubt as a predictor of its failures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DoubtArea {
-    /// Rows that say their doubt.
+    /// Rows with a doubt.
     pub rows: usize,
-    /// How many of them are failures.
+    /// Failures among them.
     pub failures: usize,
     /// Rows with at least this squared error are failures.
     pub least_squared_error: f64,
@@ -65,9 +65,9 @@ pub struct DoubtArea {
 }
 
 impl DoubtArea {
-    /// Of rows of one method. Failures are the tenth with the largest squared errors, rounded down, and those that equal the smallest of
-    /// them; or, where `limit` is given, all rows with at least that squared error. `None` where no row says its doubt, and without a limit for
-    /// fewer than [`ONE_OF`] rows, which have no tenth.
+    /// The area of the rows of one method. Failures are the tenth with the largest squared errors, rounded down, and those that equal the
+    /// smallest of them; or, where `limit` is given, all rows with at least that squared error. `None` where no row has a doubt, and without a
+    /// limit for fewer than [`ONE_OF`] rows, which have no tenth.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>, limit: Option<f64>) -> Option<DoubtArea> {
         let said: Vec<(f64, f64)> = rows.into_iter().filter_map(|row| Some((row.doubt?, row.squared_error))).collect();
         let mut errors = sorted(said.iter().map(|(_, error)| *error));

@@ -1,5 +1,4 @@
-//! What rows of an evaluation allow to say: whether one method is better than another, what the bad rows have in common, and whether doubt
-//! finds them.
+//! Statistics of rows: the comparison of two methods, common traits of bad rows, and doubt as a predictor of failures.
 
 mod chance;
 mod doubt;

@@ -1,4 +1,4 @@
-//! Two methods on the same scenes.
+//! The comparison of two methods on the same scenes.
 
 use super::chance::Factorials;
 use crate::evaluate::Estimate;
@@ -7,17 +7,17 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::HashMap;
 
-/// How often scenes are drawn anew for the interval.
+/// Number of bootstrap samples of the scenes for the interval.
 pub const RESAMPLES: usize = 2000;
 
-/// Up to so many scenes the interval is that of the bootstrap. With more the mean's own distribution is normal enough, and drawing would take
-/// longer than a frame of the window.
+/// Most scenes for which the interval is that of the bootstrap. With more, the mean's own distribution is close enough to normal, and drawing
+/// would take longer than a frame of the window.
 pub const MAX_RESAMPLED_SCENES: usize = 5000;
 
 /// Distance of the ends of an interval of 95 % from the mean, in standard deviations of a normal distribution.
 const NORMAL_95: f64 = 1.96;
 
-/// What two methods make of the scenes that both were tried on.
+/// The comparison of two methods on the scenes that both were tried on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paired {
     /// Scenes that both were tried on.
@@ -29,14 +29,14 @@ pub struct Paired {
     pub interval: [f64; 2],
     /// Scenes in which the first finds every object and the second does not.
     pub first_alone: usize,
-    /// The other way round.
+    /// Scenes in which the second finds every object and the first does not.
     pub second_alone: usize,
     /// Probability of counts as uneven as these two, or more, if neither method were better: McNemar's exact test, two-sided.
     pub p_value: f64,
 }
 
 impl Paired {
-    /// Of the rows of the two methods; `None` for no scene that both have. The same rows give the same interval.
+    /// The comparison of the rows of two methods; `None` where they share no scene. The same rows give the same interval.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>, first: &str, second: &str) -> Option<Paired> {
         let mut scenes: HashMap<_, [Option<&Row>; 2]> = HashMap::new();
         let mut order = Vec::new();
@@ -71,7 +71,7 @@ impl Paired {
         })
     }
 
-    /// In words, with the methods' names.
+    /// The comparison in words, with the methods' names.
     pub fn told(&self, first: &str, second: &str) -> String {
         let Paired { scenes, difference, interval: [low, high], first_alone, second_alone, p_value } = self;
         format!(
@@ -104,7 +104,7 @@ fn interval(values: &[f64]) -> [f64; 2] {
     let mut means: Vec<f64> =
         (0..RESAMPLES).map(|_| (0..n).map(|_| values[rng.random_range(0..n)]).sum::<f64>() / n as f64).collect();
     means.sort_by(f64::total_cmp);
-    // So many of the means lie below and above.
+    // Number of resampled means outside the interval on either side.
     let outside = RESAMPLES / 40;
     [means[outside], means[RESAMPLES - 1 - outside]]
 }
@@ -136,7 +136,7 @@ mod tests {
         assert_eq!((paired.first_alone, paired.second_alone), (1, 0));
     }
 
-    /// The interval holds the true mean as often as it says. Of 400 samples of 60 scenes it is 380, give or take 4.4; the bootstrap's
+    /// The true mean lies within the interval as often as claimed: of 400 samples of 60 scenes in 380, give or take 4.4. The bootstrap's
     /// intervals are a little narrow for so few scenes.
     #[test]
     fn the_interval_holds_the_mean_in_95_of_100_samples() {

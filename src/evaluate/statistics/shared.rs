@@ -1,4 +1,4 @@
-//! What bad rows have in common: rules that are found on one half of the scenes and tested on the other.
+//! Common traits of bad rows: rules that are found on one half of the scenes and tested on the other.
 
 use super::chance::Factorials;
 use super::paired::p_text;
@@ -9,10 +9,10 @@ use std::collections::BTreeSet;
 /// Of the rules that are shown, at most this part is expected to be chance.
 pub const DISCOVERY_RATE: f64 = 0.05;
 
-/// What is bad unless something else is asked for.
+/// The default filter for bad rows.
 pub const USUALLY_BAD: &str = "missed > 0 | merged > 0 | wrong_tooth > 0 | ghosts > 0";
 
-/// What is known of a scene before a method answers. A rule about an answer's own figures would say that bad rows are bad.
+/// Columns known of a scene before a method answers. A rule about an answer's own figures would only repeat that bad rows are bad.
 const SCENE_COLUMNS: [Column; 8] = [
     Column::Set,
     Column::Method,
@@ -27,25 +27,25 @@ const SCENE_COLUMNS: [Column; 8] = [
 /// Cuts that are tried in a column of numbers: at every tenth of its values.
 const CUTS: usize = 10;
 
-/// A rule, as its own half of the scenes bears it out.
+/// A rule with its counts on the half of the scenes that tests it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
-    /// As a filter.
+    /// The rule as a filter.
     pub text: String,
-    /// Rows of the half that was not used to find it, of which the rule is true.
+    /// Rows of the testing half that satisfy the rule.
     pub rows: usize,
-    /// How many of them are bad.
+    /// Bad rows among them.
     pub bad: usize,
-    /// The other rows of that half.
+    /// The other rows of the testing half.
     pub other_rows: usize,
-    /// How many of them are bad.
+    /// Bad rows among these.
     pub other_bad: usize,
-    /// Probability of so many bad rows, or more, if they fell on rows by chance: Fisher's exact test on that half.
+    /// Probability of so many bad rows, or more, if they fell on rows by chance: Fisher's exact test on the testing half.
     pub p_value: f64,
 }
 
 impl Rule {
-    /// In words.
+    /// The rule in words.
     pub fn told(&self) -> String {
         let part = |bad: usize, rows: usize| 100.0 * bad as f64 / rows.max(1) as f64;
         format!(
@@ -59,7 +59,7 @@ impl Rule {
     }
 }
 
-/// What was found.
+/// The rules that bad rows have in common.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SharedTrait {
     /// Bad rows.
@@ -72,9 +72,9 @@ pub struct SharedTrait {
     pub tried: usize,
 }
 
-/// Rules about what is known of a scene beforehand that are true of bad rows more often than of others. `bad` is a filter.
+/// Rules about a scene's known columns that are true of bad rows more often than of others. `bad` is a filter.
 ///
-/// Scenes of even number suggest rules: of each column the cut, or the name, that separates best. Scenes of odd number test them. Of those
+/// Scenes of even number suggest rules: of each column the cut, or the name, that separates best. Scenes of odd number test them. Of the rules
 /// that hold, at most [`DISCOVERY_RATE`] are expected to be chance (Benjamini and Hochberg, J. R. Statist. Soc. B 57, 1995).
 /// # Errors
 /// [`FilterError`] where `bad` is no filter.
@@ -96,7 +96,7 @@ pub fn rules(rows: &[Row], bad: &str) -> Result<SharedTrait, FilterError> {
     })
 }
 
-/// Those of the tested rules that hold together at the rate of false discoveries, the surest first.
+/// The tested rules that hold together at the rate of false discoveries, the surest first.
 fn held(mut tested: Vec<Rule>) -> Vec<Rule> {
     tested.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
     let all = tested.len() as f64;
@@ -114,7 +114,7 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// The rule about a column that tells bad rows from others best, on these rows; `None` where none tells more than chance.
+    /// The rule about a column that separates bad rows from others best, on the rows `on`; `None` where none is better than chance.
     fn best(&self, column: Column, on: &[usize]) -> Option<Rule> {
         let judged = candidates(column, on.iter().map(|&i| &self.rows[i])).into_iter().map(|(text, is_true)| {
             let chosen: Vec<bool> = on.iter().map(|&i| is_true(&self.rows[i])).collect();
@@ -130,7 +130,7 @@ impl Table<'_> {
         self.counted(text.to_owned(), on, &chosen)
     }
 
-    /// `None` where the rule is true of all rows or of none.
+    /// The rule with its counts on the rows `on`, of which `chosen` satisfy it; `None` where it is true of all rows or of none.
     fn counted(&self, text: String, on: &[usize], chosen: &[bool]) -> Option<Rule> {
         let count =
             |of: bool, bad: bool| on.iter().zip(chosen).filter(|&(&i, &c)| c == of && (!bad || self.bad[i])).count();
@@ -143,7 +143,7 @@ impl Table<'_> {
 
 type Truth = Box<dyn Fn(&Row) -> bool>;
 
-/// Rules about a column: each as a filter, and as a function.
+/// Rules about a column, each as a filter and as a function.
 fn candidates<'a>(column: Column, rows: impl Iterator<Item = &'a Row>) -> Vec<(String, Truth)> {
     let (mut numbers, mut names) = (Vec::new(), BTreeSet::new());
     for row in rows {
@@ -177,7 +177,7 @@ fn candidates<'a>(column: Column, rows: impl Iterator<Item = &'a Row>) -> Vec<(S
     cuts.into_iter().flat_map(of_cut).chain(names.into_iter().map(of_name)).collect()
 }
 
-/// Three digits, as one would type them.
+/// `v` rounded to three digits, as a user would type it.
 fn rounded(v: f64) -> f64 {
     format!("{v:.2e}").parse().unwrap_or(v)
 }
@@ -189,7 +189,7 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    /// Rows of scenes whose nearest two objects are 0 to 100 columns apart; `miss` says how likely an object is missed there.
+    /// Rows of scenes whose nearest two objects are 0 to 100 columns apart; `miss` is the probability that an object is missed at that distance.
     fn rows(count: u32, seed: u64, miss: impl Fn(f64) -> f64) -> Vec<Row> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut of = |index: u32| {
@@ -223,7 +223,7 @@ mod tests {
         assert_eq!(filter.iter().filter(|&&i| rows[i].index % 2 == 1).count(), first.rows);
     }
 
-    /// Where chance alone decides, hardly a table has a rule: 5 % at most, give or take 2.2 for a hundred tables.
+    /// Of tables in which rows are bad by chance alone, 5 % at most have a rule, give or take 2.2 for a hundred tables.
     #[test]
     fn chance_is_seldom_taken_for_a_rule() {
         let found =

@@ -25,7 +25,7 @@ const GROWTH_STEPS: u32 = 256;
 const OTHER_NOISE_PART: f64 = 0.25;
 
 pub(super) struct WorseningState {
-    /// Scale of steps, as a part of the reach.
+    /// Scale of steps of the search, as a part of the reach.
     pub step: f64,
     pub path: Vec<Finding>,
     pub tries: u32,
@@ -59,7 +59,7 @@ impl WorseningSearch {
             let then = (now + MAX_TURN_DEGREES * part).clamp(-MAX_TURN_DEGREES, MAX_TURN_DEGREES);
             object.turn(then - now);
         }
-        // All louder together changes nothing.
+        // Making all objects louder together changes nothing.
         if scene.objects.len() > 1 {
             for (object, home) in scene.objects.iter_mut().zip(&start.objects) {
                 let db = MAX_GAIN_CHANGE_DB * rng.random_range(-1.0..=1.0);
@@ -81,7 +81,7 @@ impl WorseningSearch {
         let best = state.path.get(1..).and_then(<[Finding]>::last);
         let mut scene = start.clone();
         if let Some(best) = best.filter(|_| rng.random::<f64>() < 0.5) {
-            // Part of the way that is known to help.
+            // A part of the shift that is known to repair.
             let part = rng.random_range(0.2..1.0);
             for (object, end) in scene.objects.iter_mut().zip(&best.scene.objects) {
                 let ([x, y], [to_x, to_y]) = (object.centre_metres(), end.centre_metres());
@@ -89,7 +89,7 @@ impl WorseningSearch {
             }
             return scene;
         }
-        // Small moves first; never farther than what is known to help.
+        // Small moves first; never farther than the smallest shift known to repair.
         let growing = f64::from(state.tries + BATCH) / f64::from(self.tries.clamp(1, GROWTH_STEPS)) * 2.0;
         let reach = best.map_or(self.within_metres * growing.min(1.0), |b| b.moved_metres);
         let alone = (rng.random::<f64>() < 0.5).then(|| rng.random_range(0..scene.objects.len()));

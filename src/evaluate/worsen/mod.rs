@@ -23,10 +23,10 @@ use rayon::prelude::*;
 const REPAIR_PART: f64 = 0.2;
 
 impl WorseningSearch {
-    /// Searches near `scene` for `method`. `on_try` is called after every batch with the tries made and the path so far; when it answers false,
-    /// the search ends there.
+    /// Searches near `scene` for `method`. `on_try` is called after every batch with the number of tries and the path so far; the search ends
+    /// when it returns false.
     /// # Errors
-    /// [`WorsenError`] when the start itself can't be tried. Candidates that can't be simulated are passed over.
+    /// [`WorsenError`] when the start itself can't be tried. Candidates that can't be simulated are skipped.
     pub fn run(
         &self,
         scene: &Scene,
@@ -68,13 +68,13 @@ impl WorseningSearch {
                         better = true;
                     }
                     Ok(_) => {}
-                    // Stopped: what was found stays.
+                    // After a cancellation the path so far is the result.
                     Err(_) if task.is_cancelled() => return Ok(WorseningOutcome { path: state.path, tries: n }),
                     Err(error) => return Err(error),
                 }
             }
             let factor = if better { 1.6 } else { 0.8 };
-            // So near the worst there is nothing worse: look farther around it again.
+            // After the smallest steps without a worse scene the first step follows again.
             let next = state.step * factor;
             state.step = if next < MIN_STEP_PART { FIRST_STEP_PART } else { next.min(FIRST_STEP_PART) };
         }

@@ -10,7 +10,7 @@ fn radar() -> Radar {
     Radar { elements: 64, samples: 64, end_elements: 8, ..Radar::default() }
 }
 
-/// Answers with nothing where the strongest echo comes from beyond half the range, and with one end's map else.
+/// A method that answers with an empty map where the strongest echo comes from beyond half the range, and else with one end's map.
 struct ShortSighted;
 
 impl Reconstructor for ShortSighted {
@@ -80,7 +80,7 @@ fn a_stopped_search_keeps_what_it_has() {
     assert_eq!(stopped.path, run(&WorseningSearch { tries: 16, ..worsen }, 1.7).path);
 }
 
-/// Sees nothing, and everything bright while the last end hears a glint.
+/// A method that answers with an empty map, and with a bright one while the last end sees a glint.
 struct Dazzled;
 
 impl Reconstructor for Dazzled {

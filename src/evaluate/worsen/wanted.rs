@@ -10,15 +10,15 @@ use crate::signal::Floor;
 use std::fmt;
 use std::str::FromStr;
 
-/// What "worse" means.
+/// The measure by which a scene is worse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WorseningMeasure {
-    /// A larger SE.
+    /// A larger SE is worse.
     #[default]
     SquaredError,
-    /// More objects missed; among as many, a larger SE.
+    /// More missed objects are worse; among as many, a larger SE.
     Missed,
-    /// More ghosts; among as many, a larger SE.
+    /// More ghosts are worse; among as many, a larger SE.
     Ghosts,
 }
 
@@ -49,36 +49,36 @@ impl FromStr for WorseningMeasure {
     }
 }
 
-/// What is looked for.
+/// The aim of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Aim {
     /// The worst scene.
     #[default]
     Worsen,
-    /// The smallest move, of objects alone, after which nothing is missed, or no ghost seen, or a fifth of the SE is left.
+    /// The smallest move, of objects alone, after which nothing is missed, or no ghost is left, or a fifth of the SE is left.
     Repair,
 }
 
-/// How a search goes.
+/// The settings of a search.
 #[derive(Debug, Clone)]
 pub struct WorseningSearch {
     /// The radar.
     pub radar: Radar,
     /// Noise of the scene.
     pub floor: Floor,
-    /// How maps are normalised.
+    /// Normalisation of maps.
     pub normalisation: Normalisation,
-    /// Numbers of the elements that the method hears in place of the two ends.
+    /// Numbers of the elements whose samples the method gets in place of the two ends.
     pub layout: Option<Vec<usize>>,
-    /// What is looked for.
+    /// The aim.
     pub aim: Aim,
-    /// What it is judged by.
+    /// The measure that the search compares scenes by.
     pub measure: WorseningMeasure,
-    /// How far any object may move, metres.
+    /// Largest distance that an object may move, metres.
     pub within_metres: f64,
     /// Scenes to try.
     pub tries: u32,
-    /// Picks the scenes.
+    /// Seed of the candidates.
     pub seed: u64,
 }
 
@@ -103,17 +103,17 @@ impl Default for WorseningSearch {
 pub struct Finding {
     /// The scene.
     pub scene: Scene,
-    /// What the method made of it.
+    /// Figures of the method's answer.
     pub metrics: Metrics,
-    /// What kind of failure.
+    /// Failures of the method's answer.
     pub failures: Failures,
-    /// How far the object moved that moved farthest, metres.
+    /// Distance of the object that moved farthest, metres.
     pub moved_metres: f64,
-    /// After how many tries it was found; 0 for the start.
+    /// Number of tries until it was found; 0 for the start.
     pub tries: u32,
 }
 
-/// What came of a search.
+/// The result of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorseningOutcome {
     /// The start, and every scene that was better for the aim than all before it.
@@ -130,7 +130,7 @@ impl WorseningOutcome {
     }
 }
 
-/// Why a search ended with nothing.
+/// The reason why a search has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum WorsenError {
@@ -147,7 +147,7 @@ pub enum WorsenError {
 }
 
 impl WorseningMeasure {
-    /// What is to be as large, or for a repair as small, as can be.
+    /// The count and SE of a finding, compared in this order: a search maximises them, a repair minimises them.
     pub(super) fn of(self, finding: &Finding) -> (usize, f64) {
         let count = match self {
             WorseningMeasure::SquaredError => 0,
@@ -158,7 +158,7 @@ impl WorseningMeasure {
     }
 }
 
-/// How often each fate befell, in words: "2 found, 1 missed".
+/// The number of objects of each fate, in words: "2 found, 1 missed".
 pub fn summary(failures: &Failures) -> String {
     let count = |name: &str| failures.objects.iter().filter(|f| f.name() == name).count();
     let fates = [Fate::Found, Fate::Missed, Fate::Merged { with: 0 }, Fate::WrongTooth { columns: 0 }, Fate::Hidden];

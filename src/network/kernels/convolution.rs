@@ -1,7 +1,7 @@
-//! The one hot loop of the networks: a direct convolution over channels-last data, vectorised over output channels.
+//! The kernel of the networks: a direct convolution over channels-last data, vectorised over output channels.
 //!
-//! The loop is written once over a small vector trait and compiled for AVX-512, for AVX2 with FMA, and without either; which one
-//! runs is [`Simd::chosen`]'s decision, as for every other kernel.
+//! The loop is written once over a small vector trait and compiled for AVX-512, for AVX2 with FMA, and without either; [`Simd::chosen`] decides
+//! which one runs, as for every other kernel.
 
 use super::vector::{LANES, Loop, Vector, run};
 use crate::signal::simd::Simd;
@@ -27,7 +27,7 @@ pub struct Packed {
 
 impl Packed {
     /// Packs weights `[output, input, rows, columns]` (PyTorch's order) of a kernel of so many rows and columns, and `bias` `[output]`. The
-    /// kernel reads `input_stride` channels a cell, of which the last `input_stride - input` meet zeros.
+    /// kernel reads `input_stride` channels a cell, of which the last `input_stride - input` are multiplied with zeros.
     pub fn new(
         weights: &[f32],
         bias: &[f32],
@@ -60,12 +60,12 @@ impl Packed {
         self.output
     }
 
-    /// Convolves what one line of `width` output cells sees of `input`, which lies as rows of `row_cells` cells, on this thread.
+    /// Convolves the receptive field of one line of `width` output cells, on this thread. `input` is stored in rows of `row_cells` cells.
     pub fn line(&self, simd: Simd, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
         self.line_beside(simd, input, row_cells, width, [self.output, 0], out);
     }
 
-    /// The same where a cell of `out` has `channels` channels, of which the results are those from channel `first` on: others stay as they are.
+    /// [`Packed::line`] into cells of `channels` channels, from channel `first` on; other channels of `out` are kept.
     pub fn line_beside(
         &self,
         simd: Simd,
@@ -76,7 +76,7 @@ impl Packed {
         out: &mut [f32],
     ) {
         let [rows, columns] = self.kernel;
-        // The channels of the kernel's columns lie side by side.
+        // The channels of the kernel's columns are contiguous.
         let many = columns * self.input;
         let runs: Vec<Run> =
             (0..rows).map(|ky| Run { value: ky * row_cells * self.input, row: ky * many, many }).collect();
@@ -94,12 +94,12 @@ impl Packed {
 /// Columns of a [`product`].
 pub const PRODUCT_COLUMNS: usize = 2 * LANES;
 
-/// A matrix product of `left` `[rows, inner]` and `right` `[inner, 32]` into `out` `[rows, 32]`, on this thread: of the inner indices only those
-/// in `runs`.
+/// The matrix product of `left` `[rows, inner]` and `right` `[inner, 32]` into `out` `[rows, 32]`, on this thread, summed over the inner indices
+/// in `runs` only.
 pub fn product(simd: Simd, left: &[f32], right: &[f32], runs: impl Iterator<Item = Range<usize>>, out: &mut [f32]) {
     let (inner, width) = (right.len() / PRODUCT_COLUMNS, out.len() / PRODUCT_COLUMNS);
     assert!(left.len() == width * inner, "matrices disagree");
-    // Neighbouring rows are the cells of one line, so that the kernel shares each load of `right` between them.
+    // Neighbouring rows take the place of a line's cells, so that the kernel shares each load of `right` between them.
     let runs: Vec<Run> = runs.map(|run| Run { value: run.start, row: run.start, many: run.len() }).collect();
     let job = Job { input: left, step: inner, runs: &runs, width };
     dispatch(
@@ -110,7 +110,7 @@ pub fn product(simd: Simd, left: &[f32], right: &[f32], runs: impl Iterator<Item
     );
 }
 
-/// Convolves `input`, which lies as rows of `row_cells` cells, into `out` `[height, width, output]`.
+/// Convolves `input`, stored in rows of `row_cells` cells, into `out` `[height, width, output]`.
 pub fn convolve(weights: &Packed, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
     convolve_with(Simd::chosen(), weights, input, row_cells, width, out);
 }
@@ -129,22 +129,22 @@ fn blocks(lanes: usize) -> impl Iterator<Item = (usize, usize)> {
 #[derive(Clone, Copy)]
 struct Job<'a> {
     input: &'a [f32],
-    /// From what one output cell sees to what the next does.
+    /// Distance in `input` between the first values of two neighbouring output cells.
     step: usize,
     runs: &'a [Run],
     width: usize,
 }
 
-/// Values of the input that lie side by side, and the rows of weights that they meet.
+/// Contiguous values of the input, and the rows of weights that they are multiplied with.
 struct Run {
-    /// The first value that the line's first cell sees.
+    /// Index of the first value, for the line's first cell.
     value: usize,
-    /// The first row of weights.
+    /// Index of the first row of weights.
     row: usize,
     many: usize,
 }
 
-/// Where a line's results go, and with which weights: one block of output channels.
+/// A block of output channels: its weights, and its place in the output's cells.
 #[derive(Clone, Copy)]
 struct Block<'a> {
     weights: &'a [f32],
@@ -153,7 +153,7 @@ struct Block<'a> {
     lanes: usize,
 }
 
-/// One line for one block of output channels.
+/// The loop over one line for one block of output channels.
 struct Line<'a, 'b> {
     job: &'a Job<'b>,
     block: Block<'a>,
@@ -181,7 +181,7 @@ fn dispatch(simd: Simd, job: &Job, block: Block, out: &mut [f32]) {
 }
 
 impl Job<'_> {
-    /// Everything that the unchecked loops rely on.
+    /// Checks the lengths and offsets that the unchecked loops rely on.
     fn check(&self, block: &Block, out: &[f32]) {
         let lanes = block.bias.len();
         assert!(lanes == LANES || lanes == 2 * LANES, "a block is one or two vectors");
@@ -203,7 +203,7 @@ unsafe fn line<V: Vector, const CELLS: usize, const VECTORS: usize>(job: &Job, b
     let whole = job.width >= CELLS;
     let cells = if whole { CELLS } else { 1 };
     for x in (0..job.width).step_by(cells) {
-        // The last tile overlaps the one before it where the line is no whole number of them.
+        // The last tile overlaps the one before it where tiles don't divide the line.
         let x = x.min(job.width - cells);
         let mut first = 0;
         while first < vectors {
@@ -233,7 +233,7 @@ unsafe fn tile<V: Vector, const CELLS: usize, const VECTORS: usize>(
     first: usize,
     out: &mut [f32],
 ) {
-    // SAFETY: all offsets lie inside what `Job::check` found.
+    // SAFETY: all offsets lie within the slices that `Job::check` has checked.
     unsafe {
         let from = first * LANES;
         let bias: [V; VECTORS] = std::array::from_fn(|v| V::load(block.bias.as_ptr().add(from + v * LANES)));
@@ -275,7 +275,7 @@ mod tests {
         (0..n).map(next).collect()
     }
 
-    /// The convolution as its definition reads.
+    /// The convolution by its definition.
     #[allow(clippy::too_many_arguments)]
     fn defined(
         w: &[f32],

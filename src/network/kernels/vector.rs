@@ -1,4 +1,4 @@
-//! Sixteen numbers at a time, for processors with AVX-512, with AVX2 and without either.
+//! Vectors of sixteen numbers, for processors with AVX-512, with AVX2 and without either.
 
 use crate::signal::simd::Simd;
 
@@ -7,7 +7,7 @@ pub const LANES: usize = 16;
 
 /// Sixteen numbers in registers. Every method must be inlined into a function that has the vector's CPU features.
 pub trait Vector: Copy {
-    /// Cells and vectors of a tile whose sums fit the registers, beside the weights and one value.
+    /// Cells and vectors of a tile whose sums fit into the registers beside the weights and one value.
     const TILE: [usize; 2];
     /// # Safety
     /// `from` must hold 16 values, and the CPU must have the features.
@@ -25,7 +25,7 @@ pub trait Vector: Copy {
     /// # Safety
     /// The CPU must have the features.
     unsafe fn minus(self, other: Self) -> Self;
-    /// The larger of each two; `other` where one is no number.
+    /// The larger of each two; `other` where one is NaN.
     /// # Safety
     /// The CPU must have the features.
     #[cfg(feature = "network")]
@@ -34,13 +34,13 @@ pub trait Vector: Copy {
 
 /// A loop over vectors, compiled for each of them.
 pub trait Loop {
-    /// Must be inlined.
+    /// Runs the loop. Must be inlined.
     /// # Safety
     /// The CPU must have the features.
     unsafe fn run<V: Vector>(self);
 }
 
-/// Runs `of` with these instructions, or the best there are if this machine lacks them.
+/// Runs `of` with the instructions `simd`, or the best available ones if this machine lacks them.
 #[inline]
 #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "there is no choice of instructions"))]
 pub fn run<L: Loop>(simd: Simd, of: L) {
@@ -56,7 +56,7 @@ pub fn run<L: Loop>(simd: Simd, of: L) {
     unsafe { of.run::<Portable>() };
 }
 
-/// Works everywhere; multiplies and adds apart.
+/// Vectors without special instructions; multiplies and adds separately.
 #[derive(Clone, Copy)]
 pub struct Portable([f32; LANES]);
 

@@ -1,29 +1,29 @@
-//! Arrays that measure training scenes: as they should be, or with elements that are off.
+//! Arrays of training scenes: exact ones, or with elements that are off.
 
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Which arrays hear the training scenes.
+/// The arrays of the training scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arrays {
     /// Part of the scenes whose elements are off, 0 to 1.
     pub share: f64,
-    /// Largest tolerances: each scene has its own part of each, uniform from none to all.
+    /// Largest tolerances: each scene draws a part of each, uniform from none to all.
     pub tolerances: Tolerances,
 }
 
-/// Keeps the draw of an array apart from that of a floor, which begins from the same seed.
+/// Random stream of arrays, separate from that of floors, which begins from the same seed.
 const STREAM: u64 = 1;
 
 impl Arrays {
-    /// Arrays as they should be.
+    /// Exact arrays.
     pub const IDEAL: Arrays = Arrays {
         share: 0.0,
         tolerances: Tolerances { gain: Decibels(0.0), phase_degrees: 0.0, position_millimetres: 0.0 },
     };
 
-    /// The array that hears the scene whose noise has this seed. Where it isn't heard `whole`, only elements of the two ends are off.
+    /// The array of the scene with this seed of noise. Unless the `whole` array's samples are used, only elements of the two ends are off.
     pub fn of(&self, noise_seed: u64, radar: &Radar, whole: bool) -> BuiltArray {
         let mut rng = ChaCha8Rng::seed_from_u64(noise_seed);
         rng.set_stream(STREAM);

@@ -1,5 +1,5 @@
-//! The Capon spectrum of every range row of one end, forward-backward smoothed (Pillai and Kwon 1989): with next to no noise it tells apart
-//! reflectors that the end's own beam cannot.
+//! The Capon spectrum of every range row of one end, forward-backward smoothed (Pillai and Kwon 1989): with next to no noise it separates
+//! reflectors that the end's own beam doesn't.
 
 use super::grid::{FINE_COLUMNS, cosine};
 use crate::signal::simd::powers::logarithm;
@@ -9,8 +9,8 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Elements of a subarray, the most first: as many as two thirds of an end have. Of 12 elements it has 8, and five subarrays slide over the end, forwards and
-/// backwards.
+/// Numbers of elements of a subarray, largest first: the largest with at most two thirds of an end's elements is used. Of 12 elements a subarray
+/// has 8, and five subarrays cover the end, forwards and backwards.
 const SUBARRAYS: [usize; 5] = [16, 8, 4, 2, 1];
 /// Diagonal loading of the covariance, relative to its mean diagonal.
 const LOADING: f64 = 1e-5;
@@ -21,7 +21,7 @@ pub(super) struct Capon {
     lags: Vec<[Vec<f32>; 2]>,
 }
 
-/// Rows that are worked on side by side.
+/// Rows that are computed side by side.
 const ROWS_AT_ONCE: usize = LANES_F64;
 type Numbers = Lanes<f64, ROWS_AT_ONCE>;
 type Complexes = ComplexLanes<f64, ROWS_AT_ONCE>;
@@ -34,7 +34,7 @@ impl Capon {
         Capon { lags: (0..subarray).map(of).collect() }
     }
 
-    /// log10 amplitude `[rows, 256]` of the spectrum of each row of `z` `[rows, elements]`.
+    /// The spectrum of each row of `z` `[rows, elements]`: log10 amplitude, `[rows, 256]`.
     pub(super) fn decades(&self, z: ArrayView2<'_, Complex64>) -> Vec<f32> {
         let (rows, elements) = z.dim();
         let mut out = vec![0.0f32; rows * FINE_COLUMNS];
@@ -87,8 +87,8 @@ impl<const N: usize> Kernel for Spectra<'_, N> {
     }
 }
 
-/// Mean power of each row's elements, and the sums along the diagonals of the inverse of its smoothed, loaded covariance (relative
-/// to that power); those off the main diagonal doubled. They are the coefficients of `a(u)^H R^-1 a(u)`.
+/// Mean power of each row's elements, and the sums along the diagonals of the inverse of its smoothed, loaded covariance (relative to that
+/// power), with those off the main diagonal doubled: the coefficients of `a(u)^H R^-1 a(u)`.
 #[allow(clippy::needless_range_loop, reason = "indices as in the textbook's matrices")]
 #[inline(always)]
 fn inverse_lags<const FMA: bool, const N: usize>(z: &[Complexes]) -> (Numbers, [Complexes; N]) {
@@ -108,7 +108,7 @@ fn inverse_lags<const FMA: bool, const N: usize>(z: &[Complexes]) -> (Numbers, [
     for i in 0..N {
         trace = trace + cov[i][i].re;
     }
-    // A silent row's covariance is the loading alone.
+    // The covariance of a silent row is the loading alone.
     let scale = trace.map(|v| if v > 0.0 { N as f64 / v } else { 0.0 });
     // Cholesky factor L of the loaded covariance, whose diagonal is real, then M = L^-1; R^-1 = M^H M.
     let mut l = [[ZERO; N]; N];
@@ -139,7 +139,7 @@ fn inverse_lags<const FMA: bool, const N: usize>(z: &[Complexes]) -> (Numbers, [
     }
     let mut lags = [ZERO; N];
     for (d, lag) in lags.iter_mut().enumerate() {
-        // Below its diagonal alone M is not zero.
+        // M is zero above its diagonal.
         for row in d..N {
             for i in 0..=row - d {
                 *lag = lag.plus_product::<FMA>(m[row][i].conj(), m[row][i + d]);

@@ -1,4 +1,4 @@
-//! The coarse features: each end's beams, the same on the grid that the array's centre sees, and their phases.
+//! The coarse features: each end's beams, the same registered on the grid of the array's centre, and their phases.
 
 use super::grid::{COARSE_CHANNELS, COARSE_COLUMNS, MIN_ROWS, cosine};
 use super::registration::Registration;
@@ -27,7 +27,7 @@ struct BeamMap {
     magnitude: Vec<f32>,
     /// `[rows, 64]` of amplitude 1.
     phase: Vec<Complex32>,
-    /// `[rows, 64]` times [`Coarse::even`]'s factors, the strongest of amplitude 1.
+    /// `[rows, 64]` times the factors of [`Coarse::even`], the strongest of amplitude 1.
     even: Vec<Complex32>,
 }
 
@@ -80,8 +80,8 @@ impl Coarse {
         map
     }
 
-    /// Cosine and sine of twice the phase between the two ends' maps, both registered on the centre's grid: one colour for every
-    /// cell of a reflector, another for the next reflector. Twice, because side lobes change their sign.
+    /// Fills `planes` with cosine and sine of twice the phase between the two ends' maps, both registered on the centre's grid: one value for
+    /// all cells of a reflector, another for the next reflector. The phase is doubled because side lobes change their sign.
     fn fill_phase_between(&self, both: &[BeamMap; 2], planes: &mut [f32]) {
         let (cosines, sines) = planes.split_at_mut(self.rows * COARSE_COLUMNS);
         rows_of(cosines).zip(rows_of(sines)).for_each(|((row, cosines), (_, sines))| {
@@ -101,11 +101,11 @@ fn rows_of(plane: &mut [f32]) -> impl IndexedParallelIterator<Item = (usize, &mu
     plane.par_chunks_mut(COARSE_COLUMNS).with_min_len(MIN_ROWS).enumerate()
 }
 
-/// Splits beams into the magnitudes and phases of a [`BeamMap`].
+/// Splitting of beams into the magnitudes and phases of a [`BeamMap`].
 struct SplitBeams<'a> {
     beams: &'a [Complex64],
     even: &'a [Complex64],
-    /// One over the strongest amplitude.
+    /// Inverse of the strongest amplitude.
     per_strongest: f64,
     map: &'a mut BeamMap,
 }
@@ -127,7 +127,7 @@ impl Kernel for SplitBeams<'_> {
     }
 }
 
-/// Below the power of any sample's rounding, above the smallest f32.
+/// A power below that of any sample's rounding and above the smallest f32.
 const MIN_POWER: f32 = 1e-36;
 
 /// `[rows, 64]` factors that refer a map's phases to mid-chirp and to the end's middle, so that the phase is constant over one reflector's

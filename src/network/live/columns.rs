@@ -1,9 +1,9 @@
-//! The network's columns as those of an array of any number of elements.
+//! Interpolation from the network's columns to those of an array of any number of elements.
 
 use super::grid::COLUMNS;
 use rayon::prelude::*;
 
-/// For each column of an array, where it lies between two of the network's; cos(theta) rises with both.
+/// Place of each column of an array between two columns of the network; cos(theta) rises with both.
 #[derive(Debug)]
 pub(super) struct ColumnTaps {
     taps: Vec<Tap>,
@@ -12,12 +12,12 @@ pub(super) struct ColumnTaps {
 #[derive(Debug, Clone, Copy)]
 struct Tap {
     pair: [usize; 2],
-    /// How far it is to the second, 0 to 1.
+    /// Distance to the second of the pair, 0 to 1.
     part: f32,
 }
 
 impl ColumnTaps {
-    /// Those of an array of `elements`; `None` where it has the network's own columns.
+    /// The taps for an array of `elements`; `None` where it has the network's own columns.
     pub(super) fn new(elements: usize) -> Option<Self> {
         let tap = |column: usize| {
             let from_middle = column as f64 - (elements / 2) as f64;
@@ -34,7 +34,7 @@ impl ColumnTaps {
         }
     }
 
-    /// All rows `[rows, 1024]` as `[rows, elements]`.
+    /// Interpolates all rows, from `[rows, 1024]` to `[rows, elements]`.
     pub(super) fn rows_of(&self, wide: &[f32]) -> Vec<f32> {
         let (wide, elements) = (wide.as_chunks::<COLUMNS>().0, self.taps.len());
         let mut rows = vec![0.0; wide.len() * elements];

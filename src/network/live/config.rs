@@ -1,4 +1,4 @@
-//! The size of the live network: what its weight file and its engine agree on.
+//! The size of the live network, shared by its weight file and its engine.
 
 use super::grid::{COARSE_CHANNELS, COARSE_COLUMNS, CONSTANTS, FINE_CHANNELS, FINE_COLUMNS, ROW_CHANNELS, SCALARS};
 

@@ -1,4 +1,4 @@
-//! What the live network is told of the radar, and how the radar's convention becomes the thesis'.
+//! The constants of the radar among the live network's inputs, and the conversion of the radar's convention into the thesis'.
 //!
 //! Lengths in range bins follow from two numbers, bandwidth over carrier and spacing over wavelength: so do migration, curvature and squint. The
 //! convention needs no number. In the physical one a sample's phase is `+2 pi (f + n B / N) 2 R / c`; conjugated and read backwards, the
@@ -11,14 +11,15 @@ use ndarray::{Array2, ArrayViewMut2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Cosine of the angle off broadside, 60 degrees, at which the network is told the pattern of an element.
+/// Cosine of 60 degrees off broadside, the angle at which the pattern of an element enters the constants.
 const PATTERN_COS: f64 = 0.5;
-/// Where the spacing stands among the constants, and the windows beside Hann's.
+/// Index of the spacing among the constants, and of the first window after Hann's.
 pub(super) const SPACING_AT: usize = 1;
 pub(super) const WINDOWS_AT: usize = 2;
 pub(super) const WINDOWS: usize = WindowFunction::ALL.len();
 
-/// Migration and spacing relative to table 3.1's, which of the other windows, and the pattern: all 0 for the radar of table 3.1.
+/// The constants: migration and spacing relative to table 3.1's, a one for the window unless it is Hann's, and the pattern. All are 0 for the
+/// radar of table 3.1.
 pub(super) fn constants(radar: &Radar) -> [f32; CONSTANTS] {
     let mut constants = [0.0; CONSTANTS];
     constants[0] = (0.25 * (migration_bins(radar) / migration_bins(&Radar::default())).log2()) as f32;
@@ -26,18 +27,18 @@ pub(super) fn constants(radar: &Radar) -> [f32; CONSTANTS] {
     if let Some(window) = WindowFunction::ALL.iter().skip(1).position(|window| *window == radar.window) {
         constants[WINDOWS_AT + window] = 1.0;
     }
-    // Both ways, in decades.
+    // The pattern's loss both ways, in decades.
     constants[CONSTANTS - 1] = radar.pattern().map_or(0.0, |p| -2.0 * p.amplitude(PATTERN_COS).log10()) as f32;
     constants
 }
 
-/// Which of [`WindowFunction::ALL`] these constants name.
+/// Index in [`WindowFunction::ALL`] of the window in these constants.
 pub(super) fn window_of(constants: &[f32; CONSTANTS]) -> usize {
     constants[WINDOWS_AT..][..WINDOWS - 1].iter().position(|v| *v == 1.0).map_or(0, |window| window + 1)
 }
 
-/// cos(theta) of the reflector whose blob stands in the first column, over that of table 3.1. There the grids take the blob's cosine for the
-/// reflector's, 2.6 % too small; weights learned with that, so it stays for all radars.
+/// cos(theta) of the reflector whose blob stands in the first column, over that of table 3.1. The features of table 3.1 equate the blob's cosine
+/// with the reflector's, which makes it 2.6 % too small; the weights were trained so, and it stays for all radars.
 pub(super) fn cosine_scale(radar: &Radar) -> f64 {
     radar.cos_of_column(0.0).abs() * Radar::default().squint() / radar.squint()
 }
@@ -51,10 +52,10 @@ pub(super) fn in_thesis_convention(radar: &Radar, mut samples: Array2<Complex64>
     samples
 }
 
-/// Turns the rows of a map of the array around where cos(theta) falls with the column of `radar`'s maps: from the network's order to the map's, or back.
+/// Reverses the columns of a map of the array where cos(theta) falls with the column of `radar`'s maps: from the network's order to the map's, or back.
 pub fn turn_columns(radar: &Radar, map: &mut [f32]) {
     if radar.cos_of_column(0.0) > 0.0 {
-        // The first column's direction is that of one column beyond the last.
+        // Columns wrap around, so that the first column's direction maps to itself.
         map.par_chunks_mut(radar.elements).for_each(|row| row[1..].reverse());
     }
 }

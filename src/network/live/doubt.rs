@@ -1,5 +1,5 @@
-//! How far off the live network expects its map to be: a small head, trained on the network's errors, gives each cell's expected error in
-//! Lambda as a power of ten.
+//! The live network's estimate of its map's error: a small head, trained on the network's errors, gives each cell's expected error in Lambda as
+//! a power of ten.
 
 use super::columns::ColumnTaps;
 use super::grid::{COARSE_COLUMNS, COLUMNS, FINE_COLUMNS};
@@ -105,9 +105,9 @@ mod tests {
     // `training/reference.py` writes these files.
     /// Weights of a tiny network that has the head.
     const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/doubt_reference_weights.safetensors");
-    /// The same network without it.
+    /// Weights of the same network without the head.
     const WITHOUT: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
-    /// Three reflectors, and what PyTorch makes of them.
+    /// Three reflectors, and PyTorch's results for them.
     const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
 
     fn doubt_of(weights: &[u8], reference: &WeightFile) -> Option<RangeAngleMap> {

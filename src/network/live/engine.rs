@@ -1,6 +1,6 @@
 //! The live network's forward pass without a framework: channels-last, buffers kept, the same weights as [`super::module`].
 //!
-//! [`super::module`] is what trains and what this is tested against; this is what runs during a drag.
+//! [`super::module`] is trained, and tests compare this engine with it; the engine runs during a drag.
 
 use super::columns::ColumnTaps;
 use super::config::{DECODER_CHANNELS, FOLD, INPUT_CHANNELS, WIDE_COLUMNS};
@@ -26,14 +26,14 @@ use std::ops::Range;
 const _: () = assert!(FOLD == CELLS && COLUMNS_PER_FINE == CELLS, "layers that spread a cell do so over four");
 const COLUMNS_PER_FINE: usize = COLUMNS / FINE_COLUMNS;
 
-/// What the network says about one scene, in decades above the samples' gain.
+/// The network's estimate for one scene, in decades above the samples' gain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decades {
     /// log10 |Y| of the whole array, `[samples, elements]` row-major.
     pub map: Vec<f32>,
-    /// The smallest cell that the true map is expected to have.
+    /// The smallest cell expected in the true map.
     pub minimum: f32,
-    /// Part of the side lobes in range that was computed: the rest doesn't show.
+    /// Part of the tiles of side lobes in range that were computed: the others don't show.
     pub computed: f32,
 }
 
@@ -115,18 +115,18 @@ impl LiveEngine {
         })
     }
 
-    /// Estimates the map of one scene; what doesn't show in it is left out.
+    /// Estimates the map of one scene; side lobes that don't show are skipped.
     pub fn forward(&self, input: &LiveInput, s: &mut LiveScratch) -> Decades {
         self.forward_over(input, self.lobes[0].columns.unseen(), s)
     }
 
-    /// The same with nothing left out, to measure what that costs.
+    /// [`LiveEngine::forward`] with all side lobes, to measure the error of skipping.
     pub fn forward_whole(&self, input: &LiveInput, s: &mut LiveScratch) -> Decades {
         self.forward_over(input, 0.0, s)
     }
 
-    /// How far off the network expects Lambda to be, `[samples, elements]`: nine of ten cells have a smaller error, on scenes and over noise like those
-    /// it was trained on. Call it after [`LiveEngine::forward`] with the same buffers. `None` where the weights have no head for it.
+    /// The network's estimate of the error of Lambda, `[samples, elements]`: nine of ten cells have a smaller error, on scenes and over noise
+    /// like those of the training. Call it after [`LiveEngine::forward`] with the same buffers. `None` where the weights have no head for it.
     pub fn doubt(&self, s: &LiveScratch) -> Option<RangeAngleMap> {
         Some(self.doubt.as_ref()?.read(&s.level[0], self.taps.as_ref(), self.columns))
     }
@@ -237,7 +237,7 @@ fn decode(
             let cells = sources.data[row * COARSE_COLUMNS * sources.c..].chunks_exact(sources.c);
             spread_out(cells, 0..WIDE_COLUMNS / COARSE_COLUMNS, wide);
             for (w, [a, b, c, d, e, f, g, h]) in wide.iter_mut().zip(line.as_chunks::<COLUMNS_PER_SOURCE>().0) {
-                // Pair by pair, which a processor does side by side.
+                // The pairwise sum can be vectorised.
                 *w += (((a + b) + (c + d)) + ((e + f) + (g + h))) / COLUMNS_PER_SOURCE as f32;
             }
         }
@@ -247,7 +247,7 @@ fn decode(
     (map, computed)
 }
 
-/// Adds what the sources `wide` of some lines add to all their cells, and the floor.
+/// Adds to all cells of some lines the side lobes in angle of the sources `wide`, and the floor.
 fn add_lobes_in_angle(rows: &[f32], floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE_COLUMNS], lines: &mut [f32]) {
     let simd = Simd::chosen();
     for (block, kernel) in rows.chunks_exact(WIDE_COLUMNS * PRODUCT_COLUMNS).enumerate() {
@@ -266,7 +266,7 @@ const ROWS_AT_ONCE: usize = 8;
 
 const COLUMNS_PER_SOURCE: usize = COLUMNS / WIDE_COLUMNS;
 
-/// Amplitudes that these channels of neighbouring cells say, side by side.
+/// Contiguous amplitudes of these channels of neighbouring cells.
 fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>, out: &mut [f32]) {
     for (out, cell) in out.chunks_exact_mut(channels.len()).zip(cells) {
         out.copy_from_slice(&cell[channels.clone()]);
@@ -274,7 +274,7 @@ fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>
     each(out, |v| power_of_ten((v * 3.0 - 3.0).clamp(-18.0, 4.0)));
 }
 
-/// What the cells of a row show by themselves, and the side lobes in range.
+/// Fills a line with the cells' own amplitudes and the side lobes in range.
 fn fill_line(heads: &Plane, lobes: &[f32], row: usize, line: &mut [f32]) {
     spread_out(heads.data[row * FINE_COLUMNS * heads.c..].chunks_exact(heads.c), 0..COLUMNS_PER_FINE, line);
     for (block, line) in line.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {

@@ -1,4 +1,4 @@
-//! Examples to train on: example `i` is a function of the request and `i` alone, in any order of asking.
+//! Training examples: example `i` is a function of the request and `i` alone, in any order of calls.
 
 use super::arrays::Arrays;
 use super::constants::turn_rows;
@@ -21,37 +21,37 @@ use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Which examples are made.
+/// The examples to make.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExamplesRequest {
     /// Kinds of the scenes.
     pub mixture: Mixture,
-    /// Picks the streams of the scenes: those of different purposes never meet.
+    /// Purpose of the examples, which picks the streams of the scenes: those of different purposes never meet.
     pub purpose: Purpose,
     /// Seed of the scenes.
     pub seed: u64,
-    /// What lies beneath them.
+    /// Floors of the scenes.
     pub floors: Floors,
-    /// The elements that hear them.
+    /// Arrays of the scenes.
     pub arrays: Arrays,
-    /// The radars that see them.
+    /// Radars of the scenes.
     pub radars: Radars,
     /// The maps to learn, each once.
     pub targets: Vec<Target>,
     /// Whether the live network's input is made.
     pub features: Features,
-    /// The elements that are heard, in the place of the two ends.
+    /// Numbers of the elements whose samples replace those of the two ends.
     pub layout: Option<Vec<usize>>,
 }
 
 /// Whether the live network's input is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Features {
-    /// It is, in the radar's shape; a radar that has none is refused.
+    /// The input is made in the radar's shape; a radar without one is refused.
     Needed,
-    /// It is where the radar has the shape of the network that is shipped.
+    /// The input is made where the radar has the shape of the shipped network.
     WherePossible,
-    /// It isn't.
+    /// The input isn't made.
     No,
 }
 
@@ -79,7 +79,7 @@ pub struct Examples {
     extractor: Option<FeatureExtractor>,
 }
 
-/// What the sparse array hears.
+/// The samples of the sparse array.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EndSamples {
     /// The two ends.
@@ -88,20 +88,20 @@ pub enum EndSamples {
     Elements(Array2<Complex64>),
 }
 
-/// What is learned from one scene.
+/// Input and targets of one scene.
 #[derive(Debug, Clone)]
 pub struct Example {
     /// Kind of the scene; none where the caller made it.
     pub kind: Option<Kind>,
-    /// Its floor.
+    /// Floor of the scene.
     pub floor: Floor,
-    /// Its radar.
+    /// Radar of the scene.
     pub radar: Radar,
-    /// What the sparse array hears, by elements that may be off.
+    /// The samples of the sparse array, whose elements may be off.
     pub heard: EndSamples,
     /// The live network's input, where it is made.
     pub input: Option<LiveInput>,
-    /// Half the log10 of the mean power of what is heard.
+    /// Half the log10 of the mean power of the samples.
     pub gain: f64,
     /// Maps of the whole array, `[range bins, columns]`: decades of amplitude relative to `gain`. cos(theta) rises with the column in both
     /// conventions.
@@ -117,13 +117,13 @@ impl Example {
         }
     }
 
-    /// One of its targets, where it was asked for.
+    /// The map of a target; `None` where it wasn't requested.
     pub fn target(&self, target: Target) -> Option<&Array2<f32>> {
         self.targets.iter().find(|(name, _)| *name == target).map(|(_, map)| map)
     }
 }
 
-/// Why there are no examples.
+/// The reason why a request gives no examples.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ExamplesError {
@@ -135,19 +135,19 @@ pub enum ExamplesError {
     /// The network can't use the radar.
     #[error(transparent)]
     Radar(#[from] ReconstructError),
-    /// What is asked for can't be.
+    /// The request is invalid.
     #[error("{0}")]
     Request(String),
 }
 
-/// Why there is no example.
+/// The reason why an example can't be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ExampleError {
     /// The scene can't be simulated, or the task was cancelled.
     #[error("example {index}: {source}")]
     Scene { index: u32, source: Unfinished },
-    /// The network can't use its samples.
+    /// The network can't use the scene's samples.
     #[error("example {index}: {source}")]
     Input { index: u32, source: ReconstructError },
     #[error("example {index}: the samples are silent; put a reflector into the scene")]
@@ -155,9 +155,9 @@ pub enum ExampleError {
 }
 
 impl Examples {
-    /// Examples as they are asked for.
+    /// The examples of a request.
     /// # Errors
-    /// [`ExamplesError`] names the kind, the radar or the element that can't be.
+    /// [`ExamplesError`] names the kind, radar or element that can't be used.
     pub fn new(mut request: ExamplesRequest) -> Result<Self, ExamplesError> {
         let kinds = || request.mixture.shares().iter().map(|(kind, _)| *kind);
         if request.purpose == Purpose::Test && kinds().any(|kind| kind == Kind::World) {
@@ -187,12 +187,12 @@ impl Examples {
         Ok(Examples { request, extractor })
     }
 
-    /// What a network that learns from them is trained for.
+    /// The radars for which a network is trained by these examples.
     pub fn domain(&self) -> Domain {
         self.request.radars.domain()
     }
 
-    /// Whether they have the live network's input.
+    /// Whether examples have the live network's input.
     pub fn has_features(&self) -> bool {
         self.request.features != Features::No
     }
@@ -212,7 +212,7 @@ impl Examples {
         self.made(Some(kind), radar, scene, index, task)
     }
 
-    /// Example `index` of a scene that the caller made. Its noise is picked by seed, purpose and `index`.
+    /// Example `index` of a given scene. Seed, purpose and `index` pick its noise.
     /// # Errors
     /// As [`Examples::example`].
     pub fn example_of(&self, scene: Scene, index: u32, task: &Task) -> Result<Example, ExampleError> {
@@ -220,11 +220,11 @@ impl Examples {
         self.made(None, self.radar(index), Scene { noise_seed, ..scene }, index, task)
     }
 
-    /// Seed of the noise of a scene that the caller made.
+    /// Seed of the noise of a given scene.
     fn noise_seed(&self, index: u32) -> u64 {
         let mut key = [0u8; 32];
         key[..8].copy_from_slice(&self.request.seed.to_le_bytes());
-        // No purpose of generated scenes has the first number, nor have the draws of kinds and of radars.
+        // No stream of generated scenes, of kinds or of radars has the number 6.
         key[8..10].copy_from_slice(&[6, self.request.purpose.number()]);
         let mut rng = ChaCha8Rng::from_seed(key);
         rng.set_stream(index.into());
@@ -286,11 +286,11 @@ impl Examples {
 }
 
 impl EndSamples {
-    /// Half the log10 of the mean power; `None` of silence.
+    /// Half the log10 of the samples' mean power; `None` of silence.
     fn gain(&self) -> Option<f64> {
         let mean = |power: f64, samples: usize| (power > 0.0).then(|| 0.5 * (power / samples as f64).log10());
         match self {
-            // The sum of the live network's features, to the bit.
+            // The sum of [`FeatureExtractor::extract`], to the bit.
             EndSamples::Ends(ends) => {
                 let power = ends.first.iter().chain(&ends.last).map(|v| v.norm_sqr()).sum::<f64>();
                 mean(power, ends.first.len() + ends.last.len())
@@ -300,7 +300,7 @@ impl EndSamples {
     }
 }
 
-/// Decades of the whole array's map over `gain`, cos(theta) rising with the column.
+/// The whole array's map, decades over `gain`; cos(theta) rises with the column.
 fn map(radar: &Radar, elements: &BuiltArray, signal: BeatSignal, gain: f64) -> Array2<f32> {
     let mut decades = match radar.focus_off_line {
         true => map_of(radar, elements, &signal, Aperture::Full).log_magnitude().decades().mapv(|v| v as f32),

@@ -1,14 +1,14 @@
-//! What the live network is shown: tensors made of the raw samples of the two ends.
+//! The input of the live network: tensors made of the samples of the two ends.
 //!
-//! Twelve elements resolve about twelve angles, so nothing here is finer than 256 columns. A radar's samples are the rows of every picture. Each end's picture is drawn from that
-//! end; the same reflector lies up to 27 range bins apart in the two, so both are also *registered*: gathered onto the grid
-//! that the array's centre sees. On the fine grid an end is shown by its Capon spectrum, row by row: with next to no noise it tells
-//! apart reflectors that the end's own beam cannot.
+//! Twelve elements resolve about twelve angles, so no feature is finer than 256 columns. A radar's samples are the rows of every picture. Each
+//! end's picture is centred on that end; the same reflector lies up to 27 range bins apart in the two, so both are also *registered*:
+//! interpolated on the polar grid around the array's centre. On the fine grid an end is represented by its Capon spectrum, row by row: with next
+//! to no noise it separates reflectors that the end's own beam doesn't.
 //!
-//! In columns and range bins the beams of an end are the same for every radar; where the same reflector lies in the other end's picture is not, and
-//! follows from the radar's constants. All pictures are made under a window of Hann, independent of the radar's own.
+//! In columns and range bins the beams of an end are the same for every radar. The place of a reflector in the other end's picture depends on
+//! the radar's constants. All pictures are made under a window of Hann, independent of the radar's own.
 //!
-//! Everything is measured relative to the mean power of the samples (the *gain*): a louder receiver gives the same tensors.
+//! All tensors are relative to the mean power of the samples (the *gain*): a louder receiver gives the same tensors.
 
 use super::capon::Capon;
 use super::coarse::Coarse;
@@ -30,21 +30,21 @@ pub const MIN_CHIRP_SAMPLES: usize = 8;
 /// The tensors of one scene, row-major.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveInput {
-    /// `[4, samples, 256]` decades: the Capon spectra of both ends where they agree (minimum) and where either speaks (maximum) on the
-    /// centre's grid, and where they agree as the first and as the last end sees it.
+    /// `[4, samples, 256]` decades: minimum and maximum of both ends' Capon spectra on the centre's grid, and their minimum on the grid of the
+    /// first end and on that of the last end.
     pub fine: Vec<f32>,
     /// `[10, samples, 64]`: log-magnitude of each end's beams, the same registered, for each end cosine and sine of the phase step
     /// from the row before, and cosine and sine of twice the phase between the registered ends.
     pub coarse: Vec<f32>,
     /// `[6, samples]`: for each end real and imaginary part of the mean phase step between elements, then each end's power in decades.
     pub rows: Vec<f32>,
-    /// Two estimates of the noise floor in decades: from the rounding that the thesis' samples carry, and as measured.
+    /// Two estimates of the noise floor in decades: from the rounding of the thesis' samples, and as measured.
     pub scalars: [f32; SCALARS],
-    /// What of the radar the pictures don't show, 0 for that of table 3.1: a quarter of the octaves of its migration in range bins from end to end,
-    /// its spacing, which of the windows Hamming, Blackman and rectangular, and the decades that an echo 60 degrees off broadside loses to the
-    /// elements' pattern.
+    /// The radar's constants that the pictures don't show, 0 for those of table 3.1: a quarter of the octaves of its migration in range bins
+    /// from end to end, its spacing, a one for the window if it is Hamming's, Blackman's or the rectangular one, and the decades that an echo 60
+    /// degrees off broadside loses by the elements' pattern.
     pub constants: [f32; CONSTANTS],
-    /// Half the log10 of the samples' mean power: what the decades above are relative to.
+    /// Half the log10 of the samples' mean power, the reference of the decades above.
     pub gain: f64,
 }
 
@@ -54,7 +54,7 @@ pub struct FeatureExtractor {
     radar: Radar,
     constants: [f32; CONSTANTS],
     window: Vec<f64>,
-    /// Fine grid: centre from either end, first from last, last from first.
+    /// Registrations of the fine grid: centre from either end, first from last, last from first.
     fine_centre: [Registration<FINE_COLUMNS>; 2],
     fine_other: [Registration<FINE_COLUMNS>; 2],
     coarse: Coarse,
@@ -86,7 +86,7 @@ impl FeatureExtractor {
         })
     }
 
-    /// The radar that it is for.
+    /// The radar of the tables.
     pub fn radar(&self) -> &Radar {
         &self.radar
     }

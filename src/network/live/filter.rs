@@ -5,7 +5,7 @@ use crate::network::kernels::vector::{LANES, Loop, Vector};
 
 /// Neighbouring outputs of one filter.
 pub(super) const OUTPUTS: usize = 4;
-/// Products that they cost; they see as many inputs.
+/// Products for these outputs, and as many inputs.
 pub(super) const PRODUCTS: usize = 6;
 
 /// The kernel's transform: a row for each product, a column for each tap.
@@ -21,23 +21,23 @@ pub(super) const OF_TAPS: [[f32; 3]; PRODUCTS] = [
 /// The product that enters each output with factor 1, so that a bias added there reaches all four.
 pub(super) const OF_BIAS: usize = 1;
 
-/// Groups of vectors that lie side by side, as many in what is read as in what is written.
+/// Groups of contiguous vectors, as many in the source as in the destination.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Groups {
     pub many: usize,
     /// Vectors of a group.
     pub vectors: usize,
-    /// From one group to the next in what is read, and in what is written.
+    /// Distance from one group to the next in the source, and in the destination.
     pub steps: [usize; 2],
 }
 
 impl Groups {
-    /// How much must lie in what is read, and in what is written.
+    /// Values that source and destination must hold.
     fn reach(&self) -> [usize; 2] {
         self.steps.map(|step| if self.many == 0 { 0 } else { (self.many - 1) * step + self.vectors * LANES })
     }
 
-    /// Hands over where each vector lies in what is read and in what is written.
+    /// Calls `of` with the offset of each vector in the source and in the destination.
     #[inline(always)]
     fn each(&self, mut of: impl FnMut([usize; 2])) {
         for group in 0..self.many {
@@ -48,7 +48,7 @@ impl Groups {
     }
 }
 
-/// The input's transform: six neighbouring inputs to the factors of the six products.
+/// The input's transform, from six neighbouring inputs to the factors of the six products.
 pub(super) struct Spread<'a> {
     pub groups: Groups,
     pub from: [&'a [f32]; PRODUCTS],
@@ -67,7 +67,7 @@ impl Loop for Spread<'_> {
         let [from0, from1, from2, from3, from4, from5] = from.map(|from| from.as_ptr());
         let [to0, to1, to2, to3, to4, to5] = to.each_mut().map(|to| to.as_mut_ptr());
         groups.each(|[read, write]| {
-            // SAFETY: all offsets lie inside what was checked, and the caller promises the features.
+            // SAFETY: all offsets lie within the checked slices, and the caller promises the features.
             unsafe {
                 let d = |from: *const f32| V::load(from.add(read));
                 let (d1, d2, d3, d4) = (d(from1), d(from2), d(from3), d(from4));
@@ -84,7 +84,7 @@ impl Loop for Spread<'_> {
     }
 }
 
-/// The output's transform: six products to four outputs, each `apart` values from the one before.
+/// The output's transform, from six products to four outputs that lie `apart` values from each other.
 pub(super) struct Gather<'a> {
     pub groups: Groups,
     pub from: [&'a [f32]; PRODUCTS],
@@ -102,7 +102,7 @@ impl Loop for Gather<'_> {
         let [from0, from1, from2, from3, from4, from5] = from.map(|from| from.as_ptr());
         let to = to.as_mut_ptr();
         groups.each(|[read, write]| {
-            // SAFETY: all offsets lie inside what was checked, and the caller promises the features.
+            // SAFETY: all offsets lie within the checked slices, and the caller promises the features.
             unsafe {
                 let m = |from: *const f32| V::load(from.add(read));
                 let (m1, m2, m3, m4) = (m(from1), m(from2), m(from3), m(from4));

@@ -5,8 +5,8 @@ use crate::radar::Radar;
 use ndarray::{Array2, s};
 use num_complex::Complex64;
 
-/// Decades of the rounding noise that the thesis' evaluation leaves in samples of this range profile: each range's power times
-/// the squared ulp of the carrier phase it stands for (see [`crate::signal::floor::thesis_noise_variance`]).
+/// Decades of the rounding noise of the thesis' evaluation in samples of this range profile: each range's power times the squared ulp of its
+/// carrier phase (see [`crate::signal::floor::thesis_noise_variance`]).
 pub(super) fn rounding_floor(radar: &Radar, profiles: &[Array2<Complex64>; 2]) -> f32 {
     let (mut weighted, mut total) = (0.0, 0.0);
     let radians_per_metre = radar.carrier_radians_per_metre().abs();

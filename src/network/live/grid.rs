@@ -1,8 +1,8 @@
 //! Sizes of the live network's input and output.
 
-/// Samples of the radars that the shipped network is for: range rows of its tensors.
+/// Samples of the shipped network's radars, and range rows of its tensors.
 pub const ROWS: usize = 512;
-/// Columns of the network's map for any radar; elements of those that the shipped network is for.
+/// Columns of the network's map for any radar, and elements of the shipped network's radars.
 pub const COLUMNS: usize = 1024;
 /// Columns of the fine features.
 pub const FINE_COLUMNS: usize = 256;

@@ -1,4 +1,4 @@
-//! Side lobes under each window, as a weight file's kernels say.
+//! Side lobes under each window, by the kernels of a weight file.
 
 use super::config::WIDE_COLUMNS;
 use super::constants::WINDOWS;
@@ -10,12 +10,12 @@ use crate::network::weights::{WeightFile, WeightsError};
 #[derive(Debug)]
 pub(super) struct WindowLobes {
     pub(super) columns: RangeLobes,
-    /// `[128 / 32, 128, 32]`: in angle.
+    /// `[128 / 32, 128, 32]`: the kernel in angle.
     pub(super) rows: Vec<f32>,
 }
 
 impl WindowLobes {
-    /// Both kernels are given in decades by distance: `[rows / 2 + 1]` in range, `[128 / 2 + 1]` in angle.
+    /// The side lobes by two kernels in decades over the distance: `[rows / 2 + 1]` in range, `[128 / 2 + 1]` in angle.
     fn new(column: &[f32], row: &[f32]) -> Self {
         WindowLobes { columns: RangeLobes::new(column), rows: in_blocks(&circulant(row, WIDE_COLUMNS), WIDE_COLUMNS) }
     }
@@ -37,7 +37,7 @@ impl WindowLobes {
     }
 }
 
-/// A matrix `[n, columns]` as [`product`](crate::network::kernels::convolution::product) takes it, block after block.
+/// A matrix `[n, columns]` in the layout of [`product`](crate::network::kernels::convolution::product), block after block.
 fn in_blocks(matrix: &[f32], columns: usize) -> Vec<f32> {
     let of_block =
         |first: usize| matrix.chunks_exact(columns).flat_map(move |row| &row[first..first + PRODUCT_COLUMNS]);

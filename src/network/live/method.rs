@@ -33,13 +33,13 @@ pub struct LiveMethod {
     name: &'static str,
     engine: LiveEngine,
     extractor: Mutex<Option<Arc<FeatureExtractor>>>,
-    /// Idle buffers. They are taken out for a pass and not locked while it runs: other threads, and the thread itself
-    /// where rayon hands it another caller's work, take others.
+    /// Idle buffers. A pass takes one out and holds no lock while it runs: other threads, and the same thread where rayon gives it another
+    /// caller's work, take others.
     idle: Mutex<Vec<LiveScratch>>,
     eta: f32,
     weights: Weights,
     trained: Domain,
-    /// Networks for radars that this one wasn't trained for; the first tells what it lacks where none is for a radar.
+    /// Networks for radars for which this one wasn't trained; where none fits a radar, the error is the first one's.
     other_radars: Vec<LiveMethod>,
 }
 
@@ -51,7 +51,7 @@ impl LiveMethod {
         LiveMethod::named(file, NAME)
     }
 
-    /// The same under a name of its own, beside which the shipped weights are another method. The name lives as long as the program.
+    /// The network under a name of its own, beside the shipped weights. The name is never freed.
     /// # Errors
     /// As [`LiveMethod::new`].
     pub fn named(file: WeightFile, name: &str) -> Result<Self, WeightsError> {
@@ -73,7 +73,7 @@ impl LiveMethod {
         })
     }
 
-    /// The same, with the first of `others` that was trained for it in its place on a radar that this one wasn't trained for.
+    /// The network with `others`, the first of which that was trained for a radar answers where this one wasn't.
     pub fn with_other_radars(self, others: Vec<LiveMethod>) -> Self {
         LiveMethod { other_radars: others, ..self }
     }
@@ -93,7 +93,7 @@ impl LiveMethod {
     }
 
     fn extractor(&self, radar: &Radar) -> Result<Arc<FeatureExtractor>, ReconstructError> {
-        // A panic elsewhere leaves whole tables or none.
+        // A panic elsewhere leaves the tables whole or absent.
         let kept = || self.extractor.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(extractor) = kept().as_ref().filter(|extractor| is_alike(extractor.radar(), radar)) {
             return Ok(Arc::clone(extractor));
@@ -104,10 +104,10 @@ impl LiveMethod {
         Ok(made)
     }
 
-    /// The map in decades, and how far off the network expects Lambda to be.
+    /// The map in decades, and the estimated error of Lambda.
     fn with_doubt(&self, radar: &Radar, ends: &TwoEnds) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
         let input = self.extractor(radar)?.extract(ends)?;
-        // A panic elsewhere can't leave the buffers in a state that matters: every pass overwrites them.
+        // A panic elsewhere can't spoil the buffers: every pass overwrites them.
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = idle().pop();
         let mut scratch = taken.unwrap_or_default();
@@ -129,14 +129,14 @@ impl LiveMethod {
     }
 }
 
-/// Signal-to-noise ratios of the third of its training scenes that lay over thermal noise (`--snr` of `training/train_live.py`).
+/// Signal-to-noise ratios of the third of the training scenes that had thermal noise (`--snr` of `training/train_live.py`).
 const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 
-/// One cell in so many is looked at for the median.
+/// Step between the cells of which the median is taken.
 const CELLS_A_LOOK: usize = 17;
 
-/// The level that no noise cell exceeds, decades of the network's own map: above the median cell, which is the network's mean of noise where
-/// that is what most cells hold. Over the rounding floor it lies far below every echo.
+/// A level that no noise cell exceeds, decades of the network's own map. It lies above the median cell, which is the network's mean of noise
+/// where most cells hold noise; over the rounding floor it lies far below every echo.
 fn noise_level_decades(map: &[f32]) -> f64 {
     let mut cells: Vec<f32> = map.iter().copied().step_by(CELLS_A_LOOK).collect();
     if cells.is_empty() {
@@ -147,7 +147,7 @@ fn noise_level_decades(map: &[f32]) -> f64 {
     f64::from(median) + level_above_mean_decades(map.len())
 }
 
-/// `doubt` of Lambda from the smallest to the largest cell, brought to `scale`.
+/// The `doubt` of Lambda normalised from the smallest to the largest cell, converted to `scale`.
 fn on_scale(mut doubt: RangeAngleMap, [minimum, peak]: [f32; 2], scale: LambdaScale) -> RangeAngleMap {
     let wider = (f64::from(peak - minimum) / (scale.peak - scale.floor)) as f32;
     if wider != 1.0 && wider.is_finite() {

@@ -1,4 +1,4 @@
-//! Channels-last pictures and what the live network's engine does with them again and again.
+//! Channels-last pictures, and the operations of the live network's engine on them.
 
 use super::winograd::{Conv3x3, Results};
 use crate::network::kernels::convolution::{Packed, convolve};

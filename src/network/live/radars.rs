@@ -7,12 +7,12 @@ use crate::scene::generate::Purpose;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Which radars see the scenes.
+/// The radars of the scenes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Radars {
-    /// The same for all.
+    /// The same radar for all scenes.
     Fixed(Box<Radar>),
-    /// One drawn for each scene within [`DRAWN_LIMITS`].
+    /// A radar drawn for each scene within [`DRAWN_LIMITS`].
     Random,
 }
 
@@ -31,12 +31,12 @@ pub const DRAWN_LIMITS: RadarLimits = RadarLimits {
 };
 
 const THESIS_SHARE: f64 = 0.25;
-/// Parts of the other radars that have the filled spacing, a window of Hann, and a pattern.
+/// Parts of the drawn radars that have the filled spacing, a window of Hann, and a pattern.
 const FILLED_SHARE: f64 = 0.5;
 const HANN_SHARE: f64 = 0.5;
 const PATTERN_SHARE: f64 = 0.2;
-/// Part of them whose migration is even between none and the most; the bandwidth of the others is even on a logarithmic scale, of which 4 % migrate over
-/// more than 40 range bins.
+/// Part of the drawn radars whose migration is uniform between none and the most; the bandwidth of the others is uniform on a logarithmic scale,
+/// and 4 % of them migrate over more than 40 range bins.
 const EVEN_MIGRATION_SHARE: f64 = 0.5;
 
 impl Default for Radars {
@@ -53,14 +53,14 @@ impl Radars {
         }
         let mut key = [0u8; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
-        // No purpose of generated scenes has the first number, nor has the draw of kinds.
+        // No stream of generated scenes or of kinds has the number 5.
         key[8..10].copy_from_slice(&[5, purpose.number()]);
         let mut rng = ChaCha8Rng::from_seed(key);
         rng.set_stream(index.into());
         if rng.random::<f64>() < THESIS_SHARE { Radar::default() } else { drawn(&mut rng) }
     }
 
-    /// What a network that learns from them is trained for.
+    /// The radars for which a network is trained by these.
     pub fn domain(&self) -> Domain {
         match self {
             Radars::Fixed(radar) => Domain::Radar(radar.clone()),
@@ -68,7 +68,7 @@ impl Radars {
         }
     }
 
-    /// A radar that has the number of elements and samples of all of them.
+    /// A radar with the number of elements and samples that all of them have.
     pub fn shape(&self) -> Radar {
         match self {
             Radars::Fixed(radar) => (**radar).clone(),

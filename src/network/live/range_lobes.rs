@@ -12,13 +12,13 @@ use crate::signal::simd::{Kernel, LANES_F32, Lanes, Simd};
 use rayon::prelude::*;
 use std::cell::RefCell;
 
-/// A tile of the kernel's matrix: source rows by output rows.
+/// Size of a tile of the kernel's matrix: source rows by output rows.
 const TILE_SOURCE_ROWS: usize = 8;
 const TILE_ROWS: usize = 16;
 
 const _: () = assert!(ROWS_STEP.is_multiple_of(TILE_SOURCE_ROWS), "whole tiles of sources");
 
-/// Upper bound of what all skipped tiles add to a cell, relative to a lower bound of the cell.
+/// Upper bound of the sum of all skipped tiles in a cell, relative to a lower bound of the cell.
 const MAX_SKIPPED_PART: f32 = 0.0096;
 
 /// Words of a mask with a bit for each tile along the sources.
@@ -48,7 +48,7 @@ thread_local! {
 }
 
 impl RangeLobes {
-    /// The kernel is given in decades by the distance in rows, `[rows / 2 + 1]`.
+    /// The side lobes of a kernel in decades over the distance in rows, `[rows / 2 + 1]`.
     pub(super) fn new(decades: &[f32]) -> Self {
         let rows = 2 * (decades.len() - 1);
         let kernel = circulant(decades, rows);
@@ -63,7 +63,7 @@ impl RangeLobes {
         RangeLobes { rows, kernel, extremes }
     }
 
-    /// A tile that adds less than this part of a cell's lower bound is skipped: all of them together stay below 1 %.
+    /// The part of a cell's lower bound below which a tile is skipped: all skipped tiles together stay below 1 %.
     pub(super) fn unseen(&self) -> f32 {
         MAX_SKIPPED_PART / (self.rows / TILE_SOURCE_ROWS) as f32
     }
@@ -71,7 +71,7 @@ impl RangeLobes {
     /// Side lobes `[1024 / BLOCK, rows, BLOCK]` of the sources that `read` writes for a block of columns. Tiles that add less than the part
     /// `unseen` of a cell's lower bound are skipped; `floor` counts in that bound and is not added. Returns the fraction of tiles computed.
     ///
-    /// `read` must not use rayon: what a thread keeps is borrowed meanwhile.
+    /// `read` must not use rayon: the thread's buffers are borrowed meanwhile.
     pub(super) fn add_up(
         &self,
         floor: f32,
@@ -94,7 +94,7 @@ impl RangeLobes {
         tiles as f32 / (COLUMNS / BLOCK * self.extremes.len()) as f32
     }
 
-    /// Adds a block's sources to the output rows of tile row `to`; returns how many tiles were computed.
+    /// Adds a block's side lobes to the output rows of tile row `to`; returns the number of tiles computed.
     fn add_to(&self, simd: Simd, floor: f32, unseen: f32, to: usize, kept: &Kept, out: &mut [f32]) -> usize {
         let (rows, tiles) = (self.rows, self.rows / TILE_SOURCE_ROWS);
         let extremes = &self.extremes[to * tiles..][..tiles];
@@ -108,7 +108,7 @@ impl RangeLobes {
 
 type Vector = Lanes<f32, LANES_F32>;
 
-/// Sums of [`TILE_SOURCE_ROWS`] rows of sources each.
+/// Kernel that sums each [`TILE_SOURCE_ROWS`] rows of sources.
 struct Sums<'a> {
     sources: &'a [f32],
     sums: &'a mut Vec<f32>,
@@ -129,7 +129,7 @@ impl Kernel for Sums<'_> {
     }
 }
 
-/// Mask of the tiles that must be computed for one row of tiles.
+/// Kernel that finds the tiles to compute for one row of tiles, as a mask.
 struct Shows<'a> {
     extremes: &'a [[f32; 2]],
     sums: &'a [f32],
@@ -173,7 +173,7 @@ mod tests {
     }
 
     fn check_what_is_left_out(rows: usize) {
-        // Tails as those of a Hann window, and sources over fifteen decades, most of them weak.
+        // Tails like those of a Hann window, and sources over fifteen decades, most of them weak.
         let decades: Vec<f32> = (0..=rows / 2).map(|k| -3.0 - 3.0 * (1.0 + k as f32).log10()).collect();
         let lobes = RangeLobes::new(&decades);
         let source = |row: usize, column: usize| {

@@ -6,7 +6,7 @@ use super::winograd::Conv3x3;
 use crate::network::kernels::convolution::{Packed, padded};
 use crate::network::weights::{WeightFile, WeightsError};
 
-/// Cells that one becomes in the layers that spread it.
+/// Number of cells into which a spreading layer turns one cell.
 pub(super) const CELLS: usize = 4;
 
 #[derive(Clone, Copy)]
@@ -20,7 +20,7 @@ impl LiveLayers<'_> {
         Ok([tensor("weight", shape)?, tensor("bias", &shape[..1])?])
     }
 
-    /// The same of a layer whose last inputs are `more` than those of older files, which meet zeros.
+    /// [`LiveLayers::tensors`] of a layer whose last `more` inputs older files lack; their weights are zeros then.
     pub(super) fn tensors_or_older(
         &self,
         name: &str,
@@ -38,25 +38,25 @@ impl LiveLayers<'_> {
         Ok([weights.chunks_exact(older[1] * area).flat_map(widened).collect(), bias])
     }
 
-    /// A 3x3 convolution of cells that hold `stride` channels, of which it sees the first `input`.
+    /// A 3x3 convolution of cells of `stride` channels, of which it reads the first `input`.
     pub(super) fn conv(&self, name: &str, [input, stride]: [usize; 2], output: usize) -> Result<Conv3x3, WeightsError> {
         let [weights, bias] = self.tensors(name, &[output, input, 3, 3])?;
         Ok(Conv3x3::new(&weights, &bias, input, stride))
     }
 
-    /// The first convolution, whose last inputs are the radar's constants, which older files don't know.
+    /// The first convolution, whose last inputs are the radar's constants, which older files lack.
     pub(super) fn stem(&self, name: &str, input: usize, output: usize) -> Result<Conv3x3, WeightsError> {
         let [weights, bias] = self.tensors_or_older(name, &[output, input, 3, 3], CONSTANTS)?;
         Ok(Conv3x3::new(&weights, &bias, input, input))
     }
 
-    /// A 3x3 convolution whose output is `channels` of each of the cells that one becomes.
+    /// A 3x3 convolution that spreads one cell over [`CELLS`] cells of `channels` channels.
     pub(super) fn widened(&self, name: &str, input: usize, channels: usize) -> Result<Conv3x3, WeightsError> {
         let [weights, bias] = self.tensors(name, &[CELLS * channels, input, 3, 3])?.map(|v| cell_by_cell(&v, channels));
         Ok(Conv3x3::new(&weights, &bias, input, padded(input)))
     }
 
-    /// A convolution of so many rows and columns, and as far from one cell to the next.
+    /// A convolution with a kernel of `kernel` rows and columns and the same stride.
     pub(super) fn small(&self, name: &str, input: usize, output: usize, kernel: usize) -> Result<Packed, WeightsError> {
         let [weights, bias] = self.tensors(name, &[output, input, kernel, kernel])?;
         Ok(Packed::new(&weights, &bias, [input, padded(input)], [kernel; 2], kernel))
@@ -67,7 +67,7 @@ impl LiveLayers<'_> {
         Ok(Packed::new(&weights, &bias, [input, padded(input)], [1, 1], 1))
     }
 
-    /// A linear layer of numbers that lie side by side, of which the last `more` are none that older files know.
+    /// A linear layer of contiguous numbers, of which older files lack the last `more`.
     pub(super) fn linear(&self, name: &str, [input, more]: [usize; 2], output: usize) -> Result<Packed, WeightsError> {
         let [weights, bias] = self.tensors_or_older(name, &[output, input], more)?;
         Ok(Packed::new(&weights, &bias, [input; 2], [1, 1], 1))
@@ -95,7 +95,7 @@ impl LiveLayers<'_> {
         (0..count).map(block).collect()
     }
 
-    /// 1x1 convolution of means and, after them, maxima, each padded to whole vectors.
+    /// A 1x1 convolution of means and maxima, in this order, each padded to whole vectors.
     fn mix(&self, name: &str, c: usize) -> Result<Packed, WeightsError> {
         let [weights, bias] = self.tensors(name, &[c, 2 * c, 1, 1])?;
         let lanes = padded(c);
@@ -108,15 +108,15 @@ impl LiveLayers<'_> {
     }
 }
 
-/// What belongs to the output channels of a layer that one cell's channels spread over several cells, with `channels` each, put into the order
-/// of those cells. PyTorch's pixel shuffle has it channel by channel.
+/// Reorders the weights of a layer that spreads one cell over several cells of `channels` channels each: cell by cell. PyTorch's pixel shuffle
+/// has them channel by channel.
 fn cell_by_cell(of_channels: &[f32], channels: usize) -> Vec<f32> {
     let each = of_channels.len() / (CELLS * channels);
     let part = |cell: usize, channel: usize| &of_channels[(channel * CELLS + cell) * each..][..each];
     (0..CELLS).flat_map(|cell| (0..channels).flat_map(move |channel| part(cell, channel))).copied().collect()
 }
 
-/// `[n, n]`: over the distance of row and column, which wraps around, the amplitudes of so many decades.
+/// The circulant matrix `[n, n]` of the amplitudes of `kernel`, in decades over the circular distance of row and column.
 pub(super) fn circulant(kernel: &[f32], n: usize) -> Vec<f32> {
     let distance = |k: usize| (k / n).abs_diff(k % n).min(n - (k / n).abs_diff(k % n));
     let amplitudes: Vec<f32> = kernel.iter().map(|decades| 10f32.powf(*decades)).collect();

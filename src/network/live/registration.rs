@@ -1,11 +1,11 @@
-//! What one end sees, gathered onto the polar grid that another place sees: the same reflector lies up to 27 range bins apart in the two.
+//! Registration: one end's picture, interpolated on the polar grid around another place. The same reflector lies up to 27 range bins apart in the two.
 
 use super::constants::cosine_scale;
 use super::grid::cosine;
 use crate::radar::Radar;
 use std::ops::{Add, Mul};
 
-/// For each cell of a polar grid of so many columns, where it lies on another: bilinear look-ups.
+/// Bilinear look-ups of each cell of a polar grid of so many columns in another polar grid.
 #[derive(Debug)]
 pub(super) struct Registration<const COLUMNS: usize> {
     taps: Vec<Tap>,
@@ -13,17 +13,17 @@ pub(super) struct Registration<const COLUMNS: usize> {
 
 #[derive(Debug, Clone, Copy)]
 struct Tap {
-    /// The first of the four; the others are beside it and below. Angles wrap around, and so do ranges beyond the last.
+    /// Index of the first of the four cells; the others are beside it and below. Angles wrap around, and so do ranges beyond the last.
     cell: u32,
-    /// How far it is to the next row and to the next column, in parts of [`WHOLE_PARTS`].
+    /// Distance to the next row and to the next column, in parts of [`WHOLE_PARTS`].
     part: [u16; 2],
 }
 
 const WHOLE_PARTS: f32 = u16::MAX as f32;
 
 impl<const COLUMNS: usize> Registration<COLUMNS> {
-    /// For each cell of the polar grid around x = `from`, where it lies on the polar grid around x = `to`; metres. Columns beyond end-fire, where no
-    /// reflector is, lie as far off as end-fire does.
+    /// The registration from the polar grid around x = `to` on that around x = `from`; metres. Columns beyond end-fire, where no reflector is,
+    /// are shifted like end-fire.
     pub(super) fn new(radar: &Radar, from: f64, to: f64) -> Self {
         const { assert!(COLUMNS.is_power_of_two()) };
         let bin = radar.range_resolution_metres();
@@ -45,7 +45,7 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
         Registration { taps: (0..rows * COLUMNS).map(tap).collect() }
     }
 
-    /// What row `row` of the grid sees of `plane` `[rows, COLUMNS]`.
+    /// Row `row` of the grid, interpolated from `plane` `[rows, COLUMNS]`.
     #[inline]
     pub(super) fn row<T>(&self, plane: &[T], row: usize) -> impl Iterator<Item = T>
     where
@@ -81,7 +81,7 @@ mod tests {
         for column in FINE_COLUMNS / 2 + 1..FINE_COLUMNS {
             let u = cosine(column, FINE_COLUMNS);
             let bins = (r * r - 2.0 * r * u * x + x * x).sqrt() / bin;
-            // Between the last row and the first the look-up blends both.
+            // The look-up between the last row and the first blends both.
             if bins > rows as f64 {
                 assert!(
                     (f64::from(seen[column]) - (bins - rows as f64)).abs() < 1e-2,

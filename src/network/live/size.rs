@@ -1,4 +1,4 @@
-//! How large a live network is: its widths, and the shape of the radar whose maps it draws.
+//! The size of a live network: its widths, and the shape of its radar's maps.
 
 use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, LiveConfig, WIDE_COLUMNS};
 use super::constants::WINDOWS;
@@ -10,19 +10,19 @@ use crate::radar::{Bytes, Radar};
 use serde::Deserialize;
 use std::ops::RangeInclusive;
 
-/// Entry of a weight file that says how large its network is, as JSON; without it the network has the shipped size.
+/// Entry of a weight file with the size of its network, as JSON; without it the network has the shipped size.
 pub const SIZE_ENTRY: &str = "size";
 
-/// Most samples of a radar for which there can be a network.
+/// Most samples of a radar that a network can have.
 pub const MAX_ROWS: usize = 4096;
-/// The network halves the samples three times.
+/// Divisor of the number of samples, which the network halves three times.
 pub const ROWS_STEP: usize = 8;
 
 /// Most memory that a network may take for its weights and one pass, bytes.
 const MAX_BYTES: u64 = 1 << 30;
 /// Channels of networks for radars of at most half as many cells as table 3.1's.
 const SMALL_CHANNELS: [usize; 4] = [12, 24, 44, 60];
-/// Processor seconds that a map of 512 samples takes in training, of the shipped widths and of the small ones (training/README.md).
+/// Processor seconds of a map of 512 samples in training, with the shipped widths and with the small ones (training/README.md).
 const MAP_SECONDS: f64 = 0.52;
 const SMALL_MAP_SECONDS: f64 = 0.33;
 const CHANNELS: RangeInclusive<usize> = 1..=512;
@@ -36,7 +36,7 @@ pub struct LiveSize {
     pub config: LiveConfig,
     /// Samples of the radar: range rows of every tensor.
     pub rows: usize,
-    /// Elements of the radar's whole array: columns of the map. Inside, the network's pictures have 64, 256 and 1024 for any radar.
+    /// Elements of the radar's whole array: columns of the map. The network's inner pictures have 64, 256 and 1024 for any radar.
     pub columns: usize,
 }
 
@@ -72,7 +72,7 @@ impl From<LiveConfig> for LiveSize {
 }
 
 impl LiveSize {
-    /// The size that `file` says.
+    /// The size of the network of `file`.
     /// # Errors
     /// [`WeightsError::Store`] names the entry where it can't be read, and the number that is out of bounds.
     pub fn of(file: &WeightFile) -> Result<Self, WeightsError> {
@@ -90,9 +90,9 @@ impl LiveSize {
         Ok(size)
     }
 
-    /// That of a network which `training/train_live.py` makes for `radar`.
+    /// The size of the network that `training/train_live.py` makes for `radar`.
     /// # Errors
-    /// A sentence without its full stop, where there can be none.
+    /// A sentence without its full stop, where no network fits the radar.
     pub fn for_radar(radar: &Radar) -> Result<Self, String> {
         if radar.end_elements < 2 {
             return Err("an end of one element sees no direction".to_owned());
@@ -105,7 +105,7 @@ impl LiveSize {
         size.check().map(|()| size).map_err(|why| format!("its network {why}"))
     }
 
-    /// Checks that the radars of a weight file called `name` have this shape.
+    /// Checks that the radars of the weight file called `name` have this shape.
     /// # Errors
     /// [`WeightsError::Store`] with both shapes.
     pub(super) fn check_domain(&self, name: &str, domain: &Domain) -> Result<(), WeightsError> {
@@ -141,8 +141,7 @@ impl LiveSize {
         Ok(())
     }
 
-    /// Processor seconds that a map takes in `training/train_live.py`: its pictures have as many rows as the radar has samples, and as many columns
-    /// for any radar.
+    /// Processor seconds of a map in `training/train_live.py`: its pictures have as many rows as the radar has samples, and the same columns for any radar.
     pub fn training_seconds_a_map(&self) -> f64 {
         let seconds = if self.config.channels == SMALL_CHANNELS { SMALL_MAP_SECONDS } else { MAP_SECONDS };
         seconds * self.rows as f64 / ROWS as f64
@@ -152,7 +151,7 @@ impl LiveSize {
     pub fn memory_bytes(&self) -> u64 {
         let LiveConfig { channels, blocks, fine } = &self.config;
         let wide = |count: usize| padded(count) as u64;
-        // A 3x3 convolution is kept as 36 products.
+        // A 3x3 convolution is packed as 36 products.
         let conv = |input: usize, output: usize| 36 * wide(input) * wide(output);
         let levels: u64 = channels
             .iter()
@@ -163,7 +162,7 @@ impl LiveSize {
         let heads = conv(INPUT_CHANNELS, channels[0]) + conv(channels[0], 4 * DECODER_CHANNELS) + conv(12, *fine);
         let [rows, columns] = [self.rows, self.columns].map(|n| n as u64);
         let kernels = WINDOWS as u64 * (rows * rows + (WIDE_COLUMNS * WIDE_COLUMNS) as u64);
-        // Of a row: a level, what is convolved and what comes from below; heads and features; maps.
+        // Memory of a row: a level, the input of its convolution and the result from below; heads and features; maps.
         let of_levels: u64 = channels.iter().enumerate().map(|(level, c)| 3 * (wide(*c) >> (2 * level))).sum();
         let pictures =
             COARSE_COLUMNS as u64 * (of_levels + 64) + FINE_COLUMNS as u64 * 32 + 2 * COLUMNS as u64 + 3 * columns;
@@ -223,9 +222,9 @@ mod tests {
     }
 
     // `training/reference.py` writes these files.
-    /// Weights of a tiny network for a radar whose shape is another and whose columns fall.
+    /// Weights of a tiny network for a radar of another shape, in whose maps cos(theta) falls with the column.
     const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/shape_reference_weights.safetensors");
-    /// Three reflectors before it, and every third row of what PyTorch makes of them.
+    /// Three reflectors before this radar, and every third row of PyTorch's results.
     const REFERENCE: &[u8] = include_bytes!("../../../tests/data/shape_reference.safetensors");
 
     /// Largest distance of every third row of a map from the tensor `name` of the reference.

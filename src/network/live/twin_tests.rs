@@ -1,4 +1,4 @@
-//! The engine and its features against the network's twin in PyTorch.
+//! Tests of the engine and its features against the same network in PyTorch.
 
 use super::LiveConfig;
 use super::engine::{LiveEngine, LiveScratch};
@@ -9,7 +9,7 @@ use crate::radar::Radar;
 use crate::scene::Reflector;
 use crate::signal::{TwoEnds, exact};
 
-/// Written by `training/reference.py`: a tiny network, three reflectors, and what PyTorch makes of them.
+/// Written by `training/reference.py`: a tiny network, three reflectors, and PyTorch's results for them.
 const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
 const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
 
@@ -17,7 +17,7 @@ fn tiny() -> LiveConfig {
     LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 }
 }
 
-/// What a radar hears of the three reflectors of a reference, and the network's input.
+/// The samples of a reference's three reflectors, and the network's input.
 pub(super) fn heard(radar: &Radar, reference: &WeightFile, reflectivity: f64) -> (TwoEnds, LiveInput) {
     let points = reference.tensor("points", &[3, 2]).unwrap();
     let of = |p: &[f32]| Reflector { x_metres: p[0].into(), y_metres: p[1].into(), reflectivity };
@@ -59,7 +59,7 @@ fn features_agree_with_the_twin() {
     check("gain", &[found.gain as f32], &[1], 1, 1, 1, 1);
 }
 
-/// Weights of version 0.1.0 have no constants of the radar: for the radar that they were trained for, they answer as they did.
+/// Weights of version 0.1.0 have no constants of the radar; their answers for the radar of their training stay the same.
 #[test]
 fn weights_of_version_0_1_answer_as_they_did() {
     let weights = include_bytes!("../../../tests/data/program-0.1.0/live_reference_weights.safetensors");
@@ -84,7 +84,7 @@ fn the_engine_agrees_with_the_twin() {
     let minimum = reference.tensor("minimum", &[1]).unwrap()[0];
     assert!((fast.minimum - minimum).abs() < 1e-3, "{} for {minimum}", fast.minimum);
 
-    // The same scene as another radar's, with another window.
+    // The same scene with the constants of another radar and another window.
     let constants = reference.tensor("constants", &[CONSTANTS]).unwrap().try_into().unwrap();
     let other = LiveInput { constants, ..input };
     let fast_other = engine.forward(&other, &mut LiveScratch::default());

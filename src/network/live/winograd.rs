@@ -1,9 +1,9 @@
 //! 3x3 convolutions by minimal [`filter`](super::filter)ing in both directions: four by four neighbouring outputs cost 36 products in place of
 //! 144.
 //!
-//! Angles wrap around, ranges end in zeros. Lines are computed in bands that stay in a processor's cache: each line of the input is asked for
-//! and spread into six pictures of a quarter of the width, six lines of each of those into six of one line. The 36 pictures meet a kernel of
-//! a single tap each; their results are gathered into lines, and those into lines of the output.
+//! Angles wrap around, ranges end in zeros. Lines are computed in bands that fit a processor's cache: each line of the input is read and
+//! transformed into six pictures of a quarter of the width, and six lines of each picture into six of one line. The 36 pictures are multiplied
+//! by kernels of a single tap; the products are transformed into lines, and those into lines of the output.
 
 use super::filter::{Gather, Groups, OF_BIAS, OF_TAPS, OUTPUTS, PRODUCTS, Spread};
 use crate::network::kernels::convolution::{Packed, padded};
@@ -12,12 +12,11 @@ use crate::signal::simd::Simd;
 use rayon::prelude::*;
 use std::cell::RefCell;
 
-/// Groups of [`OUTPUTS`] cells that a band has at most, and its fewest and most lines: what a processor's cache holds, and enough bands for all
-/// processors.
+/// Most groups of [`OUTPUTS`] cells of a band, and its fewest and most lines: they fit a processor's cache, and give enough bands for all processors.
 const BAND_GROUPS: usize = 512;
 const BAND_LINES: std::ops::RangeInclusive<usize> = 4..=16;
 
-/// One for each product along the angle and, within that, in range.
+/// One picture for each product along the angle and, within that, in range.
 type Pictures<T> = [[T; PRODUCTS]; PRODUCTS];
 
 /// A 3x3 convolution's weights, as 36 kernels of one tap.
@@ -31,7 +30,7 @@ pub(super) struct Conv3x3 {
 #[derive(Default)]
 struct Band {
     line: Vec<f32>,
-    /// The lines that the next outputs see, spread along the angle.
+    /// The input lines of the next outputs, transformed along the angle.
     spread: [[Vec<f32>; PRODUCTS]; PRODUCTS],
     pictures: Pictures<Vec<f32>>,
     products: Pictures<Vec<f32>>,
@@ -70,7 +69,7 @@ impl Conv3x3 {
     /// Convolves a picture of `height` lines of `width` cells, a multiple of four: `read` writes line y of the input, and `take` puts a line of
     /// [`Results`] into the same line of `out`.
     ///
-    /// Neither may use rayon: what a thread keeps for a band is borrowed meanwhile.
+    /// Neither may use rayon: the thread's buffers are borrowed meanwhile.
     pub(super) fn run(
         &self,
         [height, width]: [usize; 2],
@@ -104,7 +103,7 @@ impl Conv3x3 {
 }
 
 impl Band {
-    /// Reads lines and spreads them over the pictures, of which each strip of four lines becomes one line.
+    /// Reads lines and transforms them into the pictures, in which each strip of four lines becomes one line.
     fn spread(&mut self, simd: Simd, channels: usize, groups: usize, strips: usize, read: impl Fn(usize, &mut [f32])) {
         let cells = groups * OUTPUTS * channels;
         let size = groups * channels;
@@ -155,7 +154,7 @@ pub(super) struct Results<'a> {
     simd: Simd,
     channels: usize,
     groups: usize,
-    /// Of the strip that was gathered last.
+    /// Index of the line in the strip that was gathered last.
     line: usize,
     band: &'a mut Band,
 }
@@ -165,7 +164,7 @@ impl<'a> Results<'a> {
         put(self.simd, [self.channels, self.groups, self.line], &self.band.gathered, to);
     }
 
-    /// The results, to be taken from where they will be overwritten.
+    /// The results in a buffer that the next line overwrites.
     pub(super) fn sums(self) -> &'a mut [f32] {
         let Results { simd, channels, groups, line, band } = self;
         band.sums.resize(groups * channels * OUTPUTS, 0.0);

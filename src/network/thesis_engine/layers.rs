@@ -2,11 +2,10 @@
 
 use crate::network::weights::{WeightFile, WeightsError};
 
-/// What batch norms add to a variance before its root: burn's and PyTorch's default, which the author's program keeps.
+/// Term that batch norms add to a variance before its root: the default of burn and PyTorch, and the author's value.
 const EPSILON: f32 = 1e-5;
 
-/// Where layers come from, under the names of [`Thesis`](super::super::thesis::Thesis). Their errors name the tensor that is missing or of another
-/// shape.
+/// Source of layers, under the names of [`Thesis`](super::super::thesis::Thesis). Errors name the tensor that is missing or of another shape.
 #[derive(Clone, Copy)]
 pub(super) struct ThesisLayers<'a> {
     pub(super) file: &'a WeightFile<'a>,

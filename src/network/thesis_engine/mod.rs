@@ -1,7 +1,7 @@
-//! The forward pass of the thesis' network without a framework: channels-last, buffers kept, the same weights as [`super::thesis`], which is what
-//! trains and what this is tested against.
+//! The forward pass of the thesis' network without a framework: channels-last, buffers kept, the same weights as [`super::thesis`], which is
+//! trained and which tests compare it with.
 //!
-//! | file | what |
+//! | file | content |
 //! |---|---|
 //! | `layers` | weights with each batch norm folded into its convolution |
 //! | `pictures` | pictures with circular margins and with borders of zeros |
@@ -35,7 +35,7 @@ pub struct ThesisEngine {
 #[derive(Debug, Default)]
 pub struct Buffers {
     input: Parted,
-    /// What each level of a tower makes but the last; the second tower overwrites the first one's.
+    /// Outputs of each level of a tower but the last; the second tower overwrites the first one's.
     down: Vec<Parted>,
     joined: Bordered,
     up: Vec<Bordered>,
@@ -173,7 +173,7 @@ pub(super) mod tests {
 
     #[test]
     fn every_width_and_depth_agrees_with_burn() {
-        // The same buffers for all: what an earlier pass left in them must not show. Some maps are smaller than the margins.
+        // All scenes share the buffers: results of an earlier pass must not show. Some maps are smaller than the margins.
         let mut buffers = Buffers::default();
         for (filters, levels, size) in [
             (16, 5, [64, 96]),

@@ -1,14 +1,14 @@
-//! Channels-last pictures with a margin, so that a kernel reads beyond their edges without asking where it is.
+//! Channels-last pictures with a margin, so that a kernel reads beyond their edges without checks.
 
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Cells of a [`Parted`] picture's margin, in each of its parts: what the larger kernel, of five by five cells, sees beside its middle.
+/// Cells of a [`Parted`] picture's margin, in each of its parts: the reach of the larger kernel, of five by five cells, beside its middle.
 const MARGIN: usize = 2;
 
-/// A picture that goes on circularly beyond all four edges. In a line all even cells lie side by side, and after them all odd ones. A kernel of
-/// dilation 2 that stands on an even cell sees even cells alone, and so does one on an odd cell; likewise for rows. So the dilated convolution is
-/// an ordinary one of each of four parts, and the four outputs at the same place of the parts are those that a 2x2 max-pool takes the largest of.
+/// A picture that continues circularly beyond all four edges. In a line all even cells lie side by side, and after them all odd ones. A kernel
+/// of dilation 2 on an even cell reads even cells alone, and one on an odd cell odd cells; likewise for rows. So the dilated convolution is an
+/// ordinary one of each of four parts, and a 2x2 max-pool takes the largest of the four outputs at the same place of the parts.
 ///
 /// `[h + 4 MARGIN, 2, w / 2 + 2 MARGIN, c]`; height and width must be even.
 #[derive(Debug, Default)]
@@ -40,7 +40,7 @@ impl Parted {
         4 * self.part()
     }
 
-    /// What a kernel of `size` by `size` cells sees from the row `y` of the picture and the first cell of the part `odd` on.
+    /// The input of a kernel of `size` by `size` cells, from the row `y` of the picture and the first cell of the part `odd` on.
     pub(super) fn seen(&self, y: usize, odd: usize, size: usize) -> &[f32] {
         let before = size / 2;
         let row = y + Self::MARGIN_ROWS - 2 * before;
@@ -57,14 +57,14 @@ impl Parted {
             line.close();
         });
         for row in (0..Self::MARGIN_ROWS).chain(Self::MARGIN_ROWS + self.h..2 * Self::MARGIN_ROWS + self.h) {
-            // A picture may have fewer rows than its margin; it is repeated then.
+            // A picture with fewer rows than its margin is repeated.
             let from = Self::MARGIN_ROWS + beyond(row, Self::MARGIN_ROWS, self.h);
             self.data.copy_within(from * size..(from + 1) * size, row * size);
         }
     }
 }
 
-/// The place within `0..size` that lies where place `at`, counted from `margin` before the first, is beyond the edge.
+/// The place within `0..size` to which place `at`, counted from `margin` before the first, wraps around.
 fn beyond(at: usize, margin: usize, size: usize) -> usize {
     (at + margin * (size - 1)) % size
 }
@@ -101,7 +101,7 @@ pub(super) struct Bordered {
 }
 
 impl Bordered {
-    /// Makes room for a picture of `h` rows, `w` cells a row and `c` channels; what it held is left to be overwritten, and its border is zeros.
+    /// Resizes the picture to `h` rows, `w` cells a row and `c` channels, with a border of zeros; the cells are left to be overwritten.
     pub(super) fn reset(&mut self, h: usize, w: usize, c: usize) {
         if (self.h, self.w, self.c) != (h, w, c) {
             (self.h, self.w, self.c) = (h, w, c);

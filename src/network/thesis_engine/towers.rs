@@ -10,7 +10,7 @@ use crate::signal::simd::Simd;
 /// Channels of the input: magnitude and phase of both ends.
 pub const CHANNELS: usize = 4;
 
-/// Outputs that a max-pool takes the largest of: one of each part of a [`Parted`] picture.
+/// Number of outputs of which a max-pool takes the largest: one of each part of a [`Parted`] picture.
 const POOLED_OUTPUTS: usize = 4;
 
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! The way up: transposed 4x4 convolutions of stride 2, each with ReLU.
 //!
-//! The output's cell `Y` sees the input's cells `i` with `Y = 2 i - 1 + k` for the kernel's rows `k` from 0 to 3. So an even one sees two
-//! rows of the input, through the kernel's rows 3 and 1, and an odd one two rows through 2 and 0; likewise for columns.
+//! The output's cell `Y` depends on the input's cells `i` with `Y = 2 i - 1 + k` for the kernel's rows `k` from 0 to 3. So an even one depends
+//! on two rows of the input, through the kernel's rows 3 and 1, and an odd one on two rows through 2 and 0; likewise for columns.
 
 use super::layers::ThesisLayers;
 use super::pictures::Bordered;
@@ -12,7 +12,7 @@ use crate::signal::simd::Simd;
 use rayon::prelude::*;
 
 const SIZE: usize = 4;
-/// Rows of the kernel that meet the two rows of the input that an even row of the output sees, and an odd one.
+/// Rows of the kernel for the two input rows of an even output row, and of an odd one.
 const ROWS: [[usize; 2]; 2] = [[3, 1], [2, 0]];
 const _: () = assert!(SIZE * SIZE == LANES, "the last kernel's products of a cell are one vector");
 

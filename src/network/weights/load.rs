@@ -1,4 +1,4 @@
-//! Weights into a module of burn's.
+//! Loading of weights into a module of burn.
 
 use super::{WeightFile, WeightsError};
 use burn::module::Module;

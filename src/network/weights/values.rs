@@ -1,4 +1,4 @@
-//! The numbers of tensors: 32-bit floats, or 16-bit ones, which take half the room.
+//! The values of tensors: 32-bit floats, or 16-bit ones, which take half the space.
 
 use super::{TensorHeader, WeightFile, WeightsError};
 use half::f16;
@@ -43,7 +43,7 @@ impl WeightFile<'_> {
         }
     }
 
-    /// The same file with 32-bit floats in place of 16-bit ones, for readers that want them; other types stay.
+    /// The same file with 32-bit floats in place of 16-bit ones, for readers that need them; other types stay.
     /// # Errors
     /// [`WeightsError::Tensor`] for a tensor that lies outside the file, [`WeightsError::NotSafetensors`] if the header can't be written.
     #[cfg(feature = "network")]

@@ -1,7 +1,7 @@
-//! Threads of a page: Web Workers that share the program's memory. A browser shares it on pages that are isolated from other origins; on
-//! any other page, work is done in a later turn of the page's one thread.
+//! Threads of a page: Web Workers that share the program's memory. A browser shares memory on pages that are isolated from other origins. On other pages, work
+//! is done in a later turn of the page's single thread.
 //!
-//! The first thread of a page may not wait: [`lock`] tries again there until it has the lock.
+//! The first thread of a page may not wait: there [`lock`] tries until it has the lock.
 
 use std::cell::{Cell, RefCell};
 use std::io;
@@ -32,7 +32,7 @@ extern "C" {
     fn tell_first(problem: &str);
 }
 
-/// Most threads of one pool: each takes some megabytes.
+/// Most threads of one pool; each takes some megabytes.
 const MAX_POOL_THREADS: usize = 8;
 
 static HAS_THREADS: AtomicBool = AtomicBool::new(false);
@@ -48,12 +48,12 @@ thread_local! {
 }
 
 struct Work {
-    /// Whether it is one of a pool's.
+    /// Whether the thread belongs to a pool.
     of_a_pool: bool,
     run: Box<dyn FnOnce() + Send>,
 }
 
-/// Whether this is the page's first thread, the one that draws.
+/// Whether this thread is the page's first one, which draws.
 pub(super) fn on_first_thread() -> bool {
     IS_FIRST.get().unwrap_or_else(|| {
         let first = is_first();
@@ -62,12 +62,12 @@ pub(super) fn on_first_thread() -> bool {
     })
 }
 
-/// Whether long work runs beside the window.
+/// Whether long work runs on threads beside the window.
 pub fn has_threads() -> bool {
     HAS_THREADS.load(Ordering::Relaxed)
 }
 
-/// To be called on the first thread, before anything else.
+/// Prepares the threads. Call it on the first thread, before other functions of this file.
 pub(super) fn begin() {
     HAS_THREADS.store(is_isolated(), Ordering::Relaxed);
     let wake = Closure::<dyn FnMut()>::new(wake_here).into_js_value();
@@ -77,7 +77,7 @@ pub(super) fn begin() {
     });
     listen(&wake, &problem.into_js_value());
     if has_threads() {
-        // Small computations of the first thread itself must not wait for others.
+        // Small computations of the first thread itself must not wait for other threads.
         match rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build() {
             Ok(alone) => std::mem::forget(alone),
             Err(error) => tracing::error!("the first thread has no pool of its own: {error}"),
@@ -85,7 +85,7 @@ pub(super) fn begin() {
     }
 }
 
-/// Threads that end by a panic tell it; to be called when the window has set its own hook, which takes any panic for its own.
+/// Makes threads report a panic. Call it after the window has set its own hook, which would treat every panic as the window's.
 pub(super) fn watch_panics() {
     let of_the_window = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
@@ -105,12 +105,12 @@ fn message_of(info: &PanicHookInfo<'_>) -> String {
     info.payload_as_str().unwrap_or("a panic without a message").to_owned()
 }
 
-/// What this thread does where it panics, with the panic's message; it ends afterwards. A panic can't be caught here.
+/// Sets the action of this thread at a panic, with the panic's message. The thread ends afterwards, since a panic can't be caught.
 pub fn on_panic(then: impl FnOnce(String) + 'static) {
     ON_PANIC.set(Some(Box::new(then)));
 }
 
-/// Holds `mutex`, without waiting on the first thread.
+/// Locks `mutex`; the first thread spins instead of waiting.
 pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     if !on_first_thread() {
         return mutex.lock().unwrap_or_else(PoisonError::into_inner);
@@ -124,15 +124,15 @@ pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     }
 }
 
-/// Runs `work` on a thread called `name`, or in a later turn where there are none.
+/// Runs `work` on a thread called `name`, or in a later turn of a page without threads.
 /// # Errors
-/// None here: a thread that the browser doesn't start is told as a problem.
+/// None on a page: a thread that the browser can't start becomes a problem.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
     if has_threads() {
         begin_thread(name, Work { of_a_pool: false, run: Box::new(work) });
     } else {
         spawn_local(async move {
-            // A frame is drawn first, so that what was asked for shows.
+            // A frame is drawn first, so that the user sees the request.
             let _turn = JsFuture::from(soon()).await;
             work();
         });
@@ -145,12 +145,12 @@ fn begin_thread(name: &str, work: Work) {
     if on_first_thread() {
         start_thread(name, wasm_bindgen::module(), wasm_bindgen::memory(), work);
     } else {
-        // The browser starts a thread only while the one that asks is idle.
+        // The browser starts a thread only while the asking one is idle.
         ask_for_thread(name, work);
     }
 }
 
-/// What a new thread does: the work at an address that [`begin_thread`] gave.
+/// The entry point of a new thread: the work at an address given by [`begin_thread`].
 #[wasm_bindgen(js_name = enterThread)]
 pub fn enter_thread(work: usize) {
     // SAFETY: `begin_thread` gave the box away; the browser hands its address to one thread, once.
@@ -175,7 +175,7 @@ fn begin_pool_thread(name: &str, thread: rayon::ThreadBuilder) -> io::Result<()>
     Ok(())
 }
 
-/// A pool of threads of its own for slow work; `None` where there are none.
+/// A pool of threads for slow work; `None` on a page without threads.
 pub fn pool(name: &'static str) -> Option<rayon::ThreadPool> {
     let builder = rayon::ThreadPoolBuilder::new().num_threads(pool_threads());
     has_threads().then(|| builder.spawn_handler(|thread| begin_pool_thread(name, thread)).build().ok()).flatten()
@@ -193,7 +193,7 @@ fn wake_here() {
     WAKER.with_borrow(|wake| wake.iter().for_each(|wake| wake()));
 }
 
-/// What went wrong beside the window since the last call, for the person before it.
+/// Problems of threads since the last call, as messages for the user.
 pub fn problems() -> Vec<String> {
     std::mem::take(&mut *lock(&PROBLEMS))
 }

@@ -1,4 +1,4 @@
-//! The elements of both ends that heard something.
+//! The elements of both ends whose samples are not zero.
 
 use crate::radar::{End, Pair, Radar};
 use crate::reconstruct::profiles::Profiles;
@@ -12,17 +12,17 @@ const PROFILE_ROWS_PER_BIN: usize = 16;
 /// Elements side by side.
 const W: usize = LANES_F64;
 
-/// Elements that heard something, those of the first end first, one that is in both ends once; dead ones are missing samples.
+/// Elements with samples, those of the first end first, one that is in both ends once; dead elements are missing samples.
 pub(super) struct Ends {
     /// Positions, metres.
     pub x_metres: Vec<f64>,
-    /// How many of them are the first end's.
+    /// Number of the first end's elements.
     pub first_count: usize,
     /// Range profiles, one an element.
     pub profiles: Profiles,
     /// Antennas of each element.
     pub pairs: Vec<Pair>,
-    /// The antennas once more, the last ones repeated.
+    /// The antennas in lanes, the last ones repeated.
     lanes: Vec<PairLanes<W>>,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct PairLanes<const W: usize> {
 }
 
 impl<const W: usize> PairLanes<W> {
-    /// The pairs that `pair` tells for lanes 0, 1 and so on.
+    /// The pairs `pair(0)`, `pair(1)` and so on, one a lane.
     #[inline(always)]
     pub fn new(pair: impl Fn(usize) -> Pair) -> Self {
         let pairs: [Pair; W] = std::array::from_fn(pair);
@@ -79,8 +79,8 @@ impl Ends {
         self.x_metres.len()
     }
 
-    /// What each element heard from a place in the centre's polar grid, the phase of its distance taken off: alike in every element but
-    /// for the distance for a reflector there. `heard` has an entry an element.
+    /// Writes into `heard` the profile of each element at a place in the centre's polar grid, without the phase of the element's distance: the
+    /// profiles of a reflector there differ by the distance alone. `heard` has an entry an element.
     #[inline(always)]
     pub fn listen<const FMA: bool>(&self, range_metres: f64, cos_theta: f64, heard: &mut [Complex64]) {
         for (i, (pairs, heard)) in self.lanes.iter().zip(heard.chunks_mut(W)).enumerate() {
@@ -90,7 +90,7 @@ impl Ends {
     }
 }
 
-/// Ranges of places in the centre's polar grid, as pairs of antennas measure them, metres.
+/// Ranges of places in the centre's polar grid for pairs of antennas, metres: half the way there and back.
 #[inline(always)]
 pub(super) fn distances_metres<const W: usize, const FMA: bool>(
     pairs: PairLanes<W>,
@@ -107,7 +107,7 @@ pub(super) fn distances_metres<const W: usize, const FMA: bool>(
     }
 }
 
-/// Distances between antennas, on the array's axis where no y is said, and places before it in the centre's polar grid, metres.
+/// Distances of places in the centre's polar grid from antennas, metres. Without `y` the antennas are on the array's axis.
 #[inline(always)]
 fn legs_metres<const W: usize, const FMA: bool>(
     x_metres: Lanes<f64, W>,

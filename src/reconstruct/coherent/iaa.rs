@@ -4,8 +4,8 @@ use super::method::{CoherentMethod, TOLD_TO_COHERENT};
 use super::model::Update;
 use crate::reconstruct::reconstructor::About;
 
-/// Every direction's power by weighted least squares, the weights being what all other directions explain, until they agree; of the
-/// elements that are there.
+/// The power of every direction by weighted least squares, with weights from the powers of all other directions, iterated until they agree; over
+/// the elements with samples.
 ///
 /// T. Yardibi, J. Li, P. Stoica, M. Xue and A. B. Baggeroer, "Source localization and sensing: a nonparametric iterative adaptive
 /// approach based on weighted least squares", IEEE Trans. Aerosp. Electron. Syst. 46, 2010; with elements missing, D. Vu, L. Xu,

@@ -1,6 +1,6 @@
 //! The linear algebra of one iteration, for wide vectors: one lane a steering vector, element after element.
 //!
-//! In f32, the covariance's factor in f64: the least noise that is reckoned with lies far above the rounding of either.
+//! In f32, with the covariance's factor in f64: the least noise in use lies far above the rounding of either.
 
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F32, Lanes, Simd};
 use num_complex::Complex64;
@@ -8,7 +8,7 @@ use num_complex::Complex64;
 /// Steering vectors in one lane group.
 pub(super) const W: usize = LANES_F32;
 
-/// Lanes that are worked on together: as many as hide how long an addition takes.
+/// Lane groups that are computed together: enough to hide the latency of an addition.
 const TOGETHER: usize = 4;
 
 /// Rows and columns of the covariance kept in registers.
@@ -29,7 +29,7 @@ pub(super) struct Steering {
 }
 
 impl Steering {
-    /// Room for `lanes` times `W` vectors of `elements` elements; zeros so far.
+    /// Space for `lanes` times `W` vectors of `elements` elements, all zero.
     pub fn zero(elements: usize, lanes: usize) -> Self {
         Steering { elements, values: vec![[Lane::zero(); TOGETHER]; elements * lanes.div_ceil(TOGETHER)] }
     }
@@ -60,7 +60,7 @@ impl Steering {
     }
 }
 
-/// What the covariance `R = sum_k power_k a_k a_k^H + noise` makes of the samples z; one number a vector.
+/// Figures of the samples z under the covariance `R = sum_k power_k a_k a_k^H + noise`, one number a vector.
 #[derive(Debug, Clone)]
 pub(super) struct Explained {
     /// `|a_k^H R^-1 z|^2`.
@@ -69,7 +69,7 @@ pub(super) struct Explained {
     pub held: Vec<f32>,
 }
 
-/// One iteration's work; `None` where the covariance is not positive definite. `powers` are one a vector, the padding included.
+/// One iteration; `None` where the covariance is not positive definite. `powers` has one value a vector, the padding included.
 pub(super) fn explained(steering: &Steering, powers: &[f32], noise: f64, z: &[Complex64]) -> Option<Explained> {
     Simd::chosen().run(Iteration { steering, powers, noise, z })
 }
@@ -119,7 +119,7 @@ impl Iteration<'_> {
         out
     }
 
-    /// Rows from `i` and columns from `j` of the covariance without noise, before lanes are added up.
+    /// Rows from `i` and columns from `j` of the covariance without noise, with one sum a lane.
     #[inline(always)]
     #[allow(clippy::needless_range_loop)] // constant bounds keep the tile in registers
     fn tile<const FMA: bool>(&self, powers: &[Lanes<f32, W>], i: usize, j: usize) -> [[Lane; TILE.1]; TILE.0] {
@@ -142,7 +142,7 @@ impl Iteration<'_> {
         sums
     }
 
-    /// `L^-1` applied to all steering vectors and to the samples, and what follows from them.
+    /// `L^-1` applied to all steering vectors and to the samples, and the figures of [`Explained`].
     #[inline(always)]
     #[allow(clippy::needless_range_loop)] // constant bounds keep the rows in registers
     fn whitened<const FMA: bool>(&self, factor: &[Complex64]) -> Explained {

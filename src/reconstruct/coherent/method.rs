@@ -1,4 +1,4 @@
-//! A coherent method is one closure; everything around it is written here once.
+//! Coherent methods: each is one closure, and the steps around it are shared.
 
 use super::ends::Ends;
 use super::model::{Model, Update};
@@ -18,16 +18,16 @@ use crate::signal::TwoEnds;
 use crate::task::Task;
 use rayon::prelude::*;
 
-/// Most elements that are heard: a model's work grows with the cube of their number.
+/// Most elements with samples: a model's work grows with the cube of their number.
 const MOST_HEARD_ELEMENTS: usize = 96;
 
-/// Looks at what the reflectors found so far leave of the samples.
+/// Most looks: searches for peaks in the samples and in the residuals of the reflectors found so far.
 const LOOKS: usize = 4;
 
-/// Most sectors: of an array that is thousands of range bins long.
+/// Most sectors, those of an array as long as so many range bins.
 const MOST_SECTORS: f64 = 1000.0;
 
-/// What every coherent method is told.
+/// The assumptions of every coherent method, [`About::told`](crate::reconstruct::About::told).
 pub(super) const TOLD_TO_COHERENT: &str = "nothing about the scene or the floor; it measures the noise itself";
 
 /// A method that finds the powers of steering vectors of both ends together.
@@ -35,7 +35,7 @@ pub(super) const TOLD_TO_COHERENT: &str = "nothing about the scene or the floor;
 pub struct CoherentMethod {
     pub(super) about: About,
     pub(super) update: Update,
-    /// A direction's least power, as a part of its model's strongest, to be taken for a reflector.
+    /// Least power of a reflector's direction, as a part of its model's strongest.
     pub(super) least_part: f64,
 }
 
@@ -72,7 +72,7 @@ impl Reconstructor for CoherentMethod {
         let task = &request.task;
         let hearing = Hearing::beneath(radar, ends, request.noise);
         let found = if radar.samples == 1 {
-            // A single sample tells no range to move reflectors along.
+            // A single sample has no ranges along which reflectors could be moved.
             gains(radar, &self.peaks(radar, ends, &hearing, task)?, ends, task)?
         } else {
             let look = |ends: &TwoEnds| self.peaks(radar, ends, &hearing, task);
@@ -83,7 +83,7 @@ impl Reconstructor for CoherentMethod {
 }
 
 impl CoherentMethod {
-    /// Whether its models can be made of `heard` elements of `radar`'s ends.
+    /// Whether models can be made of `heard` elements of `radar`'s ends.
     fn check_size(&self, radar: &Radar, heard: usize) -> Result<(), ReconstructError> {
         if heard > MOST_HEARD_ELEMENTS {
             return Err(self.unusable(format!(
@@ -99,7 +99,7 @@ impl CoherentMethod {
         no_plane_waves(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
-    /// What stands out of the samples of both ends, the strongest first.
+    /// Peaks of the samples of both ends, the strongest first.
     fn peaks(
         &self,
         radar: &Radar,
@@ -109,7 +109,7 @@ impl CoherentMethod {
     ) -> Result<Vec<Peak>, ReconstructError> {
         let heard = Ends::new(radar, ends);
         let sectors = Sectors::new(radar, &heard);
-        // The window's mean weight squared over its mean square, for each sample.
+        // The window's mean square over its squared mean, divided by the number of samples.
         let noise_power = hearing.ends_noise_variance(radar, ends) * 1.5 / radar.samples as f64;
         let places = places(radar, &heard, &sectors, noise_power, task)?;
         let found: Vec<Vec<Peak>> = places
@@ -123,7 +123,7 @@ impl CoherentMethod {
     }
 }
 
-/// Reflectors behind the peaks that `look` finds in `ends`, and in what those found so far leave of them.
+/// Reflectors behind the peaks that `look` finds in `ends`, and in the residuals of those found so far.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`], and those of `look`.
@@ -141,8 +141,7 @@ pub(in crate::reconstruct) fn explained(
     settled.found(ends)
 }
 
-/// `settled` after all looks; `first` are the peaks of the first one, which are the same for the same samples. Progress
-/// goes on from `from`.
+/// `settled` after all looks; `first` holds the peaks of the first look, which are the same for the same samples. Progress begins at `from`.
 fn looked<'a>(
     mut settled: Settled<'a>,
     first: &mut Option<Vec<Peak>>,

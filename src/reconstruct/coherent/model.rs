@@ -1,4 +1,4 @@
-//! The linear model of one place: steering vectors of both ends together, and the powers that explain what was heard.
+//! The linear model of one place: steering vectors of both ends together, and their powers.
 
 use super::ends::{Ends, PairLanes, distances_metres};
 use super::linear::{Lane, Steering, W, explained};
@@ -11,23 +11,23 @@ use crate::signal::simd::{Kernel, Lanes, Simd};
 use crate::task::Task;
 use num_complex::Complex64;
 
-/// Plane waves that one end alone hears, for each of its beam widths.
+/// Number of plane waves at one end alone for each of its beam widths.
 const BEAMS_PER_WIDTH: f64 = 2.0;
 
 /// Beam widths around the sector from which no such waves are taken: both ends' own vectors account for them.
 const CLEAR_WIDTHS: f64 = 0.2;
 
-/// Change of all powers, as a part of the largest, at which they are settled.
+/// Change of all powers, as a part of the largest, at which the iteration ends.
 const SETTLED: f32 = 1e-3;
 
-/// Powers beneath this part of the mean power heard are none: so small a number would only slow the processor down.
+/// Powers below this part of the mean power of the samples are set to 0: denormal numbers slow the processor down.
 const NO_POWER: f32 = 1e-20;
 
-/// What both ends heard from a place, and the vectors that may explain it.
+/// The profiles of both ends at a place, and their steering vectors.
 pub(super) struct Model {
-    /// First the sector's directions, then one end's plane waves; zeros beside and behind them.
+    /// First the sector's directions, then the plane waves at one end; zeros at the other end and in the padding.
     steering: Steering,
-    /// What each element heard.
+    /// The profile of each element at the place.
     heard: Vec<Complex64>,
     /// Directions of the sector.
     directions: usize,
@@ -35,10 +35,10 @@ pub(super) struct Model {
     noise: f64,
 }
 
-/// What one steering vector has to do with the samples, whose mean power is 1.
+/// Figures of one steering vector, in units in which the samples' mean power is 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Share {
-    /// Power so far.
+    /// The vector's present power.
     pub power: f32,
     /// `|a^H R^-1 z|^2` of the vector a, the covariance R of all powers and noise, and the samples z.
     pub matched: f32,
@@ -46,14 +46,14 @@ pub(super) struct Share {
     pub held: f32,
 }
 
-/// How powers are found.
+/// The update of powers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Update {
     /// The next power of a vector.
     pub next: fn(Share) -> f32,
-    /// How often all powers are updated at most.
+    /// Most updates of all powers.
     pub iterations: usize,
-    /// Least noise that is reckoned with, as a part of the mean power heard: what steering vectors leave of a real echo.
+    /// Least noise of the model, as a part of the mean power of the samples: the error of steering vectors for a real echo.
     pub least_noise: f64,
 }
 
@@ -63,7 +63,7 @@ impl Model {
         Simd::chosen().run(Make { radar, ends, sectors, place, noise_power })
     }
 
-    /// Powers of the sector's directions by `update` from those of the matched filter.
+    /// Powers of the sector's directions, iterated by `update` from those of the matched filter.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -101,7 +101,7 @@ impl Model {
     }
 }
 
-/// The making of a model.
+/// Kernel that makes a model.
 struct Make<'a> {
     radar: &'a Radar,
     ends: &'a Ends,
@@ -124,7 +124,7 @@ impl Kernel for Make<'_> {
         ends.listen::<FMA>(range, place.sector.middle_cos, &mut heard);
         let mut noise = 0.0;
         for (heard, own) in heard.iter_mut().zip(&own) {
-            // Amplitudes fall with the square of the distance: as if all elements stood equally far.
+            // Amplitudes fall with the square of the distance; this scales them to the same distance for all elements.
             let nearer = (own / range).powi(2);
             *heard *= nearer;
             noise += self.noise_power * nearer * nearer / ends.len() as f64;
@@ -149,7 +149,7 @@ impl Kernel for Make<'_> {
 }
 
 impl Make<'_> {
-    /// The vectors of directions that are `steps` off the sector's middle; `own` are the elements' distances from there.
+    /// Adds the vectors of directions that are `steps` off the sector's middle; `own` are the elements' distances from that middle.
     #[inline(always)]
     fn add_directions<const FMA: bool>(&self, steps: &[f64], own: &[f64], lane: usize, steering: &mut Steering) {
         let Make { radar, ends, place, .. } = self;
@@ -168,7 +168,7 @@ impl Make<'_> {
     }
 }
 
-/// The lanes of `wave` that exist, zeros in the others.
+/// `wave` with zeros in the lanes that don't exist.
 #[inline(always)]
 fn only(mut wave: Lane, exists: impl Fn(usize) -> bool) -> Lane {
     for i in (0..W).filter(|i| !exists(*i)) {
@@ -177,8 +177,7 @@ fn only(mut wave: Lane, exists: impl Fn(usize) -> bool) -> Lane {
     wave
 }
 
-/// Directions beside the sector, relative to its middle, from which one end may hear a plane wave at the place's range: those that sound
-/// different at its elements.
+/// Directions outside the sector, relative to its middle, of plane waves at one end at the place's range: those that differ at its elements.
 fn beside(radar: &Radar, place: &Place) -> Vec<f64> {
     let turns_per_metre = radar.carrier_turns_per_metre().abs();
     let period_cos = 1.0 / (turns_per_metre * radar.element_spacing_metres);
@@ -189,7 +188,7 @@ fn beside(radar: &Radar, place: &Place) -> Vec<f64> {
     let cosines = (0..count).map(|i| reach_cos * ((i as f64 + 0.5) / count as f64 - 0.5));
     let step = |cos: f64| {
         let step = cos - place.sector.middle_cos;
-        // Above half a wavelength directions a period apart sound alike.
+        // For elements further apart than half a wavelength, directions a period apart have the same phases.
         if period_cos < 1.999 { step - (step / period_cos).round() * period_cos } else { step }
     };
     cosines.map(step).filter(|step| step.abs() > clear_cos).collect()

@@ -1,4 +1,4 @@
-//! Reflectors from powers over direction, and their gains.
+//! Reflectors from powers over direction, with their gains.
 
 use super::places::Place;
 use super::sectors::Sectors;
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// Peaks are the same reflector when nearer than this in range bins and in periods of the ends' fringes.
 const SAME_PEAK: (f64, f64) = (1.0, 0.75);
 
-/// Most peaks of one model: two ends of a dozen elements tell no more apart.
+/// Most peaks of one model: two ends of a dozen elements resolve no more.
 const MOST_A_PLACE: usize = 8;
 
 /// Most reflectors: the time for their gains grows with the square of their number, and faster.
@@ -38,12 +38,12 @@ pub(in crate::reconstruct) struct Peak {
     pub power: f64,
 }
 
-/// The largest maxima of `powers` over the sector's directions that are at least `least_part` of the largest of all.
+/// The largest maxima of `powers` over the sector's directions of at least `least_part` of the largest of all.
 pub(super) fn peaks(sectors: &Sectors, place: &Place, powers: &[f64], least_part: f64) -> Vec<Peak> {
     let largest = powers.iter().copied().fold(0.0, f64::max);
     let powers = &powers[..sectors.steps_cos.len().min(powers.len())];
     let at = |i: usize| powers[i];
-    // What rises up to the edge belongs to a neighbour, whose own directions reach over it.
+    // A maximum at the edge belongs to the neighbouring sector, whose own directions reach over it.
     let mut maxima: Vec<usize> = (1..powers.len().saturating_sub(1))
         .filter(|&i| at(i) > 0.0 && at(i) >= least_part * largest && at(i) > at(i - 1) && at(i) >= at(i + 1))
         .collect();
@@ -61,7 +61,7 @@ pub(super) fn peaks(sectors: &Sectors, place: &Place, powers: &[f64], least_part
         .collect()
 }
 
-/// One peak for each reflector, strongest first: of those that are the same the strongest stays.
+/// One peak for each reflector, strongest first: of equal peaks the strongest stays.
 pub(super) fn apart(radar: &Radar, mut peaks: Vec<Peak>, fringe_cos: f64) -> Vec<Peak> {
     peaks.sort_by(|a, b| b.power.total_cmp(&a.power));
     let mut kept: Vec<Peak> = Vec::new();

@@ -1,4 +1,4 @@
-//! Ranges and sectors from which both ends hear something.
+//! Ranges and sectors with energy at both ends.
 
 use super::ends::Ends;
 use super::sectors::{Sector, Sectors};
@@ -11,36 +11,35 @@ use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Ranges that are listened to, for each range bin.
+/// Ranges that are searched, for each range bin.
 const PER_BIN: usize = 4;
 
-/// Range bins beyond the last that are listened to: they wrap to the first, where next to nothing can stand.
+/// Range bins beyond the last that are searched: they wrap to the first ones, where next to nothing can stand.
 const BINS_BEYOND: usize = 1;
 
 /// Power by which a place must stand above the noise of one beam.
 const LEAST_PLACE_OVER_NOISE: f64 = 10.0;
 
-/// Power of a place relative to the strongest other direction at its range, beneath which it is taken for an end's side lobe.
+/// Least power of a place relative to the strongest other direction at its range; a weaker place counts as an end's side lobe.
 const LEAST_OF_DIRECTION: f64 = 0.05;
 
-/// Range side lobes are expected to lie this much, in power, above what the window gives a single reflector.
+/// Margin in power of range side lobes over the window's response to a single reflector.
 const SIDE_LOBE_ROOM: f64 = 8.0;
 
-/// Power of a place relative to the strongest of all, beneath which it waits for another look: what the strongest ones leave may look
-/// like it.
+/// Least power of a place relative to the strongest of all; weaker places wait for another look, since residuals of the strongest ones may resemble them.
 const LEAST_IN_A_LOOK: f64 = 1e-4;
 
-/// Most places that are looked into; the strongest.
+/// Most places with a model; the strongest.
 const MOST_PLACES: usize = 512;
 
 /// A range and a sector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
-    /// Where the echo is strongest, metres.
+    /// Range of the strongest echo, metres.
     pub range_metres: f64,
-    /// Directions that are looked into.
+    /// The sector.
     pub sector: Sector,
-    /// Power that the weaker end hears.
+    /// Power at the weaker end.
     pub power: f64,
 }
 
@@ -51,7 +50,7 @@ struct Beams {
 }
 
 impl Beams {
-    /// As many beams as leave no gap within the sectors.
+    /// As many beams as cover the sectors without a gap.
     fn new(radar: &Radar, ends: &Ends, half_width_cos: f64) -> Self {
         let end_metres = radar.end_elements as f64 * radar.element_spacing_metres;
         let beam_cos = radar.beam_cos(end_metres);
@@ -61,7 +60,7 @@ impl Beams {
         Beams { weights: (0..count as usize).map(weights).collect() }
     }
 
-    /// Power that the weaker end hears in the beam where that is most.
+    /// Largest power over the beams at the weaker end.
     fn power(&self, heard: &[Complex64], first_count: usize) -> f64 {
         let of = |weights: &Vec<Complex64>| {
             let beam = |part: std::ops::Range<usize>| {
@@ -75,7 +74,7 @@ impl Beams {
     }
 }
 
-/// Powers that the weaker end hears from one direction, over range.
+/// Kernel of the powers of one direction at the weaker end, over range.
 struct Listen<'a> {
     radar: &'a Radar,
     ends: &'a Ends,
@@ -99,7 +98,7 @@ impl Kernel for Listen<'_> {
     }
 }
 
-/// How many ranges are listened to, the first of them 0.
+/// Number of ranges that are searched, from range 0 on.
 fn ranges(radar: &Radar) -> usize {
     PER_BIN * (radar.samples + BINS_BEYOND)
 }
@@ -153,14 +152,14 @@ pub(super) fn places(
     Ok(found)
 }
 
-/// The least power of a place at every range that is not a side lobe of the `strongest` at all ranges. Ranges wrap after `period` of
-/// them: the last bin lies beside the first.
+/// The power at every range above which a place is no side lobe of the `strongest` at all ranges. Ranges wrap after `period` of them: the last
+/// bin lies beside the first.
 fn side_lobes(strongest: &[f64], period: usize) -> Vec<f64> {
     let count = strongest.len();
     let envelope: Vec<f64> = (0..=period / 2)
         .map(|i| {
             let bins = i as f64 / PER_BIN as f64;
-            // Beyond the main lobe the highest of each side lobe, at half bins.
+            // Beyond the main lobe the level is that of each side lobe's peak, at half bins.
             let level = range_response(bins.floor() + 0.5);
             if bins < 2.0 { LEAST_OF_DIRECTION } else { (level * level * SIDE_LOBE_ROOM).min(LEAST_OF_DIRECTION) }
         })
@@ -175,7 +174,7 @@ fn side_lobes(strongest: &[f64], period: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Where the parabola through three neighbouring values, the middle one the largest, has its vertex: -1/2 to 1/2.
+/// Place of the vertex of the parabola through three neighbouring values, the middle one the largest: -1/2 to 1/2.
 fn vertex(before: f64, here: f64, after: f64) -> f64 {
     let curvature = before - 2.0 * here + after;
     if curvature < 0.0 { (0.5 * (before - after) / curvature).clamp(-0.5, 0.5) } else { 0.0 }

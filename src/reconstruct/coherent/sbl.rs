@@ -4,8 +4,8 @@ use super::method::{CoherentMethod, TOLD_TO_COHERENT};
 use super::model::Update;
 use crate::reconstruct::reconstructor::About;
 
-/// Every direction's gain is drawn from a normal distribution of its own variance; the variances under which what was heard is
-/// likeliest, most of which turn out zero.
+/// Each direction's gain has a normal distribution with a variance of its own. The powers are the variances under which the samples are
+/// likeliest; most turn out zero.
 ///
 /// M. E. Tipping, "Sparse Bayesian learning and the relevance vector machine", J. Mach. Learn. Res. 1, 2001, with MacKay's fixed-point
 /// update; for directions of arrival P. Gerstoft, C. F. Mecklenbraeuker, A. Xenaki and S. Nannuru, "Multisnapshot sparse Bayesian
@@ -18,7 +18,7 @@ pub const SBL: CoherentMethod = CoherentMethod {
         eta: 0.782, // by examples/choose_eta.rs
     },
     update: Update {
-        // The variance that makes the posterior gain's square, over how well it is determined, agree with itself.
+        // The update whose fixed point is the variance: the square of the posterior gain over its determination.
         next: |share| share.power * share.matched / share.held,
         iterations: 16,
         least_noise: 3e-3,

@@ -1,15 +1,15 @@
-//! Directions that one registration serves.
+//! Sectors: directions that share one registration.
 
 use super::ends::Ends;
 use crate::radar::Radar;
 
-/// Range bins by which an element may hear a direction of the sector nearer or further than the sector's middle.
+/// Largest migration of an element's range within a sector, from the sector's middle, range bins.
 const MOST_MIGRATION_BINS: f64 = 0.5;
 
-/// Directions of a model for each period of the fringes that the two ends make together, where sectors are many.
+/// Directions of a model for each period of the fringes between the two ends, where there are many sectors.
 const PER_FRINGE: f64 = 4.0;
 
-/// The same where one model serves all directions.
+/// Directions of a model for each of these periods where one model serves all directions.
 const PER_FRINGE_ALONE: f64 = 12.0;
 
 /// Most directions of one model, beyond which the grid gets coarser.
@@ -18,9 +18,9 @@ const MOST_DIRECTIONS: usize = 1536;
 /// Neighbouring directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sector {
-    /// The direction it is registered for.
+    /// The direction for which the sector is registered.
     pub middle_cos: f64,
-    /// How far it reaches to either side.
+    /// Half of the sector's width in cos(theta).
     pub half_width_cos: f64,
 }
 
@@ -30,12 +30,12 @@ pub(super) struct Sectors {
     pub all: Vec<Sector>,
     /// Directions of one model, relative to the sector's middle, in rising order.
     pub steps_cos: Vec<f64>,
-    /// Period of the fringes that the outermost elements make together.
+    /// Period in cos(theta) of the fringes between the outermost elements.
     pub fringe_cos: f64,
 }
 
 impl Sectors {
-    /// As few as keep every element's range within half a bin.
+    /// The fewest sectors that keep every element's range within half a bin.
     pub fn new(radar: &Radar, ends: &Ends) -> Self {
         let reach_metres = ends.x_metres.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let span_metres = ends.x_metres.last().unwrap_or(&0.0) - ends.x_metres.first().unwrap_or(&0.0);
@@ -50,7 +50,7 @@ impl Sectors {
         let turns_per_cos = span_metres * radar.carrier_turns_per_metre().abs();
         let per_fringe = if count == 1 { PER_FRINGE_ALONE } else { PER_FRINGE };
         let fringe_cos = 1.0 / turns_per_cos.max(f64::MIN_POSITIVE);
-        // A fringe more to either side, so that no maximum stands on an edge.
+        // Directions reach one fringe beyond either edge, so that no maximum lies on an edge.
         let reach_cos = half_width_cos + fringe_cos.min(half_width_cos);
         let directions = (2.0 * reach_cos * turns_per_cos * per_fringe).ceil().max(8.0) as usize;
         let directions = directions.min(MOST_DIRECTIONS);

@@ -1,7 +1,7 @@
-//! Peaks moved to where their exact echoes explain the samples best; what the others can do without is taken away.
+//! Peaks, moved to the places where their exact echoes explain the samples best, without those that the others don't need.
 //!
-//! The cyclic least squares that Yardibi et al. refine their own peaks with (RELAX: J. Li and P. Stoica, "Efficient mixed-spectrum
-//! estimation with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), by the means of the search.
+//! The cyclic least squares by which Yardibi et al. refine their own peaks (RELAX: J. Li and P. Stoica, "Efficient mixed-spectrum estimation
+//! with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), with the tools of the search.
 
 use super::peaks::{Peak, gains};
 use crate::radar::{Radar, hann};
@@ -16,13 +16,13 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Of all reflectors once both ends' gains are tied.
+/// Limits of the refinement of all reflectors with one gain for both ends.
 const TIED: Limits = Limits { iterations: 20, least_gain: 1e-4, ridge: 0.0 };
 
 /// Most reflectors whose gains are tied by moving them together.
 const MOST_TIED: usize = 48;
 
-/// Of peaks nearer than this in range at either end the strongest is taken first.
+/// Distance in range at either end within which the strongest peak is taken first.
 const BESIDE_STRONGER_BINS: f64 = 4.0;
 
 /// Distance from the array that a reflector must keep, as a part of its distance from the nearer end.
@@ -31,44 +31,44 @@ const NEAREST_BETWEEN: f64 = 0.25;
 /// Most rounds of taking peaks from one look.
 const ROUNDS_A_LOOK: usize = 8;
 
-/// Part of what the strongest peak explains that one must explain to be taken in the same round: what stronger ones leave while they
-/// are not yet in their places looks like many weak ones.
+/// Least part of the strongest peak's energy that a peak of the same round explains: residuals of stronger peaks not yet in their places
+/// resemble many weak ones.
 const LEAST_OF_STRONGEST: f64 = 0.03;
 
-/// A peak of which this part is left has been explained by others.
+/// Part of a peak's energy below which other peaks have explained it.
 const LEFT_OF_EXPLAINED: f64 = 0.05;
 
-/// Another look needs that this part of the energy at most is left by the last.
+/// Largest part of the energy that the last look may leave for another look to follow.
 const WORTH_ANOTHER: f64 = 0.9;
 
-/// Part of the energy that may be left unexplained: 130 dB down, above what rounding leaves, which is no white noise.
+/// Part of the energy that may be left unexplained: 130 dB down, above the residual of rounding, which is no white noise.
 const AS_GOOD_AS_NOTHING: f64 = 1e-13;
 
-/// Reflectors that leave no more than this many times as much are in their places, wherever those are: a millionth of the energy.
+/// Reflectors that leave no more than this many times as much are accepted at any place: a millionth of the energy.
 const CERTAIN: f64 = 1e7;
 
-/// Echoes nearer than this are one, in parts of an end's beam and in range bins.
+/// Echoes nearer than this are one: parts of an end's beam, and range bins.
 const SAME_PLACE: (f64, f64) = (1e-3, 1e-2);
 
-/// Work granted: about ten microseconds a unit.
+/// Budget of work, in units of about ten microseconds.
 const MOST_WORK: usize = 30_000;
 
-/// Most echoes among which doubtful ones are looked for, since rows of reflectors leave something wherever they stand; and most that are tried as two
-/// or taken away in one reconstruction.
+/// Most echoes among which doubtful ones are searched, since rows of reflectors always leave a residual; and most that are tried as two or taken
+/// away in one reconstruction.
 pub(super) const MOST_TWOS: usize = 24;
 
-/// Most echoes that fail to be two, one after another.
+/// Most successive echoes that fail to be two.
 const MOST_FAILURES: usize = 4;
 
-/// A peak that is not yet taken.
+/// A peak without a reflector so far.
 struct Waiting {
     echo: ArrayEcho,
     rows: Rows,
-    /// What it explained when it was found.
+    /// Energy that the peak explained when it was found.
     energy: f64,
 }
 
-/// Echoes that were tried as two so far.
+/// Number of echoes tried as two so far, and of successive failures.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Trials {
     done: usize,
@@ -86,7 +86,7 @@ impl Trials {
     }
 }
 
-/// Reflectors found so far, and what they leave of the samples.
+/// Reflectors found so far, with their residual.
 pub(super) struct Settled<'a> {
     pub(super) radar: &'a Radar,
     pub(super) task: &'a Task,
@@ -95,14 +95,14 @@ pub(super) struct Settled<'a> {
     settings: Settings,
     samples: Samples,
     pub(super) fit: Fit,
-    /// Energy that is as good as nothing.
+    /// Residual energy at which the search ends.
     pub(super) enough: f64,
-    /// Echoes tried as two, where they are to be.
+    /// Counts of echoes tried as two; `None` where none are to be tried.
     pub(super) trials: Option<Trials>,
 }
 
 impl<'a> Settled<'a> {
-    /// Nothing found yet in `ends`.
+    /// The start for `ends`, without reflectors.
     pub fn new(radar: &'a Radar, ends: &TwoEnds, task: &'a Task) -> Self {
         let flat = ends.flat();
         let bench = Workbench::new(radar, &hann(radar.samples), task, MOST_WORK).hearing(&flat);
@@ -112,7 +112,7 @@ impl<'a> Settled<'a> {
         Settled { radar, task, bench, detector, settings, samples, fit, enough, trials: None }
     }
 
-    /// The same, where echoes are to be tried as two.
+    /// The start, with echoes tried as two.
     pub fn trying_two(self) -> Self {
         Settled { trials: Some(Trials::default()), ..self }
     }
@@ -122,13 +122,12 @@ impl<'a> Settled<'a> {
         Grower { radar, bench, detector, settings, in_noise: false, task, trace: None }
     }
 
-    /// What the reflectors leave of the samples.
+    /// The residual of the reflectors.
     pub fn left(&self) -> TwoEnds {
         TwoEnds::of_flat(self.radar, &self.fit.residual.flat(&self.bench.sensor))
     }
 
-    /// Takes the reflectors behind `peaks`: the strongest first, those nearby once it is known what it leaves of them. Whether that
-    /// explained enough to look again.
+    /// Adds the reflectors behind `peaks`: the strongest first, nearby ones against its residual. Returns whether another look is worthwhile.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -166,12 +165,12 @@ impl<'a> Settled<'a> {
         Ok(is_better && !self.is_done())
     }
 
-    /// Whether nothing is left to be explained, or no work granted.
+    /// Whether the residual is small enough, or the work is spent.
     pub(super) fn is_done(&self) -> bool {
         self.fit.cost() <= self.enough || self.bench.work.is_spent()
     }
 
-    /// Energy that each of `waiting` by itself would explain of what is left.
+    /// Energy of the residual that each of `waiting` explains by itself.
     fn heard(&self, waiting: &[Waiting]) -> Vec<f64> {
         let mut weighted = self.fit.residual.flat(&self.bench.sensor);
         let weights = self.bench.squared.iter().cycle();
@@ -180,7 +179,7 @@ impl<'a> Settled<'a> {
         waiting.par_iter().map(|w| w.echo.correlate(&weighted).norm_sqr() / mean).collect()
     }
 
-    /// The reflectors, with the gains that both ends agree on; `ends` are the samples that they were found in.
+    /// The reflectors, with gains common to both ends; `ends` are the samples in which they were found.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -205,7 +204,7 @@ impl<'a> Settled<'a> {
     }
 }
 
-/// `peaks` without those that stand where an earlier one does.
+/// `peaks` without those at the place of an earlier one.
 fn once_each(radar: &Radar, peaks: Vec<Peak>) -> Vec<Peak> {
     let end_metres = radar.end_elements as f64 * radar.element_spacing_metres;
     let beam_cos = radar.beam_cos(end_metres);
@@ -222,8 +221,8 @@ fn once_each(radar: &Radar, peaks: Vec<Peak>) -> Vec<Peak> {
     kept
 }
 
-/// Whether no element between the ends would hear a reflector there much louder than the ends do: such a one would fill the map, and
-/// nothing that was measured speaks for it.
+/// Whether a reflector's echo is not much louder at an element between the ends than at the ends: such a reflector would fill the map without
+/// any measurement in its favour.
 fn is_heard_at_the_ends(radar: &Radar, x_metres: f64, y_metres: f64) -> bool {
     let nearest = |from: f64, to: f64| (x_metres - x_metres.clamp(from, to)).hypot(y_metres);
     let outermost = radar.element_x_metres(radar.elements - 1);
@@ -242,7 +241,7 @@ impl Waiting {
     }
 }
 
-/// Takes from `left` the places of those that have no stronger one nearby.
+/// Moves from `left` into the answer the places of those without a stronger one nearby.
 fn strongest_apart(radar: &Radar, left: &mut Vec<(f64, Waiting)>) -> Vec<[f64; 2]> {
     let mut taken: Vec<(Rows, [f64; 2])> = Vec::new();
     left.retain(|(_, w)| {

@@ -1,9 +1,9 @@
-//! One echo found for two that stand close together, or two found for one.
+//! Tests of one echo against two close ones, and of two against one.
 //!
-//! Two reflectors that stand closer than a beam of an end and a range bin look like one. Where one is put in their middle, what it leaves
-//! has maxima beside it, at which further echoes are taken: none of them is there, and none comes to where the two are. Where that may
-//! have happened, all is looked for once more, and each echo that leaves something at its own range is tried as two before others are
-//! taken beside it. What needs fewer echoes for as much, or explains more, is the answer.
+//! Two reflectors closer than a beam of an end and a range bin look like one. Where one is put in their middle, its residual has maxima beside
+//! it, at which further echoes are taken: none of them is at a true place, and none moves to one. Where that may have happened, the whole search
+//! runs once more, and each echo with a residual at its own range is tried as two before others are added beside it. The answer is the run that
+//! needs fewer echoes for the same residual, or leaves less.
 
 use super::settle::{MOST_TWOS, Settled};
 use crate::reconstruct::error::ReconstructError;
@@ -11,41 +11,42 @@ use crate::reconstruct::fit::{Atom, Fit, Limits, Profile, Tie, distance_bins, ro
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Where the two are looked for from: parts of an end's beam, and range bins, to either side of the one.
+/// Starts of the two echoes: offsets to either side of the one, in parts of an end's beam and in range bins.
 const STARTS: [(f64, f64); 5] = [(0.1, 0.0), (0.1, 0.25), (0.1, -0.25), (0.02, 0.25), (0.3, 0.0)];
 
-/// Of the two while starts are compared.
+/// Limits of the refinement of the two while starts are compared.
 const TRYING: Limits = Limits { iterations: 10, least_gain: 1e-2, ridge: 0.0 };
 
-/// Of the better ones.
+/// Limits of the refinement of the best start.
 const TRIED: Limits = Limits { iterations: 40, least_gain: 1e-4, ridge: 0.0 };
 
-/// Two echoes stand for one where they leave this part at most of what the one leaves at its range.
+/// Largest residual of two echoes at their range, as a part of that of the one, for which two replace one.
 const WORTH_TWO: f64 = 0.2;
 
-/// Echoes may be one that stand this near: parts of an end's beam, and range bins.
+/// Largest distance of echoes that may be one: parts of an end's beam, and range bins.
 const MAY_BE_ONE: (f64, f64) = (0.1, 0.5);
 
-/// What is left may grow by this part where one echo does for two.
+/// Largest growth of the residual where one echo replaces two, as a part.
 const AS_GOOD: f64 = 0.05;
 
-/// An echo that is this much weaker in power than one this near, in parts of an end's beam and in range bins, may be what that one leaves.
+/// Largest power of an echo relative to a stronger one nearby, and largest distance from it in parts of an end's beam and in range bins, at
+/// which the weak echo may be the residual of the strong one.
 const WEAKER: f64 = 0.1;
 const BESIDE: (f64, f64) = (2.0, 2.0);
 
-/// Fewer echoes may leave this many times as much.
+/// Largest ratio of the residuals of a run with fewer echoes and of the present one.
 const FEWER: f64 = 1.5;
 
-/// Another way to explain the samples must leave this part at most, if it doesn't need fewer echoes.
+/// Largest ratio of the residuals for another run to replace the present one without fewer echoes.
 const BETTER: f64 = 0.5;
 
-/// Where an echo stands.
+/// Place and energy of an echo.
 struct Spot {
     /// Direction, in an end's beams.
     beam: f64,
     /// Range, in bins.
     bin: f64,
-    /// What is heard of it.
+    /// Energy of the echo's samples, with an arbitrary scale.
     energy: f64,
 }
 
@@ -56,8 +57,7 @@ impl Settled<'_> {
         self.radar.beam_cos(end_metres)
     }
 
-    /// Whether something is left at the range of an echo, or a weak one stands beside a strong one: either may be two that were found as
-    /// one.
+    /// Whether there is a residual at the range of an echo, or a weak echo beside a strong one: either may be two reflectors found as one.
     pub fn is_doubtful(&self) -> bool {
         let count = self.fit.atoms.len();
         (1..=MOST_TWOS).contains(&count)
@@ -74,7 +74,7 @@ impl Settled<'_> {
         places.iter().any(|a| places.iter().any(|b| beside(a, b)))
     }
 
-    /// This, or `other` where that needs fewer echoes for as much or leaves much less.
+    /// The run itself, or `other` where that needs fewer echoes for the same residual or leaves much less.
     pub fn or(self, other: Self) -> Self {
         let (own, others) = (self.fit.cost(), other.fit.cost());
         let noise = self.bench.gain_noise(self.radar, &other.fit);
@@ -87,7 +87,7 @@ impl Settled<'_> {
         }
     }
 
-    /// Tries echoes that leave something at their own range as two, the strongest first.
+    /// Tries echoes with a residual at their own range as two, the strongest first.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -105,7 +105,7 @@ impl Settled<'_> {
             let two = self.as_two(i);
             trials.count(two.is_some());
             if let Some(fit) = two {
-                // Numbers are others now; what is left in need shows in the next round.
+                // The indices of the echoes have changed; remaining doubtful ones show in the next round.
                 self.fit = fit;
                 break;
             }
@@ -114,7 +114,7 @@ impl Settled<'_> {
         Ok(())
     }
 
-    /// The fit with two echoes for the one numbered `i`, where that leaves much less at its range.
+    /// The fit with two echoes for the one of index `i`, where their residual at its range is much smaller.
     fn as_two(&self, i: usize) -> Option<Fit> {
         let own = rows_of(self.radar, &self.fit.atoms[i]);
         let left = |fit: &Fit| Profile::new(self.radar, &fit.residual.flat(&self.bench.sensor)).at(&own);
@@ -139,7 +139,7 @@ impl Settled<'_> {
         fit.atoms.extend(two.atoms);
         fit.gains.extend(two.gains);
         (fit.residual, fit.energy) = (two.residual, two.energy);
-        // Beyond the maximum range a place sounds like many.
+        // A place beyond the maximum range has the same echo as others.
         let is_in_reach = |atom: &Atom| {
             let [x, y] = atom.position_metres(0.0);
             distance_bins(self.radar.samples, &own, &rows_of(self.radar, atom)) < 2.0
@@ -149,7 +149,7 @@ impl Settled<'_> {
         (is_better && fit.atoms.iter().rev().take(2).all(is_in_reach)).then_some(fit)
     }
 
-    /// Takes away echoes that stand right beside another which, moved, does as well without them.
+    /// Removes echoes close to another one that, moved, explains both as well.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -173,7 +173,7 @@ impl Settled<'_> {
         Ok(())
     }
 
-    /// Where all echoes stand.
+    /// Places of all echoes.
     fn places(&self) -> Vec<Spot> {
         let spot = |(atom, gains): (&Atom, &[Complex64; 2])| {
             let [x, y] = atom.position_metres(0.0);
@@ -187,7 +187,7 @@ impl Settled<'_> {
         self.fit.atoms.iter().zip(&self.fit.gains).map(spot).collect()
     }
 
-    /// The weaker and the stronger of the two echoes that stand closest together, where they may be one.
+    /// The weaker and the stronger of the two closest echoes, where they may be one.
     fn closest(&self) -> Option<(usize, usize)> {
         let places = self.places();
         let pairs = (0..places.len()).flat_map(|i| (0..places.len()).map(move |j| (i, j)));

@@ -57,7 +57,7 @@ fn no_echo_is_invented_at_full_confidence_beside_close_ones() {
     }
 }
 
-/// Over noise a close pair may be placed on other teeth of the comb, which stand 0.6 degrees apart; two dozen echoes it must not become.
+/// Over noise a close pair may be placed on other teeth of the comb, 0.6 degrees apart, but it must not become two dozen echoes.
 #[test]
 fn close_echoes_over_noise_do_not_become_dozens() {
     for ranges in RANGES.into_iter().chain([NEARLY_ALIKE]) {

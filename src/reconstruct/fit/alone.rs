@@ -1,4 +1,4 @@
-//! One atom by itself: its echo is written out once, and no inner products of its reflectors are asked for.
+//! The fit of one atom by itself: its echo is computed once, without inner products of its reflectors.
 
 use super::atom::Atom;
 use super::echoes::{Samples, echo_of_all};
@@ -10,7 +10,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 impl Workbench<'_> {
-    /// What [`Workbench::solve`] comes to for a single atom, many times faster.
+    /// The result of [`Workbench::solve`] for a single atom, many times faster.
     pub fn solve_alone(&self, samples: &Samples, atom: Atom) -> Fit {
         let reflectors: Vec<Reflector> = atom.reflectors(1.0).collect();
         self.work.spend(reflectors.len() + 1);
@@ -56,7 +56,7 @@ struct Heard {
     power: Lanes<f64, W>,
 }
 
-/// Forms these products under a window.
+/// Kernel of these products under a window.
 struct Listen<'a> {
     squared: &'a [f64],
     samples: &'a [ComplexLanes<f64, W>],
@@ -78,13 +78,13 @@ impl Kernel for Listen<'_> {
     }
 }
 
-/// What is left of one block of channels with an echo of some gain in it, and the energy of that under the window.
+/// The residual of one block of channels after an echo of some gain, and its energy under the window.
 struct Left {
     residual: Block,
     energy: Lanes<f64, W>,
 }
 
-/// Adds an echo of some gain to one block of channels.
+/// Kernel that adds an echo of some gain to one block of channels.
 struct Leave<'a> {
     squared: &'a [f64],
     samples: &'a [ComplexLanes<f64, W>],

@@ -1,8 +1,8 @@
-//! The dictionary: what a scene is taken apart into.
+//! The dictionary: the atoms into which a scene is decomposed.
 
 use crate::scene::Reflector;
 
-/// One object without its gain. Distances in metres; y and -y look alike to a line array, y is kept at 0 or above.
+/// One object without its gain. Distances in metres; y and -y have the same echoes at a line array, so that y is kept at 0 or above.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Atom {
     /// One reflector.
@@ -18,9 +18,9 @@ pub enum Atom {
         x_metres: f64,
         /// Position of the first reflector ahead of the array.
         y_metres: f64,
-        /// From one reflector to the next, along the array.
+        /// Step from one reflector to the next, along the array.
         dx_metres: f64,
-        /// From one reflector to the next, ahead of the array.
+        /// Step from one reflector to the next, ahead of the array.
         dy_metres: f64,
         /// Number of reflectors.
         count: usize,
@@ -73,7 +73,7 @@ impl Atom {
         }
     }
 
-    /// How reflector `i`'s x and half the square of its y follow the parameter.
+    /// Derivatives of reflector `i`'s x and of half the square of its y by the parameter.
     pub fn share(&self, i: usize, parameter: usize) -> [f64; 2] {
         let i = i as f64;
         let [_, y] = self.position_metres(i);
@@ -86,7 +86,7 @@ impl Atom {
         }
     }
 
-    /// The reflectors of a scene that this atom stands for.
+    /// The reflectors of the atom.
     pub fn reflectors(&self, reflectivity: f64) -> impl Iterator<Item = Reflector> + use<> {
         let atom = *self;
         (0..self.reflector_count()).map(move |i| {

@@ -1,4 +1,4 @@
-//! Reflectors as the channels of both ends hear them: what inner products of echoes are made of.
+//! Reflectors at the channels of both ends: the factors of inner products of echoes.
 
 use super::sensor::{NEAREST_METRES, Sensor, W, kept_apart};
 use crate::radar::Pair;
@@ -6,30 +6,30 @@ use crate::scene::Reflector;
 use crate::signal::path::PairBlocks;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, phasor};
 
-/// A reflector as some neighbouring channels of one end hear it, a lane a channel. Lanes beyond the end are silent.
+/// A reflector's echo at some neighbouring channels of one end, a lane a channel. Lanes beyond the end are silent.
 #[derive(Debug, Clone, Copy)]
 pub struct Part {
     /// Frequency in range bins, wrapped.
     pub bins: Lanes<f64, W>,
     /// Value at the middle of the chirp.
     pub middle: ComplexLanes<f64, W>,
-    /// Change of the distance by the reflector's x.
+    /// Derivative of the distance by the reflector's x.
     pub by_x: Lanes<f64, W>,
-    /// Change of the distance by half the square of the reflector's y, per metre.
+    /// Derivative of the distance by half the square of the reflector's y, per metre.
     pub by_half_square: Lanes<f64, W>,
     /// Relative loss of amplitude by distance, per metre.
     pub decay: Lanes<f64, W>,
 }
 
-/// A reflector as both ends hear it.
+/// A reflector's echo at both ends.
 #[derive(Debug, Clone)]
 pub struct Echo {
-    /// The first end's, then as many of the last end's.
+    /// The first end's parts, then as many of the last end's.
     parts: Vec<Part>,
 }
 
 impl Echo {
-    /// What one end hears.
+    /// The parts of one end.
     #[inline(always)]
     pub fn end(&self, end: usize) -> &[Part] {
         let each = self.parts.len() / 2;
@@ -39,9 +39,9 @@ impl Echo {
 
 /// The echoes of some reflectors.
 pub struct Echoes<'a> {
-    /// Who hears them.
+    /// The channels.
     pub sensor: &'a Sensor,
-    /// Who they come from.
+    /// The reflectors.
     pub reflectors: &'a [Reflector],
 }
 
@@ -66,7 +66,7 @@ impl Kernel for Echoes<'_> {
     }
 }
 
-/// What channels from channel `first` of an end on hear of `r`.
+/// The echo of `r` at the channels from `first` of an end on.
 #[inline(always)]
 fn part<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usize) -> Part {
     let of = |v: f64| Lanes::<f64, W>::splat(v);
@@ -93,7 +93,7 @@ fn part<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usiz
     }
 }
 
-/// How distances and amplitudes change, as in [`Part`].
+/// Derivatives of distances and amplitudes, as in [`Part`].
 struct Slopes {
     by_x: Lanes<f64, W>,
     by_half_square: Lanes<f64, W>,
@@ -101,8 +101,8 @@ struct Slopes {
 }
 
 impl Slopes {
-    /// Those of pairs. The loss of amplitude is that of both legs on average: legs of very different lengths lose otherwise, by little beside
-    /// what the phase turns.
+    /// The slopes for pairs. The loss of amplitude is the mean of both legs: that of legs of very different lengths differs, but little beside
+    /// the change of phase.
     #[inline(always)]
     fn of_pairs(pairs: [Pair; W], r: &Reflector) -> Self {
         let of = Lanes::<f64, W>::splat;
@@ -114,7 +114,7 @@ impl Slopes {
         };
         let ((there_x, there, out), (back_x, back, home)) = (leg(0), leg(1));
         let half = of(0.5);
-        // Half the square of y changes by y where y does; beside the line's end, where y is nothing, the antennas count as on the line.
+        // The derivative of half the square of y by y is y; beside the line's end, where y is 0, the antennas count as on the line.
         let by_half_square = if pairs.iter().all(Pair::is_on_line) || r.y_metres.abs() < NEAREST_METRES {
             (there + back) * half
         } else {

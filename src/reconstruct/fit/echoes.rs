@@ -20,11 +20,11 @@ pub struct Samples {
 pub struct Products {
     /// `sum w^2 conj(echo) residual`.
     pub zeroth: Vec<Complex64>,
-    /// The same times `tau = (t - middle) / samples`.
+    /// `zeroth` with a factor `tau = (t - middle) / samples` in the sum.
     pub first: Vec<Complex64>,
 }
 
-/// What is left of samples without some echoes.
+/// The residual of samples without some echoes.
 #[derive(Debug, Clone)]
 pub struct Remainder {
     /// Samples less the echoes times their gains.
@@ -36,7 +36,7 @@ pub struct Remainder {
 }
 
 impl Samples {
-    /// From samples laid out channel by channel.
+    /// The samples of `flat`, laid out channel by channel.
     pub fn new(sensor: &Sensor, flat: &[Complex64]) -> Self {
         let padded = rows_of(sensor.samples) * STRIDE;
         let channels: Vec<&[Complex64]> = flat.chunks_exact(sensor.samples).collect();
@@ -52,7 +52,7 @@ impl Samples {
         Samples { blocks: channels.chunks(W).map(block).collect() }
     }
 
-    /// Laid out channel by channel again.
+    /// The samples, laid out channel by channel.
     pub fn flat(&self, sensor: &Sensor) -> Vec<Complex64> {
         let mut out = Vec::with_capacity(sensor.sample_count());
         for channel in 0..sensor.element_x.len() {
@@ -63,25 +63,25 @@ impl Samples {
     }
 }
 
-/// Fewest reflectors that are shared out among processors, block by block of channels; there are few blocks.
+/// Fewest reflectors that are divided among processors, block by block of channels; there are few blocks.
 const LEAST_SHARED: usize = 12;
 
-/// Parts that they are shared out in.
+/// Number of parts into which they are divided.
 const SHARES: usize = 2;
 
-/// Which products of echoes with what is left are asked for.
+/// The requested products of echoes with the residual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Asked {
     /// None.
     Nothing,
-    /// Of the echoes themselves.
+    /// Products of the echoes themselves.
     Values,
-    /// Of the echoes and of echoes times time.
+    /// Products of the echoes and of echoes times time.
     Slopes,
 }
 
-/// `samples` less the echoes of `reflectors` times their gains at the first and at the last end, under the squared window `squared`;
-/// with the products that are asked for of all echoes with what is left.
+/// `samples` less the echoes of `reflectors` times their gains at the first and at the last end, under the squared window `squared`; with the
+/// requested products of all echoes with the residual.
 pub fn remainder(
     sensor: &Sensor,
     squared: &[f64],
@@ -127,7 +127,7 @@ pub fn remainder(
     Remainder { residual: Samples { blocks: left.into_iter().map(|l| l.residual).collect() }, energy, products }
 }
 
-/// Echoes of all `reflectors` together, of gain 1, as one block of channels hears them.
+/// Echoes of all `reflectors` together, of gain 1, at one block of channels.
 pub fn echo_of_all(sensor: &Sensor, reflectors: &[Reflector], block: usize) -> Vec<ComplexLanes<f64, W>> {
     let negative = [Complex64::from(-1.0); 2];
     let reflectors: Vec<(Reflector, [Complex64; 2])> = reflectors.iter().map(|r| (*r, negative)).collect();
@@ -150,10 +150,10 @@ fn channel_by_channel(sensor: &Sensor, blocks: &[Vec<BlockProducts>]) -> Vec<Pro
     (0..blocks.first().map_or(0, Vec::len)).map(of_echo).collect()
 }
 
-/// Echoes taken off together: their phasors fit the first-level cache.
+/// Number of echoes subtracted together: their phasors fit the first-level cache.
 const TOGETHER: usize = 4;
 
-/// What echoes are added to.
+/// The start of a sum of echoes.
 enum Start<'a> {
     Silence,
     Samples(&'a [ComplexLanes<f64, W>]),
@@ -165,13 +165,13 @@ struct Sum<'a> {
     first_channel: usize,
     reflectors: &'a [(Reflector, [Complex64; 2])],
     start: Start<'a>,
-    /// Whether the echoes of gain 1 are wanted, too.
+    /// Whether the echoes of gain 1 are kept, too.
     keep: bool,
 }
 
 /// Phasors of some reflectors, see [`Factors`](crate::signal::split::Factors).
 struct Phasors {
-    /// One reflector's after the other's.
+    /// One reflector's phasors after another's.
     rows: Vec<ComplexLanes<f64, W>>,
     columns: Vec<[ComplexLanes<f64, W>; STRIDE]>,
 }
@@ -185,9 +185,9 @@ impl Phasors {
 }
 
 struct Summed {
-    /// Of each reflector, of gain 1; not all of them unless they were to be kept.
+    /// The echoes of the reflectors, of gain 1; not all of them unless they are kept.
     echoes: Phasors,
-    /// Of all together, times minus their gains, added to where it started.
+    /// The sum of all echoes times minus their gains, added to the start.
     sum: Vec<ComplexLanes<f64, W>>,
 }
 
@@ -207,7 +207,7 @@ impl Kernel for Sum<'_> {
             Start::Silence => vec![ComplexLanes::zero(); many * STRIDE],
             Start::Samples(samples) => samples.to_vec(),
         };
-        // Gains mostly start at nothing.
+        // Gains mostly start at 0.
         let is_silent = reflectors.iter().all(|(_, gains)| *gains == [Complex64::default(); 2]);
         for (at, reflectors) in reflectors.chunks(TOGETHER).enumerate() {
             let first = if keep { at * TOGETHER } else { 0 };
@@ -245,13 +245,13 @@ struct Subtract<'a> {
     squared: &'a [f64],
     /// Samples less some echoes, and sums of other echoes times minus their gains. The first becomes the residual.
     sums: &'a mut [Summed],
-    /// Whether the weighted residual is asked for.
+    /// Whether the weighted residual is requested.
     weighted: bool,
 }
 
 struct Left {
     residual: Vec<ComplexLanes<f64, W>>,
-    /// The residual times the squared window; empty where it was not asked for.
+    /// The residual times the squared window; empty where it isn't requested.
     weighted: Vec<ComplexLanes<f64, W>>,
     energy: Lanes<f64, W>,
 }
@@ -286,10 +286,10 @@ impl Kernel for Subtract<'_> {
     }
 }
 
-/// Products of an echo and of the same times time with what is left at one block of channels.
+/// Products of an echo, and of the echo times time, with the residual at one block of channels.
 type BlockProducts = [ComplexLanes<f64, W>; 2];
 
-/// Some echoes of one block of channels times what is left there, plain and, if that is asked for, times time.
+/// Products of some echoes of one block of channels with the residual there, plain and, if requested, times time.
 struct Multiply<'a> {
     samples: usize,
     echoes: &'a Phasors,

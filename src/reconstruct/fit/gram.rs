@@ -38,7 +38,7 @@ type BlockOfAtoms = [[Complex64; MOST_COLUMNS]; MOST_COLUMNS];
 type Block = [[Complex64; 3]; 3];
 
 impl<'a> Dictionary<'a> {
-    /// Of `atoms`, with a column for every parameter of each if `derivatives` are wanted.
+    /// The dictionary of `atoms`, with a column for every parameter of each if `derivatives` are wanted.
     pub fn new(sensor: &'a Sensor, moments: &'a Moments, atoms: &'a [Atom], derivatives: bool) -> Self {
         let simd = Simd::chosen();
         let echoes_of = |atom: &Atom| {
@@ -110,7 +110,7 @@ impl<'a> Dictionary<'a> {
         1 + if self.derivatives { self.atoms[atom].parameters() } else { 0 }
     }
 
-    /// Whether two echoes at one end are too far apart in range to know of each other.
+    /// Whether two echoes at one end are so far apart in range that they are orthogonal.
     #[inline(always)]
     fn are_apart(&self, a: &Echo, b: &Echo, end: usize) -> bool {
         let middle =
@@ -173,7 +173,7 @@ fn total(v: ComplexLanes<f64, W>) -> Complex64 {
     Complex64::new(v.re.total(), v.im.total())
 }
 
-/// One atom against all before it and itself, at one end.
+/// Inner products of one atom with all before it and with itself, at one end.
 struct Row<'a, 'b> {
     dictionary: &'a Dictionary<'b>,
     i: usize,
@@ -191,7 +191,7 @@ impl Kernel for Row<'_, '_> {
             let mut sums = BlockOfAtoms::default();
             let mut touched = false;
             for (k, a) in d.echoes[i].iter().enumerate() {
-                // Of an atom with itself every two reflectors are seen once; the other way round is the same, conjugate and transposed.
+                // Of an atom with itself every two reflectors are visited once; the other order is the conjugate transpose.
                 let others = if j == i { k } else { d.echoes[j].len() };
                 for (l, b) in d.echoes[j][..others].iter().enumerate() {
                     if d.are_apart(a, b, end) {
@@ -227,7 +227,7 @@ impl Kernel for Row<'_, '_> {
     }
 }
 
-/// A block and what it is conjugate and transposed.
+/// The sum of a block and its conjugate transpose.
 fn plus_adjoint(block: BlockOfAtoms) -> BlockOfAtoms {
     std::array::from_fn(|p| std::array::from_fn(|q| block[p][q] + block[q][p].conj()))
 }
@@ -268,7 +268,7 @@ mod tests {
 
     const WALL: Atom = Atom::Segment { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 5 };
 
-    /// What `atom` leaves in the samples of both ends.
+    /// The echo of `atom` in the samples of both ends.
     fn value(sensor: &Sensor, atom: &Atom) -> Vec<Complex64> {
         let silence = Samples::new(sensor, &vec![Complex64::default(); sensor.sample_count()]);
         let echoes: Vec<_> = atom.reflectors(1.0).map(|r| (r, [Complex64::from(-1.0); 2])).collect();

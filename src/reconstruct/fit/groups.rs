@@ -1,4 +1,4 @@
-//! Atoms that know of each other: neighbours in range at either end.
+//! Groups of atoms that influence each other: neighbours in range at either end.
 
 use super::atom::Atom;
 use crate::radar::{End, Radar};
@@ -6,7 +6,7 @@ use crate::radar::{End, Radar};
 /// Range bins that an atom fills at each end: (first, last), not wrapped.
 pub type Rows = [(f64, f64); 2];
 
-/// Rows of `atom`.
+/// The range bins of `atom`.
 pub fn rows_of(radar: &Radar, atom: &Atom) -> Rows {
     End::BOTH.map(|end| {
         let centre = radar.end_centre_metres(end);
@@ -39,7 +39,7 @@ pub fn distance_bins(bins: usize, a: &Rows, b: &Rows) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Groups of atoms, each within `link_bins` of another of its group; those only that hold a marked atom. A group larger than `most`
+/// Groups of atoms, each within `link_bins` of another of its group; only those with a marked atom. A group larger than `most`
 /// is cut to the atoms nearest to its marked ones.
 pub fn groups(bins: usize, rows: &[Rows], marked: &[bool], link_bins: f64, most: usize) -> Vec<Vec<usize>> {
     let n = rows.len();

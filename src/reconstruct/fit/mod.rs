@@ -2,12 +2,12 @@
 //!
 //! The search (`search`) and the coherent methods (`coherent`) fit with it. It proposes nothing and judges nothing.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
 //! | `atom` | the dictionary: one reflector, or a line of them |
 //! | `sensor` | geometry of both ends |
-//! | `echo` | one reflector as each channel hears it |
-//! | `echoes` | what reflectors leave in the samples, and their products with a residual |
+//! | `echo` | one reflector's echo at each channel |
+//! | `echoes` | sums of reflectors' echoes in the samples, and their products with a residual |
 //! | `moments` | inner products of two echoes: moments of the window |
 //! | `gram` | the banded Gram matrix of atoms and their derivatives |
 //! | `solver` | small systems that may be nearly singular |

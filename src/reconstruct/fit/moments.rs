@@ -1,4 +1,4 @@
-//! Moments of a window over a chirp: what the inner product of two echoes comes to.
+//! Moments of a window over a chirp: the inner products of two echoes.
 //!
 //! Two echoes of a chirp differ by a tone of some range bins; their inner product and those of their derivatives are sums of the
 //! squared window times powers of time times that tone. Under a window whose side lobes fall fast they vanish some bins away, so that
@@ -26,9 +26,9 @@ const HANN_REACH_BINS: f64 = 12.0;
 pub struct Moments {
     /// Taylor coefficients of the moment of order 0 around every node.
     table: Arc<Vec<[f64; TERMS]>>,
-    /// After how many range bins the range repeats.
+    /// Number of range bins after which the range repeats.
     bins: f64,
-    /// What a wrap of the range by all bins does to the phase at the chirp's middle.
+    /// Sign of the phase at the chirp's middle after a wrap of the range by all bins.
     wrap_sign: f64,
     /// Largest difference in bins at which echoes are not orthogonal.
     pub reach_bins: f64,
@@ -37,16 +37,16 @@ pub struct Moments {
 /// The moments of order 0, 1 and 2 at some neighbouring channels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentsAt {
-    /// Of order 0.
+    /// The moment of order 0.
     pub zeroth: Lanes<f64, W>,
-    /// Of order 1, over j.
+    /// The moment of order 1, over j.
     pub first: Lanes<f64, W>,
-    /// Of order 2.
+    /// The moment of order 2.
     pub second: Lanes<f64, W>,
 }
 
 impl Moments {
-    /// Of a symmetric window of any length.
+    /// The moments of a symmetric window of any length.
     #[allow(clippy::needless_range_loop)] // a term is a column of the table
     pub fn new(window: &[f64]) -> Self {
         let samples = window.len();
@@ -85,13 +85,13 @@ impl Moments {
         Moments { table: Arc::new(table), bins: samples as f64, wrap_sign, reach_bins: reach }
     }
 
-    /// The same window over chirps of so many samples, an even part of those that it was made for.
+    /// The same window over chirps of so many samples, an even part of the original number.
     pub fn sampled_as(&self, samples: usize) -> Self {
         let wrap_sign = if samples.is_multiple_of(2) { -1.0 } else { 1.0 };
         Moments { bins: samples as f64, wrap_sign, ..self.clone() }
     }
 
-    /// At differences of `bins`, which may exceed the number of range bins: ranges wrap. The orders above 0 only if `ALL`.
+    /// The moments at differences of `bins`, which may exceed the number of range bins, since ranges wrap. The orders above 0 only if `ALL`.
     #[inline(always)]
     pub fn at<const ALL: bool, const FMA: bool>(&self, bins: Lanes<f64, W>) -> MomentsAt {
         // Channels of an end differ by parts of a bin: mostly one node serves all.
@@ -107,7 +107,7 @@ impl Moments {
         })
     }
 
-    /// The node next to a difference, counted from the one at 0, its coefficients, and what wraps on the way do to the sign.
+    /// The node next to a difference, counted from the one at 0, its coefficients, and the sign of its wraps.
     #[inline(always)]
     fn node(&self, bins: f64) -> (f64, &[f64; TERMS], f64) {
         let wraps = (bins / self.bins).round();

@@ -1,4 +1,4 @@
-//! A few neighbouring range bins of a residual: what stands at other ranges is left out, and a chirp needs no more samples than it has bins.
+//! A few neighbouring range bins of a residual, without other ranges; a chirp of so few bins needs no more samples.
 //!
 //! Of each channel's windowed spectrum the bins around an atom are kept and transformed back into as many samples, evenly spaced over the
 //! same chirp. A radar that takes those has the same range bins, repeated sooner, so that everything a [`Workbench`] does holds for it. What
@@ -24,15 +24,15 @@ pub struct Spectra<'a> {
     radar: &'a Radar,
     bench: &'a Workbench<'a>,
     samples: &'a Samples,
-    /// Of the windowed samples, channel by channel.
+    /// Spectra of the windowed samples, channel by channel.
     channels: Vec<Vec<Complex64>>,
 }
 
-/// Some range bins of a residual, and a bench to work on them.
+/// Some range bins of a residual, with a bench for them.
 pub struct Narrow<'a> {
-    /// Of the radar that takes fewer samples.
+    /// The bench of the radar with fewer samples.
     pub bench: Workbench<'a>,
-    /// Its samples.
+    /// Samples of this radar.
     pub samples: Samples,
     /// Energy of the windowed samples at both ends.
     pub energy: f64,
@@ -41,7 +41,7 @@ pub struct Narrow<'a> {
 }
 
 impl<'a> Spectra<'a> {
-    /// Of `samples` under the Hann window of `bench`.
+    /// The spectra of `samples` under the Hann window of `bench`.
     pub fn new(radar: &'a Radar, bench: &'a Workbench<'a>, samples: &'a Samples) -> Self {
         let fft = FftPlanner::new().plan_fft_forward(radar.samples);
         let flat = samples.flat(&bench.sensor);
@@ -73,7 +73,7 @@ impl<'a> Spectra<'a> {
         self.kept(rows, all / part)
     }
 
-    /// So many range bins of each end around the middle of `rows`.
+    /// A fit within `bins` range bins of each end around the middle of `rows`.
     fn kept(&self, rows: &Rows, bins: usize) -> Narrow<'a> {
         let (all, every) = (self.radar.samples as f64, (self.radar.samples / bins) as f64);
         // Sampled evenly about the middle of the chirp.
@@ -101,7 +101,7 @@ impl<'a> Spectra<'a> {
         let energy = every * windowed.iter().flatten().map(Complex64::norm_sqr).sum::<f64>();
         let flat: Vec<Complex64> =
             windowed.iter().flat_map(|samples| samples.iter().zip(&weights).map(|(v, w)| v / w)).collect();
-        // The middle of the chirp stays where it is if the phase of the first sample is that of a slightly higher carrier.
+        // The middle of the chirp stays in place if the phase of the first sample is that of a slightly higher carrier.
         let turns = self.radar.carrier.turns_per_wavelength();
         let carrier_hz = self.radar.carrier_hz + SPEED_OF_LIGHT * start / (turns * self.radar.max_range_metres());
         let radar = Radar { samples: bins, carrier_hz, ..self.radar.clone() };
@@ -130,7 +130,7 @@ mod tests {
     use crate::signal::{Floor, simulate};
     use crate::task::Task;
 
-    /// Step from one reflector of the wall to the next, metres, and where it leads, degrees.
+    /// Step from one reflector of the wall to the next, metres, and the wall's direction, degrees.
     const STEP_METRES: f64 = 0.11;
     const DIRECTION_DEGREES: f64 = 72.0;
 

@@ -1,4 +1,4 @@
-//! Energy of a residual over range at each end: how well each part of the scene is explained.
+//! Energy of a residual over range at each end, which shows the unexplained parts of the scene.
 
 use super::groups::Rows;
 use crate::radar::{End, Radar};
@@ -12,17 +12,17 @@ pub struct Profile {
     energy: [Vec<f64>; 2],
 }
 
-/// Bins beside an atom's own that are taken to be its own too.
+/// Bins beside an atom's own that count as its own too.
 const MARGIN_BINS: f64 = 2.0;
 
 impl Profile {
-    /// Of samples laid out channel by channel, not windowed.
+    /// The profile of samples laid out channel by channel, not windowed.
     pub fn new(radar: &Radar, flat: &[Complex64]) -> Self {
         let ends = TwoEnds::of_flat(radar, flat);
         Profile { energy: End::BOTH.map(|end| range_energy(radar, ends.end(end).view())) }
     }
 
-    /// The most that any bin at or beside these rows holds.
+    /// The largest energy of a bin at or beside these rows.
     pub fn strongest(&self, rows: &Rows) -> f64 {
         rows.iter().zip(&self.energy).map(|(rows, energy)| near(energy, rows).fold(0.0, f64::max)).fold(0.0, f64::max)
     }
@@ -32,7 +32,7 @@ impl Profile {
         rows.iter().zip(&self.energy).map(|(rows, energy)| near(energy, rows).sum::<f64>()).sum()
     }
 
-    /// The same less noise of this energy a bin; at least 0.
+    /// Energy at and beside these rows less noise of this energy a bin; at least 0.
     pub fn over_noise(&self, rows: &Rows, noise_a_bin: f64) -> f64 {
         let bins: usize = rows.iter().zip(&self.energy).map(|(rows, energy)| near(energy, rows).count()).sum();
         (self.at(rows) - noise_a_bin * bins as f64).max(0.0)

@@ -19,7 +19,7 @@ use faer::Mat;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Which samples share one gain for each atom.
+/// The samples that share one gain for each atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tie {
     /// Each end has its own gain: the position follows from ranges and from the phases inside each end. No ambiguity.
@@ -28,26 +28,26 @@ pub enum Tie {
     Both,
 }
 
-/// When a refinement ends.
+/// Limits at which a refinement ends.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
     /// Most steps.
     pub iterations: usize,
     /// A step that lowers the energy by a smaller part than this is the last.
     pub least_gain: f64,
-    /// What a gain costs, against the energy of its atom: keeps atoms that are not quite right from large gains that cancel.
+    /// Price of a gain, relative to the energy of its atom: it keeps inexact atoms from large gains that cancel.
     pub ridge: f64,
 }
 
 impl Limits {
-    /// Of what more is to come beside: most of the way in a few steps.
+    /// Limits of a refinement before further ones: most of the way in a few steps.
     pub const ROUGH: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
 }
 
 /// Gains at the first and at the last end.
 pub type Gains = [Complex64; 2];
 
-/// What every refinement of one search shares.
+/// The shared data of all refinements of one search.
 #[derive(Clone)]
 pub struct Workbench<'a> {
     /// Geometry of the samples.
@@ -59,7 +59,7 @@ pub struct Workbench<'a> {
     /// The noise beneath the samples.
     pub hearing: Hearing,
     task: &'a Task,
-    /// What the search may do, and has done.
+    /// Work granted to the search, and done by it.
     pub work: Arc<Work>,
 }
 
@@ -69,7 +69,7 @@ const MOST_IN_PARALLEL: usize = 16;
 /// Inner products of two echoes that take as long as one echo at all channels.
 const PRODUCTS_AN_ECHO: usize = 64;
 
-/// Atoms with their gains, and what they leave of the samples.
+/// Atoms with their gains, and their residual.
 #[derive(Debug, Clone)]
 pub struct Fit {
     /// The atoms.
@@ -89,7 +89,7 @@ impl Fit {
     }
 }
 
-/// How a state is asked for.
+/// The terms of a state.
 #[derive(Debug, Clone, Copy)]
 struct Terms {
     tie: Tie,
@@ -97,7 +97,7 @@ struct Terms {
     derivatives: bool,
 }
 
-/// Everything known about one set of atoms at one place.
+/// All quantities of one set of atoms at one place.
 struct State {
     fit: Fit,
     cost: f64,
@@ -109,7 +109,7 @@ struct State {
 }
 
 impl<'a> Workbench<'a> {
-    /// For the ends of `radar` under `window`.
+    /// The workbench for the ends of `radar` under `window`.
     pub fn new(radar: &Radar, window: &[f64], task: &'a Task, most_work: usize) -> Self {
         Workbench {
             sensor: Sensor::new(radar),
@@ -122,17 +122,17 @@ impl<'a> Workbench<'a> {
         }
     }
 
-    /// The same where those channels alone hear of which `flat`, the samples channel by channel, holds something.
+    /// The workbench for the channels of `flat` that aren't silent; `flat` are the samples channel by channel.
     pub fn hearing(self, flat: &[Complex64]) -> Self {
         Workbench { sensor: self.sensor.hearing(flat), ..self }
     }
 
-    /// The same over noise of which this much is known.
+    /// The workbench over noise of this kind.
     pub fn over(self, hearing: Hearing) -> Self {
         Workbench { hearing, ..self }
     }
 
-    /// For chirps of fewer samples, as `radar` takes them, under a window whose weights have these squares. Its work counts as this one's.
+    /// The workbench for chirps of fewer samples, those of `radar`, under a window whose weights have these squares. Both share one count of work.
     pub fn sampled_as(&self, radar: &Radar, squared: Vec<f64>) -> Self {
         let sensor = self.sensor.sampled_as(radar);
         Workbench { sensor, squared, moments: self.moments.sampled_as(radar.samples), ..self.clone() }
@@ -145,13 +145,13 @@ impl<'a> Workbench<'a> {
         remainder(&self.sensor, &self.squared, samples, &reflectors, Asked::Nothing)
     }
 
-    /// Gains for `atoms` where they are.
+    /// The fit of `atoms` at their places.
     pub fn solve(&self, samples: &Samples, atoms: Vec<Atom>, tie: Tie, ridge: f64) -> Fit {
         let gains = vec![Gains::default(); atoms.len()];
         self.settled(self.state(samples, atoms, gains, Terms { tie, ridge, derivatives: false }), samples)
     }
 
-    /// Moves `atoms` to a local minimum of the energy that they leave of `samples`. `gains` are where gains start: zeros, or near the truth.
+    /// Moves `atoms` to a local minimum of the energy of their residual in `samples`. `gains` are the first gains: zeros, or near the truth.
     pub fn refine(&self, samples: &Samples, atoms: Vec<Atom>, gains: Vec<Gains>, tie: Tie, limits: Limits) -> Fit {
         let terms = Terms { tie, ridge: limits.ridge, derivatives: true };
         let mut state = self.state(samples, atoms, gains, terms);
@@ -190,7 +190,7 @@ impl<'a> Workbench<'a> {
                 *damping *= 10.0;
                 continue;
             };
-            // The most that the step can gain; at a minimum nothing, and no shorter step gains more.
+            // The largest possible gain of the step; at a minimum it is 0, and no shorter step gains more.
             let most = 2.0 * step.iter().zip(&equations.gradient).map(|(s, g)| s * g).sum::<f64>();
             if most < least_gain * state.cost {
                 return None;
@@ -222,7 +222,7 @@ impl<'a> Workbench<'a> {
         parameters.zip(step).all(|((atom, k), v)| v.abs() < most(atom, k))
     }
 
-    /// For every atom, by how much the energy would grow without it, the other gains having made the best of it.
+    /// Growth of the energy without each atom, with the other gains fitted anew.
     pub fn worths(&self, fit: &Fit) -> Vec<f64> {
         let dictionary = Dictionary::new(&self.sensor, &self.moments, &fit.atoms, false);
         let n = fit.atoms.len();
@@ -241,7 +241,7 @@ impl<'a> Workbench<'a> {
         2.0 * radar.end_elements as f64 * amplitude * amplitude * self.squared.iter().sum::<f64>()
     }
 
-    /// Energy that the noise heard in what `fit` leaves gives to one gain under the window.
+    /// Energy that the noise measured in the residual of `fit` gives to one gain under the window.
     pub fn gain_noise(&self, radar: &Radar, fit: &Fit) -> f64 {
         let flat = fit.residual.flat(&self.sensor);
         let variance = self.hearing.noise_variance(radar, &flat);
@@ -249,7 +249,7 @@ impl<'a> Workbench<'a> {
         variance * fourth / square
     }
 
-    /// `fit` without the atoms numbered `gone`, which go back into its residual.
+    /// `fit` without the atoms of the indices `gone`, which go back into its residual.
     pub fn less(&self, fit: Fit, gone: &[usize]) -> Fit {
         let atoms: Vec<Atom> = gone.iter().map(|&i| fit.atoms[i]).collect();
         let back: Vec<Gains> = gone.iter().map(|&i| fit.gains[i].map(|g| -g)).collect();
@@ -263,11 +263,11 @@ impl<'a> Workbench<'a> {
         }
     }
 
-    /// All about `atoms`; gains start at `gains` and end at their best.
+    /// The state of `atoms`; gains start at `gains` and end at their optimum.
     fn state(&self, samples: &Samples, atoms: Vec<Atom>, mut gains: Vec<Gains>, terms: Terms) -> State {
         let Terms { tie, ridge, derivatives } = terms;
         if tie == Tie::Both {
-            // Gains that differ would go on differing: every step is the same at both ends.
+            // Different gains would stay different, since every step is the same at both ends.
             gains.iter_mut().for_each(|g| *g = [(g[0] + g[1]) / 2.0; 2]);
         }
         let dictionary = Dictionary::new(&self.sensor, &self.moments, &atoms, derivatives);
@@ -282,7 +282,7 @@ impl<'a> Workbench<'a> {
         let columns = &dictionary.first_column;
         let values = |gram: &Mat<Complex64>| Mat::from_fn(n, n, |i, j| gram[(columns[i], columns[j])]);
         let solvers: Vec<Ridge> = grams.iter().map(|gram| Ridge::new(&values(gram), ridge)).collect();
-        // The second pass removes what the squared condition number of the normal equations, or a far start, left.
+        // The second pass removes the error of a large squared condition number of the normal equations, or of a far start.
         for pass in 0..3 {
             self.work.spend(2 * echoes + 1);
             let asked = if derivatives { Asked::Slopes } else { Asked::Values };
@@ -328,10 +328,10 @@ impl<'a> Workbench<'a> {
     }
 }
 
-/// A step longer than this part of the maximum range is none.
+/// Largest ratio of a step to the maximum range.
 const MAX_STEP_RATIO: f64 = 26.0;
 
-/// The same of a square of a distance, as a part of the maximum range's.
+/// Largest change of the square of a distance in a step, relative to the square of the maximum range.
 const FARTHEST_SQUARE: f64 = 0.68;
 
 /// The reflectors of `atoms` with their gains.
@@ -343,7 +343,7 @@ fn reflectors(atoms: &[Atom], gains: &[Gains]) -> Vec<(Reflector, Gains)> {
 struct Equations {
     hessian: Mat<f64>,
     gradient: Vec<f64>,
-    /// For each block of samples that shares gains, how gains follow the parameters.
+    /// Derivatives of the gains by the parameters, for each block of samples that shares gains.
     follow: Vec<Mat<Complex64>>,
 }
 
@@ -377,7 +377,7 @@ fn normal_equations(state: &State, ridge: f64) -> Equations {
 }
 
 impl Equations {
-    /// Where the gains go, to first order, when the parameters take `step`.
+    /// The gains after `step` of the parameters, to first order.
     fn gains_after(&self, gains: &[Gains], step: &[f64]) -> Vec<Gains> {
         let change = |follow: &Mat<Complex64>, i: usize| {
             step.iter().enumerate().map(|(j, s)| follow[(i, j)] * *s).sum::<Complex64>()

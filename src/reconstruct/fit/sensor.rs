@@ -1,4 +1,4 @@
-//! The two ends as a measuring device: where their channels stand, and what phases they give to an echo.
+//! The two ends as a measuring device: positions of their channels, and phases of echoes.
 
 use crate::radar::{End, Pair, Radar};
 use crate::scene::Reflector;
@@ -22,13 +22,13 @@ pub struct Sensor {
     pub element_x: Vec<f64>,
     /// Antennas of every channel's element, first end first.
     pub pairs: Vec<Pair>,
-    /// Whether every element hears what it sent.
+    /// Whether each element transmits and receives by itself.
     pub is_monostatic: bool,
     /// Samples a channel.
     pub samples: usize,
     /// Channels an end.
     pub end_elements: usize,
-    /// Whether each channel hears: one that doesn't has no echoes.
+    /// Whether each channel has samples: a silent one has no echoes.
     pub hears: Vec<bool>,
     carrier_radians_per_metre: f64,
     beat_radians_per_metre: f64,
@@ -51,7 +51,7 @@ impl Sensor {
         }
     }
 
-    /// The same where those channels alone hear of which `flat`, the samples channel by channel, holds something.
+    /// The sensor with the channels of `flat` that aren't silent; `flat` are the samples channel by channel.
     pub fn hearing(mut self, flat: &[Complex64]) -> Self {
         for (hears, channel) in self.hears.iter_mut().zip(flat.chunks_exact(self.samples)) {
             *hears = channel.iter().any(|v| v.norm_sqr() > 0.0);
@@ -59,7 +59,7 @@ impl Sensor {
         self
     }
 
-    /// The same for chirps that `radar` samples in another way.
+    /// The sensor for chirps with the samples of `radar`.
     pub fn sampled_as(&self, radar: &Radar) -> Self {
         Sensor { hears: self.hears.clone(), ..Sensor::new(radar) }
     }
@@ -80,14 +80,14 @@ impl Sensor {
         self.carrier_radians_per_metre + self.beat_radians_per_metre * n
     }
 
-    /// Phase for each metre of distance at the middle of the chirp, and how much it grows over the whole chirp.
+    /// Phase for each metre of distance at the middle of the chirp, and its growth over the whole chirp.
     pub fn radians_per_metre_over_chirp(&self) -> [f64; 2] {
         let middle = (self.samples as f64 - 1.0) / 2.0;
         [self.radians_per_metre(middle), self.beat_radians_per_metre * self.samples as f64]
     }
 }
 
-/// `r` moved to where its distance from every element is a number that can be divided by.
+/// `r`, moved so that its distance from every element is large enough to divide by.
 pub fn kept_apart(sensor: &Sensor, r: &Reflector) -> Reflector {
     let apart = |m: f64, x: f64| m.min((x - r.x_metres).abs());
     let antennas = || sensor.pairs.iter().flat_map(Pair::places_metres);

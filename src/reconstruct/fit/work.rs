@@ -1,8 +1,8 @@
-//! How much a search may compute: counted and not timed, so that it ends at the same place on every machine.
+//! A bound on the work of a search: counted and not timed, so that the search ends at the same place on every machine.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Work done and granted. The unit is about what one reflector's echo in all samples of both ends takes: ten microseconds.
+/// Work done and granted. The unit is about the time of one reflector's echo in all samples of both ends: ten microseconds.
 #[derive(Debug)]
 pub struct Work {
     done: AtomicUsize,
@@ -10,38 +10,38 @@ pub struct Work {
 }
 
 impl Work {
-    /// With this much granted.
+    /// A budget of `most` units.
     pub fn granted(most: usize) -> Self {
         Work { done: AtomicUsize::new(0), most }
     }
 
-    /// Counts what was done; any thread may.
+    /// Counts work; any thread may call it.
     pub fn spend(&self, units: usize) {
         self.done.fetch_add(units, Ordering::Relaxed);
     }
 
-    /// Grants so much that at least this is left.
+    /// Grants as much as makes the remaining work at least `units`.
     pub fn grant(&self, units: usize) {
         let done = self.most.saturating_sub(units);
         self.done.fetch_min(done, Ordering::Relaxed);
     }
 
-    /// Gives back what is left.
+    /// Gives up the remaining work.
     pub fn give_up(&self) {
         self.done.fetch_max(self.most, Ordering::Relaxed);
     }
 
-    /// What was done; to be asked where nothing runs in parallel.
+    /// The work done; call it where nothing runs in parallel.
     pub fn done(&self) -> usize {
         self.done.load(Ordering::Relaxed)
     }
 
-    /// Part of what was granted that is done; to be asked where nothing runs in parallel.
+    /// Part of the granted work that is done; call it where nothing runs in parallel.
     pub fn spent(&self) -> f64 {
         self.done.load(Ordering::Relaxed) as f64 / self.most.max(1) as f64
     }
 
-    /// Whether what was granted is done. To be asked where nothing runs in parallel: only there is the answer the same every time.
+    /// Whether the granted work is done. Call it where nothing runs in parallel: only there is the answer the same every time.
     pub fn is_spent(&self) -> bool {
         self.done.load(Ordering::Relaxed) >= self.most
     }

@@ -1,8 +1,9 @@
-//! Back-projection: what both ends heard from every cell of the centre's polar grid.
+//! Back-projection: the amplitude of both ends at every cell of the centre's polar grid.
 //!
-//! An end of a dozen elements (2 cm) is small enough to see spherical waves as plane, longer ones are taken in blocks that are; the
-//! finely padded spectrum of each says what it heard from any range and angle of its own. Every cell of the centre's grid looks up
-//! its range and angle at each block, and the phase that its distance gives. That is the near-field matched filter of Cafforio, Prati and Rocca ("SAR data focusing using seismic
+//! An end of a dozen elements (2 cm) is so small that spherical waves are plane on it, and longer ones are cut into blocks that are; the finely
+//! padded spectrum of each block has the amplitude at any range and angle of its own. Every cell of the centre's grid looks up its range and
+//! angle at each block, and the phase of its distance. This is the near-field matched filter of Cafforio, Prati and Rocca ("SAR data focusing
+//! using seismic migration techniques", 1991) with an interpolator instead of a sum over samples.
 //! migration techniques", 1991) with an interpolator instead of a sum over samples.
 
 use super::cells::GridCells;
@@ -29,7 +30,7 @@ const NEAR_PART: f64 = 1.0 / 64.0;
 
 const MOST_TABLE_BYTES: usize = 1 << 30;
 
-/// Where one cell of the centre's grid lies in one block's spectrum.
+/// Place of one cell of the centre's grid in one block's spectrum.
 #[derive(Clone, Copy, Default)]
 struct Place {
     row: f32,
@@ -52,22 +53,22 @@ pub(super) struct Backprojector {
     weight: f64,
 }
 
-/// How samples are weighted over range.
+/// The weighting of samples over range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum RangeWindow {
     /// Low side lobes.
     Hann,
-    /// All samples alike: the matched filter proper.
+    /// Equal weights: the matched filter proper.
     None,
 }
 
-/// Elements of each block of one end, within the end: as many as see spherical waves as plane.
+/// Elements of each block of one end, within the end: as many as a spherical wave is plane on.
 fn blocks(radar: &Radar) -> Vec<Range<usize>> {
     let far_metres = |elements: usize| {
         2.0 * ((elements - 1) as f64 * radar.element_spacing_metres).powi(2) / radar.wavelength_metres()
     };
     if !radar.is_monostatic() {
-        // Neighbours may belong to different antennas, which see no common wave.
+        // Neighbouring elements may have different antennas, which share no plane wave.
         return (0..radar.end_elements).map(|n| n..n + 1).collect();
     }
     let plane = |elements: &usize| radar.samples == 1 || far_metres(*elements) <= radar.max_range_metres() * NEAR_PART;
@@ -77,7 +78,7 @@ fn blocks(radar: &Radar) -> Vec<Range<usize>> {
     (0..count).map(|i| edge(i)..edge(i + 1)).collect()
 }
 
-/// Why the tables can't be made for `radar`: a column stands for too many directions, or they would fill too much memory.
+/// The reason why the tables can't be made for `radar`: a column has too many directions, or the tables take too much memory.
 pub(super) fn no_tables(radar: &Radar) -> Option<String> {
     too_many_folds(radar).or_else(|| too_large(radar))
 }
@@ -112,8 +113,7 @@ impl Backprojector {
         Backprojector { blocks, rows, columns, window, weight }
     }
 
-    /// Amplitude that each end heard from every cell, in phase where one reflector is there: 1 for a reflector whose samples have
-    /// amplitude 1.
+    /// Amplitude of each end at every cell, in phase where one reflector is there: 1 for a reflector whose samples have amplitude 1.
     pub fn amplitudes(&self, ends: &TwoEnds) -> [Array2<Complex64>; 2] {
         [(End::First, &self.blocks[0]), (End::Last, &self.blocks[1])].map(|(end, blocks)| {
             let dim = blocks.first().map_or((0, 0), |b| b.places.dim());

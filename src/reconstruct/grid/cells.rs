@@ -1,4 +1,4 @@
-//! The cells of the whole array's polar grid: every range bin by every direction that the radar sees.
+//! The cells of the whole array's polar grid: every range bin by every direction of the radar.
 
 use crate::radar::Radar;
 use crate::reconstruct::seen::{Direction, directions, row_ranges_metres};
@@ -24,18 +24,18 @@ pub(super) struct GridCell {
 }
 
 impl<'a> GridCells<'a> {
-    /// The cells of `radar`'s map; all its elements hear.
+    /// The cells of `radar`'s map, with echoes at all its elements.
     pub fn new(radar: &'a Radar) -> Self {
         let hears = vec![true; 2 * radar.end_elements];
         GridCells { radar, hears, range_metres: row_ranges_metres(radar), directions: directions(radar) }
     }
 
-    /// The same where the elements hear that measured something of `ends`.
+    /// The cells of `radar`'s map, with echoes at the elements of `ends` that have samples.
     pub fn heard_by(radar: &'a Radar, ends: &TwoEnds) -> Self {
         GridCells { hears: ends.hears(), ..GridCells::new(radar) }
     }
 
-    /// The radar whose cells they are.
+    /// The radar of the cells.
     pub fn radar(&self) -> &'a Radar {
         self.radar
     }
@@ -45,7 +45,7 @@ impl<'a> GridCells<'a> {
         (self.range_metres.len(), self.directions.len())
     }
 
-    /// Whether `cell` is in the grid and holds a place where something may stand: not at the array's centre, nor on an element.
+    /// The reflector in `cell`, where it is in the grid and a reflector can stand there: not at the array's centre, nor on an element.
     fn reflector(&self, cell: GridCell) -> Option<Reflector> {
         let (range, cos) = (*self.range_metres.get(cell.bin)?, self.directions.get(cell.direction)?.cos_theta);
         let place =
@@ -66,12 +66,12 @@ impl<'a> GridCells<'a> {
         (range > 0.0 && clear).then_some(place)
     }
 
-    /// Whether something may stand in `cell`.
+    /// Whether a reflector can stand in `cell`.
     pub fn may_hold(&self, cell: GridCell) -> bool {
         self.reflector(cell).is_some()
     }
 
-    /// The echo of a unit reflector in `cell`, where something may stand there.
+    /// The echo of a unit reflector in `cell`, where one can stand there.
     pub fn echo(&self, cell: GridCell) -> Option<ArrayEcho> {
         self.reflector(cell)?;
         self.echo_at(self.range_metres[cell.bin], self.directions[cell.direction].cos_theta)
@@ -86,7 +86,7 @@ impl<'a> GridCells<'a> {
         (echo.norm().is_finite() && echo.norm() > 0.0).then_some(echo)
     }
 
-    /// The map, `[range bins, columns]`, of a power on the grid: what shares a column is added.
+    /// The map, `[range bins, columns]`, of a power on the grid: directions of the same column are added.
     pub fn folded(&self, power: &Array2<f64>) -> Array2<f64> {
         let mut out = Array2::zeros((self.radar.samples, self.radar.elements));
         for (mut out, power) in out.outer_iter_mut().zip(power.outer_iter()) {

@@ -19,13 +19,13 @@ use std::collections::HashSet;
 /// Equation 1.1 of the thesis: the fewest reflectors that explain the samples, relaxed to
 /// `min 1/2 ||A x - y||^2 + penalty ||x||_1`.
 ///
-/// A. Beck and M. Teboulle, "A fast iterative shrinkage-thresholding algorithm for linear inverse problems", SIAM J. Imaging
-/// Sci. 2, 2009, in its monotone form. A holds exact near-field echoes of cells of the whole array's polar grid: first of those from
-/// which both ends together heard most, then also of those that the answer leaves more of than the penalty, whose gains were wrongly
-/// taken for zero (R. Tibshirani et al., "Strong rules for discarding predictors in lasso-type problems", J. R. Stat. Soc. B 74, 2012).
+/// A. Beck and M. Teboulle, "A fast iterative shrinkage-thresholding algorithm for linear inverse problems", SIAM J. Imaging Sci. 2, 2009, in
+/// its monotone form. A holds exact near-field echoes of cells of the whole array's polar grid: first of those with the largest amplitudes of
+/// both ends together, then also of those whose residual exceeds the penalty, whose gains were wrongly taken for zero (R. Tibshirani et al.,
+/// "Strong rules for discarding predictors in lasso-type problems", J. R. Stat. Soc. B 74, 2012).
 #[derive(Debug, Clone, Copy)]
 pub struct Fista {
-    /// Penalty, as a part of the one that would leave no reflector at all, but no less than what keeps noise out. The default is by
+    /// Penalty, as a part of the one that would leave no reflector at all, but at least the one that suppresses noise. The default is by
     /// examples/choose_eta.rs.
     pub penalty: f64,
     /// Cells that are candidates; at most 4096 are taken, whose Gram matrix fills 268 MB.
@@ -43,14 +43,14 @@ impl Default for Fista {
 /// Most candidates: memory and time grow with their square.
 const MOST_CANDIDATES: usize = 4096;
 
-/// Rounds of adding cells, and most of them in a round.
+/// Most rounds of adding cells, and most cells added in a round.
 const ADDING_ROUNDS: usize = 2;
 const MOST_ADDED: usize = 512;
 
-/// A cell is added where it is left more than this many times the penalty: so far the look-up of a cell may be wrong.
+/// Ratio of a cell's residual to the penalty above which the cell is added: the margin covers the error of a look-up.
 const WRONGLY_ZERO: f64 = 1.1;
 
-/// Most reflectors that are drawn; the strongest of what the penalty left.
+/// Most reflectors in the map; the strongest that the penalty left.
 const MOST_REFLECTORS_DRAWN: usize = 200;
 
 #[derive(Clone)]
@@ -63,8 +63,8 @@ struct Problem {
     penalty: f64,
 }
 
-/// The `count` cells from which both ends together heard most, in the order of the grid; beside those `known`, and where more than
-/// `least` is heard, as the correlation with a unit echo.
+/// The `count` cells with the largest amplitudes of both ends together, in the order of the grid, without those `known`, and with a correlation
+/// with a unit echo above `least`.
 fn candidates(
     radar: &Radar,
     cells: &GridCells<'_>,
@@ -74,7 +74,7 @@ fn candidates(
     least: f64,
 ) -> Vec<GridCell> {
     let [first, last] = heard_of;
-    // Weighted as unit atoms: a far reflector's echo is weak, its atom is not.
+    // The scale of unit atoms: a far reflector's echo is weak, its atom is not.
     let scale = 0.5 * (radar.samples * radar.end_elements) as f64;
     let power = Zip::from(&first).and(&last).par_map_collect(|a, b| scale * (a + b).norm_sqr());
     let known: HashSet<(usize, usize)> = known.iter().map(|cell| (cell.bin, cell.direction)).collect();
@@ -87,7 +87,7 @@ fn candidates(
         .collect();
     let count = count.min(heard.len());
     if count > 0 {
-        // Equal powers keep their order of place, so that the choice is the same on every run.
+        // Equal powers keep the order of the grid, so that the choice is the same on every run.
         heard.select_nth_unstable_by(count - 1, |a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
     }
     heard.truncate(count);
@@ -97,9 +97,9 @@ fn candidates(
 
 #[derive(Debug, Clone, Copy)]
 enum Penalty {
-    /// This part of the one that would leave no reflector at all, and no less than `least`.
+    /// This part of the penalty that would leave no reflector at all, and at least `least`.
     Part { part: f64, least: f64 },
-    /// As much.
+    /// A given penalty.
     Known(f64),
 }
 
@@ -171,7 +171,7 @@ impl Problem {
         1.05 * largest
     }
 
-    /// Monotone FISTA; `watch` sees the objective after every iteration.
+    /// Monotone FISTA; `watch` is called with the objective after every iteration.
     fn solve(
         &self,
         iterations: usize,
@@ -196,7 +196,7 @@ impl Problem {
             let gram_next = self.gram_times(&next);
             let objective = self.objective(&next, &gram_next);
             let next_momentum = (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) / 2.0;
-            // Monotone: a step that went up moves the point looked from, not the answer.
+            // Monotone: a step that raises the objective moves the extrapolation point, not the answer.
             let better = objective <= best;
             let forward = (momentum - 1.0) / next_momentum;
             let pull = momentum / next_momentum;
@@ -254,8 +254,8 @@ impl Reconstructor for Fista {
         let count = self.candidates.min(MOST_CANDIDATES);
         let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
         let noise_variance = ends_noise_variance(radar, ends, request.noise);
-        // At least what noise alone explains in no cell: the universal threshold of D. L. Donoho and I. M. Johnstone, "Ideal spatial adaptation
-        // by wavelet shrinkage", Biometrika 81, 1994, at the chance of the other thresholds.
+        // At least the level that noise alone exceeds in no cell: the universal threshold of D. L. Donoho and I. M. Johnstone, "Ideal spatial
+        // adaptation by wavelet shrinkage", Biometrika 81, 1994, at the chance of the other thresholds.
         let (bins, directions) = cells.dim();
         let least = 10f64.powf(decades_above_cells(noise_variance, bins * directions));
         let penalty = Penalty::Part { part: self.penalty, least };
@@ -327,7 +327,7 @@ mod tests {
         let strict = Problem { penalty: 20.0 * problem.penalty, ..problem.clone() };
         let fewer = used(&strict.solve(150, &request, |_| {}).unwrap());
         assert!(fewer >= 2 && 2 * fewer < used(&x), "a higher price buys fewer reflectors: {fewer}, {}", used(&x));
-        // What is optimal for an l1 penalty: no correlation of the residual above it.
+        // The optimality condition of an l1 penalty: no correlation of the residual exceeds it.
         let gram_x = problem.gram_times(&x);
         let worst = gram_x.iter().zip(&problem.heard).map(|(g, h)| (h - g).norm()).fold(0.0, f64::max);
         assert!(worst < 1.5 * problem.penalty, "{worst} {}", problem.penalty);

@@ -1,4 +1,4 @@
-//! The near-field matched filter for elements that stand anywhere: what other layouts of a few elements make of a scene.
+//! The near-field matched filter for elements at any places: maps of a scene for other layouts of a few elements.
 
 use super::cells::GridCells;
 use crate::maps::RangeAngleMap;
@@ -16,12 +16,12 @@ use rayon::prelude::*;
 /// Rows of an element's padded range profile for each range bin: enough for linear interpolation.
 const LAYOUT_ROWS_PER_BIN: usize = 8;
 
-/// Lambda of the whole array as the coherent matched filter of a few elements estimates it: every cell of the centre's polar grid
-/// looks up each element's range profile at its own distance and takes off the phase that distance gives.
+/// Lambda of the whole array as the coherent matched filter of a few elements estimates it: every cell of the centre's polar grid looks up each
+/// element's range profile at its own distance and removes the phase of that distance.
 ///
-/// `samples` is `[elements of layout, samples]`, in the layout's order. Back-projection, as in [`MatchedFilter`](crate::reconstruct::MatchedFilter), which is
-/// this for the two ends with whole-end beams. Random elements keep the main lobe of the whole aperture and pay with side lobes
-/// everywhere (thesis figures 1-2 and 1-3).
+/// `samples` is `[elements of layout, samples]`, in the layout's order. This is back-projection, as in
+/// [`MatchedFilter`](crate::reconstruct::MatchedFilter), which does the same for the two ends with whole-end beams. Random elements have the
+/// main lobe of the whole aperture and side lobes everywhere (thesis figures 1-2 and 1-3).
 /// # Errors
 /// [`ReconstructError::Shape`] where `samples` don't fit, [`ReconstructError::Cancelled`].
 pub fn layout_matched_filter(
@@ -87,7 +87,7 @@ mod tests {
         }
     }
 
-    /// What three elements make of the silence of `elements`.
+    /// The map of three silent elements on an array of `elements`.
     fn map_of_silence(elements: usize) -> Result<RangeAngleMap, ReconstructError> {
         let radar = Radar::default();
         let layout = Layout::random(&radar, 3, 0).unwrap();

@@ -48,7 +48,7 @@ impl Reconstructor for MatchedFilter {
     }
 
     fn fewest_end_elements(&self) -> usize {
-        // The power that one element hears tells no direction.
+        // The power at one element has no direction.
         if *self == MatchedFilter::Coherent { 1 } else { 2 }
     }
 

@@ -1,4 +1,4 @@
-//! The methods that work on both ends together, on the cells of the whole array's polar grid.
+//! Methods that use both ends together, on the cells of the whole array's polar grid.
 
 mod backprojector;
 mod cells;

@@ -15,15 +15,14 @@ use crate::signal::TwoEnds;
 use ndarray::{Array2, Zip, s};
 use num_complex::Complex64;
 
-/// Greedy sparse reconstruction: the atom that explains most of what is left, all gains fitted anew, until only noise is left.
+/// Greedy sparse reconstruction: the atom that explains most of the residual, all gains fitted anew, until only noise remains.
 ///
-/// Y. C. Pati, R. Rezaiifar and P. S. Krishnaprasad, "Orthogonal matching pursuit: recursive function approximation with
-/// applications to wavelet decomposition", Asilomar 1993. Atoms are the exact near-field echoes of the cells of the whole array's
-/// polar grid, moved between the cells to where they explain most; the map is drawn from those that were picked. One look at the grid serves
-/// several picks that stand far apart in range.
+/// Y. C. Pati, R. Rezaiifar and P. S. Krishnaprasad, "Orthogonal matching pursuit: recursive function approximation with applications to wavelet
+/// decomposition", Asilomar 1993. Atoms are the exact near-field echoes of the cells of the whole array's polar grid, moved between the cells to
+/// where they explain most; the map is that of the picked atoms. One look at the grid gives several picks that are far apart in range.
 #[derive(Debug, Clone, Copy)]
 pub struct Omp {
-    /// Most atoms it picks.
+    /// Most atoms to pick.
     pub max_atoms: usize,
 }
 
@@ -33,13 +32,13 @@ impl Default for Omp {
     }
 }
 
-/// Picks of one look stand this far apart in range at least, and hear little of each other.
+/// Least distance in range of the picks of one look, whose echoes overlap little then.
 const PICKS_APART_BINS: usize = 40;
 
-/// Power of a pick as a part of the strongest's of its look, beneath which it waits for another.
+/// Least power of a pick as a part of the strongest's of its look; weaker picks wait for another look.
 const LEAST_PICK: f64 = 0.1;
 
-/// All picks, up to so many, are moved again once this part of the energy is left that was left the last time.
+/// Most picks that are all moved again, which happens each time the residual has fallen to this part of its energy.
 const MOST_MOVED: usize = 64;
 const MOVED_AT: f64 = 0.1;
 
@@ -47,7 +46,7 @@ const MOVED_AT: f64 = 0.1;
 /// amplitude. It is not white, so that the measured noise understates it.
 const ROUNDING_ENERGY: f64 = 1e-22;
 
-/// Part of all energy that a pick must at least explain: 100 dB down. What a pick leaves where it has not quite come to its place is no scene.
+/// Least part of all energy that a pick must explain: 100 dB down. Weaker residuals are errors of a pick's place, not echoes.
 const LEAST_OF_ALL: f64 = 1e-10;
 
 impl Omp {
@@ -64,7 +63,7 @@ impl Omp {
         let all = energy(&samples);
         let enough = noise.max(all * ROUNDING_ENERGY);
         let mut cells = GridCells::heard_by(radar, ends);
-        // Nothing stands at the centre: what is heard in bin 0 stands one range period beyond.
+        // No reflector stands at the centre: an echo in bin 0 is one range period away.
         if radar.samples > 1 {
             cells.range_metres[0] = radar.max_range_metres();
         }
@@ -78,7 +77,7 @@ impl Omp {
             request.task.check()?;
             request.task.set_progress(0.9 * pursuit.picks.len() as f32 / self.max_atoms as f32);
             let [first, last] = backprojector.amplitudes(&TwoEnds::of_flat(radar, &pursuit.residual));
-            // Between the cells the ends' phases are others: each pick is moved to where they agree.
+            // Between the cells the ends' phases differ: each pick is moved to where they agree.
             let heard: Array2<f64> = Zip::from(&first).and(&last).par_map_collect(|a, b| (a.norm() + b.norm()).powi(2));
             if !self.pick(&mut pursuit, heard, &samples, enough, worth) {
                 break; // nothing on the grid explains what is left
@@ -92,8 +91,7 @@ impl Omp {
         Ok(fit(&pursuit.picks, &samples))
     }
 
-    /// Takes the strongest of `heard`, and those that stand far from it in range; whether the strongest was worth it, which explains no
-    /// less than `worth`.
+    /// Picks the strongest cell of `heard`, and those far from it in range. Returns whether the strongest explains at least `worth`.
     fn pick(
         &self,
         pursuit: &mut Pursuit<'_>,
@@ -192,7 +190,7 @@ mod tests {
         }
     }
 
-    /// Part of the energy of `ends` that `found` leaves.
+    /// Part of the energy of `ends` in the residual of `found`.
     fn left(radar: &Radar, ends: &TwoEnds, found: &[Reflector]) -> f64 {
         let samples = ends.flat();
         let cells = GridCells::heard_by(radar, ends);
@@ -245,7 +243,7 @@ mod tests {
     #[ignore = "a minute in an unoptimised build"]
     fn the_two_way_carrier_hides_no_direction() {
         let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
-        // Both stand in columns that a one-way array would take for other directions.
+        // Both are in columns that have other directions for a one-way array.
         let scene = Scene::of_points([(9.0, 12.0), (-16.0, 6.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let found = Omp::default().reconstruct(&radar, &ends, &Request::default()).unwrap().reflectors;

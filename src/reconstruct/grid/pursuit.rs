@@ -1,4 +1,4 @@
-//! Echoes that were picked, moved off the grid to where they explain most, and what they leave of the samples.
+//! Picked echoes, moved off the grid to where they explain most, and their residual.
 
 use super::cells::{GridCell, GridCells};
 use crate::radar::Radar;
@@ -14,27 +14,27 @@ use rayon::prelude::*;
 /// Steps by which a pick is moved off the grid.
 const CLIMBING_STEPS: usize = 32;
 
-/// The same for each of the directions that are compared.
+/// Steps for each of the directions that are compared.
 const TOOTH_STEPS: usize = 12;
 
-/// Directions to each side of a pick's that are compared: the phase between the ends is the same in all of them.
+/// Directions to each side of a pick's that are compared: the phase between the ends is the same for all of them.
 const TEETH_BESIDE: i32 = 6;
 
-/// Most times that they are compared anew around the outermost of them, where that is the best.
+/// Most comparisons, each around the outermost direction of the last where that was the best.
 const WALKS: usize = 8;
 
-/// Most picks that are all moved again after each new one, their directions compared.
+/// Most picks that are all moved again after each new one, with their directions compared.
 pub(super) const MOST_RELAXED: usize = 6;
 
-/// All picks are moved until that leaves more than this part of what was left before, at most so often; their directions are compared every
-/// other time.
+/// All picks are moved until a round leaves more than this part of the energy before it, in at most so many rounds; their directions are
+/// compared every other round.
 const STILL_MOVING: f64 = 0.5;
 const MOST_ROUNDS: usize = 8;
 
-/// Steps of each of these moves.
+/// Steps of each pick in a round.
 const MOVING_STEPS: usize = 24;
 
-/// Least part of an atom that the atoms picked before don't hold: less is no new atom.
+/// Least part of an atom outside the span of the picked atoms; an atom with less is not new.
 const LEAST_NEW: f64 = 1e-7;
 
 /// Part of the residual's energy that a pick must at least explain.
@@ -55,7 +55,7 @@ pub(super) struct Pursuit<'a> {
 }
 
 impl<'a> Pursuit<'a> {
-    /// Nothing is picked, and all of `samples` is left.
+    /// The start, without picks: the residual is `samples`.
     pub fn new(radar: &'a Radar, cells: GridCells<'a>, samples: &[Complex64]) -> Self {
         let (picks, basis) = (Vec::new(), Vec::new());
         Pursuit { radar, cells, picks, basis, residual: samples.to_vec() }
@@ -65,7 +65,7 @@ impl<'a> Pursuit<'a> {
         self.picks.iter().any(|p| p.cell == cell)
     }
 
-    /// The free cell where most is `heard`.
+    /// The free cell with the largest value of `heard`.
     pub fn strongest(&self, heard: &Array2<f64>) -> Option<Pick> {
         let (cell, _) = heard
             .indexed_iter()
@@ -75,8 +75,7 @@ impl<'a> Pursuit<'a> {
         Some(Pick { cell, atom: self.cells.echo(cell)? })
     }
 
-    /// `atom` moved off the grid to where it explains most of `samples`, of all directions nearby between which only the phase between
-    /// the ends tells.
+    /// `atom` moved off the grid to where it explains most of `samples`, over all nearby directions that only the phase between the ends distinguishes.
     pub fn refined(&self, mut atom: ArrayEcho, samples: &[Complex64]) -> ArrayEcho {
         let (radar, cells) = (self.radar, &self.cells);
         let apart_metres = (radar.elements - radar.end_elements) as f64 * radar.element_spacing_metres;
@@ -100,9 +99,8 @@ impl<'a> Pursuit<'a> {
         climbed(cells, atom, samples, CLIMBING_STEPS).1
     }
 
-    /// Moves every pick once more, now that the others' shares of `samples` are known: side lobes of an echo that was not yet picked
-    /// may have drawn it to a wrong place. `compares` says whether directions between which only the phase between the ends tells are
-    /// compared anew.
+    /// Moves every pick again, with the others' shares of `samples` subtracted: side lobes of an echo that was not yet picked may have drawn the
+    /// pick to a wrong place. `compares` is whether directions that only the phase between the ends distinguishes are compared anew.
     pub fn relax(&mut self, samples: &[Complex64], compares: bool) {
         for (i, gain) in unit_gains(&self.picks, samples).into_iter().enumerate() {
             let atom = self.picks[i].atom.clone();
@@ -123,7 +121,7 @@ impl<'a> Pursuit<'a> {
         }
     }
 
-    /// Moves all picks until they stay where they are, or no more than `enough` is left.
+    /// Moves all picks until they stay where they are, or the residual's energy is at most `enough`.
     pub fn settle(&mut self, samples: &[Complex64], enough: f64, request: &Request) -> Result<(), ReconstructError> {
         for round in 0..MOST_ROUNDS {
             request.task.check()?;
@@ -139,10 +137,10 @@ impl<'a> Pursuit<'a> {
         Ok(())
     }
 
-    /// Takes the pick's share off the residual; whether that was worth it.
+    /// Subtracts the pick's share from the residual; returns whether the share was large enough.
     pub fn take(&mut self, pick: Pick) -> bool {
         let mut direction = pick.atom.unit_samples();
-        // Twice: once leaves rounding error along atoms that lie close together.
+        // Twice, since one pass leaves rounding errors along atoms that lie close together.
         for _ in 0..2 {
             for b in &self.basis {
                 let along = inner(b, &direction);
@@ -163,8 +161,8 @@ impl<'a> Pursuit<'a> {
     }
 }
 
-/// `atom` moved to the nearest place where it explains most of `samples`, and its share there; in at most `steps` steps, which get
-/// shorter once none helps.
+/// `atom` moved to the nearest place where it explains most of `samples`, and its correlation there, in at most `steps` steps, which get shorter
+/// once none helps.
 fn climbed(cells: &GridCells<'_>, mut atom: ArrayEcho, samples: &[Complex64], steps: usize) -> (f64, ArrayEcho) {
     let radar = cells.radar();
     let place = radar.polar_of(atom.reflector.x_metres, atom.reflector.y_metres);

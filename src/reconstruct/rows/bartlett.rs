@@ -3,9 +3,9 @@
 use super::method::{ASSUMPTIONS, Render, RowMethod};
 use crate::reconstruct::reconstructor::About;
 
-/// Each end's beams without an angle window, laid over each other on the centre's grid.
+/// Each end's beams without an angle window, combined on the centre's grid.
 ///
-/// M. S. Bartlett, "Smoothing periodograms from time-series with continuous spectra", Nature 161, 1948, brought to arrays.
+/// M. S. Bartlett, "Smoothing periodograms from time-series with continuous spectra", Nature 161, 1948, applied to arrays.
 pub const BARTLETT: RowMethod = RowMethod {
     about: About {
         name: "bartlett",

@@ -8,7 +8,7 @@ use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::{Mat, Side};
 use num_complex::Complex64;
 
-/// Beams that pass one direction unchanged and everything else as little as they can, per end and range row.
+/// Beams that pass one direction unchanged and suppress all others as far as possible, per end and range row.
 ///
 /// J. Capon, "High-resolution frequency-wavenumber spectrum analysis", Proc. IEEE 57, 1969; with spatial smoothing and diagonal
 /// loading by the noise, since one row of one chirp gives one snapshot.
@@ -35,7 +35,7 @@ pub const CAPON_PEAKS: RowMethod = RowMethod {
     render: Render::Peaks,
 };
 
-/// Added to the covariance's diagonal beside the noise, as a part of its mean: what the elements' small departures from a plane wave need.
+/// Added to the covariance's diagonal beside the noise, as a part of its mean, for the elements' small departures from a plane wave.
 const LOADING: f64 = 1e-6;
 
 fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {

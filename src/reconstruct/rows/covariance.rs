@@ -10,7 +10,7 @@ use crate::maps::Spectrum;
 /// Longest sub-array: work grows with the cube of its elements.
 const LONGEST_SUBARRAY: usize = 64;
 
-/// Elements of the sub-arrays over which a line of `elements` is smoothed: two thirds leave enough of both, aperture and averages.
+/// Elements of the sub-arrays over which a line of `elements` is smoothed: two thirds are a compromise of aperture and averages.
 pub(super) fn subarray_len(elements: usize) -> usize {
     (2 * elements / 3).clamp(2, LONGEST_SUBARRAY)
 }
@@ -39,7 +39,7 @@ pub(super) fn smoothed(snapshots: &[&[Complex64]], subarray: usize) -> Mat<Compl
     Mat::from_fn(subarray, subarray, |i, j| sum[(i, j)] / f64::max(count, 1.0))
 }
 
-/// Signals and noise of a covariance, told apart by its eigenvalues.
+/// Signal and noise subspaces of a covariance, separated by its eigenvalues.
 pub(super) struct Subspaces {
     /// Projector onto the noise subspace, `E_n E_n^H`, `[n, n]`.
     pub noise: Mat<Complex64>,
@@ -47,11 +47,11 @@ pub(super) struct Subspaces {
     pub signals: Mat<Complex64>,
 }
 
-/// How often as strong as the noise an eigenvalue must be to be a signal's.
+/// Least ratio of a signal's eigenvalue to the noise.
 const OVER_NOISE: f64 = 10.0;
 
-/// Splits `covariance` of `row` by its eigenvalues: signals are those above the noise that was measured, and above what one echo puts
-/// beside its own direction ([`RowSnapshot::not_plane`]). `None` where the decomposition fails.
+/// Splits `covariance` of `row` by its eigenvalues: signals are those above the measured noise, and above the power of one echo outside its own
+/// direction ([`RowSnapshot::not_plane`]). `None` where the decomposition fails.
 pub(super) fn subspaces(covariance: &Mat<Complex64>, row: &RowSnapshot<'_>) -> Option<Subspaces> {
     let n = covariance.nrows();
     let eigen = SelfAdjointEigen::new(covariance.as_ref(), Side::Lower).ok()?;

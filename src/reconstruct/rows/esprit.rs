@@ -1,4 +1,4 @@
-//! ESPRIT: directions from how the signal subspace turns from one element to the next.
+//! ESPRIT: directions from the phase step of the signal subspace between neighbouring elements.
 
 use super::covariance::{smoothed, subarray_len, subspaces};
 use super::method::{Render, RowMethod, TOLD_PEAKS};
@@ -25,7 +25,7 @@ pub const ESPRIT: RowMethod = RowMethod {
     render: Render::Peaks,
 };
 
-/// Turns an element of each wave.
+/// Turns of phase per element of each wave.
 fn directions(row: &RowSnapshot) -> Option<Vec<f64>> {
     let subspaces = subspaces(&smoothed(&row.snapshots, subarray_len(row.own().len())), row)?;
     let signals = subspaces.signals;
@@ -35,7 +35,7 @@ fn directions(row: &RowSnapshot) -> Option<Vec<f64>> {
         Mat::from_fn(n - 1, 2 * count, |i, j| if j < count { signals[(i, j)] } else { signals[(i + 1, j - count)] });
     let product = both.adjoint() * &both;
     let eigen = SelfAdjointEigen::new(product.as_ref(), Side::Lower).ok()?;
-    // Eigenvalues rise: the first vectors are those that both halves together don't hold.
+    // Eigenvalues rise: the first vectors are orthogonal to both halves together.
     let null = eigen.U().subcols(0, count);
     let (upper, lower) = (null.subrows(0, count), null.subrows(count, count));
     // -upper lower^-1, transposed: its eigenvalues are the same.

@@ -7,8 +7,8 @@ use crate::reconstruct::reconstructor::About;
 use faer::Mat;
 use num_complex::Complex64;
 
-/// The prediction error's nulls over angle, for each end and range row: forward and backward prediction of two thirds of the
-/// end's length, solved by a singular value decomposition that is cut off at the noise.
+/// Nulls of the prediction error over angle, for each end and range row: forward and backward prediction of two thirds of the end's length, by a
+/// singular value decomposition truncated at the noise.
 ///
 /// D. W. Tufts and R. Kumaresan, "Estimation of frequencies of multiple sinusoids: making linear prediction perform like maximum
 /// likelihood", Proc. IEEE 70, 1982.

@@ -1,4 +1,4 @@
-//! A row method is one closure; everything around it is written here once.
+//! Row methods: each is one closure, and the steps around it are shared.
 
 use super::covariance::subarray_len;
 use super::registered::joined;
@@ -20,10 +20,10 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Rows this far below the strongest, as a ratio of power, hold nothing but side lobes: plain beamforming draws them.
+/// Power of a row relative to the strongest below which the row has only side lobes: plain beamforming draws it.
 const ACTIVE_ROW: f64 = 1e-12;
 
-/// What every row method is told.
+/// The assumptions of every row method, [`About::told`].
 pub(super) const ASSUMPTIONS: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
     It does not use the phase between the ends";
 
@@ -31,22 +31,22 @@ pub(super) const TOLD_PEAKS: &str = "that what an end hears is plane waves, and 
     scene or the floor, it measures the noise itself. Its peaks do not use the phase between the ends; their places and amplitudes \
     are then fitted to both ends together, as those of iaa and sbl are";
 
-/// How what a row method estimates becomes a map.
+/// The step from a row method's estimate to a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Render {
-    /// Power over angle, row by row, both ends laid over each other.
+    /// Power over angle, row by row, both ends combined.
     Spectrum,
-    /// The peaks of that, moved to where their echoes fit best; amplitudes by least squares; and the exact map of these echoes.
+    /// Peaks of that power, moved to where their echoes fit best; amplitudes by least squares; and the exact map of these echoes.
     Peaks,
 }
 
-/// Peaks this far below the strongest are looked at, as decades of power: what the strongest leave shows in another look.
+/// Decades of power below the strongest to which peaks are used; weaker ones show in another look.
 const SPAN_DECADES: f64 = 4.0;
 
 /// Most peaks of one look.
 const MOST_PEAKS: usize = 256;
 
-/// Least part of an echo that counts as not plane: what rounding makes of a covariance.
+/// Least part of an echo that counts as not plane: the rounding of a covariance.
 const LEAST_NOT_PLANE: f64 = 1e-12;
 
 /// Power by which a peak must stand above the noise of one beam.
@@ -76,7 +76,7 @@ impl Reconstructor for RowMethod {
         if self.render == Render::Spectrum {
             return Ok(of_power(radar, self.power(radar, ends, noise_variance, request)?, noise_variance, request));
         }
-        // What reports progress is the whole, not one look.
+        // The task reports the progress of all looks, not of one.
         let quiet = Request { task: request.task.quiet(), ..request.clone() };
         let hearing = Hearing::beneath(radar, ends, request.noise);
         let look = |left: &TwoEnds| -> Result<Vec<Peak>, ReconstructError> {
@@ -92,8 +92,8 @@ impl Reconstructor for RowMethod {
     }
 }
 
-/// [`RowSnapshot::not_plane`] of the sub-arrays of `radar`'s ends. Over half a sub-array the range changes by up to `b` bins, and the amplitude in a row
-/// in proportion; twice the direction takes up what is linear in that, and leaves its square.
+/// [`RowSnapshot::not_plane`] of the sub-arrays of `radar`'s ends. Over half a sub-array the range changes by up to `b` bins, and the amplitude
+/// in a row in proportion; a second signal in the same direction takes up the linear part, and its square is left.
 fn not_plane(radar: &Radar) -> f64 {
     let half_metres = 0.5 * (subarray_len(radar.end_elements) - 1) as f64 * radar.element_spacing_metres;
     let bins = if radar.samples == 1 { 0.0 } else { half_metres / radar.range_resolution_metres() };
@@ -112,7 +112,7 @@ impl RowMethod {
         Ok(joined(radar, &[first?, last?]))
     }
 
-    /// The peaks of `power` that stand above the noise, the strongest first. Where several directions share a column each may be meant.
+    /// The peaks of `power` above the noise, the strongest first. Where several directions share a column, each has a peak.
     fn peaks(&self, radar: &Radar, power: &Array2<f64>, noise_variance: f64) -> Vec<Peak> {
         let square_mean = |n: usize| radar.window.weights(n).iter().map(|w| w * w).sum::<f64>() / n as f64;
         let angle_gain = (radar.window.weights(radar.elements).iter().sum::<f64>()).powi(2) / radar.elements as f64;

@@ -1,9 +1,9 @@
-//! The methods that work on one end and one range row at a time.
+//! Methods that use one end and one range row at a time.
 //!
-//! Each end's samples become range profiles; each range row is a snapshot of twelve elements from which a method estimates power
-//! over angle. Both ends' estimates are laid onto the centre's grid and their geometric mean is taken: what only one end
-//! believes in fades. Nothing of that uses the phase between the ends. A method draws that power, or its peaks: these are moved to where
-//! their exact echoes explain the samples of both ends best, as those of the coherent methods are, and the exact map is drawn.
+//! Each end's samples become range profiles; each range row is a snapshot of twelve elements from which a method estimates power over angle.
+//! Both ends' estimates are interpolated on the centre's grid and their geometric mean is taken, which weakens peaks of one end alone. This uses
+//! no phase between the ends. A method draws that power, or its peaks: these are moved to where their exact echoes explain the samples of both
+//! ends best, as those of the coherent methods are, and the exact map of these echoes is drawn.
 
 mod bartlett;
 mod capon;

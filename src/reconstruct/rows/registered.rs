@@ -1,15 +1,15 @@
-//! Laying what the ends see over each other, on the polar grid of the array's centre.
+//! Combination of the ends' maps on the polar grid of the array's centre.
 
 use crate::radar::{End, Radar};
 use crate::reconstruct::seen::{Direction, directions, row_ranges_metres, seen_from};
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 
-/// What both ends believe in, on the grid of the array's centre: the geometric mean of `maps`, `[range bins, columns]` each on its
-/// end's own grid, looked up (bilinear, wrapping as both axes do) where the end sees each cell.
+/// The geometric mean of both ends' maps on the grid of the array's centre. `maps` are `[range bins, columns]`, each on its end's own grid, and
+/// are looked up (bilinear, both axes wrapping) at each cell's place for the end.
 ///
-/// A column that stands for several directions gets the sum over them: the ranges at which the ends see a reflector tell its
-/// direction from the others, so that only one of them is believed in by both.
+/// A column of several directions gets the sum over them: the ranges of a reflector at the ends distinguish its direction from the others, so
+/// that only one of them has power at both ends.
 pub(super) fn joined(radar: &Radar, maps: &[Array2<f64>; 2]) -> Array2<f64> {
     let directions = directions(radar);
     let ranges = row_ranges_metres(radar);

@@ -1,4 +1,4 @@
-//! root-MUSIC: the directions as roots of a polynomial, then the array continued from them.
+//! root-MUSIC: directions as roots of a polynomial, and the whole array continued from them.
 
 use super::covariance::{diagonal_sums, smoothed, subarray_len, subspaces};
 use super::method::{ASSUMPTIONS, Render, RowMethod, TOLD_PEAKS};
@@ -7,8 +7,8 @@ use crate::reconstruct::reconstructor::About;
 use faer::Mat;
 use num_complex::Complex64;
 
-/// Directions of each end and range row from the roots of MUSIC's null polynomial; amplitudes by least squares; the row drawn
-/// as the whole array would see those waves.
+/// Directions of each end and range row from the roots of MUSIC's null polynomial; amplitudes by least squares; the row of the map is that of
+/// the whole array for those waves.
 ///
 /// A. J. Barabell, "Improving the resolution performance of eigenstructure-based direction-finding algorithms", ICASSP 1983.
 pub const ROOT_MUSIC: RowMethod = RowMethod {
@@ -34,7 +34,7 @@ pub const ROOT_MUSIC_PEAKS: RowMethod = RowMethod {
     render: Render::Peaks,
 };
 
-/// Turns an element of each wave: the roots inside the unit circle that are nearest to it.
+/// Turns of phase per element of each wave: the roots inside the unit circle that are nearest to it.
 fn directions(row: &RowSnapshot) -> Option<Vec<f64>> {
     let covariance = smoothed(&row.snapshots, subarray_len(row.own().len()));
     let subspaces = subspaces(&covariance, row)?;
@@ -52,7 +52,7 @@ fn roots(coefficients: &[Complex64]) -> Option<Vec<Complex64>> {
     let degree = coefficients.len() - 1;
     let leading = coefficients[degree];
     let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.norm()));
-    // Without this the companion matrix would be full of rounding error.
+    // Without this cut the companion matrix would be full of rounding errors.
     if leading.norm() <= largest * 1e-14 {
         return None;
     }

@@ -1,4 +1,4 @@
-//! What a row method sees.
+//! The input of a row method.
 
 use crate::maps::Spectrum;
 use crate::radar::hann;
@@ -30,8 +30,8 @@ impl RowSnapshot<'_> {
         self.spectrum.of(self.own().iter().copied()).into_iter().map(|v| v.norm_sqr() / (elements * elements)).collect()
     }
 
-    /// Turns a null spectrum, small where there is a reflector, into power: its reciprocal, scaled to plain beamforming's
-    /// largest. A pseudo-spectrum tells where reflectors are, not how strong.
+    /// Converts a null spectrum, small where there is a reflector, into power: its reciprocal, scaled to plain beamforming's largest. A
+    /// pseudo-spectrum has the places of reflectors, not their strengths.
     pub fn power_of_nulls(&self, nulls: &[f64]) -> Vec<f64> {
         let strongest = self.bartlett().into_iter().fold(0.0, f64::max);
         let guard = nulls.iter().fold(0.0, |m: f64, v| m.max(*v)) * 1e-15 + f64::MIN_POSITIVE;
@@ -39,8 +39,8 @@ impl RowSnapshot<'_> {
         nulls.iter().map(|v| strongest * deepest / v.max(deepest)).collect()
     }
 
-    /// Power over angle, in the order of the transform, of the whole array continued from waves of so many `turns` an element; their
-    /// amplitudes by least squares.
+    /// Power over angle, in the order of the transform, of the whole array continued from waves of `turns` of phase per element, with amplitudes
+    /// by least squares.
     pub fn continued(&self, turns: &[f64]) -> Option<Vec<f64>> {
         let own = self.own();
         if turns.is_empty() {
@@ -68,7 +68,7 @@ impl RowSnapshot<'_> {
     }
 }
 
-/// Calls `look` with twelve elements that hear waves of these turns an element and amplitudes, almost without noise.
+/// Calls `look` with twelve elements, almost without noise, and with waves of these turns per element and amplitudes.
 #[cfg(test)]
 pub(super) fn with_waves<T>(waves: &[(f64, f64)], look: impl FnOnce(&RowSnapshot<'_>) -> T) -> T {
     let heard = |n: usize| waves.iter().map(|(t, a)| a * Complex64::cis(std::f64::consts::TAU * t * n as f64)).sum();

@@ -1,4 +1,4 @@
-//! Where walls begin: rows over two points or from the edge of a wall, and which of them are borne out.
+//! Beginnings of walls: rows over two points or from the edge of a wall, tested against the samples.
 
 use super::grow::{Grower, tried};
 use super::on_wall::is_on;
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 /// Rows that are held against the samples themselves, at each look.
 const MOST_TRIED: usize = 24;
 
-/// What a row must explain of the energy in its range bins to be followed to its ends.
+/// Least part of the energy in its range bins that a row must explain to be followed to its ends.
 const LEAST_BEGUN: f64 = 0.3;
 
 /// Fewest reflectors of a wall.
@@ -23,7 +23,7 @@ pub const MIN_REFLECTORS: usize = 8;
 /// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
 const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (MIN_REFLECTORS, 0.97)];
 
-/// The same of a long wall: so many reflectors explain nothing that they are not, and much else may stand in their range bins.
+/// This part for a long wall: a wrong row of so many reflectors explains little, and other objects may stand in its range bins.
 const LEAST_OF_LONG: f64 = 0.6;
 
 /// Fewest reflectors of a long wall, and fewest range bins that it goes through.
@@ -46,7 +46,7 @@ fn is_long(radar: &Radar, wall: &Atom) -> bool {
     wall.reflector_count() >= LEAST_LONG && bins >= LEAST_LONG as f64
 }
 
-/// What is left when another wall is looked for.
+/// The residual in which another wall is searched.
 struct Left<'a> {
     fit: &'a Fit,
     profile: Profile,
@@ -106,14 +106,14 @@ impl Grower<'_> {
         Begun { atom, part: energy / left.energy_at(&rows) }
     }
 
-    /// That of `rows` which explains the greatest part of what there is in its range bins.
+    /// The row that explains the greatest part of the energy in its range bins.
     fn best_begun(&self, left: &Left, rows: &[Atom]) -> Option<Begun> {
         let begun: Vec<Begun> = rows.par_iter().take(MOST_TRIED).map(|&atom| self.begun(left, atom)).collect();
         tracing::debug!(rows = rows.len(), "rows");
         begun.into_iter().max_by(|a, b| a.part.total_cmp(&b.part))
     }
 
-    /// The best of `rows`, if it is borne out when it is followed to its ends.
+    /// The best of `rows`, if it is accepted after it was followed to its ends.
     fn borne_out(&self, left: &Left, rows: &[Atom]) -> Option<Fit> {
         let fit = left.fit;
         let best = self.best_begun(left, rows).filter(|row| row.part > LEAST_BEGUN)?;

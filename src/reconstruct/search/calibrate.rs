@@ -63,18 +63,18 @@ const MAX_ENERGY_RATIO: f64 = 1e-2;
 /// Maximum residual energy with gains of the elements, relative to the residual energy without them.
 const MAX_PLAIN_RATIO: f64 = 0.1;
 
-/// Whether objects found in samples leave more than elements that are alike would.
+/// Whether the residual of objects found in samples is larger than equal elements would leave.
 pub(super) fn asks_for_gains(plain: &Found) -> bool {
     !plain.complete && !plain.atoms.is_empty() && plain.drawn_left() > MIN_ENERGY_RATIO
 }
 
-/// The objects in samples as if their elements were alike, from those of an answer where there is one.
+/// The objects in samples of equal elements, starting from those of an answer where there is one.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
 pub type SearchEnds<'a> = &'a dyn Fn(Option<&Found>, &TwoEnds, &Request, &Settings) -> Result<Found, ReconstructError>;
 
-/// What gains of elements are estimated from.
+/// The input of an estimate of the elements' gains.
 pub(super) struct Calibration<'a> {
     /// Searches without gains.
     pub search: SearchEnds<'a>,
@@ -82,15 +82,15 @@ pub(super) struct Calibration<'a> {
     pub radar: &'a Radar,
     /// Samples of a peak between 1 and 2.
     pub ends: &'a TwoEnds,
-    /// What was asked for.
+    /// The request.
     pub request: &'a Request,
     /// Limits of a search.
     pub settings: &'a Settings,
-    /// What was found without gains.
+    /// The answer without gains.
     pub plain: &'a Found,
 }
 
-/// Gains of the elements, the objects in samples without them, and the part of the samples' energy that is left.
+/// Gains of the elements, the objects in samples without them, and the remaining part of the samples' energy.
 struct Fitted {
     gains: ElementGains,
     fit: Fit,
@@ -98,7 +98,7 @@ struct Fitted {
 }
 
 impl Calibration<'_> {
-    /// The objects with gains of the elements, where these explain what is left without.
+    /// The objects with gains of the elements, where these explain most of the residual without them.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -138,7 +138,7 @@ impl Calibration<'_> {
         Request { noise: NoisePrior::White { sigma }, ..self.request.clone() }
     }
 
-    /// Gains of the elements after all levels; `None` where a level leaves much more than the noise that it was told of.
+    /// Gains of the elements after all levels; `None` where a level leaves much more than its noise.
     fn fitted(&self) -> Result<Option<Fitted>, ReconstructError> {
         let &Calibration { radar, ends, request, plain, .. } = self;
         let window = hann(radar.samples);
@@ -186,7 +186,7 @@ fn strongest(found: &Found) -> Vec<Atom> {
     found.atoms.iter().zip(&found.gains).filter(|(_, gains)| is_strong(gains)).map(|(atom, _)| *atom).collect()
 }
 
-/// The gains that fit `atoms` best, whose own gains are fitted to samples with `gains` taken off, and their places where that is asked for.
+/// The gains of elements that fit `atoms` best. The atoms' own gains, and with `moves` their places, are fitted to samples without `gains`.
 fn turned(
     radar: &Radar,
     bench: &Workbench,

@@ -1,4 +1,4 @@
-//! The whole array's map of known objects, as it is *expected* over a noise floor.
+//! The *expected* whole array's map of known objects over a noise floor.
 //!
 //! The squared error is smallest for the expectation of Lambda, not for one more draw of the noise: two independent draws differ by
 //! twice the variance that a draw and its mean do.
@@ -19,17 +19,17 @@ use crate::signal::{Plan, Precision, Rows};
 use crate::task::Task;
 use rayon::prelude::*;
 
-/// Cells that are added up in f32.
+/// Cells that are summed in f32.
 const ROW_CELLS: usize = 1024;
 
 /// White noise beneath the samples of the whole array.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Noise {
-    /// Rounding as the thesis' program leaves it, from the objects themselves.
+    /// The rounding of the thesis' program, as it follows from the objects themselves.
     Rounding,
-    /// The same over the elements, scaled to this variance a sample in the mean of both ends: as it was measured.
+    /// The same profile over the elements, scaled to this measured variance a sample, the mean of both ends.
     RoundingHeard(f64),
-    /// Variance a sample.
+    /// White noise of this variance a sample.
     Variance(f64),
 }
 
@@ -38,11 +38,11 @@ pub enum Noise {
 pub struct Weighted {
     /// The atom.
     pub atom: Atom,
-    /// Its reflectivity.
+    /// Reflectivity of the atom.
     pub reflectivity: f64,
 }
 
-/// A map as it is expected, and its scale.
+/// An expected map, and its scale.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
     /// Lambda, `[range bins, columns]`.
@@ -53,12 +53,12 @@ pub struct Expected {
     pub least_eta: f32,
 }
 
-/// Expected Lambda of the whole array over `objects`, as accurate as the floor of `request` can show.
+/// Expected Lambda of the whole array over `objects`, as accurate as the floor of `request` requires.
 pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, request: &Request) -> Expected {
     let reflectors: Vec<Reflector> = objects
         .iter()
         .flat_map(|o| o.atom.reflectors(o.reflectivity))
-        // The simulator takes reflectors that touch no element.
+        // The simulator requires a distance of reflectors from the elements.
         .map(|r| Reflector { y_metres: r.y_metres.max(MIN_ELEMENT_DISTANCE_METRES), ..r })
         .collect();
     let snr = match noise {
@@ -96,7 +96,7 @@ fn log_map<T: Real, const W: usize>(radar: &Radar, reflectors: &[Reflector], pla
     map
 }
 
-/// `map` as it is expected over noise of this mean power in a cell.
+/// The expectation of `map` over noise of this mean power in a cell.
 fn over_noise(mut map: FastLogMap, cell_noise: f64, normalisation: Normalisation) -> Expected {
     let over = OverNoise::new(cell_noise);
     // The smallest of all cells: near zero each |Y|^2 has density exp(-s/N)/N, so the minimum of |Y|^2 is exponential with the sum of these.
@@ -122,7 +122,7 @@ fn over_noise(mut map: FastLogMap, cell_noise: f64, normalisation: Normalisation
     Expected { map: RangeAngleMap { lambda: map.cells }, decades: range, least_eta }
 }
 
-/// Variances of all elements, scaled so that both ends have this one in the mean.
+/// Variances of all elements, scaled so that their mean over both ends is `ends_variance`.
 fn scaled_to(radar: &Radar, ends_variance: f64, variance: Vec<f64>) -> Vec<f64> {
     let ends = End::BOTH.into_iter().flat_map(|end| radar.end_range(end));
     let (sum, count) = ends.fold((0.0, 0.0), |(sum, count), n| (sum + variance[n], count + 1.0));

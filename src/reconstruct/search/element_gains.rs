@@ -10,12 +10,12 @@ use num_complex::Complex64;
 pub struct ElementGains(pub(super) Vec<Complex64>);
 
 impl ElementGains {
-    /// Of elements that are alike.
+    /// The gains of equal elements.
     pub fn ones(radar: &Radar) -> Self {
         ElementGains(vec![Complex64::ONE; 2 * radar.end_elements])
     }
 
-    /// What `ends` would have been with elements that are alike.
+    /// `ends` without the gains: the samples of equal elements.
     pub fn taken_from(&self, ends: &TwoEnds) -> TwoEnds {
         let mut corrected = ends.clone();
         let channels = corrected.first.outer_iter_mut().chain(corrected.last.outer_iter_mut());
@@ -31,7 +31,7 @@ impl ElementGains {
         (self.0.iter().map(|g| (g - 1.0).norm_sqr()).sum::<f64>() / self.0.len() as f64).sqrt()
     }
 
-    /// How far they are off.
+    /// The errors of the elements, as an attempt.
     pub fn tried(&self) -> Tried {
         let rms = |of: fn(&Complex64) -> f64| {
             (self.0.iter().map(|g| of(g).powi(2)).sum::<f64>() / self.0.len() as f64).sqrt()
@@ -39,7 +39,7 @@ impl ElementGains {
         Tried::Gains { decibels: rms(|g| 20.0 * g.norm().log10()), degrees: rms(|g| g.arg().to_degrees()) }
     }
 
-    /// The same but for a gain that all share and, where asked for, the phase's offset and slope along each end.
+    /// The gains without a common factor and, if `without_slope`, without the phase's offset and slope along each end.
     pub fn normalised(mut self, without_slope: bool) -> Self {
         let mean_log = self.0.iter().map(|g| g.norm().ln()).sum::<f64>() / self.0.len() as f64;
         let common = Complex64::from_polar(mean_log.exp(), self.0.iter().sum::<Complex64>().arg());
@@ -52,7 +52,7 @@ impl ElementGains {
     }
 }
 
-/// Takes the line through an end's phases from them.
+/// Subtracts the straight line through an end's phases.
 fn level(gains: &mut [Complex64]) {
     let n = gains.len() as f64;
     let middle = (n - 1.0) / 2.0;

@@ -1,7 +1,7 @@
-//! How far each cell of the drawn map is explained: what the ends' maps hold when the drawn objects are taken out of them.
+//! The explained part of each cell of the drawn map: the ends' maps without the drawn objects.
 //!
-//! A log map shows every reflector at full brightness, however little energy it has. So what is left is compared with what is drawn in the
-//! cell itself, where both ends see it.
+//! A log map shows every reflector at full brightness, however little energy it has. So the residual is compared with the drawn map in the cell
+//! itself, at its place in both ends' maps.
 
 use super::draw::Expected;
 use super::finish::Found;
@@ -16,8 +16,8 @@ use rayon::prelude::*;
 /// Rows and beams to each side over which powers are averaged.
 const MEAN_SIDE_CELLS: usize = 2;
 
-/// Power of a residual, over that of the noise that was measured in it, up to which it is noise: averaged so, white noise exceeds it in one
-/// cell of 300 at most.
+/// Power of a residual, over that of the noise measured in it, up to which it counts as noise: averaged so, white noise exceeds it in one cell
+/// of 300 at most.
 const NOISE_MARGIN: f64 = 3.0;
 
 /// Least power that is left, over that of the strongest cell.
@@ -27,9 +27,9 @@ const LEAST_LEFT: f64 = 1e-36;
 const COLUMNS_TOGETHER: usize = 4;
 
 impl Found {
-    /// Power that the drawn objects leave of the samples, over the power that is drawn in each cell of the whole array's map, in decades:
-    /// `[range bins, columns]`. 0 where as much is left as is drawn; of both ends the one that leaves less. `ends` are the samples that were
-    /// searched, `expected` is the map of what was found in them.
+    /// Power of the residual of the drawn objects, over the drawn power in each cell of the whole array's map, in decades: `[range bins,
+    /// columns]`. 0 where the residual is as strong as the drawn map; of both ends the smaller residual counts. `ends` are the searched samples,
+    /// `expected` is the map of the objects found in them.
     pub fn left_decades(&self, radar: &Radar, ends: &TwoEnds, expected: &Expected) -> Array2<f32> {
         let samples: Vec<Complex64> = ends.flat().iter().map(|v| v * self.scale).collect();
         let beams = BEAMS_PER_ELEMENT * radar.end_elements;
@@ -65,7 +65,7 @@ impl Found {
     }
 }
 
-/// Row and column of the strongest cell of a map, the first of those that are alike.
+/// Row and column of the strongest cell of a map, the first of equal ones.
 fn strongest_cell(map: &Array2<f32>) -> [usize; 2] {
     let strongest_of = |row: ArrayView1<f32>| row.iter().fold(f32::NEG_INFINITY, |a, b| a.max(*b));
     let rows: Vec<f32> = map.axis_iter(Axis(0)).into_par_iter().map(strongest_of).collect();

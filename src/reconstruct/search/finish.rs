@@ -1,4 +1,4 @@
-//! From a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
+//! The last step from a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
 use super::element_gains::ElementGains;
 use super::state::Answer;
@@ -25,11 +25,11 @@ const MAX_UNWINDOWED_REFLECTORS: usize = 40;
 /// Work granted to the refinement without a window.
 const UNWINDOWED_WORK: usize = 50_000;
 
-/// Of the refinement with tied gains.
+/// Limits of the refinement with tied gains.
 const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6, ridge: 0.0 };
 
-/// What a gain of a loud object costs over white noise, as a part of its echo's energy: gains of neighbours that noise tells apart by chance
-/// cancel for less.
+/// Price of a gain of a loud object over white noise, as a part of its echo's energy: without it, gains of neighbours that only noise separates
+/// would cancel each other.
 const NOISE_RIDGE: f64 = 0.02;
 
 /// Energy of an object over all that is heard at its range, as a ratio, from which on it is loud: noise adds a little to an echo alone.
@@ -41,14 +41,14 @@ const SAME_PLACE: [f64; 2] = [0.25, 1.0];
 /// Energy that tied gains may leave over what each end's own leave, as a ratio: at a wrong place they leave more.
 pub const TIED_COST_RATIO: f64 = 4.0;
 
-/// What was found in the samples.
+/// The objects found in the samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
     /// The objects.
     pub atoms: Vec<Atom>,
     /// Their reflectivities for samples times `scale`.
     pub reflectivities: Vec<f64>,
-    /// What the samples were multiplied with to have a peak between 1 and 2.
+    /// Factor by which the samples were multiplied to have a peak between 1 and 2.
     pub scale: f64,
     /// Part of the samples' energy that was left by the last search from scratch: answers that follow it are measured by it.
     pub left_by_search: f64,
@@ -56,7 +56,7 @@ pub struct Found {
     pub sample_power: f64,
     /// Mean power of the residual of the scaled samples.
     pub residual_variance: f64,
-    /// Variance of the white noise that is heard in that residual.
+    /// Variance of the white noise that was measured in that residual.
     pub noise_variance: f64,
     /// Gains of the objects at the first and at the last end, for samples times `scale`.
     pub gains: Vec<[Complex64; 2]>,
@@ -68,7 +68,7 @@ pub struct Found {
     pub complete: bool,
     /// Gains of the elements, where the samples ask for them: the objects are those of samples without them.
     pub element_gains: Option<ElementGains>,
-    /// What the search tried, the first first; at most [`MOST_ATTEMPTS`](super::MOST_ATTEMPTS).
+    /// The attempts of the search, in their order; at most [`MOST_ATTEMPTS`](super::MOST_ATTEMPTS).
     pub trace: Vec<Attempt>,
 }
 
@@ -85,7 +85,7 @@ impl Found {
         (left - self.noise_variance).max(0.0) / self.sample_power.max(f64::MIN_POSITIVE)
     }
 
-    /// What silence holds.
+    /// The answer to silence.
     pub(super) fn nothing() -> Self {
         Found {
             atoms: Vec::new(),
@@ -198,7 +198,7 @@ fn quieted(radar: &Radar, bench: &Workbench, samples: &Samples, mut fit: Fit) ->
     fit
 }
 
-/// For every object whether it has more energy than is heard at its range: a part of it is there only to cancel another.
+/// Whether each object has more energy than the samples at its range: a part of it then only cancels another.
 pub fn are_loud(radar: &Radar, bench: &Workbench, fit: &Fit) -> Vec<bool> {
     let back: Vec<Gains> = fit.gains.iter().map(|g| g.map(|g| -g)).collect();
     let heard = Profile::new(radar, &bench.without(&fit.residual, &fit.atoms, &back).residual.flat(&bench.sensor));
@@ -244,7 +244,7 @@ fn needed_decades(radar: &Radar, bench: &Workbench, fit: &Fit, noise_variance: f
     worths.zip(&fit.atoms).map(of_atom).collect()
 }
 
-/// What the objects leave with one gain for both ends, as they are drawn: an echo that the ends hear differently isn't explained by it.
+/// The residual of the objects with one gain for both ends: it keeps an echo whose strength differs between the ends.
 fn left_when_drawn(bench: &Workbench, samples: &Samples, fit: &Fit) -> Vec<Complex64> {
     let tied: Vec<Gains> = fit.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
     bench.without(samples, &fit.atoms, &tied).residual.flat(&bench.sensor)

@@ -1,4 +1,4 @@
-//! The answer to samples that differ little from the last ones, from the last answer.
+//! The answer to samples that differ little from the last ones, starting from the last answer.
 
 use super::finish::Found;
 use super::ladder::{COMPLETION, climbed_from};
@@ -35,7 +35,7 @@ impl Search<'_> {
             self.tell_of(&previous.atoms, &fit);
             return Ok(Some(Answer { fit, is_sure: true }));
         }
-        // What vanished leaves an atom that the rest can do without.
+        // A vanished object leaves an atom that the others don't need.
         let grower = self.grower();
         fit = grower.pruned(grower.refined_where_needed(fit)?)?;
         let most_left = MOST_LOST * previous.left_by_search * all;

@@ -16,10 +16,10 @@ use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Of a group while more atoms are to come.
+/// Limits of the refinement of a group while more atoms are to come.
 const GROWING: Limits = Limits { iterations: 12, least_gain: 3e-2, ridge: 0.0 };
 
-/// Of a group once all atoms are there.
+/// Limits of the refinement of a group once all atoms are there.
 const POLISH: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
 
 /// Atoms this many bins apart at either end are refined together.
@@ -43,10 +43,10 @@ const SIDE_LOBE: f64 = 1e-4;
 /// Echoes that a look at the residual takes as long as.
 pub const LOOK_ECHOES: usize = 200;
 
-/// Work after which it is seen whether growing is worth while.
+/// Work after which growing is checked for its worth.
 const LOOK_BACK: usize = 3000;
 
-/// It is if this part of the energy at most is left since.
+/// Largest part of the energy that this work may leave for growing to continue.
 const WORTH_GOING_ON: f64 = 1.0 / 3.0;
 
 /// Most atoms refined together.
@@ -69,12 +69,12 @@ pub struct Grower<'a> {
     pub in_noise: bool,
     /// To be cancelled by.
     pub task: &'a Task,
-    /// Where attempts are written down, if anywhere.
+    /// The record of attempts, if there is one.
     pub trace: Option<&'a Trace>,
 }
 
 impl Grower<'_> {
-    /// Writes down an attempt that was refused.
+    /// Records an attempt that was refused.
     pub fn refuse(&self, tried: Tried, gain_decades: f64, why: Refusal) {
         if let Some(trace) = self.trace {
             trace.add(tried, gain_decades, Verdict::Refused(why), self.bench.work.done());
@@ -101,19 +101,19 @@ impl Grower<'_> {
         (noise * self.settings.least_prominence).max(self.rounding_power())
     }
 
-    /// What `fit` leaves, as sources of candidates look at it; `flat` is its residual.
+    /// The residual of `fit`, as sources of candidates use it; `flat` are its samples.
     pub fn unexplained<'a>(&'a self, flat: &'a [Complex64], fit: &'a Fit) -> Unexplained<'a> {
         Unexplained::new(self.radar, flat, self.bench.hearing, fit, self.task)
     }
 
-    /// Amplitude of what rounding to f64 makes of a reflector's place, if its samples are 1: many reflectors of one wall are each off
+    /// Amplitude of the error by rounding a reflector's place to f64, if its samples are 1: many reflectors of one wall are each off
     /// by that.
     pub fn rounding_amplitude(&self) -> f64 {
         let [radians_per_metre, _] = self.bench.sensor.radians_per_metre_over_chirp();
         radians_per_metre * f64::EPSILON * self.radar.max_range_metres()
     }
 
-    /// The power of that in a beam.
+    /// The power of this error in a beam.
     fn rounding_power(&self) -> f64 {
         let radar = self.radar;
         let window: f64 = radar.window.weights(radar.samples).iter().sum();

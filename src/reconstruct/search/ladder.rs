@@ -11,22 +11,22 @@ use super::state::{Answer, Search, State};
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 
-/// What a rung does to the state of a search.
+/// The change that a rung makes to the state of a search.
 type Climb = fn(&Search, &mut State) -> Result<(), ReconstructError>;
 
 /// One step of the search.
 pub struct Rung {
-    /// What it is called in traces.
+    /// Name of the rung in traces.
     pub name: &'static str,
-    /// What it does, in a sentence.
+    /// The effect of the rung, in a sentence.
     pub does: &'static str,
-    /// When it is skipped, in a sentence; `None` where it always runs once it is reached.
+    /// The condition under which the rung is skipped, in a sentence; `None` where it always runs once it is reached.
     pub skipped: Option<&'static str>,
     is_due: fn(&State) -> bool,
     climb: Climb,
 }
 
-/// Every rung, the first first.
+/// Every rung, in their order.
 pub const LADDER: &[Rung] = &[
     Rung {
         name: "tones",
@@ -72,7 +72,7 @@ const POINTS_AGAIN: Rung = Rung {
     climb: |search, state| search.climb_points(state),
 };
 
-/// The answer of the whole ladder to samples of which nothing is known.
+/// The answer of the whole ladder, without an earlier answer.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].

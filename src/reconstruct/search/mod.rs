@@ -6,27 +6,27 @@
 //!
 //! `ladder` lists the steps of the search in the order in which they run, when each is skipped and why the search stops.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
 //! | `find` | the search from outside: samples in, objects out |
 //! | `ladder` | every rung of the search in reading order |
-//! | `rungs` | what each rung does |
-//! | `state` | what a search works on, and how far it has come |
-//! | `propose` | where candidates come from, one file a source |
-//! | `begin` | which of the proposed lines are borne out by the samples |
-//! | `on_wall` | which points stand on a line |
+//! | `rungs` | the work of each rung |
+//! | `state` | the input and the state of a search |
+//! | `propose` | sources of candidates, one a file |
+//! | `begin` | the test of proposed lines against the samples |
+//! | `on_wall` | the test for points on a line |
 //! | `walls` | all lines together |
-//! | `wall_ends` | a line followed to where it ends |
+//! | `wall_ends` | a line followed to its ends |
 //! | `grow` | the greedy loop over points |
-//! | `trace` | what the search tried, and what became of it |
-//! | `prune` | atoms that the rest can do without |
-//! | `relax` | how many echoes a group of neighbours holds, where there is noise |
+//! | `trace` | the attempts of the search, and their verdicts |
+//! | `prune` | the removal of needless atoms |
+//! | `relax` | the number of echoes in a group of neighbours, over noise |
 //! | `settings` | bounds on time and memory |
-//! | `follow` | the answer from the last one, where little changed |
+//! | `follow` | an answer from the last one, where little changed |
 //! | `calibrate` | gains of the elements, where the samples ask for them |
-//! | `element_gains` | what each element is off by |
+//! | `element_gains` | the gain of each element |
 //! | `finish` | one gain for both ends, reflectivities |
-//! | `explained` | which cells of the picture are explained |
+//! | `explained` | the explained part of each cell |
 //! | `draw` | expected map of the objects found |
 //! | `over_noise` | mean of a log map's cells over noise |
 
@@ -92,7 +92,7 @@ pub(super) const ETA: f32 = 0.896;
 const EVEN_ODDS_DECADES: f64 = 0.8;
 const CONFIDENCE_SLOPE: f64 = 0.8;
 
-/// What the search knows beside the samples.
+/// The search's knowledge beside the samples, [`About::told`](crate::reconstruct::About::told).
 const TOLD_TO_SEARCH: &str = "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
     along or across the array's axis, or each other; the kind of floor beneath the samples, and how the thesis' program rounds; \
     by about how much elements are off, where they are";
@@ -104,13 +104,13 @@ pub struct Nomp {
 }
 
 impl Nomp {
-    /// With other limits than the default ones.
+    /// The method with other limits than the default ones.
     pub fn with_settings(settings: Settings) -> Self {
         Nomp { settings }
     }
 }
 
-/// Why a search for places can't work on a single sample, where it is one.
+/// The reason why a search for places can't work on a single sample; `None` for more samples.
 pub(super) fn no_snapshot(radar: &Radar) -> Option<String> {
     let why = "a snapshot has no ranges to search; it needs two samples or more";
     (radar.samples < 2).then(|| why.to_owned())
@@ -145,7 +145,7 @@ impl Reconstructor for Nomp {
 }
 
 impl Found {
-    /// The map of what was found, over the floor that `request` names. Its threshold is the answer's own where something may be missing.
+    /// The map of the objects, over the floor of `request`. Its threshold is the answer's own where objects may be missing.
     pub fn reconstruction(&self, radar: &Radar, request: &Request) -> Reconstruction {
         let expected = self.expected(radar, request);
         let is_certain = self.complete && !request.noise.is_white();
@@ -153,7 +153,7 @@ impl Found {
         Reconstruction { eta, ..self.as_drawn(expected.map, Some(expected.least_eta)) }
     }
 
-    /// What was found with a map of it, in which noise alone does not exceed `least_eta`, where that is known.
+    /// The objects with a map of them, in which noise alone does not exceed `least_eta`, where that is known.
     pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
         let reflectors = self.weighted().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
         Reconstruction {
@@ -167,14 +167,14 @@ impl Found {
         }
     }
 
-    /// The expected map of what was found, and its scale; that of white noise where nothing was.
+    /// The expected map of the objects, and its scale; that of white noise without objects.
     pub fn expected(&self, radar: &Radar, request: &Request) -> Expected {
         if self.atoms.is_empty() {
             return expected_noise(radar, request.normalisation);
         }
         let noise = match request.noise {
             NoisePrior::Rounding if self.complete => Noise::Rounding,
-            // What was found may be far from what rounds there.
+            // Incomplete objects give a wrong rounding, so that the measured one is used.
             NoisePrior::Rounding => Noise::RoundingHeard(self.noise_variance),
             NoisePrior::Nothing => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
             NoisePrior::White { .. } if self.complete => Noise::Variance(self.residual_variance),
@@ -183,7 +183,7 @@ impl Found {
         expected_lambda(radar, &self.weighted().collect::<Vec<_>>(), noise, request)
     }
 
-    /// Probability of each reflector that it is there, by what its atom is needed for.
+    /// Probability that each reflector is real, by the energy that only its atom explains.
     fn confidences(&self) -> Vec<f64> {
         let of_atom = |(atom, needed): (&Atom, &f64)| {
             let odds = 10f64.powf(CONFIDENCE_SLOPE * (needed - EVEN_ODDS_DECADES));

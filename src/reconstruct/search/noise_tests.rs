@@ -1,4 +1,4 @@
-//! What is left of the error under thermal noise, beside what the noise alone leaves.
+//! Tests of the search's error under thermal noise, relative to the error of the noise alone.
 
 use super::draw::{Noise, Weighted, expected_lambda};
 use super::tests::squared_error;
@@ -10,7 +10,7 @@ use crate::scene::{Reflector, Scene};
 use crate::signal::floor::snr_noise_variance;
 use crate::signal::{Floor, simulate};
 
-/// Most error of the search, over that of a drawing that is told the scene and the noise's variance.
+/// Largest error of the search, over that of a map drawn from the true scene and the noise's true variance.
 const MAX_ERROR_RATIO: f64 = 1.1;
 
 /// The error of the search on `count` scenes of sets 1 and 2, all of whose reflectors it finds, is hardly more than that of the expected map of the true scene.
@@ -48,7 +48,7 @@ fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
     }
 }
 
-/// What is found of `scene` over noise this far beneath its echoes.
+/// The reflectors found in `scene` over noise this far beneath its echoes.
 fn found_in(scene: &Scene, snr_db: f64) -> Vec<Reflector> {
     let (radar, floor) = (Radar::default(), Floor::Snr(Decibels(snr_db)));
     let ends = simulate(&radar, scene, floor, scene.noise_seed).unwrap().two_ends(&radar);

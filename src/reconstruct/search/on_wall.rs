@@ -1,4 +1,4 @@
-//! Which points stand on a wall.
+//! The test for points on a wall.
 
 use crate::reconstruct::fit::Atom;
 

@@ -1,4 +1,4 @@
-//! What white noise makes of a cell of a log map, in the mean.
+//! The mean of a log map's cell over white noise.
 
 use std::f64::consts::LN_10;
 use std::sync::LazyLock;
@@ -6,17 +6,17 @@ use std::sync::LazyLock;
 /// Euler's constant.
 pub const EULER: f64 = 0.577_215_664_901_532_9;
 
-/// Power over noise from which on the noise no longer shows in the mean of the logarithm.
+/// Power over noise from which the noise no longer shows in the mean of the logarithm.
 const LARGE_RATIO: f64 = 40.0;
 
-/// Decades beneath the noise from which on nothing shows of what lies there.
+/// Decades beneath the noise from which a cell no longer shows.
 const DEEPEST_DECADES: f64 = 3.0;
 
 /// Entries of the table for each decade; a straight line between them is off by at most 1e-6 decades.
 const NODES_PER_DECADE: f64 = 1024.0;
 
-/// Decades of a cell without noise, over those of the noise, from [`DEEPEST_DECADES`] beneath it on: by how many the noise lifts the cell, and
-/// the density of the power near zero, as a part of noise's own.
+/// Mean lift of a cell by the noise, in decades, and density of the power near zero, as a part of noise's own, over the cell's decades above the
+/// noise, from [`DEEPEST_DECADES`] beneath it on.
 static TABLE: LazyLock<Vec<[f32; 2]>> = LazyLock::new(|| {
     let nodes = (NODES_PER_DECADE * (DEEPEST_DECADES + 0.5 * LARGE_RATIO.log10())) as usize + 2;
     let node = |i: usize| {
@@ -44,7 +44,7 @@ pub struct NoisyCell {
 }
 
 impl OverNoise {
-    /// Over noise of this mean power in a cell.
+    /// White noise of this mean power in a cell.
     pub fn new(power: f64) -> Self {
         OverNoise { table: &TABLE, noise_decades: (0.5 * power.log10()) as f32 }
     }
@@ -54,7 +54,7 @@ impl OverNoise {
     pub fn cell(&self, decades: f32) -> NoisyCell {
         let over = decades - self.noise_decades;
         let at = (over + DEEPEST_DECADES as f32) * NODES_PER_DECADE as f32;
-        // A float cast saturates: what lies deeper is the first node.
+        // A float cast saturates: deeper cells take the first node.
         let node = at as usize;
         let Some(&[[lift, emptiness], [next_lift, next_emptiness]]) =
             self.table.get(node..node + 2).and_then(|n| n.first_chunk())

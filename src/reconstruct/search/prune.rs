@@ -1,4 +1,4 @@
-//! Atoms that the rest can do without.
+//! The removal of atoms that the others don't need.
 
 use super::finish::are_loud;
 use super::grow::{Grower, tried};
@@ -17,7 +17,7 @@ const MOST_ROUNDS: usize = 12;
 /// Atoms nearer than this in range are not taken away in one round: either may do for the other.
 const APART_BINS: f64 = 4.0;
 
-/// Of the atoms that stay.
+/// Limits of the refinement of the remaining atoms.
 const PRUNED_LIMITS: Limits = Limits { iterations: 20, least_gain: 1e-2, ridge: 0.0 };
 
 impl Grower<'_> {
@@ -64,7 +64,7 @@ impl Grower<'_> {
         Ok(fit)
     }
 
-    /// For every atom whether it has more energy than is heard at its range: a part of it is there only to cancel another.
+    /// Whether each atom has more energy than the samples at its range: a part of it then only cancels another.
     fn are_loud(&self, fit: &Fit) -> Vec<bool> {
         if !self.in_noise {
             return vec![false; fit.atoms.len()];

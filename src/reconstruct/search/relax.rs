@@ -66,7 +66,7 @@ impl Grower<'_> {
         Ok(fit)
     }
 
-    /// How often the price is to be paid for `atoms`: twice for what stands beyond the maximum range, since it is heard like something nearer.
+    /// Number of prices for `atoms`: two for a place beyond the maximum range, since its echo is like that of a nearer one.
     fn claims<'b>(&self, atoms: impl Iterator<Item = &'b Atom>) -> f64 {
         atoms.map(|atom| if self.is_beyond(atom) { 2.0 } else { 1.0 }).sum()
     }

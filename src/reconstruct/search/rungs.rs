@@ -1,4 +1,4 @@
-//! What each rung of the search does.
+//! The work of each rung of the search.
 
 use super::on_wall::is_on;
 use super::propose::pairs::Pairs;
@@ -34,7 +34,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Writes down that `fit` was refused in favour of `known`, since something else is left.
+    /// Records that `fit` was refused in favour of `known`, since other energy remains.
     fn refuse_together(&self, known: &Fit, fit: &Fit) {
         let tried = Tried::Together { count: fit.atoms.len().saturating_sub(known.atoms.len()) };
         self.grower().refuse(tried, decades(known.cost(), fit.cost()), Refusal::LeavesSomething);

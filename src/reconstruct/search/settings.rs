@@ -1,8 +1,8 @@
-//! What bounds a search.
+//! The bounds of a search.
 
 use crate::radar::Radar;
 
-/// Bounds on time and memory, and what counts as found.
+/// Bounds on time and memory, and on the significance of objects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Most atoms of one scene.
@@ -11,8 +11,7 @@ pub struct Settings {
     pub least_prominence: f64,
     /// Rounds of refinement once all atoms are there.
     pub rounds: usize,
-    /// Price of a gain's energy, over the part of its neighbourhood that is unexplained: what keeps atoms that are not quite right from
-    /// large gains that cancel.
+    /// Price of a gain's energy, over the unexplained part of its neighbourhood: it keeps inexact atoms from large gains that cancel.
     pub gain_price: f64,
     /// Work granted to the search: about ten microseconds a unit, counted and not timed.
     pub most_work: usize,

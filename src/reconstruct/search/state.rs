@@ -1,4 +1,4 @@
-//! What a search works on, how far it has come, and what several rungs ask of it.
+//! The input of a search, its state, and the functions that several rungs share.
 
 use super::grow::{Grower, ends_agree, tried};
 use super::propose::pairs::{Pairs, paired_points};
@@ -19,7 +19,7 @@ const MOST_DOUBTS: usize = 3;
 /// Gains of one pair at both ends agree within this factor.
 const MOST_UNLIKE: f64 = 1.5;
 
-/// What a search found, and whether nothing else stands out of the samples.
+/// The answer of a search, and whether it is complete.
 pub struct Answer {
     /// The objects.
     pub fit: Fit,
@@ -27,7 +27,7 @@ pub struct Answer {
     pub is_sure: bool,
 }
 
-/// How far a search has come: what one rung of it leaves to the next.
+/// The state of a search, which one rung leaves to the next.
 pub struct State {
     /// The objects found.
     pub fit: Fit,
@@ -40,7 +40,7 @@ pub struct State {
 }
 
 impl State {
-    /// With nothing found yet.
+    /// The state without any object.
     pub fn start(search: &Search) -> Self {
         let nothing = search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0);
         let flat = nothing.residual.flat(&search.bench.sensor);
@@ -48,12 +48,12 @@ impl State {
         State { is_long, ..State::of(nothing) }
     }
 
-    /// With `fit` found.
+    /// The state with the objects of `fit`.
     pub fn of(fit: Fit) -> Self {
         State { fit, is_sure: false, pairs: None, is_long: false }
     }
 
-    /// With `answer` found.
+    /// Sets the state to `answer`.
     pub fn reach(&mut self, answer: Answer) {
         (self.fit, self.is_sure) = (answer.fit, answer.is_sure);
     }
@@ -67,13 +67,13 @@ pub struct Search<'a> {
     pub bench: &'a Workbench<'a>,
     /// Looks for places.
     pub detector: &'a Detector,
-    /// What is taken apart.
+    /// The samples to explain.
     pub samples: &'a Samples,
-    /// What was asked for.
+    /// The request.
     pub request: &'a Request,
     /// Limits.
     pub settings: &'a Settings,
-    /// Where attempts are written down.
+    /// The record of attempts.
     pub trace: &'a Trace,
 }
 
@@ -112,7 +112,7 @@ impl Search<'_> {
         grower.pruned(grower.refined_where_needed(fit)?)
     }
 
-    /// Writes down which objects of `fit` are new, and which of those `before` were exchanged.
+    /// Records which objects of `fit` are new, and which of those `before` were exchanged.
     pub fn tell_of(&self, before: &[Atom], fit: &Fit) {
         let is_in = |atom: &Atom, list: &[Atom]| list.iter().any(|other| self.is_same(atom, other));
         for atom in before.iter().filter(|atom| !is_in(atom, &fit.atoms)) {
@@ -150,7 +150,7 @@ impl Search<'_> {
         self.pairs_of_tones(fit).unwrap_or_default()
     }
 
-    /// The same; `None` where an end hears too many tones.
+    /// [`Search::pairs`]; `None` where an end has too many tones.
     pub fn pairs_of_tones(&self, fit: &Fit) -> Option<Pairs> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let noise = self.bench.hearing.noise_variance(self.radar, &flat);
@@ -158,7 +158,7 @@ impl Search<'_> {
     }
 
     /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
-    /// They are moved to their best places only if that is asked for.
+    /// Only with `polished` are they moved to their best places.
     pub fn paired(&self, known: Fit, pairs: &Pairs, polished: bool) -> Result<Fit, ReconstructError> {
         let mut atoms = known.atoms.clone();
         atoms.extend(pairs.points.iter().map(|point| point.atom));

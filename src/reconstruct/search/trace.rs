@@ -1,4 +1,4 @@
-//! What a search tried: its attempts, kept as they are made.
+//! The attempts of a search, recorded as they are made.
 
 use crate::reconstruct::attempt::{Attempt, Tried, Verdict};
 use std::sync::{Mutex, PoisonError};
@@ -6,13 +6,13 @@ use std::sync::{Mutex, PoisonError};
 /// Most attempts that are kept, the first ones: a crowded scene makes thousands.
 pub const MOST_ATTEMPTS: usize = 400;
 
-/// The name that stands for a rung where the search began with the last answer.
+/// Name in place of a rung's where the search began with the last answer.
 pub const FOLLOWING: &str = "last answer";
 
-/// The name that stands for a rung where echoes that noise hides from each other are counted anew.
+/// Name in place of a rung's where echoes that noise hides from each other are counted anew.
 pub const ORDERING: &str = "count in noise";
 
-/// The name that stands for a rung where gains of the elements are estimated.
+/// Name in place of a rung's where gains of the elements are estimated.
 pub const CALIBRATION: &str = "calibration";
 
 /// Decades from `before` to `after`; 0 where there is nothing to compare.
@@ -33,12 +33,12 @@ struct Kept {
 }
 
 impl Trace {
-    /// From here on attempts are made by this rung.
+    /// Sets the rung of the attempts from here on.
     pub fn enter(&self, rung: &'static str) {
         self.kept().rung = rung;
     }
 
-    /// Adds an attempt, made when this much work was done in all.
+    /// Adds an attempt; `done` is the total work until then.
     pub fn add(&self, tried: Tried, gain_decades: f64, verdict: Verdict, done: usize) {
         let mut kept = self.kept();
         let work = done.saturating_sub(kept.done);
@@ -49,12 +49,12 @@ impl Trace {
         }
     }
 
-    /// How many attempts are kept.
+    /// Number of attempts in the record.
     pub fn count(&self) -> usize {
         self.kept().attempts.len()
     }
 
-    /// All attempts, the first first.
+    /// All attempts, in their order.
     pub fn into_attempts(self) -> Vec<Attempt> {
         self.0.into_inner().unwrap_or_else(PoisonError::into_inner).attempts
     }

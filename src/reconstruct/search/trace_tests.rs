@@ -1,4 +1,4 @@
-//! What traces of whole searches say.
+//! Tests of the traces of whole searches.
 
 use super::*;
 use crate::reconstruct::attempt::{Attempt, Tried, Verdict};

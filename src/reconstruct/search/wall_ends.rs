@@ -1,11 +1,11 @@
-//! Where a wall ends: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
+//! The ends of a wall: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
 
 use super::begin::MIN_REFLECTORS;
 use super::grow::Grower;
 use super::on_wall::MOST_REFLECTORS;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Narrow, Samples, Spectra, Tie, Workbench, rows_of};
 
-/// Of a wall by itself.
+/// Limits of the refinement of a wall by itself.
 const ALONE: Limits = Limits { iterations: 8, least_gain: 1e-2, ridge: 0.0 };
 
 /// Reflectors beyond the best end of a wall that are tried.
@@ -58,7 +58,7 @@ impl Grower<'_> {
         spectra.around(&rows, ROOM_BINS.max(ROOM * longest))
     }
 
-    /// By how many reflectors the wall is too short at its last end, or at its first: as many more as leave least. No more than it
+    /// Number of reflectors that the wall lacks at its last end, or at its first: as many more as leave least. No more than it
     /// already has, as far as its direction can be trusted.
     fn more_reflectors(&self, near: &Narrow, wall: &Fit, at_last: bool) -> usize {
         let Some(atom) = wall.atoms.first() else { return 0 };
@@ -78,7 +78,7 @@ impl Narrow<'_> {
     }
 }
 
-/// `seed` without the reflectors at its ends that the samples are better explained without.
+/// `seed` without the reflectors at its ends whose absence explains the samples better.
 fn trimmed(near: &Narrow, mut seed: Atom) -> Atom {
     for _ in 0..MOST_TRIMS {
         let wall = near.bench.solve_alone(&near.samples, seed);
@@ -92,7 +92,7 @@ fn trimmed(near: &Narrow, mut seed: Atom) -> Atom {
     seed
 }
 
-/// How many reflectors at the wall's last end, or at its first, leave less when they are taken away.
+/// Number of reflectors at the wall's last end, or at its first, whose removal leaves less.
 fn fewer_reflectors(bench: &Workbench, wall: &Fit, at_last: bool) -> usize {
     let Some(atom) = wall.atoms.first() else { return 0 };
     let count = atom.reflector_count();
@@ -101,7 +101,7 @@ fn fewer_reflectors(bench: &Workbench, wall: &Fit, at_last: bool) -> usize {
     how_many(bench, wall, &back, (1..=count / 2).map(next))
 }
 
-/// How many of `places`, one after the other, leave least of what `wall` leaves when reflectors of these gains are taken off there.
+/// Number of successive `places` at which reflectors of these gains, subtracted from the residual of `wall`, leave least.
 fn how_many(bench: &Workbench, wall: &Fit, gains: &[Gains], places: impl Iterator<Item = [f64; 2]>) -> usize {
     let (mut best, mut least) = (0, wall.cost());
     let mut residual = wall.residual.clone();

@@ -99,7 +99,7 @@ impl Found {
             Certainty::Open => "open: look at both",
         };
         format!(
-            "What decided against the next ({}) is {decided}; the choice is {sure} (log-odds {margin:.1}).",
+            "Decisive against the next ({}) is {decided}; the choice is {sure} (log-odds {margin:.1}).",
             next.described()
         )
     }

@@ -48,7 +48,7 @@ pub(super) fn import(
     if let Some(next) = all.get(1)
         && Certainty::of(Some(best.log_odds - next.log_odds)) != Certainty::Sure
     {
-        doubts.push(format!("What the axes count is likely, not sure. As likely is: {}.", next.described(&shape)));
+        doubts.push(format!("The meaning of the axes is likely, not sure. As likely is: {}.", next.described(&shape)));
     }
     if profile.is_none() {
         doubts.push(

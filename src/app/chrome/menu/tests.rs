@@ -85,7 +85,7 @@ fn the_palette_names_the_menus_in_which_a_command_stands() {
         let mut menu = bar(900.0);
         open(&mut menu, path);
         for entry in listed().iter().filter(|e| menu_path(&e.command) == path) {
-            // A menu says in its title what the entries of the palette begin with; presets are called by the names of their scenes.
+            // Names in the palette begin with the menu's title. Presets are named as their scenes.
             let name = entry.name.split_once(": ").map_or(entry.name.as_ref(), |(_, rest)| rest);
             let is_preset = matches!(entry.command, Command::Document(DocumentCommand::Preset(_)));
             let stands = menu.query_all_by_label_contains(name).next().is_some() || is_preset;
@@ -176,7 +176,7 @@ fn no_button_stands_over_another_at_any_width() {
     for width in (360..1400).step_by(20) {
         let menu = bar(width as f32);
         let right = |label| menu.query_by_label(label).map(|node| node.rect().right());
-        // In a narrow window the buttons are left to the menus.
+        // In a narrow window the menus replace the buttons.
         assert!(right("Lessons").is_some() || (width as f32) < 1.1 * MAX_COLUMN_WIDTH_POINTS, "no Lessons at {width}");
         let Some(lessons) = right("Lessons").or(right("Help")) else { panic!("no menu at {width}") };
         for label in ["Commands", "Cartesian", "Range–angle"] {

@@ -1,16 +1,16 @@
-//! Scenes that are kept with a note, in a folder of one's own that is a test set at once.
+//! Scenes kept with a note, in a folder of the user's own that is also a test set.
 
 use crate::platform::fs;
 use crate::scene::file::{self, SceneFile};
 use std::path::{Path, PathBuf};
 
-/// Longest part of a name that a scene gives its file, characters.
+/// Most characters of a scene's name in the name of its file.
 const NAME: usize = 40;
 
-/// Writes `file` into `folder` under a name that comes after all others there, so that rows of the folder keep their scenes.
+/// Writes `file` into `folder` under a name that sorts after all others there, so that earlier rows of the folder keep their scenes.
 ///
 /// # Errors
-/// Why nothing was written.
+/// The reason why nothing was written.
 pub fn keep(folder: &Path, mut file: SceneFile, note: &str) -> Result<PathBuf, String> {
     let told = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
     fs::create_dir_all(folder).map_err(|e| told(folder, e))?;
@@ -28,7 +28,7 @@ pub fn keep(folder: &Path, mut file: SceneFile, note: &str) -> Result<PathBuf, S
     Ok(path)
 }
 
-/// A name that any file system takes.
+/// The name in lower-case ASCII letters, digits and hyphens, which any file system takes.
 fn plain(name: &str) -> String {
     let letters = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { ' ' });
     let words: String = letters.take(NAME).collect();

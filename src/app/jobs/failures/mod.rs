@@ -1,4 +1,4 @@
-//! Methods on many scenes, row by row, in the background; the rows from start to start; their thumbnails; the search near one of them.
+//! Methods tried on many scenes in the background: their rows, which stay between starts, thumbnails, and the search near a scene.
 
 mod keep;
 mod search;
@@ -30,13 +30,13 @@ use std::time::Duration;
 use store::{Done, Store};
 use thumbnails::Thumbnails;
 
-/// While rows come, those there are go to disk so often.
+/// Time between two writes to disk while rows come.
 const SAVE_INTERVAL: Duration = Duration::from_secs(10);
 
-/// Name of the file that rows are kept in from start to start.
+/// Name of the file that keeps rows between starts.
 const FILE: &str = "failures.csv";
 
-/// What is to be tried.
+/// Methods and scenes to be tried.
 pub struct FailuresPlan {
     /// Radar, floor, scenes.
     pub campaign: Campaign,
@@ -51,7 +51,7 @@ impl FailuresPlan {
     }
 }
 
-/// A plan, the table that its rows go to, and the album of their small maps.
+/// A plan, the table that its rows belong to, and the album of their thumbnails.
 struct Run {
     plan: FailuresPlan,
     generation: u64,
@@ -83,25 +83,25 @@ impl Plan for Run {
     }
 }
 
-/// The rows there are, and the threads that make more.
+/// The rows, and the threads that make more.
 pub struct Failures {
     run: RowJob<Run>,
     table: RowTable,
-    /// The rows that others took the place of last.
+    /// The rows last replaced by others.
     before: Option<(Arc<Vec<Row>>, Conditions)>,
     thumbnails: Thumbnails,
     store: Store,
     /// The search near the scene on screen.
     pub search: Search,
-    /// The app's own file, if it keeps any.
+    /// The app's own file of rows, if it keeps one.
     file: Option<PathBuf>,
-    /// What of the table is in that file.
+    /// Version of the table in that file.
     kept: u64,
     written: Option<Instant>,
 }
 
 impl Failures {
-    /// Starts the threads and reads what the last session left in `folder`; `ctx` draws another frame.
+    /// Starts the threads and reads the last session's rows in `folder`; `ctx` draws another frame.
     pub fn start(folder: Option<&Path>, ctx: &Context) -> Failures {
         let wake = platform::waker(ctx);
         let thumbnails = Thumbnails::start(wake.clone());
@@ -116,8 +116,7 @@ impl Failures {
         Failures { run, table, before: None, thumbnails, store, search, file, kept: 0, written: None }
     }
 
-    /// Tries what `plan` says. Rows made under the same conditions stay; others, and those of an older format, make room, as figures don't
-    /// compare.
+    /// Starts a run of `plan`. Rows of the same conditions, format and layout stay. Others are replaced, as their figures don't compare.
     pub fn begin(&mut self, plan: FailuresPlan) {
         let Campaign { floor, normalisation, ref radar, .. } = plan.campaign;
         let conditions = Conditions { floor, normalisation, radar: radar.clone() };
@@ -131,19 +130,19 @@ impl Failures {
         self.run.begin(Run { plan, generation: self.table.generation(), album });
     }
 
-    /// Stops after the map that is being made; the rows stay.
+    /// Stops after the map under way; finished rows stay.
     pub fn cancel(&mut self) {
         self.run.cancel();
     }
 
-    /// Forgets every row.
+    /// Removes every row.
     pub fn clear(&mut self) {
         self.run.cancel();
         self.take_in_rows();
         self.replace(Vec::new(), self.table.conditions().clone());
     }
 
-    /// Puts other rows in the place of all, which [`Failures::bring_back`] brings back.
+    /// Replaces all rows; [`Failures::bring_back`] undoes it.
     fn replace(&mut self, rows: Vec<Row>, conditions: Conditions) {
         if !self.table.rows().is_empty() {
             self.before = Some((self.table.rows().clone(), self.table.conditions().clone()));
@@ -151,12 +150,12 @@ impl Failures {
         self.table.replace(rows, conditions);
     }
 
-    /// How many rows there were before others took their place.
+    /// Number of the rows last replaced.
     pub fn before(&self) -> Option<usize> {
         self.before.as_ref().map(|(rows, _)| rows.len())
     }
 
-    /// Brings them back.
+    /// Brings back the rows last replaced.
     pub fn bring_back(&mut self) {
         self.run.cancel();
         if let Some((rows, conditions)) = self.before.take() {
@@ -164,7 +163,7 @@ impl Failures {
         }
     }
 
-    /// Reads the rows of a file; they take the place of all as soon as they are read.
+    /// Reads the rows of a file, which replace all others once read.
     pub fn open(&mut self, path: PathBuf) {
         self.run.cancel();
         self.store.read(path, false);
@@ -175,22 +174,22 @@ impl Failures {
         &self.table
     }
 
-    /// The part that is done, while methods are tried.
+    /// Finished part of a run, 0 to 1, while methods are tried.
     pub fn progress(&self) -> Option<f32> {
         self.run.progress()
     }
 
-    /// Methods that the last run went on without, and on which scenes.
+    /// Methods that failed on scenes of the last run, which have no rows of these methods.
     pub fn unfit(&self) -> &[Unfit] {
         self.run.end().map_or(&[], Vec::as_slice)
     }
 
-    /// How the last run ended, if not well.
+    /// The reason why the last run ended early, if it did.
     pub fn note(&self) -> Option<&str> {
         self.run.note()
     }
 
-    /// Small maps of rows.
+    /// Thumbnails of rows.
     pub fn album(&self) -> &Album {
         &self.thumbnails.album
     }
@@ -208,7 +207,7 @@ impl Failures {
     fn take_in_rows(&mut self) {
         let mut room = true;
         for (generation, row) in self.run.take_rows() {
-            // Those of a table that another took the place of come too late.
+            // Rows for a table that was replaced come too late.
             room &= generation != self.table.generation() || self.table.add(row);
         }
         if !room {
@@ -216,7 +215,7 @@ impl Failures {
         }
     }
 
-    /// Takes in what is finished. Returns messages for the user.
+    /// Takes in finished work. Returns messages for the user.
     pub fn poll(&mut self) -> Vec<String> {
         let mut errors = Vec::from_iter(self.run.poll());
         self.take_in_rows();
@@ -232,7 +231,7 @@ impl Failures {
                 Done::Wrote(version) => self.kept = version,
                 Done::Unwritten(error) => {
                     errors.push(format!("Rows can't be kept for the next start: {error}"));
-                    // Once is enough; the next change tries again.
+                    // One message is enough; the next change tries again.
                     self.kept = self.table.version();
                 }
             }
@@ -240,7 +239,7 @@ impl Failures {
         errors
     }
 
-    /// Takes in what the last session left. Rows of this one are newer.
+    /// Takes in the last session's rows. Rows of this session are newer.
     fn restore(&mut self, rows: Vec<Row>, conditions: Conditions) {
         if self.table.version() == 0 {
             self.table.replace(rows, conditions);
@@ -251,7 +250,7 @@ impl Failures {
         }
     }
 
-    /// Moves a file that can't be read out of the way, so that it isn't overwritten.
+    /// Renames a file that can't be read, so that it isn't overwritten.
     fn set_aside(&self, path: &Path, error: &str) -> String {
         let aside = path.with_extension("unreadable.csv");
         let moved = match fs::rename(path, &aside) {
@@ -261,7 +260,7 @@ impl Failures {
         format!("The rows of the last session can't be read: {error}\n{moved}")
     }
 
-    /// Asks for thumbnails of the rows in sight, and keeps what changed. Returns when to come again, if something waits.
+    /// Asks for thumbnails of the rows in sight, and writes changed rows to disk. Returns the time until the next write, if one waits.
     pub fn ask(&mut self, state: &State, shown: bool) -> Option<Duration> {
         let runs = self.progress().is_some();
         if shown && !runs {
@@ -282,12 +281,12 @@ impl Failures {
         wait
     }
 
-    /// Writes what isn't on disk yet: the window is closing.
+    /// Writes changed rows to disk as the window closes.
     ///
     /// # Errors
-    /// Why it could not be written.
+    /// The reason why they could not be written.
     pub fn keep_now(&mut self) -> Result<(), String> {
-        // A write under way would otherwise come after this one.
+        // A write under way would otherwise overwrite this one.
         while self.store.is_busy() {
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -303,7 +302,7 @@ impl Failures {
     }
 }
 
-/// A sentence about rows whose floor has another level than that of scenes now.
+/// A message about rows of an older format, whose floor has another level.
 fn said_of_older(rows: &[Row]) -> Option<String> {
     let row = rows.first().filter(|row| row.version != Some(FORMAT) && row.floor.is_none_or(|f| f == Floor::Thesis))?;
     let format = row.version.map_or("an older format".to_owned(), |version| format!("format {version}"));

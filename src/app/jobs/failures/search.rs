@@ -8,7 +8,7 @@ use crate::reconstruct::Reconstructor;
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// Where the search begins, and how it goes.
+/// A search, its first scene and its method.
 struct SearchPlan {
     job: Job,
     scene: Arc<Scene>,
@@ -32,13 +32,13 @@ impl Plan for SearchPlan {
         };
         let outcome = self.job.run(&self.scene, self.method.as_ref(), teller.task, on_try);
         let outcome = outcome.map_err(|error| Stopped::Failed(error.to_string()))?;
-        // What the last batch found before it was stopped.
+        // Findings of the last batch before it was stopped.
         outcome.path[told..].iter().for_each(|finding| teller.row(finding.clone()));
         if teller.task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(()) }
     }
 }
 
-/// What a search is about.
+/// The start of a search and the user's choices for it.
 struct Subject {
     scene: Arc<Scene>,
     document: u64,
@@ -46,26 +46,26 @@ struct Subject {
     method: &'static str,
 }
 
-/// The worker, and the path of the last search.
+/// The worker of searches, and the path of the last one.
 pub struct Search {
     job: RowJob<SearchPlan>,
     subject: Option<Subject>,
-    /// Places of every object, from scene to scene of the path.
+    /// Centres of every object along the path, `[x, y]` in metres.
     trails: Vec<Vec<[f64; 2]>>,
-    /// Scenes of the path that the trails lead through.
+    /// Number of findings of the path that the trails hold.
     drawn: usize,
-    /// Whether its end was told.
+    /// Whether `poll` has reported the end of the search.
     told: bool,
 }
 
 impl Search {
-    /// Starts the worker, which waits; `wake` is called from its thread.
+    /// Starts the worker, idle at first; `wake` is called from its thread.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Search {
         let job = RowJob::start(wake);
         Search { job, subject: None, trails: Vec::new(), drawn: 0, told: true }
     }
 
-    /// Searches near the scene on screen.
+    /// Begins a search near the scene on screen.
     pub fn begin(&mut self, state: &State, choice: SearchChoice) {
         let Some(method) = state.method().cloned() else { return };
         let scene = state.editor.scene().clone();
@@ -86,50 +86,50 @@ impl Search {
         self.job.begin(SearchPlan { job, scene, method });
     }
 
-    /// Stops soon; what was found stays.
+    /// Stops soon; its findings stay.
     pub fn cancel(&mut self) {
         self.job.cancel();
     }
 
-    /// Forgets the path.
+    /// Drops the search with its path.
     pub fn forget(&mut self) {
         self.job.cancel();
         self.job.take_rows();
         (self.subject, self.trails, self.told) = (None, Vec::new(), true);
     }
 
-    /// The part that is done, while it runs.
+    /// Finished part of the search, 0 to 1, while it runs.
     pub fn progress(&self) -> Option<f32> {
         self.job.progress()
     }
 
-    /// How it ended, if not well and if it was not forgotten since.
+    /// The reason why the search ended early, unless it was dropped since.
     pub fn note(&self) -> Option<&str> {
         self.subject.as_ref().and(self.job.note())
     }
 
-    /// What was looked for, and by which method, if anything was.
+    /// Choices and method of the last search, unless it was dropped.
     pub fn subject(&self) -> Option<(SearchChoice, &'static str)> {
         self.subject.as_ref().map(|s| (s.choice, s.method))
     }
 
-    /// The start, and every scene that was better for the aim than all before it.
+    /// The first scene, and every later one that was better for the aim than all before it.
     pub fn path(&self) -> &[Finding] {
         if self.subject.is_some() { self.job.rows() } else { &[] }
     }
 
-    /// Where every object went along the path, while the document is on screen that it began at.
+    /// Centres of every object along the path, while the search's document is on screen.
     pub fn trails(&self, document: u64) -> &[Vec<[f64; 2]>] {
         let same = self.subject.as_ref().is_some_and(|s| s.document == document);
         if same { &self.trails } else { &[] }
     }
 
-    /// Whether the scene on screen is still the one that it began at.
+    /// Whether the scene on screen is still the search's first one.
     pub fn is_about(&self, scene: &Arc<Scene>) -> bool {
         self.subject.as_ref().is_some_and(|s| Arc::ptr_eq(&s.scene, scene))
     }
 
-    /// Takes in what was found. Whether the search ended just now, and a message for the user.
+    /// Takes in findings. Returns whether the search ended just now, and a message for the user.
     pub fn poll(&mut self) -> (bool, Option<String>) {
         let panicked = self.job.poll();
         let path = if self.subject.is_some() { self.job.rows() } else { &[] };
@@ -144,7 +144,7 @@ impl Search {
         (ended, panicked)
     }
 
-    /// What the search came to, in words.
+    /// The result of the search in words.
     pub fn summary(&self) -> Option<String> {
         let (choice, method) = self.subject()?;
         let [start, .., end] = self.path() else {
@@ -160,7 +160,7 @@ impl Search {
         Some(format!("{method}: {} here, {} after {:.2} m", told(start), told(end), end.moved_metres))
     }
 
-    /// Forgets a search that began in another document than the one on screen: its result says nothing of that.
+    /// Drops a search that began in another document than the one on screen.
     pub fn keep_to(&mut self, document: u64) {
         if self.subject.as_ref().is_some_and(|subject| subject.document != document) {
             self.forget();

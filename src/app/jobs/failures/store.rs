@@ -1,4 +1,4 @@
-//! Rows on disk: as CSV, and beside it how they were made, where that isn't as the tables' scenes are.
+//! Files of rows: a CSV, and beside it a file of their conditions where these are not the usual ones.
 
 use crate::app::jobs::background::Background;
 use crate::app::state::Conditions;
@@ -12,21 +12,21 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Most bytes that a file of conditions may have.
+/// Largest size of a file of conditions, bytes.
 const MAX_CONDITIONS_BYTES: u64 = 64 << 10;
 
-/// Rows, and how they were made.
+/// Rows and their conditions: floor, normalisation and radar.
 pub type KeptRows = (Vec<Row>, Conditions);
 
-/// The file beside `rows` that says how they were made.
+/// The file of conditions beside the file `rows`.
 fn beside(rows: &Path) -> PathBuf {
     rows.with_extension("conditions.toml")
 }
 
-/// Writes rows as CSV, and how they were made beside it where `apertura evaluate` makes them otherwise.
+/// Writes rows as CSV, and beside it their conditions where they are not those of `apertura evaluate`.
 ///
 /// # Errors
-/// Which file could not be written, and why.
+/// The file that could not be written, and the reason.
 pub fn write(path: &Path, rows: &[Row], conditions: &Conditions) -> Result<(), String> {
     let other = beside(path);
     let told = |path: &Path, error: io::Error| format!("{}: {error}", path.display());
@@ -43,10 +43,10 @@ pub fn write(path: &Path, rows: &[Row], conditions: &Conditions) -> Result<(), S
     write_atomically(path, |out| write_rows(out, rows)).map_err(|e| told(path, e))
 }
 
-/// Reads what [`write`] or `apertura evaluate --rows` wrote.
+/// Reads a file of rows written by [`write`] or `apertura evaluate --rows`.
 ///
 /// # Errors
-/// The file, the line and what was expected there.
+/// The file, the line and the text expected there.
 pub fn read(path: &Path) -> Result<KeptRows, String> {
     let file = File::open(path).map_err(|e| format!("{}: {e}", path.display()))?;
     let rows = read_rows(file).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -64,7 +64,7 @@ pub fn read(path: &Path) -> Result<KeptRows, String> {
     Ok((rows, conditions))
 }
 
-/// How rows say that they were made; as the tables' scenes are where they don't say it.
+/// The conditions named in the rows' own columns; the default where there are none.
 fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
     let mut found: Option<Conditions> = None;
     let mut radar = Radar::default();
@@ -87,7 +87,7 @@ fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
             radar.carrier = carrier;
         }
         let floor = match &found {
-            // It has that floor with any floor of the others.
+            // A set with its own floor doesn't depend on the others' floor.
             Some(found) if row.has_own_floor() => found.floor,
             _ => floor,
         };
@@ -102,7 +102,7 @@ fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
     Ok(found.unwrap_or_default())
 }
 
-/// Whether the first line of a file names the columns of rows. One that can't be read has none.
+/// Whether the first line of a file names the columns of rows; false for a file that can't be read.
 pub fn is_table_of_rows(path: &Path) -> bool {
     let mut line = String::new();
     let first = File::open(path).map(|file| BufReader::new(file.take(MAX_CONDITIONS_BYTES)).read_line(&mut line));
@@ -116,7 +116,7 @@ fn read_conditions(bytes: &[u8]) -> Result<Conditions, String> {
     Ok(conditions)
 }
 
-/// What came of it.
+/// A finished read or write.
 #[expect(clippy::large_enum_variant, reason = "one answer at a time is under way")]
 pub enum Done {
     /// The rows of a file that was opened, or of the last session (`own`).
@@ -130,20 +130,20 @@ pub enum Done {
     },
     /// The app's own file holds the rows of this version.
     Wrote(u64),
-    /// It doesn't.
+    /// The app's own file could not be written, for this reason.
     Unwritten(String),
 }
 
-/// Reads and writes rows on threads of their own.
+/// Reads and writes of rows, on threads of their own.
 pub struct Store(Background<Done>);
 
 impl Store {
-    /// Nothing yet; `wake` draws another frame when something is read or written.
+    /// No work yet; `wake` draws another frame when a file is read or written.
     pub fn new(wake: Context) -> Store {
         Store(Background::new(wake))
     }
 
-    /// Reads a file.
+    /// Reads a file of rows; `own` for the app's own file.
     pub fn read(&self, path: PathBuf, own: bool) {
         self.begin(move || {
             let kept = read(&path);
@@ -166,12 +166,12 @@ impl Store {
         }
     }
 
-    /// Whether it reads or writes.
+    /// Whether a read or write is under way.
     pub fn is_busy(&self) -> bool {
         self.0.is_busy()
     }
 
-    /// What is done.
+    /// Reads and writes finished since the last call.
     pub fn poll(&self) -> Vec<Done> {
         self.0.finished()
     }

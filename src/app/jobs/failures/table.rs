@@ -1,11 +1,11 @@
-//! The rows: each scene and method once, in the order they came.
+//! The table of rows: one per scene and method, in the order of their arrival.
 
 use crate::app::state::Conditions;
 use crate::evaluate::rows::{FORMAT, MAX_ROWS, Row, Text};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
-/// What tells a row from any other of its table.
+/// The identity of a row in its table.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct RowKey {
     set: Text,
@@ -15,13 +15,13 @@ pub struct RowKey {
 }
 
 impl RowKey {
-    /// Of a row.
+    /// The key of a row.
     pub fn of(row: &Row) -> RowKey {
         RowKey { set: row.set.clone(), seed: row.seed, index: row.index, method: row.method.clone() }
     }
 }
 
-/// The rows, how they were made, and when they changed.
+/// Rows with their conditions, and counters of changes.
 #[derive(Debug, Default)]
 pub struct RowTable {
     rows: Arc<Vec<Row>>,
@@ -37,34 +37,34 @@ impl RowTable {
         &self.rows
     }
 
-    /// Names of the methods that the rows are of.
+    /// Names of the methods in the rows.
     pub fn methods(&self) -> &BTreeSet<String> {
         &self.methods
     }
 
-    /// How they were made.
+    /// Floor, normalisation and radar of the rows.
     pub fn conditions(&self) -> &Conditions {
         &self.conditions
     }
 
-    /// Rises with every change.
+    /// A number that rises with every change.
     pub fn version(&self) -> u64 {
         self.version
     }
 
-    /// Rises when indices of rows lose their meaning.
+    /// A number that rises when all rows are replaced, so that their indices lose their meaning.
     pub fn generation(&self) -> u64 {
         self.generation
     }
 
-    /// Puts other rows in the place of all; of rows of the same scene and method the last one stays.
+    /// Replaces all rows. Of several rows of one scene and method the last one stays.
     pub fn replace(&mut self, rows: Vec<Row>, conditions: Conditions) {
         let (version, generation) = (self.version + 1, self.generation + 1);
         *self = RowTable { conditions, version, generation, ..RowTable::default() };
         rows.into_iter().for_each(|row| _ = self.add(row));
     }
 
-    /// Adds a row, in the place of the one of the same scene and method where there is one. Whether there was room.
+    /// Adds a row, or replaces the one of the same scene and method; false where the table is full.
     pub fn add(&mut self, row: Row) -> bool {
         let key = RowKey::of(&row);
         let place = self.places.get(&key).copied();
@@ -86,23 +86,23 @@ impl RowTable {
         true
     }
 
-    /// Whether rows of this program may stand beside those that are there: not beside rows of an older format.
+    /// Whether all rows have this program's format, so that new rows may stand beside them.
     pub fn is_of_this_format(&self) -> bool {
         self.rows.iter().all(|row| row.version == Some(FORMAT))
     }
 
-    /// Whether methods heard these elements in all rows, as [`Row::layout`] has them.
+    /// Whether all rows have the layout `layout`, in the format of [`Row::layout`].
     pub fn hears(&self, layout: &str) -> bool {
         self.rows.iter().all(|row| &*row.layout == layout)
     }
 
-    /// Whether there is a row of the same scene and method.
+    /// Whether the table has a row of the same scene and method.
     pub fn has(&self, row: &Row) -> bool {
         self.places.contains_key(&RowKey::of(row))
     }
 }
 
-/// A row of no scene in particular, to test with.
+/// A row for tests.
 #[cfg(test)]
 pub fn some_row(index: u32, method: &str) -> Row {
     use crate::evaluate::campaign::Campaign;

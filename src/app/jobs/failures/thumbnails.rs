@@ -1,4 +1,4 @@
-//! Small maps of what rows are of: a byte a cell, the latest so many of them.
+//! Small maps of the scenes of rows, a byte per cell; only the latest are kept.
 
 use super::table::RowKey;
 use crate::app::jobs::rows::{Plan, RowJob, Stopped, Teller};
@@ -20,23 +20,24 @@ use std::sync::{Arc, Mutex};
 pub const WIDTH: usize = 96;
 /// Rows of a thumbnail.
 pub const HEIGHT: usize = 48;
-/// Most thumbnails that are kept: some 5 MB.
+/// Most thumbnails that are kept, some 5 MB.
 const MAX_THUMBNAILS: usize = 512;
 
-/// Lambda of a map, 0 to 255, row by row from the smallest range and left to right; each cell the largest of those that it stands for.
+/// Lambda of a map scaled to 0 to 255, `[HEIGHT, WIDTH]` row by row from the smallest range and from left to right. Each cell has the largest value of the
+/// cells it covers.
 pub type Bytes = Box<[u8]>;
 
-/// Both maps of a row.
+/// The two maps of a row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Thumbnail {
-    /// What the whole array sees.
+    /// Map of the whole array.
     pub target: Bytes,
-    /// What the method made.
+    /// Output of the method.
     pub output: Bytes,
 }
 
 impl Thumbnail {
-    /// Of what a row was made of.
+    /// The thumbnail of a trial and a method's answer.
     pub fn of(trial: &Trial, answer: &TimedAnswer) -> Thumbnail {
         Thumbnail { target: shrunk(&trial.radar, &trial.target), output: shrunk(&trial.radar, &answer.found.lambda) }
     }
@@ -47,13 +48,13 @@ fn shrunk(radar: &Radar, map: &RangeAngleMap) -> Bytes {
     let placed = in_place(radar, drawn);
     let cells = placed.as_ref().map_or(drawn, |placed| placed.view());
     let (rows, columns) = cells.dim();
-    // The largest, so that no point is lost.
+    // The largest value of the covered cells, so that no point is lost.
     let mut small = vec![0.0f32; WIDTH * HEIGHT];
     for ((row, column), lambda) in cells.indexed_iter() {
         let cell = &mut small[row * HEIGHT / rows * WIDTH + column * WIDTH / columns];
         *cell = cell.max(*lambda);
     }
-    // A map of fewer cells has some twice.
+    // A map of fewer cells repeats some of them.
     let at = |y: usize, x: usize| (y * rows / HEIGHT, x * columns / WIDTH);
     let few = |i: usize| {
         let (y, x) = (i / WIDTH, i % WIDTH);
@@ -63,10 +64,10 @@ fn shrunk(radar: &Radar, map: &RangeAngleMap) -> Bytes {
     (0..small.len()).map(|i| (few(i) * 255.0 + 0.5) as u8).collect()
 }
 
-/// A thumbnail, or why there is none.
+/// A thumbnail, or the reason why there is none.
 pub type Made = Result<Arc<Thumbnail>, String>;
 
-/// The latest so many, by table and row.
+/// The latest thumbnails, by table and row, with the time of their last use.
 #[derive(Default)]
 struct Cache {
     made: HashMap<(u64, RowKey), (Made, u64)>,
@@ -85,7 +86,7 @@ impl Cache {
         self.clock += 1;
         self.made.insert(key, (made, self.clock));
         if self.made.len() > MAX_THUMBNAILS {
-            // A quarter at once, so that this is rare.
+            // A quarter at once, so that removal is rare.
             let mut used: Vec<u64> = self.made.values().map(|(_, used)| *used).collect();
             used.sort_unstable();
             let oldest = used[MAX_THUMBNAILS / 4];
@@ -94,22 +95,22 @@ impl Cache {
     }
 }
 
-/// The thumbnails of one table, shared with the thread that makes them.
+/// The thumbnails of all tables, shared with the thread that makes them.
 #[derive(Clone, Default)]
 pub struct Album(Arc<Mutex<Cache>>);
 
 impl Album {
-    /// The thumbnail of a row of table `generation`, if it is there.
+    /// The thumbnail of a row of table `generation`, if the album has it.
     pub fn get(&self, generation: u64, row: &Row) -> Option<Made> {
         platform::lock(&self.0).get(&(generation, RowKey::of(row)))
     }
 
-    /// Keeps one.
+    /// Adds the thumbnail of a row of table `generation`.
     pub fn insert(&self, generation: u64, row: &Row, made: Made) {
         platform::lock(&self.0).insert((generation, RowKey::of(row)), made);
     }
 
-    /// How many there are.
+    /// Number of thumbnails.
     #[cfg(test)]
     fn len(&self) -> usize {
         platform::lock(&self.0).made.len()
@@ -124,21 +125,21 @@ struct MissingThumbnails {
     album: Album,
 }
 
-/// Makes thumbnails of rows that were not made here, one after the other.
+/// The maker of thumbnails of rows from files, one after the other.
 pub struct Thumbnails {
-    /// Those there are.
+    /// The finished thumbnails.
     pub album: Album,
     job: RowJob<MissingThumbnails>,
     asked: Vec<RowKey>,
 }
 
 impl Thumbnails {
-    /// Starts the thread, which waits; `wake` is called from it.
+    /// Starts the thread, idle at first; `wake` is called from it.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Thumbnails {
         Thumbnails { album: Album::default(), job: RowJob::start(wake), asked: Vec::new() }
     }
 
-    /// Asks for those of `rows` that are missing, unless it was asked for all of them already.
+    /// Asks for the missing thumbnails of `rows`, unless all of them are being made.
     pub fn ask<'a>(
         &mut self,
         generation: u64,
@@ -158,23 +159,23 @@ impl Thumbnails {
         self.asked = keys;
     }
 
-    /// Whether some are being made.
+    /// Whether thumbnails are being made.
     pub fn is_busy(&self) -> bool {
         self.job.progress().is_some()
     }
 
-    /// Stops: the machine is wanted for something that is timed.
+    /// Stops, since the processor is needed for a run whose times are measured.
     pub fn stop(&mut self) {
         self.job.cancel();
     }
 
-    /// Takes in what is finished. Returns a message for the user.
+    /// Takes in finished work. Returns a message for the user.
     pub fn poll(&mut self) -> Option<String> {
         self.job.poll()
     }
 }
 
-/// The scene simulated last, for the next row of the same.
+/// The scene simulated last, with its row, for further rows of the scene.
 type Last<'a> = Option<(&'a Row, Trial)>;
 
 impl Plan for MissingThumbnails {
@@ -187,7 +188,7 @@ impl Plan for MissingThumbnails {
     fn run(&self, teller: &Teller<'_, ()>) -> Result<(), Stopped> {
         let mut last: Last<'_> = None;
         for (row, method) in &self.rows {
-            // A method that panics on one row must not do so in every frame.
+            // A method that panics on one row would otherwise do so in every frame.
             let made = catch_unwind(AssertUnwindSafe(|| one(self, row, method.as_deref(), teller, &mut last)));
             if teller.task.is_cancelled() {
                 return Err(Stopped::Cancelled);

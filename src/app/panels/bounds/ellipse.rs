@@ -8,7 +8,7 @@ use eframe::egui::{Sense, Stroke, Ui};
 use egui_plot::LineStyle;
 use std::f64::consts::TAU;
 
-/// Where 39 % of the estimates of the best unbiased estimator would lie: one standard deviation.
+/// Draws the ellipse of one standard deviation, which holds 39 % of the estimates of the best unbiased estimator.
 pub fn ellipse(ui: &mut Ui, bound: &PositionBound) {
     let Some(outline) = outline(bound) else { return };
     let area = ui.available_rect_before_wrap();

@@ -1,4 +1,4 @@
-//! The element that is looked at, and the length of the chirp.
+//! Fields of the chirp panel: the drawn element, and the duration of the chirp.
 
 use crate::app::state::{ChirpSettings, Command, RadarCommand, ViewCommand};
 use crate::app::widgets::labelled::labelled;
@@ -6,10 +6,10 @@ use crate::app::widgets::number_field::NumberField;
 use crate::radar::Radar;
 use eframe::egui::Ui;
 
-/// Shortest and longest chirp that is dragged to, seconds.
+/// Shortest and longest chirp duration that dragging reaches, seconds.
 pub const DRAGGED_SECONDS: [f64; 2] = [1e-6, 1e-2];
 
-/// Draws the numbers; what is asked of settings and radar. `element` is the one that is drawn.
+/// Draws the fields of element and chirp duration. `element` is the one on screen.
 pub fn show(ui: &mut Ui, radar: &Radar, element: usize, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let mut settings = ChirpSettings { element };
@@ -30,7 +30,7 @@ pub fn show(ui: &mut Ui, radar: &Radar, element: usize, asked: &mut Vec<Command>
     });
 }
 
-/// Asks for a radar that differs from the one on screen.
+/// Sends the command for a radar, if it differs from the one on screen.
 pub fn set(radar: &Radar, changed: Radar, asked: &mut Vec<Command>) {
     if changed != *radar {
         asked.push(RadarCommand::Set(Box::new(changed)).into());

@@ -1,10 +1,10 @@
-//! Choices beside each other, of which one is chosen.
+//! A row of choices, of which one is chosen.
 
 use crate::app::state::Command;
 use crate::app::widgets::entry::tipped;
 use eframe::egui::Ui;
 
-/// Draws a label a choice: `of` has the choice, its name and its tooltip. A click on another asks by `command`.
+/// Draws a label for each choice. `of` yields the choice, its name and its tooltip. A click on another choice sends its `command`.
 pub(super) fn choices<T: PartialEq + Copy, C: Into<Command>>(
     ui: &mut Ui,
     chosen: T,

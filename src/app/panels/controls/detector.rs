@@ -6,9 +6,9 @@ use crate::app::widgets::setting_row::{row, row_of};
 use crate::maps::cfar::{Cfar, MOST_CELLS, Statistic};
 use eframe::egui::{Response, Ui};
 
-/// Which detects.
+/// Draws the choice between a global threshold and the detectors.
 pub fn choice(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
-    let tooltip = "What says which cells are detections in the panels Target > η' and Output > η";
+    let tooltip = "The rule for detected cells in the panels Target > η' and Output > η";
     row_of(ui, "Detect", tooltip, |ui| {
         let of = [
             (None, "Global", "One threshold for the whole map"),
@@ -34,7 +34,7 @@ pub fn choice(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     });
 }
 
-/// The detector's cells and its rate.
+/// Draws the fields of the detector's cells and of its rate.
 pub fn cells(ui: &mut Ui, cfar: &Cfar, error: Option<&str>, asked: &mut Vec<Command>) {
     let mut changed = *cfar;
     let tooltip = "Cells a side that may hold the echo itself and measure nothing";
@@ -49,7 +49,7 @@ pub fn cells(ui: &mut Ui, cfar: &Cfar, error: Option<&str>, asked: &mut Vec<Comm
     }
 }
 
-/// Cells a side in range and in angle.
+/// Draws the fields of cells a side, in range and in angle.
 fn sides(ui: &mut Ui, name: &str, tooltip: &str, cells: &mut [usize; 2]) {
     row_of(ui, name, tooltip, |ui| {
         let [bins, columns] = cells;
@@ -61,7 +61,7 @@ fn sides(ui: &mut Ui, name: &str, tooltip: &str, cells: &mut [usize; 2]) {
     });
 }
 
-/// The wanted rate.
+/// Draws the field of the wanted rate of false alarms.
 fn rate(ui: &mut Ui, false_alarm: &mut f64) {
     let tooltip = "Part of the cells of noise alone that are to be detected. It holds for noise that is independent from cell to \
                    cell: a window function makes neighbours alike.";
@@ -72,7 +72,7 @@ fn rate(ui: &mut Ui, false_alarm: &mut f64) {
     });
 }
 
-/// A rate as a reader and the field itself take it.
+/// Text of a rate, which the field can parse again.
 fn shown(rate: f64) -> String {
     if rate < 1e-3 { format!("{rate:.1e}") } else { format!("{rate:.3}") }
 }

@@ -1,4 +1,4 @@
-//! How maps and the scene are drawn: what axes and scales count, colours, and where dragged objects come to rest.
+//! Display settings: units of axes and scales, colours, and snapping of dragged objects.
 
 use super::choices::choices;
 use crate::app::state::{Command, Directions, EditCommand, Settings, Units, ViewCommand};
@@ -10,14 +10,14 @@ use eframe::egui::Ui;
 
 /// Draws the group's rows.
 pub(super) fn show(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
-    row_of(ui, "Directions", "What the axis of directions counts, in every map", |ui| {
+    row_of(ui, "Directions", "Unit of the axis of directions, in every map", |ui| {
         let of = [(Directions::Cosine, "cos θ", ""), (Directions::Degrees, "degrees", "From straight ahead")];
         choices(ui, settings.directions, of, ViewCommand::SetDirections, asked);
         let tip =
             "Draw maps of few elements on 256 columns: values between are interpolated, and nothing more is resolved";
         tick(ui, settings.fine_columns, "256 columns", tip, |_| ViewCommand::ToggleFineColumns, asked);
     });
-    row_of(ui, "Scale", "What colour bars, cuts, readouts and thresholds are told in (D)", |ui| {
+    row_of(ui, "Scale", "Unit of colour bars, cuts, readouts and thresholds (D)", |ui| {
         let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];
         choices(ui, settings.units, of, ViewCommand::SetUnits, asked);
         let tip = "Inputs, target and output on the scale of the strongest: what is weaker looks weaker";

@@ -1,4 +1,4 @@
-//! The threshold of the method's output by the false alarms that it lets through.
+//! Choice of the output's threshold by its rate of false alarms.
 
 use crate::app::state::{Command, ThresholdChoice, WorkCommand};
 use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
@@ -12,16 +12,16 @@ use crate::scene::generate::Kind;
 use eframe::egui::{Label, RichText, Ui};
 use std::collections::BTreeSet;
 
-/// How the search goes.
+/// State of the threshold search.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Search<'a> {
-    /// The part that is done, while it runs.
+    /// Completed part of the search, 0 to 1, while it runs.
     pub progress: Option<f32>,
-    /// How the last one ended, if not well.
+    /// Message of the last search, where it did not succeed.
     pub note: Option<&'a str>,
 }
 
-/// What is chosen.
+/// The chosen rate in percent, kinds of scenes, and number of scenes of each kind.
 pub struct FalseAlarmsMemory {
     percent: f64,
     kinds: BTreeSet<Kind>,
@@ -35,7 +35,7 @@ impl Default for FalseAlarmsMemory {
     }
 }
 
-/// What the rate means, and on which condition it is kept.
+/// Tooltip of the rate: its meaning, and the condition under which it holds.
 const KEEP: &str = "Part of the target's dark cells that may exceed η, on average over further scenes. Condition: these scenes are exchangeable \
     with the validation scenes that η was tried on, that is, drawn alike, of the same kinds, with the same radar, floor and normalisation. In a \
     single scene P_FA may be higher.";
@@ -54,7 +54,7 @@ impl FalseAlarmsMemory {
         ThresholdSearch { false_alarm_percent, kinds, count, ..ThresholdSearch::default() }
     }
 
-    /// Why no search can begin, if none can.
+    /// The reason why no search can begin, if there is one.
     fn problem(&self) -> Option<String> {
         if self.kinds.is_empty() {
             return Some("Choose scenes first.".to_owned());
@@ -62,7 +62,7 @@ impl FalseAlarmsMemory {
         self.search().check().err().map(|error| error.to_string())
     }
 
-    /// What the number of scenes costs, where it is enough.
+    /// Tooltip of the number of scenes, with the P_FA that remains on them where they are enough.
     fn price(&self) -> String {
         let search = self.search();
         let scenes = self.count as usize * self.kinds.len();
@@ -101,7 +101,7 @@ fn choose(ui: &mut Ui, memory: &mut FalseAlarmsMemory) {
     });
 }
 
-/// Find η, or in its place Cancel.
+/// Draws the button Find η, or Cancel while a search runs.
 fn start(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &FalseAlarmsMemory, asked: &mut Vec<Command>) {
     let problem = memory.problem();
     let scenes = counted(memory.count as usize * memory.kinds.len(), "validation scene", "validation scenes");
@@ -127,7 +127,7 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// What is drawn, and what was asked for.
+    /// The drawn search, the memory of the fields, and the returned commands.
     struct Drawn {
         search: Search<'static>,
         memory: FalseAlarmsMemory,

@@ -1,4 +1,4 @@
-//! How maps are made: normalisation, floor, window and the seed of the noise.
+//! Settings of the maps: normalisation, floor, window and the seed of the noise.
 
 use super::choices::choices;
 use crate::app::state::{Command, EditCommand, RadarCommand, Settings, ViewCommand};
@@ -12,7 +12,7 @@ use eframe::egui::Ui;
 /// Largest seed that a scene file holds: TOML knows no larger whole number.
 const MAX_NOISE_SEED: u64 = i64::MAX as u64;
 
-/// Draws the group's rows; `is_recorded` where a recording stands in the place of the scene.
+/// Draws the group's rows; `is_recorded` where a recording takes the place of the scene.
 pub(super) fn show(
     ui: &mut Ui,
     is_recorded: bool,
@@ -23,7 +23,7 @@ pub(super) fn show(
 ) {
     normalisation(ui, settings, asked);
     match is_recorded {
-        true => row(ui, "Floor", "What lies beneath the echoes", |ui| ui.weak("as it was recorded")),
+        true => row(ui, "Floor", "Noise beneath the echoes", |ui| ui.weak("as it was recorded")),
         false => floor(ui, settings, asked),
     }
     window(ui, radar.window, asked);
@@ -54,15 +54,15 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     });
 }
 
-/// What a floor of a level of its own is.
+/// Tooltip of the floor at a chosen level.
 const LEVEL: &str = "Thermal noise of this level in every sample, for any scene: an empty scene is noise alone. A reflector of σ 1 at \
     20 m has +18 dBm; with a link budget, what the radar equation says";
 
-/// What the receivers' own noise is.
+/// Tooltip of the floor of the receivers' noise.
 const RECEIVER: &str = "The noise of the radar's receivers, kTBF, by its link budget in the panel Radar; by the usual one where it has none";
 
 fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
-    row_of(ui, "Floor", "What lies beneath the reflectors", |ui| {
+    row_of(ui, "Floor", "Noise beneath the echoes", |ui| {
         let of = [
             (Floor::Thesis, "Thesis", "The rounding noise of the thesis' f64 evaluation"),
             (Floor::Exact, "Exact", "No noise at all"),
@@ -104,7 +104,7 @@ fn noise_seed(ui: &mut Ui, mut seed: u64, asked: &mut Vec<Command>) {
     });
 }
 
-/// The first and the last digits of a seed that is too long to be read; the tooltip has all.
+/// The first and the last digits of a long seed; the tooltip has all digits.
 fn short_seed(seed: u64) -> Option<String> {
     let digits = seed.to_string();
     (digits.len() > 8).then(|| format!("{}…{}", &digits[..3], &digits[digits.len() - 3..]))

@@ -20,7 +20,7 @@ fn panel_for(uses: Uses, run: impl Fn() -> Run<'static> + 'static) -> Harness<'s
     panel_of([420.0, 780.0], Settings::default(), move |input| Input { run: run(), uses, ..input })
 }
 
-/// The panel of the baseline at rest, but for what `change` makes of it.
+/// The panel of the baseline at rest, with its input changed by `change`.
 fn panel_of(
     size: [f32; 2],
     settings: Settings,
@@ -117,7 +117,7 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
     assert!(shown.iter().any(|t| t.text == "0.7631942"), "every digit, so that P_FA can be had again: {shown:?}");
 }
 
-/// Opens what is folded away.
+/// Opens the folded groups.
 fn unfold<State>(controls: &mut Harness<'_, State>) {
     for title in ["η by false alarms", "Seed of the noise"] {
         controls.get_by_label(title).click();

@@ -1,4 +1,4 @@
-//! Two markers on a cut: how they are placed and dragged, and what is read off them.
+//! Two markers on a cut: placing, dragging and readings.
 
 use super::measure::{Width, value_at, width_at};
 use super::trace::{Cut, Trace};
@@ -12,33 +12,33 @@ use crate::radar::Radar;
 use eframe::egui::{Align2, Color32, CursorIcon, Stroke, Ui, pos2, vec2};
 use egui_plot::LineStyle;
 
-/// How near the pointer must be to a marker to drag it, points.
+/// Largest distance of the pointer from a marker to drag it, points.
 const MARKER_REACH_POINTS: f32 = 7.0;
 
-/// Names of the two.
+/// Names of the two markers.
 pub const NAMES: [&str; 2] = ["A", "B"];
 
 /// Places on the axis of a cut.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Markers {
-    /// A and B, where they are placed.
+    /// Places of A and B; `None` for one that is not placed.
     pub places: [Option<f64>; 2],
-    /// The one that is being dragged.
+    /// Index of the marker that is being dragged.
     held: Option<usize>,
 }
 
 impl Markers {
-    /// Whether there is none.
+    /// Whether no marker is placed.
     pub fn is_empty(&self) -> bool {
         self.places == [None, None]
     }
 
-    /// Whether one is being dragged.
+    /// Whether a marker is being dragged.
     pub fn is_held(&self) -> bool {
         self.held.is_some()
     }
 
-    /// Puts a marker at a place: A, then B, then whichever is nearer.
+    /// Puts a marker at a place: first A, then B, then the nearer of the two.
     pub fn place(&mut self, at: f64) {
         let index = match self.places {
             [None, _] => 0,
@@ -48,7 +48,7 @@ impl Markers {
         self.places[index] = Some(at);
     }
 
-    /// Follows the pointer: a click places one, a drag moves the one under it.
+    /// Handles the pointer: a click places a marker, a drag moves the one under the pointer.
     pub fn follow(&mut self, ui: &Ui, drawn: &Drawn, whole: Span) {
         let x_of = |place: f64| drawn.at([place, 0.0]).x;
         let under = |at: f32| {
@@ -73,7 +73,7 @@ impl Markers {
         }
     }
 
-    /// Draws them with their names, over the lines.
+    /// Draws the markers with their names, over the lines.
     pub fn draw(&self, drawn: &Drawn, ink: Color32) {
         for (place, name) in self.places.into_iter().zip(NAMES) {
             let Some(place) = place else { continue };
@@ -86,7 +86,7 @@ impl Markers {
     }
 }
 
-/// What is read off a line at the markers.
+/// Texts of a line's levels at the markers, their difference, and the widths of its peaks.
 pub fn readings(cut: Cut, radar: &Radar, trace: &Trace, units: Units, markers: &Markers) -> Vec<String> {
     let decibels = trace.decibels();
     let level = |place: f64| decibels.as_ref().and_then(|points| value_at(points, place));
@@ -117,7 +117,7 @@ pub fn readings(cut: Cut, radar: &Radar, trace: &Trace, units: Units, markers: &
     said
 }
 
-/// From one place to another, in everything that the axis counts.
+/// Text of the distance from `a` to `b`, in every unit of the axis.
 fn between(cut: Cut, radar: &Radar, a: f64, b: f64) -> String {
     match cut {
         Cut::Angle => {
@@ -143,7 +143,7 @@ fn extent(cut: Cut, low: f64, high: f64, cells: f64) -> String {
     }
 }
 
-/// Draws the width of the peak at each marker, where the line has fallen by 3 dB. `y_of` turns decibels into what the chart counts.
+/// Draws the width of the peak at each marker, where the line has fallen by 3 dB. `y_of` turns decibels into the chart's unit.
 pub fn draw_widths(chart: &mut Chart<'_>, trace: &Trace, markers: &Markers, ink: Color32, y_of: impl Fn(f64) -> f64) {
     let Some(points) = trace.decibels() else { return };
     for place in markers.places.into_iter().flatten() {

@@ -1,18 +1,18 @@
-//! What markers measure on a line of decibels: levels, and how wide a peak is.
+//! Measurements on a line of decibels: levels and widths of peaks.
 
-/// How far below a peak its width is measured, decibels.
+/// Drop below a peak at which its width is measured, decibels.
 const DROP_DB: f64 = 3.0;
 
-/// Where a peak has fallen by 3 dB, on both sides.
+/// The 3 dB width of a peak.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Width {
-    /// On the near side, on the axis.
+    /// Place on the axis where the near side has fallen by 3 dB.
     pub low: f64,
-    /// On the far side.
+    /// Place on the axis where the far side has fallen by 3 dB.
     pub high: f64,
-    /// Level there, decibels.
+    /// Level at both places, decibels.
     pub level_db: f64,
-    /// What is between them, cells.
+    /// Width between both places, cells.
     pub cells: f64,
 }
 
@@ -56,11 +56,11 @@ pub fn width_at(points: &[[f64; 2]], place: f64) -> Option<Width> {
     let (summit, peak) = (slope / (2.0 * bend), level(top) + slope * slope / (4.0 * bend));
     let half = (DROP_DB / bend).sqrt();
     let threshold = peak - DROP_DB;
-    // Cells from the top to where the line falls below the threshold on one side.
+    // Number of cells from the summit to the fall below the threshold on one side.
     let side = |sign: f64| -> Option<f64> {
         let near = summit + sign * half;
         if half <= 1.0 {
-            // The line must fall as far as the parabola says before it rises again.
+            // The line must fall as far as the parabola predicts before it rises again.
             let beyond = top as f64 + near.signum() * near.abs().ceil().max(1.0);
             return (beyond >= 0.0 && beyond < points.len() as f64 && level(beyond as usize) <= threshold)
                 .then_some(near);
@@ -90,7 +90,7 @@ pub fn width_at(points: &[[f64; 2]], place: f64) -> Option<Width> {
 mod tests {
     use super::*;
 
-    /// A lobe that falls as a parabola of decibels: 3 dB where `half` cells from `centre`.
+    /// A lobe that is a parabola in decibels, 3 dB down at `half` cells from `centre`.
     fn lobe(centre: f64, half: f64, count: usize) -> Vec<[f64; 2]> {
         let level = |i: usize| (-3.0 * ((i as f64 - centre) / half).powi(2)).max(-60.0);
         (0..count).map(|i| [0.5 * i as f64, level(i)]).collect()

@@ -1,4 +1,4 @@
-//! Range profile and angle cut of all maps through the cursor, with cuts that were pinned, and markers to measure between.
+//! The cuts panel: range profile and angle cut of all maps through the cursor, with pinned cuts, and markers to measure between.
 
 mod markers;
 mod measure;
@@ -23,20 +23,20 @@ use markers::{Markers, NAMES};
 use std::collections::{BTreeMap, BTreeSet};
 use trace::{Cut, Trace};
 
-/// What is cut, and where.
+/// The maps to cut, and the place of the cuts.
 pub struct Input<'a> {
     pub radar: &'a Radar,
-    /// Where the cuts cross.
+    /// Place where both cuts cross.
     pub cursor: Cursor,
     /// The maps that can be cut.
     pub maps: &'a [CutMap],
-    /// Cuts that stay.
+    /// The pinned cuts.
     pub pins: &'a [PinnedCut],
-    /// What is drawn upwards.
+    /// Unit of the vertical axis.
     pub units: Units,
 }
 
-/// What is looked at, and measured.
+/// Hidden maps, the measured line, and zoom and markers of each cut.
 #[derive(Default)]
 pub struct CutsMemory {
     hidden: BTreeSet<MapKind>,
@@ -45,7 +45,7 @@ pub struct CutsMemory {
     views: BTreeMap<Cut, View>,
 }
 
-/// A line of both cuts.
+/// A line that both cuts draw: a map, at the cursor or as it was pinned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Line {
     kind: MapKind,
@@ -61,7 +61,7 @@ impl Line {
     }
 }
 
-/// Of one cut: the part in sight, and the markers.
+/// Visible part and markers of one cut.
 #[derive(Default, Clone, Copy)]
 struct View {
     span: Option<Span>,
@@ -115,7 +115,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CutsMemory) -> Vec<Comma
     asked
 }
 
-/// The lines that are drawn: of the cut at the cursor, then of those that were pinned.
+/// The drawn lines: first those of the cut at the cursor, then those of the pinned cuts.
 fn lines(input: &Input<'_>, hidden: &BTreeSet<MapKind>) -> Vec<Line> {
     let live = input.maps.iter().map(|map| Line { kind: map.kind, pin: None });
     let pinned = input
@@ -126,7 +126,7 @@ fn lines(input: &Input<'_>, hidden: &BTreeSet<MapKind>) -> Vec<Line> {
     live.chain(pinned).filter(|line| !hidden.contains(&line.kind)).collect()
 }
 
-/// What is drawn, in its colours; units; pinned cuts.
+/// Draws the row above the cuts: a box for each map in its colour, the units, and the pinned cuts.
 fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         for map in input.maps {
@@ -160,7 +160,7 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory, asked: &mut Vec
     });
 }
 
-/// The markers as numbers, for the keyboard, and the line they read.
+/// Draws the buttons that place and remove markers, and the choice of the line that they measure.
 fn marks(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory) {
     if memory.views.values().all(|view| view.markers.is_empty()) {
         let tip = "Two places to measure between; a click in a cut places one, too, and they can be dragged";
@@ -209,7 +209,7 @@ fn style(kind: MapKind) -> LineStyle {
     }
 }
 
-/// One cut: its chart, and what its markers read beneath.
+/// Draws one cut: its chart, with the markers' readings beneath.
 fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut CutsMemory, cut: Cut) {
     let traces = traces(input, &memory.hidden, cut);
     let whole = cut.whole(input.radar);
@@ -222,7 +222,7 @@ fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut CutsMemory, cut
     let range_db = traces.iter().filter_map(Trace::range_db).fold(1.0, f64::max);
     let y = match input.units {
         Units::Lambda => Axis::new(0.0, 1.05, "brightness Λ"),
-        // What is lower is no echo.
+        // Lower levels are no echo.
         Units::Decibels => Axis::new(lowest_db(range_db), -0.05 * lowest_db(range_db), "relative to the peak, dB"),
     };
     let title = cut.title(input.radar, &input.cursor);
@@ -249,7 +249,7 @@ fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut CutsMemory, cut
     memory.views.insert(cut, view);
 }
 
-/// The lines of one cut: those of pinned cuts first, beneath the others.
+/// The lines of one cut, those of pinned cuts first, so that they lie beneath the others.
 fn traces(input: &Input<'_>, hidden: &BTreeSet<MapKind>, cut: Cut) -> Vec<Trace> {
     let shown = |map: &&CutMap| !hidden.contains(&map.kind);
     let pinned = input.pins.iter().enumerate().flat_map(|(i, pin)| {
@@ -260,14 +260,14 @@ fn traces(input: &Input<'_>, hidden: &BTreeSet<MapKind>, cut: Cut) -> Vec<Trace>
     pinned.chain(live).collect()
 }
 
-/// The cells of a line that are in sight, and one beyond on either side.
+/// The visible cells of a line, and one beyond on either side.
 fn in_sight(points: &[[f64; 2]], span: Span) -> Vec<[f64; 2]> {
     let first = points.partition_point(|[x, _]| *x < span.low).saturating_sub(1);
     let last = (points.partition_point(|[x, _]| *x <= span.high) + 1).min(points.len());
     points[first.min(last)..last].to_vec()
 }
 
-/// The markers' places, to be typed, and what they read, at the foot of `area`; what is left of it.
+/// Draws the fields of the markers' places and the readings at the foot of `area`. Returns the rest of `area`.
 fn readings(ui: &mut Ui, area: Rect, cut: Cut, whole: Span, markers: &mut Markers, said: &[String]) -> Rect {
     let (font, ink) = (axes::tick_font(), ui.visuals().text_color());
     let width = area.width() - 16.0;

@@ -85,7 +85,7 @@ fn the_target_is_read_without_a_choice() {
     assert_eq!(cuts.state().memory.read.map(|line| line.kind), Some(MapKind::Target));
 }
 
-/// Where a part of the width of a chart is.
+/// Place at a part of the width of a chart.
 fn at(part: f32, rect: Rect) -> Pos2 {
     pos2(rect.left() + part * rect.width(), rect.center().y)
 }
@@ -102,7 +102,7 @@ fn clicks_place_markers() {
     assert!((a / extent - 0.25).abs() < 5e-3 && (b / extent - 0.5).abs() < 5e-3, "{a} {b}");
 }
 
-/// The panel with markers at a quarter of the maximum range, and at this part of it.
+/// The panel with markers at a quarter of the maximum range, and at `part` of it.
 fn marked(part: f64) -> Harness<'static, Held> {
     let mut cuts = panel([700.0, 600.0]);
     let places = [0.25, part].map(|part| Some(part * Radar::default().max_range_metres()));

@@ -1,4 +1,4 @@
-//! One row or one column of a map, as a line to draw and to measure.
+//! One row or one column of a map, as a line.
 
 use crate::app::state::{Cursor, CutMap, MapKind, Units};
 use crate::app::widgets::chart::Span;
@@ -8,7 +8,7 @@ use crate::picture::finer;
 use crate::radar::Radar;
 use ndarray::s;
 
-/// Which way a cut goes.
+/// Direction of a cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Cut {
     /// All directions at one range.
@@ -18,7 +18,7 @@ pub enum Cut {
 }
 
 impl Cut {
-    /// Both.
+    /// Both directions.
     pub const ALL: [Cut; 2] = [Cut::Angle, Cut::Range];
 
     pub fn name(self) -> &'static str {
@@ -28,7 +28,7 @@ impl Cut {
         }
     }
 
-    /// What its axis counts.
+    /// Quantity and unit of the axis.
     pub fn unit(self) -> &'static str {
         match self {
             Cut::Angle => "cos θ",
@@ -36,7 +36,7 @@ impl Cut {
         }
     }
 
-    /// What its axis spans.
+    /// Span of the whole axis.
     pub fn whole(self, radar: &Radar) -> Span {
         match self {
             Cut::Angle => {
@@ -47,7 +47,7 @@ impl Cut {
         }
     }
 
-    /// Where the cursor is on its axis.
+    /// The cursor's place on the axis.
     pub fn position(self, radar: &Radar, cursor: &Cursor) -> f64 {
         match self {
             Cut::Angle => radar.cos_of_column(cursor.column),
@@ -55,7 +55,7 @@ impl Cut {
         }
     }
 
-    /// Title of its axis: what it counts, and where the cut was taken.
+    /// Title of the axis: its quantity, and the place of the cut.
     pub fn title(self, radar: &Radar, cursor: &Cursor) -> String {
         match self {
             Cut::Angle => format!("{}, at range {:.2} m", self.unit(), radar.range_of_bin_metres(cursor.bin.round())),
@@ -69,9 +69,9 @@ impl Cut {
 /// A line of a cut.
 #[derive(Debug, Clone)]
 pub struct Trace {
-    /// Of which map.
+    /// The map that is cut.
     pub kind: MapKind,
-    /// Of which pinned cut; of the cut at the cursor where `None`.
+    /// Index of the pinned cut; `None` for the cut at the cursor.
     pub pin: Option<usize>,
     /// Place on the axis, rising, and Lambda, cell by cell.
     pub lambda: Vec<[f64; 2]>,
@@ -79,7 +79,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// The line through a map; `None` where the map is of another radar that doesn't reach there.
+    /// The line through a map; `None` where the map is of another radar and has no such cell.
     pub fn of(radar: &Radar, cursor: &Cursor, map: &CutMap, cut: Cut, pin: Option<usize>) -> Option<Trace> {
         let (bin, column) = cursor.cell(radar)?;
         let (rows, columns) = map.map.lambda.dim();
@@ -94,7 +94,7 @@ impl Trace {
         Some(Trace { kind: map.kind, pin, lambda, scale: map.scale })
     }
 
-    /// What Lambda spans, decibels.
+    /// Decibels that Lambda spans; `None` where the scale is unknown or empty.
     pub fn range_db(&self) -> Option<f64> {
         self.scale.map(|s| s.decibels()).filter(|range| *range > 0.0)
     }
@@ -105,7 +105,7 @@ impl Trace {
         Some(self.lambda.iter().map(|[x, lambda]| [*x, range * (lambda - 1.0)]).collect())
     }
 
-    /// What is drawn.
+    /// The drawn points: place on the axis, and level in `units`.
     pub fn points(&self, units: Units) -> Option<Vec<[f64; 2]>> {
         match units {
             Units::Lambda => Some(self.lambda.clone()),
@@ -114,7 +114,7 @@ impl Trace {
     }
 }
 
-/// cos(theta), rising, and Lambda of one range; of few columns on those that its map is drawn on.
+/// cos(theta), rising, and Lambda of one range bin; few columns are interpolated as in the map.
 fn angle_cut(radar: &Radar, map: &CutMap, bin: usize) -> Vec<[f64; 2]> {
     let row = radar.left_to_right(&map.map.lambda).slice_move(s![bin..=bin, ..]);
     let fine = finer(radar, row);

@@ -18,7 +18,7 @@ fn result(radar: &Radar) -> DopplerResult {
     DopplerResult { radar: radar.clone(), knows_interval: true, decades: LogMap::new(decades), image: Arc::new(image) }
 }
 
-/// What the panel shows of a scene at rest.
+/// Input of a scene at rest.
 fn input<'a>(radar: &'a Radar, scene: &'a Scene) -> Input<'a> {
     Input {
         radar,
@@ -35,7 +35,7 @@ fn input<'a>(radar: &'a Radar, scene: &'a Scene) -> Input<'a> {
     }
 }
 
-/// The panel of a recording of 20 frames, of which the fourth is looked at.
+/// The panel of a recording of 20 frames, with the fourth on screen.
 fn recorded(result: Option<DopplerResult>) -> Harness<'static, Vec<Command>> {
     let (radar, scene, mut memory) = (radar(1), Scene::default(), DopplerMemory::default());
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {

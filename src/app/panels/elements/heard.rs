@@ -1,4 +1,4 @@
-//! Which elements methods hear: a layout to choose, or its name or numbers to type.
+//! Choice of the layout of elements that methods use: from a list, or by its typed name or numbers.
 
 use super::input::Input;
 use crate::app::state::{Command, ViewCommand};
@@ -6,7 +6,7 @@ use crate::app::widgets::labelled::choice_told;
 use crate::radar::{LayoutKind, Radar};
 use eframe::egui::{TextEdit, Ui};
 
-/// What is typed, until it is a layout.
+/// The typed text, until it names a layout.
 #[derive(Default)]
 pub struct HeardMemory {
     typed: Option<Typed>,
@@ -19,7 +19,7 @@ struct Typed {
     problem: Option<String>,
 }
 
-/// Most letters that are taken.
+/// Maximum length of the typed text, characters.
 const MAX_LETTERS: usize = 4000;
 
 const TIP: &str = "The elements that methods hear. The target stays the map of the whole array. Not every method hears other elements than those of the two ends";
@@ -73,7 +73,7 @@ fn suggested(radar: &Radar) -> impl Iterator<Item = LayoutKind> {
     .filter(|layout| layout.numbers(radar).is_ok())
 }
 
-/// The layout's name, to be typed over. Returns another layout once one was typed.
+/// Draws the field of the layout's name. Returns another layout once one was typed; the inner `None` is the two ends.
 fn field(ui: &mut Ui, input: &Input<'_>, memory: &mut HeardMemory) -> Option<Option<LayoutKind>> {
     let shown = || input.layout.map_or_else(|| LayoutKind::TwoEnds.to_string(), LayoutKind::to_string);
     let typed = memory.typed.take().filter(|typed| typed.over.as_ref() == input.layout);

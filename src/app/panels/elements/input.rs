@@ -1,16 +1,16 @@
-//! What the panel of the elements shows.
+//! Input of the elements panel.
 
 use crate::app::jobs::Calibrated;
 use crate::radar::{BuiltArray, LayoutKind, Radar};
 
-/// What is shown.
+/// The array, the layout of its elements and their calibration.
 pub struct Input<'a> {
     pub radar: &'a Radar,
     pub elements: &'a BuiltArray,
-    /// The layout that methods hear; the two ends where there is none.
+    /// The layout of elements that methods use; `None` for the two ends.
     pub layout: Option<&'a LayoutKind>,
-    /// Whether a recording has the samples of the two ends alone, so that nothing else can be heard.
+    /// Whether a recording has the samples of the two ends alone, so that no other layout can be used.
     pub has_ends_alone: bool,
-    /// What the selected reflector tells of them; `None` where none is selected.
+    /// Calibration on the selected reflector, or the reason why there is none; `None` where no reflector is selected.
     pub calibration: Option<Result<&'a Calibrated, &'a str>>,
 }

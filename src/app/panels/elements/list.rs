@@ -1,4 +1,4 @@
-//! Elements from a list that was pasted, and a bent line.
+//! Elements from a pasted list, and elements on a bent line.
 
 use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::entry::press;
@@ -8,12 +8,12 @@ use crate::radar::{BuiltArray, Radar};
 use eframe::egui::{CollapsingHeader, TextEdit, Ui};
 use std::sync::Arc;
 
-/// What the list remembers.
+/// Contents of the fields, kept between frames.
 #[derive(Default)]
 pub(super) struct ElementListMemory {
-    /// What was pasted.
+    /// The pasted list.
     text: String,
-    /// How far the ends stand back, millimetres.
+    /// Distance of the line's ends behind its middle, millimetres.
     back_millimetres: f64,
 }
 
@@ -24,10 +24,10 @@ impl ElementListMemory {
     }
 }
 
-/// What a list looks like.
+/// Hint in the field of the list: its columns and their units.
 const EXAMPLE: &str = "place mm, forward mm, gain dB, phase °";
 
-/// Draws the bend and the list.
+/// Draws the field of the bend and that of the list.
 pub(super) fn show(
     ui: &mut Ui,
     radar: &Radar,
@@ -56,7 +56,7 @@ pub(super) fn show(
     });
 }
 
-/// Elements on a bent bumper.
+/// Draws the field that puts the elements on a bent line, as on a bumper.
 fn bend(ui: &mut Ui, radar: &Radar, elements: &BuiltArray, memory: &mut ElementListMemory, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let field = NumberField::new(&mut memory.back_millimetres).range(-1000.0..=1000.0).speed(0.05);

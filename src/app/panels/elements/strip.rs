@@ -1,4 +1,4 @@
-//! The strip of elements: side by side, to click and to drag.
+//! The strip of elements side by side, for clicks and drags.
 
 use super::input::Input;
 use crate::app::widgets::theme::Inks;
@@ -9,10 +9,10 @@ use eframe::egui::{
     vec2,
 };
 
-/// Phase from which on a dot is drawn: rounding leaves less after a calibration.
+/// Least phase that is drawn as a dot; rounding leaves less after a calibration.
 const LEAST_DRAWN_DEGREES: f64 = 0.05;
 
-/// How far an element is moved where the pointer is dragged by a point, millimetres.
+/// Displacement of an element per point of a drag, millimetres.
 const MILLIMETRES_A_POINT: f64 = 0.05;
 
 /// Most points by which an element is drawn above or below the line.
@@ -21,16 +21,16 @@ const MOST_UP: f32 = 16.0;
 /// Largest distance from an element's place, millimetres.
 pub(super) const MOST_MILLIMETRES: f64 = 1000.0;
 
-/// Where elements stand on the screen.
+/// The drawn array and its rectangle on screen.
 struct Strip<'a> {
     radar: &'a Radar,
     elements: &'a BuiltArray,
-    /// Numbers of those that are heard, where they are not the two ends.
+    /// Numbers of the layout's elements; `None` for the two ends.
     heard: Option<Vec<usize>>,
     rect: Rect,
 }
 
-/// Draws the strip. `chosen` is the element whose numbers are shown; the answer is an element that was changed, with its errors.
+/// Draws the strip. `chosen` is the element whose numbers are drawn. Returns a changed element and its errors.
 pub(super) fn show(ui: &mut Ui, input: &Input<'_>, chosen: &mut usize) -> Option<(usize, ElementError)> {
     let Input { radar, elements, layout, .. } = *input;
     let heard = layout.and_then(|layout| layout.numbers(radar).ok());
@@ -62,13 +62,13 @@ impl Strip<'_> {
         (((x - self.rect.left()) / self.rect.width() * count as f32).max(0.0) as usize).min(count - 1)
     }
 
-    /// The elements side by side: red where one is dead, the gain as the height of its bar, the phase as where its dot stands.
+    /// Draws the elements side by side: a dead one in red, the gain as the height of the bar, the phase as the place of the dot.
     fn draw(&self, ui: &Ui, chosen: usize) {
         let inks = Inks::of(ui.visuals());
         let painter = ui.painter().with_clip_rect(self.rect);
         painter.rect_filled(self.rect, 3.0, inks.ground);
         let [first, last] = End::BOTH.map(|end| self.radar.end_range(end));
-        // Where bars lie closer than a pixel, those that are heard lie over the others.
+        // Bars closer than a pixel overlap: those of elements in use lie over the others.
         let lies_over = |n: &usize| match &self.heard {
             Some(heard) => heard.contains(n),
             None => first.contains(n) || last.contains(n),
@@ -101,7 +101,7 @@ impl Strip<'_> {
         (self.rect.width() / self.radar.elements as f32 * 0.7).clamp(1.0, 10.0)
     }
 
-    /// Where element `n` stands: off its place as it really is, within what can be drawn.
+    /// Drawn place of element `n`: shifted by its errors along the array and forward, as far as the strip has room.
     fn place(&self, n: usize) -> Pos2 {
         let error = self.elements.element(n);
         let along = (error.position_millimetres * 1e-3 / self.radar.element_spacing_metres) as f32 * self.width();
@@ -125,7 +125,7 @@ impl Strip<'_> {
         }
     }
 
-    /// The element that a click silenced or woke.
+    /// The element that a click switched off or on, with its errors.
     fn switched(&self, response: &Response, chosen: &mut usize) -> Option<(usize, ElementError)> {
         if !response.clicked() {
             return None;
@@ -137,7 +137,7 @@ impl Strip<'_> {
         Some((*chosen, ElementError { dead: !error.dead, ..error }))
     }
 
-    /// The element under a drag's beginning: moved to the side along the array, up towards the scene.
+    /// The element under the beginning of a drag, moved along the array by a sideways drag and towards the scene by an upward one.
     fn moved(&self, response: &Response, chosen: &mut usize) -> Option<(usize, ElementError)> {
         if response.drag_started_by(PointerButton::Primary) {
             // By then the pointer may have left the element that it was pressed on.
@@ -157,7 +157,7 @@ impl Strip<'_> {
         Some((*chosen, ElementError { position_millimetres, forward_millimetres, ..error }))
     }
 
-    /// What is told of the element under the pointer.
+    /// Tooltip of the element under the pointer.
     fn tip(&self, x: f32) -> String {
         let n = self.under(x);
         let e = self.elements.element(n);

@@ -1,4 +1,4 @@
-//! The panel by clicks, drags and keys.
+//! Tests of the panel by clicks, drags and keys.
 
 use super::*;
 use crate::app::jobs::Calibrated;

@@ -1,9 +1,9 @@
-//! What stands in the table: titles, widths, and figures with their digits.
+//! Texts of the table's cells and titles, and widths of its columns.
 
 use crate::evaluate::eta_text;
 use crate::evaluate::rows::{Column, Row, Value};
 
-/// What stands in a cell.
+/// Text of a cell.
 pub fn text(row: &Row, column: Column) -> String {
     match column.of(row) {
         Value::Missing => "–".to_owned(),
@@ -12,7 +12,7 @@ pub fn text(row: &Row, column: Column) -> String {
     }
 }
 
-/// A number of a column, with as many digits as it deserves.
+/// Text of a column's number, with a number of digits that suits the column.
 pub fn number(column: Column, value: f64) -> String {
     let digits = match column {
         Column::Eta => return eta_text(value as f32),
@@ -25,12 +25,12 @@ pub fn number(column: Column, value: f64) -> String {
     format!("{value:.digits$}").replace('-', "−")
 }
 
-/// The last part of a folder's path: the cell has no room for more.
+/// The last part of a folder's path, which fits into a cell.
 fn last_part(text: &str) -> &str {
     text.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or(text)
 }
 
-/// A column's heading in two lines, in words: the name in the file where nothing else is usual.
+/// A column's heading in two lines of words; the column's name in the file where it has no other.
 pub fn title(column: Column) -> [String; 2] {
     let [above, below] = match column {
         Column::Index => ["Scene", ""],
@@ -73,12 +73,12 @@ pub fn width(column: Column) -> f32 {
     }
 }
 
-/// Whether figures stand to the right, under each other.
+/// Whether the cells are aligned to the right.
 pub fn is_number(column: Column) -> bool {
     !matches!(column, Column::Set | Column::Method)
 }
 
-/// How a row is called.
+/// Name of a row: set, scene and method.
 pub fn name(row: &Row) -> String {
     format!("set {}, scene {}, {}", last_part(&row.set), row.index, row.method)
 }

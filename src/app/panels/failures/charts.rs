@@ -15,19 +15,19 @@ use egui_plot::{Bar, BarChart, LineStyle, Span};
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Which chart is drawn.
+/// The chart to draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum View {
-    /// None: all room is the table's.
+    /// No chart: the table has all the room.
     #[default]
     None,
     /// A histogram.
     Histogram,
-    /// Two columns.
+    /// Scatter plot of two columns.
     Columns,
-    /// Two methods.
+    /// Scatter plot of two methods.
     Methods,
-    /// No chart, but what the bad rows have in common.
+    /// Rules that separate the bad rows from the others, in place of a chart.
     Shared,
 }
 
@@ -45,19 +45,19 @@ impl View {
     ];
 }
 
-/// What is charted.
+/// The rows to chart.
 pub struct Input<'a> {
     /// Every row.
     pub table: &'a RowTable,
-    /// Which of them.
+    /// Filter and order of the rows.
     pub order: &'a Order,
     /// The row that was opened last.
     pub opened: Option<usize>,
 }
 
-/// What was chosen, and what was worked out.
+/// The chosen chart, and the points computed for it.
 pub struct ChartsMemory {
-    /// Which chart.
+    /// The chosen chart.
     pub view: View,
     x: Column,
     y: Column,
@@ -78,25 +78,25 @@ impl Default for ChartsMemory {
     }
 }
 
-/// What dots look like depends on this.
+/// The values on which the mesh of dots depends: stamp of the order, chart area, stamp of the box, colour, grouping.
 type MeshKey = (u64, Rect, Option<u64>, Color32, Grouping);
 
-/// What was asked of a chart.
+/// The row or rows that the user picked in a chart.
 #[derive(Default)]
 pub struct Answer {
     /// The row to open.
     pub open: Option<usize>,
-    /// The rows in a box that was drawn.
+    /// The rows in a box that the user drew.
     pub boxed: Option<Boxed>,
 }
 
-/// Fewer dots are drawn larger.
+/// Number of dots below which they are drawn larger.
 const FEW_DOTS: usize = 500;
 
-/// How near to a dot a click must be, points.
+/// Largest distance of a click from a dot, points.
 const DOT_REACH_POINTS: f32 = 10.0;
 
-/// Which chart, and of what.
+/// Draws the choice of the chart, its columns and its methods.
 pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
     for (view, name, tip) in View::ALL {
         ui.selectable_value(&mut memory.view, view, name).on_hover_text(tip);
@@ -128,7 +128,7 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
     }
 }
 
-/// What the colours of groups stand for.
+/// Draws the legend of the groups' colours.
 fn groups(ui: &mut Ui, points: &Points) {
     if points.groups.len() < 2 {
         return;
@@ -145,7 +145,7 @@ fn groups(ui: &mut Ui, points: &Points) {
 /// Draws the chart that was chosen.
 pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut ChartsMemory) -> Answer {
     let Some((subject, titles)) = subject(memory) else { return Answer::default() };
-    // A dot of two methods has the colour of its scene's set.
+    // The dot of a scene tried by two methods has the colour of the scene's set.
     let grouping = if memory.view == View::Methods { Grouping::Set } else { memory.grouping };
     let stamp = input.order.stamp();
     let subject = (subject, grouping);
@@ -218,7 +218,7 @@ fn subject(memory: &ChartsMemory) -> Option<(Subject, [String; 2])> {
 const GROUPS: [[u8; 3]; 7] =
     [[86, 180, 233], [230, 159, 0], [0, 158, 115], [204, 121, 167], [213, 94, 0], [0, 114, 178], [240, 228, 66]];
 
-/// The colour of a group; where there is only one, that of all charts.
+/// The colour of a group; a single group has the usual colour of charts.
 fn colour_of(ui: &Ui, group: usize, groups: usize) -> Color32 {
     let [r, g, b] = GROUPS[group % GROUPS.len()];
     if groups > 1 { Color32::from_rgb(r, g, b) } else { Inks::of(ui.visuals()).ends[0] }
@@ -228,7 +228,7 @@ fn bars(ui: &Ui, chart: &mut Chart<'_>, points: &Points, boxed: Option<&Boxed>) 
     let Some(bars) = &points.bars else { return };
     let wide = (bars.high - bars.low).max(f64::MIN_POSITIVE) / bars.counts.len() as f64;
     let place = |dot: &Dot| (((dot.at[0] - bars.low) / wide) as usize).min(bars.counts.len() - 1);
-    // Each group's part of a bar stands on those before it.
+    // The bar of each group is stacked on those of the groups before it.
     let mut below = vec![0usize; bars.counts.len()];
     for group in 0..points.groups.len() {
         let colour = colour_of(ui, group, points.groups.len());
@@ -252,7 +252,7 @@ fn bars(ui: &Ui, chart: &mut Chart<'_>, points: &Points, boxed: Option<&Boxed>) 
     }
 }
 
-/// All dots as one mesh, which stays as long as nothing changed.
+/// Draws all dots as one mesh, which is kept as long as its key is the same.
 fn dots(
     ui: &Ui,
     drawn: &Drawn,
@@ -290,7 +290,7 @@ fn clicked(drawn: &Drawn, points: &Points) -> Option<usize> {
     nearest(drawn, points, at).map(|dot| dot.rows[0])
 }
 
-/// Which row the pointer is at.
+/// Shows the name of the row under the pointer.
 fn told(drawn: &Drawn, points: &Points, table: &RowTable) {
     let at = drawn.response.hover_pos().filter(|_| !drawn.response.dragged());
     let row = at.and_then(|at| nearest(drawn, points, at)).and_then(|dot| table.rows().get(dot.rows[0]));
@@ -299,7 +299,7 @@ fn told(drawn: &Drawn, points: &Points, table: &RowTable) {
     }
 }
 
-/// Draws the box that is being dragged; the rows in it once it is let go. Over a histogram it is as high as that.
+/// Draws the box that is being dragged. Returns the rows in it once it is released. Over a histogram the box is as high as the chart.
 fn rubber_box(ui: &Ui, drawn: &Drawn, points: &Points, start: &mut Option<Pos2>) -> Option<HashSet<usize>> {
     let (origin, now) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos()));
     if drawn.response.drag_started() {

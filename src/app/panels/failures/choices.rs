@@ -1,4 +1,4 @@
-//! Which methods are tried on which scenes, and where the rows come from and go to.
+//! Choice of the methods and scenes of a run, and of the files of rows.
 
 use super::input::Input;
 use crate::app::state::{Command, FailureChoice, Purpose, RowsCommand};
@@ -15,7 +15,7 @@ use eframe::egui;
 use eframe::egui::Ui;
 use std::collections::BTreeSet;
 
-/// What is chosen.
+/// The chosen methods and scenes.
 pub struct ChoicesMemory {
     methods: BTreeSet<&'static str>,
     kinds: BTreeSet<Kind>,
@@ -30,7 +30,7 @@ impl Default for ChoicesMemory {
     }
 }
 
-/// Draws them.
+/// Draws the choices, and the buttons of run and files.
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mut Vec<Command>) {
     memory.methods.retain(|name| input.methods.all.iter().any(|m| m.name() == *name));
     if memory.methods.is_empty() {
@@ -49,7 +49,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &
     unfit(ui, input.unfit);
 }
 
-/// A row for each method that the last run went on without, with its reason.
+/// Draws a line for each method that the last run left out, with the reason.
 fn unfit(ui: &mut Ui, unfit: &[Unfit]) {
     for Unfit { method, set, scenes, reason } in unfit {
         let reason = reason.strip_prefix(&format!("{method}: ")).unwrap_or(reason);
@@ -75,7 +75,7 @@ fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mu
     labelled(ui, "seed", "", NumberField::new(&mut memory.seed).speed(0.05));
 }
 
-/// Try, or in its place Cancel.
+/// Draws the button Try, or Cancel during a run.
 fn start(ui: &mut Ui, input: &Input<'_>, memory: &ChoicesMemory, asked: &mut Vec<Command>) {
     let ready = !memory.methods.is_empty() && (memory.own || !memory.kinds.is_empty());
     let tip = "Try the methods on the scenes, in the background, with the floor, normalisation and radar in use. Rows made with \

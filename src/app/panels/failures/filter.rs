@@ -9,7 +9,7 @@ use eframe::egui::{
 };
 use std::collections::BTreeSet;
 
-/// What was typed, and what it means.
+/// The typed expression, and the filter that it means.
 #[derive(Default)]
 pub struct FilterMemory {
     /// The expression.
@@ -21,22 +21,22 @@ pub struct FilterMemory {
 }
 
 impl FilterMemory {
-    /// The last expression that meant something; all rows where `None`.
+    /// The last valid filter; `None` for all rows.
     pub fn filter(&self) -> Option<&Filter> {
         self.filter.as_ref()
     }
 
-    /// Puts another expression into the field.
+    /// Replaces the expression in the field.
     pub fn set(&mut self, text: String) {
         self.text = text;
     }
 
-    /// Rises when that changed.
+    /// A number that rises when the filter changes.
     pub fn stamp(&self) -> u64 {
         self.stamp
     }
 
-    /// Reads what was typed, unless it was read before.
+    /// Parses the expression, unless it was parsed before.
     fn read(&mut self, methods: &BTreeSet<&str>) {
         let now = (self.text.clone(), methods.len());
         if self.read.as_ref() == Some(&now) {
@@ -49,7 +49,7 @@ impl FilterMemory {
             _ => Filter::parse(&self.text, &names).map(Some),
         };
         match read {
-            // While a rule is typed, the rows stay as they were.
+            // The rows stay as they were while an expression is unfinished.
             Err(error) => self.error = Some(error),
             Ok(filter) => {
                 self.error = None;
@@ -61,7 +61,7 @@ impl FilterMemory {
     }
 }
 
-/// Draws the field; `methods` are those that expressions may name.
+/// Draws the field. Expressions may name `methods`.
 pub fn show(ui: &mut Ui, methods: &BTreeSet<&str>, memory: &mut FilterMemory) {
     let names: Vec<&str> = methods.iter().copied().collect();
     let edit = ui.horizontal(|ui| {
@@ -81,7 +81,7 @@ pub fn show(ui: &mut Ui, methods: &BTreeSet<&str>, memory: &mut FilterMemory) {
     }
 }
 
-/// Says what is wrong with the expression, if anything is.
+/// Writes the error of the expression, if there is one.
 pub fn problem(ui: &mut Ui, memory: &FilterMemory) {
     if let Some(error) = &memory.error {
         ui.add(Label::new(RichText::new(error.to_string()).color(ui.visuals().error_fg_color)).wrap());
@@ -101,12 +101,12 @@ fn mark(ui: &Ui, edit: &TextEditOutput, column: usize, ink: egui::Color32) {
     painter.add(egui::Shape::convex_polygon(arrow, ink, Stroke::NONE));
 }
 
-/// What stands between names: a dot too, as what follows it is a name of its own.
+/// Whether a character separates names. A dot does, since another name follows it.
 fn is_boundary(c: char) -> bool {
     !(c.is_alphanumeric() || matches!(c, '_' | '-'))
 }
 
-/// What the word before the cursor may become; nothing for an empty one, so that Enter and Tab keep their meaning.
+/// Completions of the word before the cursor; none for an empty word, so that Enter and Tab keep their meaning.
 fn suggestions(query: &CompletionQuery<'_>, methods: &[&str]) -> Vec<Suggestion> {
     let (start, end) = (query.word_range.start.0, query.word_range.end.0);
     let found = complete(query.text, end, methods);

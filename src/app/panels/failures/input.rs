@@ -1,4 +1,4 @@
-//! What the panel shows.
+//! Input of the failures panel.
 
 use crate::app::jobs::{Album, RowTable};
 use crate::app::widgets::method_menu::Offered;
@@ -8,7 +8,7 @@ use crate::evaluate::rows::Row;
 use crate::picture::ColourMap;
 use std::path::Path;
 
-/// What is shown.
+/// The rows, the state of the current run, and the row on screen.
 pub struct Input<'a> {
     /// The methods to choose from.
     pub methods: Offered<'a>,
@@ -16,23 +16,23 @@ pub struct Input<'a> {
     pub method: Option<&'static str>,
     /// The rows.
     pub table: &'a RowTable,
-    /// Their small maps.
+    /// Small maps of the rows.
     pub album: &'a Album,
-    /// Rows that others took the place of, and that can be brought back.
+    /// Number of replaced rows that can be brought back.
     pub before: Option<usize>,
-    /// The part that is done, while methods are tried.
+    /// Completed part of the run, 0 to 1, while methods are tried.
     pub progress: Option<f32>,
-    /// How the last run ended, if not well.
+    /// Message of the last run, where it did not succeed.
     pub note: Option<&'a str>,
-    /// Methods that the last run went on without.
+    /// Methods that the last run left out.
     pub unfit: &'a [Unfit],
-    /// The folder of one's own scenes.
+    /// Folder of the user's own scenes.
     pub own: Option<&'a Path>,
     /// Colours of Lambda.
     pub colours: ColourMap,
-    /// Index of the row that was opened last, as long as it stands in this table.
+    /// Index of the row that was opened last, as long as it is in the table.
     pub opened: Option<usize>,
-    /// That row, while its scene is on screen.
+    /// The opened row, while its scene is on screen.
     pub on_screen: Option<Live<'a>>,
     /// The search near the scene on screen.
     pub search: Searched<'a>,
@@ -41,29 +41,29 @@ pub struct Input<'a> {
 /// A row whose scene is on screen.
 pub struct Live<'a> {
     pub row: &'a Row,
-    /// How it is now, if that is of the method's latest output.
+    /// Figures of the method's latest output; `None` where they are outdated.
     pub now: Option<Now>,
 }
 
-/// What a method makes of the scene on screen as it is now.
+/// Figures of a method's output for the scene on screen.
 pub struct Now {
-    /// Its name.
+    /// Name of the method.
     pub method: &'static str,
-    /// Its figures.
+    /// Figures of the output against the target.
     pub metrics: Metrics,
-    /// What became of the objects, in words, once that is known.
+    /// Text with the numbers of objects found, missed and so on, once they are known.
     pub fates: Option<String>,
 }
 
-/// A search, as far as it has come.
+/// State of the search for a worse or a repaired scene.
 #[derive(Default)]
 pub struct Searched<'a> {
-    /// The part that is done, while it runs.
+    /// Completed part of the search, 0 to 1, while it runs.
     pub progress: Option<f32>,
-    /// What it has found.
+    /// Summary of the search's result.
     pub summary: Option<String>,
-    /// How it ended, if not well.
+    /// Message of the search, where it did not succeed.
     pub note: Option<&'a str>,
-    /// Whether there is something to put on screen.
+    /// Whether the search has a scene to put on screen.
     pub has_found: bool,
 }

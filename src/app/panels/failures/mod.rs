@@ -1,4 +1,4 @@
-//! Every scene that methods were tried on, row by row: sorted, filtered, charted, opened, made worse, kept.
+//! The failures panel: the scenes that methods were tried on, row by row: sorted, filtered, charted, opened, made worse, kept.
 
 mod cells;
 mod charts;
@@ -24,7 +24,7 @@ use eframe::egui::{Frame, Margin, Ui, Vec2};
 use order::{Boxed, Order, Sort, Wanted};
 use std::collections::BTreeSet;
 
-/// What the panel remembers from frame to frame.
+/// State of the panel's parts, kept between frames.
 #[derive(Default)]
 pub struct FailuresMemory {
     choices: choices::ChoicesMemory,
@@ -83,7 +83,7 @@ impl Content for FailuresPanel {
     }
 }
 
-/// The row that was opened, while its scene is on screen, and the figures of now.
+/// The opened row, while its scene is on screen, with the current figures of its method.
 fn live<'a>(state: &'a State, jobs: &Jobs) -> Option<Live<'a>> {
     let opened = state.row_on_screen()?;
     let pipeline = &jobs.pipeline;
@@ -127,7 +127,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<
     asked
 }
 
-/// Where a chart stands: beside the rows where there is more room.
+/// Place of a chart: beside the rows in a wide panel, else below them.
 fn beside_or_below(room: Vec2) -> egui::Panel {
     let of = |length: f32| (0.45 * length, 90.0..=(0.8 * length).max(90.0));
     if room.x > 2.2 * room.y {
@@ -139,7 +139,7 @@ fn beside_or_below(room: Vec2) -> egui::Panel {
     }
 }
 
-/// Puts the rows in order, if something changed.
+/// Filters and sorts the rows, if something changed.
 fn update(ui: &Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
     memory.boxed.take_if(|boxed| boxed.generation != input.table.generation());
     let wanted = Wanted {
@@ -154,7 +154,7 @@ fn update(ui: &Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
     }
 }
 
-/// How many rows are shown, and what else is.
+/// Draws the number of shown rows, the button of the box, and the choice of chart.
 fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
     ui.horizontal_wrapped(|ui| {
         let (shown, all) = (memory.order.shown().len(), input.table.rows().len());
@@ -168,7 +168,7 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
         }
         ui.separator();
         charts::choices(ui, input.table, &mut memory.charts);
-        // Beside what is always there, so that nothing moves while a rule is typed.
+        // In a row that is always there, so that nothing moves while an expression is typed.
         filter::problem(ui, &memory.filter);
     });
 }
@@ -185,7 +185,7 @@ fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory, asked: &mu
     let answer = charts::show(ui, &of, memory.boxed.as_ref(), &mut memory.charts);
     asked.extend(answer.open.map(|v| Command::Rows(RowsCommand::Show(v))));
     if let Some(boxed) = answer.boxed {
-        // An empty box selects all.
+        // An empty box selects all rows.
         memory.boxed = Some(boxed).filter(|boxed| !boxed.rows.is_empty());
         ui.request_repaint();
     }

@@ -1,4 +1,4 @@
-//! The scene on screen: the row's own figures beside those of now, worse and repaired, and kept.
+//! The opened row: its figures beside the current ones, the search for a worse or a repaired scene, and the button that keeps the scene.
 
 use super::input::{Input, Live, Now, Searched};
 use crate::app::state::{Command, Purpose, RowsCommand, SearchChoice};
@@ -13,7 +13,7 @@ use crate::evaluate::rows::Row;
 use crate::evaluate::worsen::{Aim, WorseningMeasure, WorseningSearch};
 use eframe::egui::{Button, Grid, TextEdit, Ui};
 
-/// What is chosen, and what was written.
+/// Settings of the search, and the note for a kept scene.
 pub struct OpenedMemory {
     measure: WorseningMeasure,
     within_metres: f64,
@@ -75,7 +75,7 @@ fn rates(ui: &mut Ui, metrics: &Metrics) {
     ui.label(format!("P_FA {}", percent(metrics.false_alarm)));
 }
 
-/// What became of a row's objects, in words.
+/// Text with the numbers of a row's found, missed, merged and shifted objects, and of its ghosts.
 fn fates(row: &Row) -> String {
     let maybe = |count: Option<usize>, name: &str| count.filter(|n| *n > 0).map(|n| format!("{n} {name}"));
     let told = [row.found, Some(row.missed), row.merged, row.wrong_tooth].into_iter().sum::<Option<usize>>();

@@ -1,4 +1,4 @@
-//! Which rows are shown, and in which order: worked out when something changed, not in every frame.
+//! Filter and order of the rows, computed when something changed and not in every frame.
 
 use crate::app::jobs::RowTable;
 use crate::evaluate::filter::Filter;
@@ -7,19 +7,19 @@ use crate::platform::Instant;
 use std::collections::HashSet;
 use std::time::Duration;
 
-/// While rows come, they are put in order so often.
+/// Interval at which rows are sorted while new ones arrive.
 const ORDER_INTERVAL: Duration = Duration::from_millis(250);
 
-/// By which column rows are sorted.
+/// The column by which rows are sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sort {
     pub column: Column,
-    /// The largest first.
+    /// Whether the largest figure comes first.
     pub descending: bool,
 }
 
 impl Sort {
-    /// What a click on the title of `column` makes of it: the largest first, then the smallest, then the order in which rows came.
+    /// The sorting after a click on the title of `column`: the largest first, then the smallest, then the order in which rows came.
     pub fn clicked(now: Option<Sort>, column: Column) -> Option<Sort> {
         match now {
             Some(sort) if sort.column == column => sort.descending.then_some(Sort { column, descending: false }),
@@ -28,28 +28,28 @@ impl Sort {
     }
 }
 
-/// What decides which rows are shown.
+/// The table, and the filter, sorting and box that apply to it.
 pub struct Wanted<'a> {
     /// The rows.
     pub table: &'a RowTable,
-    /// Which of them; all where `None`.
+    /// Filter of the rows; `None` for all.
     pub filter: Option<&'a Filter>,
-    /// Rises when the filter changes.
+    /// A number that rises when the filter changes.
     pub filter_stamp: u64,
-    /// In which order.
+    /// Sorting of the rows; `None` for the order in which they came.
     pub sort: Option<Sort>,
-    /// Those in a box of a chart, if one was drawn.
+    /// The box drawn in a chart, if there is one; rows outside it are not shown.
     pub boxed: Option<&'a Boxed>,
 }
 
-/// Rows in a box.
+/// Rows in a box that was drawn in a chart.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Boxed {
-    /// The table that they stand in.
+    /// Generation of the table that they belong to.
     pub generation: u64,
-    /// Their indices.
+    /// Indices of the rows.
     pub rows: HashSet<usize>,
-    /// Rises with every box.
+    /// A number that rises with every box.
     pub stamp: u64,
 }
 
@@ -62,7 +62,7 @@ struct Key {
     boxed: Option<u64>,
 }
 
-/// The order, as it was worked out last.
+/// The latest filtered and sorted rows.
 #[derive(Default)]
 pub struct Order {
     of: Option<Key>,
@@ -73,22 +73,22 @@ pub struct Order {
 }
 
 impl Order {
-    /// Rows of which the filter is true, in the order they came.
+    /// Indices of the rows that pass the filter, in the order in which they came.
     pub fn filtered(&self) -> &[usize] {
         &self.filtered
     }
 
-    /// Those of them in the box, sorted: what the table shows.
+    /// Indices of the filtered rows in the box, sorted: the rows of the table.
     pub fn shown(&self) -> &[usize] {
         &self.shown
     }
 
-    /// Rises when it was worked out again.
+    /// A number that rises with every computation.
     pub fn stamp(&self) -> u64 {
         self.stamp
     }
 
-    /// Works it out again if something changed. Returns when to come again, if rows that have just come wait for it.
+    /// Filters and sorts again if something changed. Returns the time until the next call, if new rows wait for it.
     pub fn update(&mut self, wanted: &Wanted<'_>) -> Option<Duration> {
         let Wanted { table, filter, filter_stamp, sort, boxed } = *wanted;
         let boxed = boxed.filter(|boxed| boxed.generation == table.generation());
@@ -140,7 +140,7 @@ mod tests {
         table
     }
 
-    /// Six rows, some of them by a filter and in a box.
+    /// Six rows, a filter and a box.
     struct Asked {
         table: RowTable,
         filter: Filter,
@@ -154,7 +154,7 @@ mod tests {
         }
     }
 
-    /// With the order that it leads to.
+    /// Six rows with a filter and a box, and their order.
     fn asked() -> (Asked, Order) {
         let table = table(6);
         let filter = Filter::parse("index >= 2", &["live"]).unwrap();

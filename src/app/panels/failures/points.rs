@@ -1,4 +1,4 @@
-//! What charts are drawn of: the rows as dots and bars, worked out when the rows changed.
+//! Points and bars of the charts, computed when the rows changed.
 
 use crate::app::jobs::RowTable;
 use crate::evaluate::rows::{Column, Histogram, Row};
@@ -8,10 +8,10 @@ use std::collections::{BTreeSet, HashMap};
 /// Bars of a histogram.
 const BARS: usize = 40;
 
-/// What a chart shows.
+/// Columns and methods that a chart shows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Subject {
-    /// How often the figures of a column fall where.
+    /// Distribution of a column's figures.
     Histogram(Column),
     /// Two columns of every row.
     Columns(Column, Column),
@@ -19,21 +19,21 @@ pub enum Subject {
     Methods(Column, String, String),
 }
 
-/// What the colour of a row in a chart says.
+/// Property of a row that decides its colour in a chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Grouping {
-    /// Its method.
+    /// The row's method.
     #[default]
     Method,
-    /// Its set.
+    /// The row's set.
     Set,
 }
 
 impl Grouping {
-    /// All.
+    /// All groupings.
     pub const ALL: [Grouping; 2] = [Grouping::Method, Grouping::Set];
 
-    /// What it is called.
+    /// Name of the grouping.
     pub fn name(self) -> &'static str {
         match self {
             Grouping::Method => "method",
@@ -49,29 +49,29 @@ impl Grouping {
     }
 }
 
-/// A dot.
+/// A dot of a chart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
-    /// Where.
+    /// Place in the chart, (x, y).
     pub at: [f64; 2],
-    /// Index of its group in [`Points::groups`].
+    /// Index of the dot's group in [`Points::groups`].
     pub group: usize,
-    /// The row to open, and the other one where there are two.
+    /// Indices of the row to open and of the second method's row; both the same where there is one row.
     pub rows: [usize; 2],
 }
 
-/// A chart's content.
+/// Content of a chart.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Points {
-    /// The dots of a scatter plot; of a histogram, one a row that lies on the axis.
+    /// The dots of a scatter plot; for a histogram, one dot on the axis for each row.
     pub dots: Vec<Dot>,
     /// The bars of a histogram.
     pub bars: Option<Histogram>,
     /// Names of the groups, in order.
     pub groups: Vec<String>,
-    /// Where the axes begin and end.
+    /// Limits of both axes, [low, high] each.
     pub spans: [[f64; 2]; 2],
-    /// What statistics say of the two methods.
+    /// Sentence that compares the two methods by statistics.
     pub told: Option<String>,
 }
 
@@ -80,7 +80,7 @@ fn number(row: &Row, column: Column) -> Option<f64> {
 }
 
 impl Points {
-    /// Of the rows whose indices are in `filtered`.
+    /// Content of the chart of the rows whose indices are in `filtered`.
     pub fn of(table: &RowTable, filtered: &[usize], subject: &Subject, grouping: Grouping) -> Points {
         let rows = table.rows();
         let of_row = |index: &usize| rows.get(*index).map(|row| (*index, row));
@@ -132,7 +132,7 @@ impl Points {
     }
 }
 
-/// The ends with a little room around; never the same.
+/// `low` and `high` with a margin; they always differ.
 fn padded(low: f64, high: f64, part: f64) -> [f64; 2] {
     let size = high - low;
     let room = if size > 0.0 { part * size } else { 0.5 * low.abs().max(1.0) };

@@ -1,4 +1,4 @@
-//! What the bad rows have in common: rules, each a filter that a click applies.
+//! Rules that separate the bad rows from the others, each a filter that a click applies.
 
 use crate::app::jobs::RowTable;
 use crate::app::widgets::labelled::labelled;
@@ -9,13 +9,13 @@ use crate::radar::counted;
 use eframe::egui::{Label, RichText, ScrollArea, TextEdit, Ui};
 use std::time::Duration;
 
-/// While rows come, rules are looked for so often.
+/// Interval at which rules are looked for while rows arrive.
 const RULES_INTERVAL: Duration = Duration::from_secs(2);
 
-/// Of more rows only those of evenly chosen scenes are looked at, so that no frame waits.
+/// Most rows in which rules are looked for; of more, evenly chosen scenes are taken, so that no frame waits.
 const MOST_ROWS: usize = 20_000;
 
-/// What was typed, and what was found.
+/// The typed filter of bad rows, and the rules that were found.
 pub struct SharedRulesMemory {
     bad: String,
     of: Option<(u64, String)>,
@@ -30,7 +30,7 @@ impl Default for SharedRulesMemory {
 }
 
 impl SharedRulesMemory {
-    /// Looks for rules, if the rows or what is bad changed.
+    /// Looks for rules, if the rows or the filter of bad ones changed.
     fn update(&mut self, ui: &Ui, table: &RowTable) {
         let key = (table.version(), self.bad.clone());
         if self.of.as_ref() == Some(&key) {
@@ -47,14 +47,14 @@ impl SharedRulesMemory {
     }
 }
 
-/// All rows, or those of every so many scenes where there are too many.
+/// All rows, or those of evenly chosen scenes where there are more than [`MOST_ROWS`].
 fn chosen(rows: &[Row]) -> Vec<Row> {
     let every = rows.len().div_ceil(MOST_ROWS).max(1) as u32;
-    // Two neighbours at a time: one half of the scenes has even numbers.
+    // Scenes are taken in pairs, so that half of them have even numbers.
     rows.iter().filter(|row| (row.index / 2).is_multiple_of(every)).cloned().collect()
 }
 
-/// Draws it; the filter to apply, if a rule was clicked.
+/// Draws the field of bad rows and the rules. Returns the filter of a clicked rule.
 pub fn show(ui: &mut Ui, table: &RowTable, memory: &mut SharedRulesMemory) -> Option<String> {
     ui.horizontal(|ui| {
         let tip = "A filter: which rows are bad. Rules speak of what is known before a method answers.";
@@ -84,7 +84,7 @@ pub fn show(ui: &mut Ui, table: &RowTable, memory: &mut SharedRulesMemory) -> Op
     applied
 }
 
-/// In words, what was looked for and how.
+/// Sentences on the search for rules and its result.
 fn found(shared: &SharedTrait) -> String {
     let SharedTrait { bad, rows, rules, tried } = shared;
     let of = format!("{bad} of {} are bad.", counted(*rows, "row", "rows"));

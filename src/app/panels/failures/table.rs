@@ -1,4 +1,4 @@
-//! The table: of any number of rows only those in sight are drawn.
+//! The table of rows, of any number: only rows in sight are drawn.
 
 use super::cells;
 use super::order::Sort;
@@ -16,15 +16,15 @@ use egui_extras::{Column as TableColumn, TableBuilder, TableRow};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What is listed.
+/// The rows to list.
 pub struct Input<'a> {
     /// Every row.
     pub table: &'a RowTable,
-    /// Their small maps.
+    /// Small maps of the rows.
     pub album: &'a Album,
-    /// Indices of those that are listed, from top to bottom.
+    /// Indices of the listed rows, from top to bottom.
     pub shown: &'a [usize],
-    /// How they are sorted.
+    /// Sorting of the rows.
     pub sort: Option<Sort>,
     /// The row that was opened last.
     pub opened: Option<usize>,
@@ -32,7 +32,7 @@ pub struct Input<'a> {
     pub colours: ColourMap,
 }
 
-/// What was asked of the table.
+/// The row or column that the user clicked, and the rows in sight.
 #[derive(Default)]
 pub struct Answer {
     /// The row to open.
@@ -51,23 +51,23 @@ struct Picture {
     texture: Texture,
 }
 
-/// What the table remembers from frame to frame.
+/// State of the table, kept between frames.
 #[derive(Default)]
 pub struct TableMemory {
     /// Pictures of the rows in sight.
     pictures: HashMap<(u64, usize), Picture>,
-    /// The row that was opened last, when it was last drawn.
+    /// The row that was opened last, at the last drawing.
     latest: Option<usize>,
-    /// Whether the opened row was in sight.
+    /// Whether the opened row was in sight at the last drawing.
     is_opened_in_sight: bool,
-    /// Whether a row was clicked, so that the rows are to have the keys.
+    /// Whether a row was clicked, so that the table takes the keyboard focus.
     was_clicked: bool,
-    /// Height of the table, and of what of it rows have, points.
+    /// Heights of the table and of the area of its rows, points.
     room: [f32; 2],
 }
 
 impl TableMemory {
-    /// Pictures on the graphics card.
+    /// Number of pictures on the graphics card.
     #[cfg(test)]
     pub fn pictures(&self) -> usize {
         self.pictures.len()
@@ -81,7 +81,7 @@ const MAP: Vec2 = vec2(72.0, 36.0);
 
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut TableMemory) -> Answer {
     let mut answer = Answer::default();
-    // Not by its place: what is told of an opened row comes before it, and the focus must stay.
+    // An id that doesn't depend on the place: the figures of an opened row come before it, and the focus must stay.
     let id = Id::unique("rows of failures");
     let list = ui.interact(ui.available_rect_before_wrap(), id, Sense::focusable_noninteractive());
     list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Rows"));
@@ -90,7 +90,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut TableMemory) -> Answer 
         answer.open = keys(ui, &list, input, memory.room[1]);
     }
     let height = ui.available_height();
-    // A row that is opened comes into sight, and stays there when what is told of it takes some of the room.
+    // An opened row is scrolled into sight, and stays there when its figures take some of the room.
     let is_crowded_out = height < memory.room[0] && memory.is_opened_in_sight;
     let wanted = input.opened.filter(|_| input.opened != memory.latest || is_crowded_out);
     let scroll_to = wanted.and_then(|row| input.shown.iter().position(|shown| *shown == row));
@@ -124,7 +124,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut TableMemory) -> Answer 
     answer
 }
 
-/// Arrow keys, Page Up and Down, Home and End walk through the rows.
+/// Handles arrow keys, Page Up and Down, Home and End. Returns the index of the row to open.
 fn keys(ui: &Ui, list: &Response, input: &Input<'_>, room: f32) -> Option<usize> {
     let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|m| m.set_focus_lock_filter(list.id, filter));
@@ -148,7 +148,7 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>, room: f32) -> Option<usize>
     (Some(to) != now).then(|| input.shown[to])
 }
 
-/// Draws a row; whether it was clicked.
+/// Draws a row. Returns whether it was clicked.
 fn row(drawn: &mut TableRow<'_, '_>, input: &Input<'_>, index: usize, memory: &mut TableMemory) -> bool {
     let Some(row) = input.table.rows().get(index) else { return false };
     let is_selected = input.opened == Some(index);
@@ -168,7 +168,7 @@ fn row(drawn: &mut TableRow<'_, '_>, input: &Input<'_>, index: usize, memory: &m
         });
     }
     let mut response = drawn.response();
-    // A screen reader is told of the part that is in sight: a row may be wider than the panel.
+    // A screen reader gets the part in sight: a row may be wider than the panel.
     response.rect = response.interact_rect;
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::ListBoxOption, true, is_selected, cells::name(row)));
     let is_clicked = response.clicked();
@@ -178,7 +178,7 @@ fn row(drawn: &mut TableRow<'_, '_>, input: &Input<'_>, index: usize, memory: &m
     is_clicked
 }
 
-/// Draws target and output of a row into two cells; why there are none.
+/// Draws the small maps of target and output into two cells. Returns the reason where there are none.
 fn texture(
     drawn: &mut TableRow<'_, '_>,
     input: &Input<'_>,
@@ -199,7 +199,7 @@ fn texture(
         }
     }
     let mut picture = memory.pictures.get_mut(&key).filter(|_| matches!(made, Some(Ok(_))));
-    // Row 0 is range 0, which hangs lowest.
+    // Row 0 of the picture is range 0, at the lower end.
     for low in [0.0, 0.5] {
         drawn.col(|ui| {
             let place = Rect::from_center_size(ui.max_rect().center(), MAP);
@@ -226,7 +226,7 @@ fn picture(thumbnail: &Thumbnail, colours: ColourMap) -> ColorImage {
     ColorImage::new([THUMBNAIL_WIDTH, 2 * THUMBNAIL_HEIGHT], pixels)
 }
 
-/// Draws the titles over the rows; the column that was clicked.
+/// Draws the titles over the rows. Returns the column that was clicked.
 fn titles(drawn: &mut TableRow<'_, '_>, sort: Option<Sort>) -> Option<Column> {
     for name in ["target", "output"] {
         drawn.col(|ui| {
@@ -247,13 +247,13 @@ fn titles(drawn: &mut TableRow<'_, '_>, sort: Option<Sort>) -> Option<Column> {
     clicked
 }
 
-/// Draws a column's title with a triangle that says how it is sorted.
+/// Draws a column's title with a triangle that shows the direction of sorting.
 fn title(ui: &mut Ui, column: Column, sorted: Option<Sort>) {
     let (visuals, cell) = (ui.visuals(), ui.max_rect());
     let ink = if sorted.is_some() { visuals.strong_text_color() } else { visuals.weak_text_color() };
     let lines = cells::title(column).join("\n").trim_end().to_owned();
     let galley = ui.painter().layout_no_wrap(lines, FontId::proportional(11.5), ink);
-    // Beside the triangle.
+    // Room beside the triangle.
     let free = cell.width() - galley.size().x - 10.0;
     let left = if cells::is_number(column) { cell.left() + free.max(0.0) } else { cell.left() + 4.0 };
     ui.painter().galley(pos2(left, cell.center().y - galley.size().y / 2.0), galley, ink);

@@ -87,7 +87,7 @@ fn every_button_is_one_command() {
     assert_eq!(panel.state().asked, asked);
 }
 
-/// Fifty rows, and which of them has the largest squared error; its title was clicked.
+/// Fifty rows sorted by squared error, and the index of the largest.
 fn by_squared_error() -> (Harness<'static, Drawn>, usize) {
     let mut panel = panel(50);
     click(&mut panel, "Squared error");
@@ -213,7 +213,7 @@ fn an_opened_row_keeps_its_figures_beside_those_of_now() {
     assert!(texts.iter().any(|t| t.text == "1 found, 2 missed"), "{texts:?}");
 }
 
-/// Every scene by two methods; the second misses objects where something is near.
+/// Every scene by two methods; the second misses objects that have a near neighbour.
 fn by_two_methods() -> Vec<Row> {
     let of = |i: u32, method: &str| {
         let near = f64::from(i / 2 % 10);
@@ -245,7 +245,7 @@ fn a_rule_of_the_bad_rows_is_applied_by_a_click() {
     assert_eq!(panel.state().memory.order.shown().len(), 48);
 }
 
-/// Six scenes by a method that says its doubt and one that says none.
+/// Six scenes by a method without doubt and by one with it.
 fn with_doubt() -> Harness<'static, Drawn> {
     let rows = (0..6).flat_map(|i| ["capon", "live"].map(|method| some_row(i, method))).collect();
     panel_of(rows, vec2(3000.0, 700.0))

@@ -1,4 +1,4 @@
-//! How a search found its reflectors: one line an attempt. A click selects the object that stands where the attempt was made.
+//! Attempts of the search, one line each. A click selects the object at the place of an attempt.
 
 use crate::app::state::{Command, EditCommand};
 use crate::app::widgets::numbers::{plain, signed};
@@ -8,13 +8,13 @@ use crate::reconstruct::search::{LADDER, MOST_ATTEMPTS};
 use crate::scene::Object;
 use eframe::egui::{CollapsingHeader, Grid, Ui};
 
-/// An object this near to an attempt's place is the one that it meant, metres.
+/// Largest distance from an attempt's place to the object that a click selects, metres.
 const SAME_PLACE_METRES: f64 = 1.0;
 
 /// The heading of the group.
 const HEADING: &str = "How the search found them";
 
-/// What the gain means.
+/// Tooltip of the gain.
 const GAIN: &str = "Decades by which the unexplained energy falls with it. One decade is 10 dB.";
 
 /// Draws the folded group; nothing where there is no attempt. `objects` are those of the scene on screen.
@@ -61,7 +61,7 @@ fn line(ui: &mut Ui, attempt: &Attempt, objects: &[Object]) -> Option<Command> {
     place.filter(|_| clicked).map(selected)
 }
 
-/// The object that has a reflector nearest to a place; `None` where none stands near. Samples do not tell y from -y.
+/// The object that has a reflector nearest to a place; `None` where none is near. Samples do not distinguish y from -y.
 fn nearest(objects: &[Object], [x, y]: [f64; 2]) -> Option<usize> {
     let apart = |object: &Object| {
         let to = |r: &crate::scene::Reflector| (r.x_metres - x).hypot(r.y_metres.abs() - y.abs());

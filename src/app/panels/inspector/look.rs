@@ -1,9 +1,9 @@
-//! How the numbers of objects are called, and within which bounds they are dragged.
+//! Names, units and ranges of the fields of objects.
 
 use crate::app::widgets::labelled::Quantity;
 use crate::interact::Field;
 
-/// How the number of a field is shown.
+/// Name, tooltip, unit and range of a field.
 pub fn look(field: Field) -> Quantity {
     let metres = Quantity::metres;
     let spread = |name| metres(name, "Standard deviation").with(" m", [0.0, 1e4], 0.02, 3);
@@ -50,7 +50,7 @@ pub fn look(field: Field) -> Quantity {
     }
 }
 
-/// The same for the numbers of bodies.
+/// The same for the fields of bodies.
 fn look_of_body(field: Field) -> Quantity {
     let of = |name, tooltip| Quantity::metres(name, tooltip);
     match field {

@@ -7,8 +7,8 @@ use crate::app::widgets::number_field::NumberField;
 use crate::interact::{FieldChange, SharedField};
 use eframe::egui::Ui;
 
-/// A number to drag or to type; what becomes of it in all objects. Where it differs between them, typing sets it in all, dragging moves
-/// it in all by the same.
+/// Draws a number to drag or to type. Returns its change for all selected objects. Where their numbers differ, typing sets all of them to one
+/// value, and dragging moves all by the same amount.
 pub fn number(ui: &mut Ui, shared: &SharedField, metres_per_point: f64) -> Option<FieldChange> {
     let look = look(shared.field);
     let shown = shared.is_same.then(|| rounded(shared.first, &look, metres_per_point)).flatten();
@@ -18,7 +18,7 @@ pub fn number(ui: &mut Ui, shared: &SharedField, metres_per_point: f64) -> Optio
     };
     let label = ui.label(look.name).on_hover_text(&tooltip);
     let entered = ui.scope_id().with(look.name);
-    // A range read back from x and y differs in its last bits from the one that was entered; that mustn't disturb the typing.
+    // A range computed from x and y differs in its last bits from the entered one. The difference must not change the text that is being typed.
     let before: Option<f64> = ui.data(|d| d.get_temp(entered));
     let base = before.filter(|v| (v - shared.first).abs() < 1e-9 * v.abs().max(1.0)).unwrap_or(shared.first);
     let mut asked = None;
@@ -54,12 +54,11 @@ pub fn number(ui: &mut Ui, shared: &SharedField, metres_per_point: f64) -> Optio
         return Some(FieldChange::By(asked - base));
     }
     ui.data_mut(|d| d.insert_temp(entered, asked));
-    // A number that was looked at only comes back as it was printed.
+    // A field without an edit returns the rounded number that it showed.
     (!shared.is_same || (asked - base).abs() > 0.5e-6).then_some(FieldChange::To(asked))
 }
 
-/// A length that a drag left, with as many digits as a point of the canvas is worth; `None` for one that has no more than three decimals
-/// anyway, as those that are typed.
+/// Text of a length, rounded to a point of the canvas; `None` for a length of at most three decimals, such as a typed one.
 fn rounded(value: f64, look: &Quantity, metres_per_point: f64) -> Option<String> {
     if look.unit != " m" || (1e3 * value - (1e3 * value).round()).abs() < 1e-6 {
         return None;

@@ -1,4 +1,4 @@
-//! Sliders beside the numbers of a body whose effect on the maps is seen best while they change.
+//! Sliders beside some numbers of a body, whose effect on the maps is best seen while they change.
 
 use crate::interact::{Field, FieldChange, SharedField};
 use eframe::egui::{Slider, SliderClamping, Ui, WidgetInfo};
@@ -6,10 +6,10 @@ use eframe::egui::{Slider, SliderClamping, Ui, WidgetInfo};
 /// Largest radius on the slider, metres; larger ones are typed.
 const MOST_RADIUS_METRES: f64 = 5.0;
 
-/// Largest roughness on the slider, millimetres: 2 mm already take 43 dB from a glint.
+/// Largest roughness on the slider, millimetres: 2 mm already lower a glint by 43 dB.
 const MOST_ROUGHNESS_MILLIMETRES: f64 = 2.0;
 
-/// Draws the slider of a number that has one; what becomes of the number.
+/// Draws the slider, if the field has one. Returns the change of the number.
 pub fn show(ui: &mut Ui, shared: &SharedField) -> Option<FieldChange> {
     let (name, range, is_logarithmic) = match shared.field {
         Field::Radius => ("radius slider", 0.01..=MOST_RADIUS_METRES, true),

@@ -1,4 +1,4 @@
-//! A question, what it is answered with, and what the answer was worth.
+//! A question's field or buttons, the given answer, and its judgement.
 
 use super::large::{LARGE_TEXT_RATIO, large};
 use super::memory::LessonMemory;
@@ -12,7 +12,7 @@ use crate::lesson::{Guess, Judgement, Question, Truth};
 use eframe::egui;
 use eframe::egui::{Color32, Id, Sense, Slider, Stroke, TextEdit, Ui, Vec2, pos2, vec2};
 
-/// What an open question is answered with.
+/// Draws the field or the buttons of an open question, or the request for a click.
 pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
     match &question.answer {
         Answer::Click { map, .. } => {
@@ -65,7 +65,7 @@ pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked
     }
 }
 
-/// Digits that were typed while no field had the focus: a question for a number means them.
+/// Digits that were typed while no field had the focus: they go to the field of a number.
 fn stray_digits(ui: &Ui) -> String {
     if ui.ctx().text_edit_focused() {
         return String::new();
@@ -80,7 +80,7 @@ fn stray_digits(ui: &Ui) -> String {
     })
 }
 
-/// The guess beside the truth: places are drawn on their map instead.
+/// Draws the guess beside the truth; places are drawn on their map instead.
 pub fn answered(ui: &mut Ui, question: &Question, guess: Guess, judged: Option<&Judgement>) {
     let truth = judged.map(|j| j.truth);
     match (&question.answer, guess) {
@@ -113,7 +113,7 @@ pub fn answered(ui: &mut Ui, question: &Question, guess: Guess, judged: Option<&
     }
 }
 
-/// The threshold that was chosen on a scale from 0 to 1, and those that are right.
+/// Draws the chosen threshold on a scale from 0 to 1, with the range of right ones.
 fn threshold(ui: &mut Ui, eta: f32, right: Option<(f32, f32)>) {
     let (scale, _) = ui.allocate_exact_size(vec2(ui.available_width().min(300.0), 14.0), Sense::hover());
     let at = |value: f32| scale.left() + value.clamp(0.0, 1.0) * scale.width();
@@ -129,7 +129,7 @@ fn threshold(ui: &mut Ui, eta: f32, right: Option<(f32, f32)>) {
     ui.label(format!("Your answer: {eta:.2}.{told}"));
 }
 
-/// What the guess was worth; brought into sight once.
+/// Draws the judgement of the guess, and scrolls to it once.
 pub fn judgement(ui: &mut Ui, run: &LessonRun, told: &mut bool) {
     match &run.judgement {
         None => _ = ui.weak("computing…"),
@@ -144,7 +144,7 @@ pub fn judgement(ui: &mut Ui, run: &LessonRun, told: &mut bool) {
     }
 }
 
-/// A coloured line with a symbol: neither alone tells right from wrong.
+/// Draws a verdict as a coloured line with a symbol, for readers who can't tell the colours apart.
 fn verdict(ui: &mut Ui, is_right: bool, distance: &str) {
     let (said, symbol) = if is_right { ("Correct", Symbol::Tick) } else { ("Not quite", Symbol::Cross) };
     let ink = theme::verdict(ui.visuals(), is_right);
@@ -161,7 +161,7 @@ fn verdict(ui: &mut Ui, is_right: bool, distance: &str) {
     ui.painter().line_segment([bar.left_top(), bar.left_bottom()], Stroke::new(3.0, ink));
 }
 
-/// What stands before a verdict or a criterion.
+/// Symbol before a verdict or a criterion.
 #[derive(Clone, Copy)]
 pub enum Symbol {
     /// Right, or met.
@@ -173,7 +173,7 @@ pub enum Symbol {
 }
 
 impl Symbol {
-    /// Draws it, `r` points to either side.
+    /// Draws the symbol, `r` points to either side.
     pub fn draw(self, painter: &egui::Painter, at: egui::Pos2, r: f32, stroke: Stroke) {
         match self {
             Symbol::Ring => _ = painter.circle_stroke(at, 0.8 * r, stroke),

@@ -1,4 +1,4 @@
-//! A challenge: what is asked for, and how far the scene meets it.
+//! A challenge: its task, and how far the scene meets its criteria.
 
 use super::answer::Symbol;
 use super::large::large;
@@ -9,7 +9,7 @@ use crate::lesson::{Challenge, Measured};
 use eframe::egui;
 use eframe::egui::{Sense, Stroke, TextureId, Ui, Vec2};
 
-/// Draws the challenge, its criteria and what can be done.
+/// Draws the challenge, its criteria and its buttons.
 pub fn requirements(
     ui: &mut Ui,
     run: &LessonRun,
@@ -47,7 +47,7 @@ pub fn requirements(
     }
 }
 
-/// A criterion as a sentence, with what there is now; a tick or a ring says whether it is met.
+/// Draws a criterion as a sentence with the measured value. A tick or a ring says whether it is met.
 fn criterion(ui: &mut Ui, measured: &Measured) {
     let (symbol, verdict) = if measured.holds { (Symbol::Tick, "met") } else { (Symbol::Ring, "not met yet") };
     let ink = if measured.holds { theme::verdict(ui.visuals(), true) } else { ui.visuals().weak_text_color() };

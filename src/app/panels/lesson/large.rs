@@ -1,11 +1,11 @@
-//! Text that is to be read first.
+//! Enlarged text, to be read first.
 
 use eframe::egui::{RichText, TextStyle, Ui};
 
-/// Text that is to be read first is this much larger than the rest.
+/// Size of enlarged text relative to the rest.
 pub const LARGE_TEXT_RATIO: f32 = 1.15;
 
-/// Such a text.
+/// Enlarged text.
 pub fn large(ui: &Ui, text: impl Into<String>) -> RichText {
     RichText::new(text).size(LARGE_TEXT_RATIO * TextStyle::Body.resolve(ui.style()).size)
 }

@@ -1,4 +1,4 @@
-//! The list of lessons, with how far each was taken.
+//! The list of lessons, with the progress in each.
 
 use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand, Purpose};
@@ -9,7 +9,7 @@ use eframe::egui;
 use eframe::egui::{Color32, ProgressBar, RichText, TextEdit, Ui};
 use std::sync::OnceLock;
 
-/// Width of a bar that shows how far a lesson was taken, points.
+/// Width of a bar of progress, points.
 const BAR: f32 = 120.0;
 
 /// Room for "0 of 5 steps", points.
@@ -52,7 +52,7 @@ pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: 
     }
 }
 
-/// Asks before it forgets what the learner did.
+/// Draws the menu that deletes the learner's answers after a confirmation.
 fn start_over(ui: &mut Ui, progress: &Progress, asked: &mut Vec<Command>) {
     let whose = match progress.learner() {
         "" => "Forget every answer that was given here?".to_owned(),
@@ -72,7 +72,7 @@ fn start_over(ui: &mut Ui, progress: &Progress, asked: &mut Vec<Command>) {
     });
 }
 
-/// A line of the list: the title, how far the lesson was taken, and what it is about. Whether it was clicked.
+/// Draws a line of the list: title, progress and subject. Returns whether it was clicked.
 fn listed(ui: &mut Ui, lesson: &Lesson, done: usize) -> bool {
     ui.separator();
     let (steps, room) = (lesson.steps.len(), ui.available_width());
@@ -88,7 +88,7 @@ fn listed(ui: &mut Ui, lesson: &Lesson, done: usize) -> bool {
         let clicked = button.on_hover_text("Begin this lesson").clicked();
         let text = format!("{done} of {}", counted(steps, "step", "steps"));
         let bar = ProgressBar::new(done as f32 / steps.max(1) as f32).desired_width(bar).text(text);
-        // A bar of nothing would still be drawn as a dot.
+        // A bar of no progress would be drawn as a dot.
         ui.add(if done == 0 { bar.fill(Color32::TRANSPARENT) } else { bar });
         clicked
     });
@@ -96,7 +96,7 @@ fn listed(ui: &mut Ui, lesson: &Lesson, done: usize) -> bool {
     clicked.inner
 }
 
-/// How many steps of a lesson are done.
+/// Number of completed steps of a lesson.
 fn done(progress: &Progress, id: &str, lesson: &Lesson) -> usize {
     let steps = lesson.steps.iter().enumerate();
     let done = steps.filter(|(i, step)| {

@@ -1,4 +1,4 @@
-//! Lessons as they are shown: what is asked with, and what stands there after an answer.
+//! Tests of the lesson panel: fields of questions, and texts after an answer.
 
 use super::*;
 use crate::app::state::{Before, MapViews, SceneView, Setup, Task, View};
@@ -25,7 +25,7 @@ fn harness(run: Option<LessonRun>) -> Harness<'static, Drawn> {
     harness_of([640.0, 1600.0], run, Progress::default(), false)
 }
 
-/// The panel of a size, after what the learner did, on the whole screen or not.
+/// The panel at a size, with a learner's progress, on the whole screen or not.
 fn harness_of(size: [f32; 2], run: Option<LessonRun>, progress: Progress, presenting: bool) -> Harness<'static, Drawn> {
     let draw = move |ui: &mut Ui, (run, memory, asked): &mut Drawn| {
         asked.extend(show(ui, Input { run: run.as_ref(), progress: &progress, hidden: None, presenting }, memory));

@@ -1,4 +1,4 @@
-//! What a lesson's question about a place was answered with, and the truth: drawn together on the map.
+//! The guess and the truth of a lesson's question about a place, drawn together on the map.
 
 use super::frame::Frame;
 use crate::app::widgets::axes;
@@ -7,28 +7,28 @@ use crate::lesson::Cell;
 use crate::theory;
 use eframe::egui::{Align2, Color32, Painter, Pos2, Stroke, vec2};
 
-/// A place that was guessed, the true one, and how far they are apart.
+/// A guessed place, the true one, and their distance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Places {
-    /// What was clicked.
+    /// The clicked cell.
     pub guess: Cell,
-    /// Where it is.
+    /// The true cell.
     pub truth: Cell,
-    /// In metres and columns.
+    /// Distance in metres and columns, as text.
     pub distance: String,
 }
 
-/// The guess.
+/// Colour of the guess.
 const GUESS: Color32 = Color32::from_rgb(255, 170, 60);
 
-/// The truth.
+/// Colour of the truth.
 const TRUTH: Color32 = Color32::from_rgb(120, 255, 150);
 
-/// From a place to the nearest stroke of its mark, and to the farthest, points: what lies at the place stays free.
+/// Distances from a place to the nearest and the farthest stroke of its mark, points: the place itself stays free.
 const FREE: f32 = 9.0;
 const REACH: f32 = 16.0;
 
-/// Draws the guess as a cross with an open middle, the truth as a ring, and a line between them; each says what it is, beside the map's blob.
+/// Draws the guess as a cross with an open middle, the truth as a ring, and a line between them, each with its name beside the map's blob.
 pub fn draw(painter: &Painter, frame: Frame<'_>, places: &Places) {
     let Places { guess, truth, distance } = places;
     let (guess, truth) = (*guess, *truth);
@@ -48,12 +48,12 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, places: &Places) {
         }
         painter.circle_stroke(truth, 0.5 * (FREE + REACH), Stroke::new(width, colour(TRUTH)));
     }
-    // One above, one below: they stay readable where the two places are close.
+    // One name above, one below: both stay readable where the two places are close.
     let guess_is_above = guess.y < truth.y;
     label(painter, guess, guess_is_above, "your guess");
     label(painter, truth, !guess_is_above, "truth");
     let middle = guess + (truth - guess) / 2.0;
-    // On the side of the line where neither of its ends is; above the marks and their names where the line is level.
+    // The text is on the free side of the line; above the marks and their names where the line is level.
     if apart > 5.0 * REACH {
         let along = if truth.x < guess.x { guess - truth } else { truth - guess };
         let (off, align) = match along.y {

@@ -1,26 +1,26 @@
-//! What is drawn where a map has no picture, or hides it.
+//! Texts in the place of a map's picture, where there is none or where it is hidden.
 
 use crate::app::state::{Command, ViewCommand};
 use crate::app::widgets::theme::Inks;
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{self, Align, Painter, Rect, Ui, vec2};
 
-/// A map that is hidden until the learner has predicted what it shows.
+/// Cover of a map that is hidden until the learner has predicted its content.
 #[derive(Clone, Copy)]
 pub struct Veil {
     /// Whether the prediction is a click in this map.
     pub is_clicked: bool,
 }
 
-/// Why there is no picture.
+/// Reason for a missing picture.
 pub struct Problem<'a> {
-    /// What is wrong.
+    /// The problem in words.
     pub reason: &'a str,
     /// Name of a method that works instead.
     pub instead: Option<&'static str>,
 }
 
-/// What a map without a picture says, and the way out of it.
+/// Draws the text in the place of a missing picture, and the button of a method that works.
 pub fn empty(ui: &mut Ui, painter: &Painter, rect: Rect, error: Option<&Problem<'_>>, asked: &mut Vec<Command>) {
     painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
     let text = error.map_or("computing…", |e| e.reason);
@@ -37,7 +37,7 @@ pub fn empty(ui: &mut Ui, painter: &Painter, rect: Rect, error: Option<&Problem<
     });
 }
 
-/// What a hidden map says, at its top: the middle is where many a peak will be. The one that waits for a click stands out.
+/// Draws the text of a hidden map, at its top since many peaks are in the middle. A map that waits for a click stands out.
 pub fn veil(painter: &Painter, rect: Rect, is_clicked: bool, visuals: &egui::Visuals) {
     let (text, ink, size) = match is_clicked {
         true => ("Click where you expect it", Inks::of(visuals).selected, 16.0),

@@ -1,4 +1,4 @@
-//! Figures for a map's title bar.
+//! Text in the title bar of a map's panel.
 
 use crate::app::state::{MapKind, Units};
 use crate::app::widgets::levels::{level, with_unit};
@@ -6,35 +6,34 @@ use crate::app::widgets::numbers::percent;
 use crate::evaluate::{Metrics, eta_text};
 use crate::maps::cfar::Cfar;
 
-/// Figures for a map's title bar.
+/// Figures that the caption is made of.
 pub struct Caption {
-    /// Which map.
     pub kind: MapKind,
     /// The method whose output is shown.
     pub method: Option<&'static str>,
     /// Whether the map is of an earlier scene or of another method.
     pub updating: bool,
-    /// The method that is at work on the same scene, where another one's output is shown.
+    /// The running method, while another method's output is shown.
     pub running: Option<&'static str>,
-    /// What became of the objects in the output that is shown, in a few words.
+    /// Verdict on the objects in the output that is shown, in a few words.
     pub verdict: Option<String>,
     /// Figures of the output that is shown, against the target of the same scene.
     pub metrics: Option<Metrics>,
-    /// eta'.
+    /// Threshold of the target.
     pub target_eta: f32,
-    /// eta.
+    /// Threshold of the output.
     pub output_eta: f32,
-    /// The detector in the place of both, if one is in use.
+    /// The detector in place of both thresholds, if one is in use.
     pub cfar: Option<Cfar>,
     /// Part of a recording's power that the reflectors laid over it explain.
     pub explained: Option<f64>,
-    /// What thresholds are told in.
+    /// Unit of the thresholds.
     pub units: Units,
-    /// What the target's Lambda spans, decibels, where that is known.
+    /// Decibels that the target's Lambda spans, where its scale is known.
     pub range_db: Option<f64>,
 }
 
-/// What stands in the title bar of a map's panel.
+/// Text in the title bar of a map's panel.
 pub fn caption(input: Caption) -> Option<String> {
     let updating = match input.running {
         Some(method) => &format!("({method} is running) "),
@@ -53,7 +52,7 @@ pub fn caption(input: Caption) -> Option<String> {
             match (input.cfar, figures) {
                 (Some(cfar), Some(figures)) => format!("{figures} · {} {updating}", cfar.statistic.short_name()),
                 (Some(cfar), None) => format!("{} {updating}", cfar.statistic.short_name()),
-                // The settings have η, and both would be cut off.
+                // Without η, which the settings show: both would be cut off.
                 (None, Some(figures)) if input.verdict.is_some() => format!("{figures} {updating}"),
                 (None, Some(figures)) => format!("{figures} · η = {} {updating}", threshold(&input, input.output_eta)),
                 (None, None) => format!("η = {} {updating}", threshold(&input, input.output_eta)),
@@ -77,7 +76,7 @@ pub fn caption(input: Caption) -> Option<String> {
     (!text.trim().is_empty()).then_some(text)
 }
 
-/// A threshold in Lambda, or in decibels relative to the target's peak where these are chosen and known.
+/// Text of a threshold in Lambda, or in decibels relative to the target's peak where these are chosen and the scale is known.
 fn threshold(input: &Caption, eta: f32) -> String {
     match input.range_db.filter(|_| input.units == Units::Decibels) {
         Some(range_db) => with_unit(&level(range_db * (f64::from(eta) - 1.0), range_db)),

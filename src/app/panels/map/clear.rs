@@ -1,14 +1,14 @@
-//! Room for text in a map, clear of what is to be seen.
+//! Room for text in a map, away from blobs and marks.
 
 use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
 
-/// Points around a blob that no number covers.
+/// Distance from a blob that text keeps, points.
 const CLEAR: f32 = 8.0;
-/// Part of the map that the numbers cover at the most.
+/// Largest part of the map that text covers.
 const MOST_PART: f32 = 0.25;
 
-/// Where as many of the lines fit as leave all `places` in sight, the blob's peak first, and cover no more than [`MOST_PART`] of the map, and
-/// how many; the larger the map, the more, and one always.
+/// Place of as many `lines` as fit, and their number: at least one, more in a larger map. All `places` stay in sight, the first (the blob's
+/// peak) before the others, and the text covers no more than [`MOST_PART`] of the map.
 pub fn clear_patch(rect: Rect, places: &[Pos2], lines: &[Vec2]) -> (Rect, usize) {
     let from = places.first().copied().unwrap_or(rect.center());
     let patches = |count: usize| {
@@ -22,8 +22,8 @@ pub fn clear_patch(rect: Rect, places: &[Pos2], lines: &[Vec2]) -> (Rect, usize)
     (1..=lines.len()).rev().flat_map(patches).find(fits).unwrap_or(least)
 }
 
-/// Boxes of `size` in the corners of `rect`, the one farthest from `from` first; clear of the value under the pointer at the top and of the
-/// button at the bottom.
+/// Boxes of `size` in the corners of `rect`, the one farthest from `from` first; clear of the pointer's value at the top and of the button at
+/// the bottom.
 fn corners(rect: Rect, from: Pos2, size: Vec2) -> [Rect; 4] {
     let (left, top) = (from.x > rect.center().x, from.y > rect.center().y);
     [(left, top), (!left, top), (left, !top), (!left, !top)].map(|(left, top)| {

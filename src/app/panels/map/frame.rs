@@ -1,4 +1,4 @@
-//! A map on screen: where its places are, and the numbers behind them.
+//! A map on screen: the places of its cells, and their values.
 
 use crate::app::state::{Cursor, MapView, Projection};
 use crate::app::widgets::levels;
@@ -9,68 +9,68 @@ use crate::scene::Reflector;
 use crate::theory::MapPlace;
 use eframe::egui::{Pos2, Rect, pos2};
 
-/// Where on screen a map is, and which part of it.
+/// Rectangle, visible part and projection of a map on screen.
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
-    /// On screen.
+    /// Rectangle on screen.
     pub rect: Rect,
-    /// The visible part.
+    /// The visible part of the map.
     pub view: MapView,
     pub radar: &'a Radar,
-    /// Over which coordinates.
+    /// Projection of the map.
     pub projection: Projection,
-    /// Middle of the elements that the map is of, metres along the array.
+    /// Middle of the map's elements, metres along the array.
     pub centre_x_metres: f64,
-    /// Where it comes from, while it is on its way from other coordinates.
+    /// The start of the animation, while the map changes from another projection.
     pub morph: Option<Morph>,
 }
 
-/// Where a map comes from.
+/// Start of the animation from another projection.
 #[derive(Clone, Copy)]
 pub struct Morph {
-    /// Where the other kind of map is on screen, and which part of it.
+    /// Rectangle of the map in that projection.
     pub rect: Rect,
-    /// The visible part of it.
+    /// Visible part of the map in that projection.
     pub view: MapView,
-    /// Its coordinates.
+    /// The projection that the map comes from.
     pub projection: Projection,
-    /// How much of the way is left, 0 to 1.
+    /// Remaining part of the animation, 1 to 0.
     pub left: f32,
 }
 
-/// The place between two on screen.
+/// The place between `to` and `from`, with the part `left` of the way remaining.
 pub fn between(to: Pos2, from: Pos2, left: f32) -> Pos2 {
     to + left * (from - to)
 }
 
 impl<'a> Frame<'a> {
-    /// Of a part of a map on screen.
+    /// Frame of a part of a map, at rest.
     pub fn of(rect: Rect, view: MapView, radar: &'a Radar, projection: Projection, centre_x_metres: f64) -> Self {
         Frame { rect, view, radar, projection, centre_x_metres, morph: None }
     }
 
-    /// Height of a range bin on screen, points; in a Cartesian map that of one straight ahead.
+    /// Height of a range bin on screen, points; in a Cartesian map that of a bin straight ahead.
     pub fn cell_height(&self) -> f32 {
         self.rect.height() / (self.view.high.y - self.view.low.y) / self.radar.samples as f32
     }
 
-    /// Where the map shows a reflector.
+    /// Place on screen of a reflector's blob.
     pub fn blob(&self, reflector: &Reflector) -> Pos2 {
         self.at(self.radar.blob_of(self.centre_x_metres, reflector.x_metres, reflector.y_metres))
     }
 
-    /// Where it would be if its direction were that of the column.
+    /// Place on screen of a reflector without the beam's squint.
     pub fn true_direction(&self, reflector: &Reflector) -> Pos2 {
         self.at(self.radar.polar_of(reflector.x_metres - self.centre_x_metres, reflector.y_metres))
     }
 
-    /// Where a place between the map's cells is.
+    /// Place on screen of a fractional cell.
     pub fn cell(&self, cell: MapPlace) -> Pos2 {
         let range_metres = self.radar.range_of_bin_metres(cell.bin.rem_euclid(self.radar.samples as f64));
         self.at(Polar { range_metres, cos_theta: self.radar.cos_of_column(cell.column) })
     }
 
-    /// Where a cursor is.
+    /// Place on screen of a cursor.
     pub fn cursor(&self, cursor: &Cursor) -> Pos2 {
         let cos_theta = cursor.cos_theta * self.radar.squint();
         self.at(Polar { range_metres: cursor.range_metres, cos_theta })
@@ -92,12 +92,12 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Where a range and a direction of the map are; ranges wrap around where the map's do.
+    /// Place on screen of a range and a direction of the map; ranges wrap around as in the map.
     fn at(&self, blob: Polar) -> Pos2 {
         self.on_screen(|projection| fraction(self.radar, projection, blob))
     }
 
-    /// A place on screen, of what `fraction` says of either coordinates.
+    /// Place on screen of a place whose fraction of a map in either projection is `fraction`.
     fn on_screen(&self, fraction: impl Fn(Projection) -> Pos2) -> Pos2 {
         let to = self.view.to_screen(self.rect, fraction(self.projection));
         match &self.morph {
@@ -115,8 +115,8 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Where a map in `projection` has a place of which the fraction of the range-angle map is known: computed again, the map's far edges
-    /// would wrap around.
+    /// The fraction of a map in `projection` at a place whose fraction of the range-angle map is known: a fraction computed again would wrap
+    /// around at the map's far edges.
     pub fn fraction_in(&self, projection: Projection, polar: Polar, range_angle: Pos2) -> Pos2 {
         match projection {
             Projection::RangeAngle => range_angle,
@@ -124,12 +124,12 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Where such a place is on screen.
+    /// Place on screen of a place whose fraction of the range-angle map is known.
     pub fn at_fraction(&self, polar: Polar, range_angle: Pos2) -> Pos2 {
         self.on_screen(|projection| self.fraction_in(projection, polar, range_angle))
     }
 
-    /// What is shown of it on screen, on its way, too.
+    /// Rectangle on screen that the map takes, during the animation too.
     pub fn shown(&self) -> Rect {
         let Some(from) = &self.morph else { return self.rect };
         let corner = |to: Pos2, of: Pos2| between(to, of, from.left);
@@ -137,7 +137,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Where a map in a projection has a range and a direction, as fractions of its width and height.
+/// Place of a range and a direction, as fractions of the width and height of a map in a projection.
 fn fraction(radar: &Radar, projection: Projection, polar: Polar) -> Pos2 {
     let Polar { range_metres, cos_theta } = polar;
     match projection {
@@ -155,29 +155,29 @@ fn fraction(radar: &Radar, projection: Projection, polar: Polar) -> Pos2 {
     }
 }
 
-/// The numbers behind a picture.
+/// Values of a map's cells.
 pub struct Cells<'a> {
     /// Lambda, `[range bins, columns]`.
     pub map: &'a RangeAngleMap,
-    /// What is subtracted from it.
+    /// Lambda of the map that is subtracted, for a difference.
     pub minus: Option<&'a RangeAngleMap>,
-    /// From Lambda to decades of amplitude.
+    /// Scale from Lambda to decades of amplitude.
     pub scale: Option<LambdaScale>,
 }
 
-/// What a cell of a map says.
+/// Value of a cell of a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Value {
     /// Lambda, or a difference of it.
     pub lambda: f64,
     /// Decibels relative to the peak, or a difference of them, where the scale is known.
     pub decibels: Option<f64>,
-    /// What Lambda spans, decibels, where the scale is known.
+    /// Decibels that Lambda spans, where the scale is known.
     pub range_db: Option<f64>,
 }
 
 impl Cells<'_> {
-    /// What a cell says; `None` outside the map.
+    /// Value of a cell; `None` outside the map.
     pub fn value(&self, bin: usize, column: usize) -> Option<Value> {
         let lambda = *self.map.lambda.get((bin, column))?;
         let range_db = self.scale.map(|s| s.decibels());
@@ -195,13 +195,13 @@ impl Cells<'_> {
 }
 
 impl Value {
-    /// Its decibels in words, without the unit.
+    /// Text of the decibels, without the unit.
     pub fn decibels_text(&self, is_difference: bool) -> Option<String> {
         let (db, range_db) = self.decibels.zip(self.range_db)?;
         Some(if is_difference { levels::difference(db) } else { levels::level(db, range_db) })
     }
 
-    /// Its Lambda in words, with its sign where it is a difference.
+    /// Text of Lambda, with its sign where it is a difference.
     pub fn lambda_text(&self, is_difference: bool) -> String {
         if is_difference { signed(self.lambda, 3) } else { format!("{:.3}", self.lambda) }
     }
@@ -210,21 +210,20 @@ impl Value {
 /// The reflectors of an object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Marked {
-    /// One after the other.
     pub reflectors: Vec<Reflector>,
-    /// Whether they stand in a line: then one outline says more than their rings.
+    /// Whether the reflectors stand in a line, which one outline marks where their rings would run together.
     pub is_line: bool,
 }
 
 /// Reflectors drawn over a map.
 pub struct Marks<'a> {
-    /// True ones, object by object: as rings, or as the outline of a line.
+    /// True reflectors, object by object: as rings, or as the outline of a line.
     pub objects: &'a [Marked],
-    /// Those the method found, as crosses.
+    /// Reflectors that the method found, as crosses.
     pub found: &'a [Reflector],
 }
 
-/// A place of the map as fractions of its width and height, to a cursor. `None` outside the radar's view.
+/// The cursor at a place of the map, given as fractions of its width and height. `None` outside the radar's view.
 pub fn cursor_at(radar: &Radar, projection: Projection, fraction: Pos2) -> Option<Cursor> {
     let (fx, fy) = (f64::from(fraction.x), f64::from(fraction.y));
     match projection {

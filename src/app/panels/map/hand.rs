@@ -11,22 +11,22 @@ use eframe::egui::{CursorIcon, PointerButton, Pos2, Response, Ui};
 /// Most reflectors among which the one under a resting pointer is looked for in every frame.
 const HOVERED: usize = 2000;
 
-/// A blob that is held.
+/// A blob that is being dragged.
 #[derive(Debug, Clone, Copy)]
 struct Held {
     blob: BlobHit,
-    /// Where on the map it was grabbed.
+    /// Place on the map where the drag began.
     from: Polar,
 }
 
-/// What the maps remember from frame to frame.
+/// State of the pointer, kept between frames.
 #[derive(Default)]
 pub struct HandMemory {
-    /// The blob that is held, and in which map.
+    /// The dragged blob, and the map in which it is dragged.
     held: Option<(MapKind, Held)>,
 }
 
-/// What the pointer does with blobs; whether it holds one, so that the map stays where it is.
+/// Handles clicks and drags on blobs. Returns whether a blob is being dragged, so that the map stays in place.
 pub fn work(
     ui: &Ui,
     kind: MapKind,
@@ -69,7 +69,7 @@ pub fn work(
     held.is_some()
 }
 
-/// Whose blob is at a place on screen.
+/// The blob at a place on screen.
 fn under(scene: &Scene, frame: Frame<'_>, pos: Pos2) -> Option<BlobHit> {
     blob::nearest(scene, |reflector| f64::from(frame.blob(reflector).distance(pos)))
 }
@@ -94,7 +94,7 @@ mod tests {
         asked: Vec<Command>,
     }
 
-    /// A map, and an editor that does what it asks for.
+    /// A map, with an editor that executes its commands.
     fn map(kind: MapKind, projection: Projection, points: &[(f64, f64)]) -> Harness<'static, Desk> {
         let draw = move |ui: &mut Ui, desk: &mut Desk| {
             let radar = Radar::default();
@@ -131,7 +131,7 @@ mod tests {
 
     const POINTS: [(f64, f64); 2] = [(-8.0, 18.0), (9.0, 25.0)];
 
-    /// Where the blob of a point is on screen.
+    /// Place on screen of a point's blob.
     fn blob_at(
         map: &Harness<'static, Desk>,
         kind: MapKind,
@@ -142,7 +142,7 @@ mod tests {
         frame(&Radar::default(), kind, projection, rect).blob(&Reflector { x_metres, y_metres, reflectivity: 1.0 })
     }
 
-    /// The map after a drag of the second point, whose blob should then be at this place.
+    /// The map after a drag of the second point, and the expected place of its blob.
     fn dragged(kind: MapKind, projection: Projection) -> (Harness<'static, Desk>, Pos2) {
         let mut map = map(kind, projection, &POINTS);
         let (from, by) = (blob_at(&map, kind, projection, POINTS[1].into()), vec2(-60.0, 35.0));
@@ -183,7 +183,7 @@ mod tests {
         assert_eq!(place(&map, 1), [9.0, 25.0]);
     }
 
-    /// What a click this far from the blob of a point selects.
+    /// Indices of the objects that a click at this distance from a point's blob selects.
     fn clicked(map: &mut Harness<'static, Desk>, point: usize, off: Vec2, modifiers: Modifiers) -> Vec<usize> {
         let pos = blob_at(map, MapKind::Target, Projection::RangeAngle, POINTS[point].into()) + off;
         for pressed in [true, false] {

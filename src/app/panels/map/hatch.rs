@@ -1,4 +1,4 @@
-//! Hatches over hits, misses and false alarms, where a cell is large enough on screen: they tell kinds apart without any colour.
+//! Hatches over hits, misses and false alarms, where a cell is large enough on screen: the kinds differ without any colour.
 
 use super::frame::Frame;
 use crate::evaluate::failure::Ghost;
@@ -10,27 +10,27 @@ use eframe::egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2
 /// The least height of a cell that hatches are drawn in, points.
 const MIN_CELL_POINTS: f32 = 4.0;
 
-/// By how much a cell of a ghost is drawn larger: a column of a whole map is narrower than a pixel.
+/// Margin around the drawn cell of a ghost, points: a column of a whole map is narrower than a pixel.
 const GHOST_MARGIN_POINTS: f32 = 0.75;
 
-/// Between two lines of a hatch, points.
+/// Distance between two lines of a hatch, points.
 const STEP: f32 = 7.0;
 
-/// What tells hits, misses and false alarms apart.
+/// Maps and thresholds that separate hits, misses and false alarms.
 #[derive(Clone, Copy)]
 pub struct ToldApart<'a> {
-    /// Lambda of the output, or what a detector made of it.
+    /// Lambda of the output, or a detector's result for the output.
     pub output: &'a RangeAngleMap,
     /// Lambda of the target.
     pub target: &'a RangeAngleMap,
-    /// Their thresholds.
+    /// Thresholds of output and target.
     pub etas: [f32; 2],
-    /// Blobs of the output where the scene has nothing, once it is judged.
+    /// Blobs of the output where the scene has nothing, once the output is judged.
     pub ghosts: &'a [Ghost],
 }
 
 impl ToldApart<'_> {
-    /// What the cell at a place on screen is.
+    /// Verdict on the cell at a place on screen.
     fn at(&self, frame: Frame<'_>, pos: Pos2) -> CellVerdict {
         let (radar, polar) = (frame.radar, frame.polar(pos));
         let bin = radar.bin_of_range(polar.range_metres).round();
@@ -72,7 +72,7 @@ impl ToldApart<'_> {
         painter.add(mesh);
     }
 
-    /// Draws ghosts and hatches over what is shown of the map: misses lean to the right, false alarms to the left, hits have none.
+    /// Draws ghosts and hatches over the visible part of the map: misses lean to the right, false alarms to the left, hits have none.
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>, dark: bool) {
         self.fill(painter, frame, dark);
         let rect = frame.rect.intersect(painter.clip_rect());
@@ -80,7 +80,7 @@ impl ToldApart<'_> {
             return;
         }
         let [across, up] = [rect.width(), rect.height()].map(|side| (side / STEP).ceil() as usize);
-        // On a grid that stays where it is on screen, so that lines of neighbouring cells meet.
+        // The grid stays in place on screen, so that lines of neighbouring cells meet.
         let squares = (0..up).flat_map(|row| (0..across).map(move |column| (row, column)));
         let lines = squares.filter_map(|(row, column)| {
             let square = Rect::from_min_size(rect.min + STEP * vec2(column as f32, row as f32), vec2(STEP, STEP));
@@ -124,7 +124,7 @@ mod tests {
         harness.output().shapes.iter().filter(|s| matches!(s.shape, Shape::LineSegment { .. })).count()
     }
 
-    /// A small part of the map, from this part of its height upwards.
+    /// A small part of the map, from the part `low` of its height upwards.
     fn zoomed(low: f32) -> MapView {
         MapView { low: pos2(0.4, low), high: pos2(0.43, low + 0.04) }
     }

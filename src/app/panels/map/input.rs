@@ -1,4 +1,4 @@
-//! What a map is drawn from.
+//! Input of a map.
 
 use super::answer::Places;
 use super::blank::{Problem, Veil};
@@ -12,53 +12,52 @@ use crate::radar::Radar;
 use crate::scene::Scene;
 use eframe::egui::TextureId;
 
-/// What a map shows.
+/// Picture, values, marks and texts of a map.
 pub struct Input<'a> {
-    /// Which map.
     pub kind: MapKind,
     pub radar: &'a Radar,
-    /// The scene: what can be grabbed by its blobs.
+    /// The scene, whose reflectors are dragged by their blobs.
     pub scene: &'a Scene,
-    /// What of it is selected.
+    /// The selected objects of the scene.
     pub selection: &'a Selection,
-    /// How maps are looked at.
+    /// View settings of all maps.
     pub look: &'a View,
-    /// The visible part of maps over the other coordinates.
+    /// Visible part of the maps in the other projection.
     pub other_view: MapView,
-    /// Its picture, if there is one.
+    /// Texture of the picture, if there is one.
     pub texture: Option<TextureId>,
-    /// Over which coordinates that picture is: for a moment after they change, the ones of before.
+    /// Projection of the picture; for a moment after a change it is still the former one.
     pub pictured: Projection,
-    /// Where the scale of that picture ends, Lambda.
+    /// Lambda at the end of the picture's colour scale.
     pub end: f32,
-    /// What it shows, for screen readers.
+    /// Description of the picture for screen readers.
     pub sentence: Option<&'a str>,
-    /// Whether the picture is of an earlier scene, and has been for long enough to be told.
+    /// Whether the picture has belonged to an earlier scene for so long that the map says so.
     pub stale: bool,
-    /// What is said of it then.
+    /// Text over an outdated picture.
     pub old: String,
-    /// The numbers behind the picture.
+    /// Values of the picture's cells.
     pub cells: Option<Cells<'a>>,
-    /// What is drawn over it.
+    /// Reflectors drawn over the map.
     pub marks: Marks<'a>,
-    /// What became of every object, if that is marked.
+    /// Verdicts on the objects, where they are marked.
     pub kinds: Option<Kinds<'a>>,
-    /// What its cells are, where they are hits, misses and false alarms.
+    /// Maps and thresholds that separate hits, misses and false alarms, where the cells show these.
     pub told_apart: Option<ToldApart<'a>>,
-    /// What the formulas say of a reflector, if that is drawn over it.
+    /// Prediction of the formulas for a reflector, where it is drawn.
     pub theory: Option<Theory<'a>>,
-    /// Where the pointer is, in whichever panel.
+    /// Place of the pointer, in any panel.
     pub cursor: Option<Cursor>,
-    /// What is to be known of the method that made it.
+    /// Note on noise that the map's method was not trained on.
     pub note: Option<String>,
-    /// What it shows, in a line over it, at a first start.
+    /// Caption at a first start, one line.
     pub line: Option<String>,
-    /// Why there is no picture.
+    /// Reason for a missing picture.
     pub error: Option<Problem<'a>>,
-    /// Hides the picture: a prediction is asked for.
+    /// Cover of the picture, while a lesson asks for a prediction.
     pub veil: Option<Veil>,
-    /// Whether the axes are told: not while they would answer a lesson's question.
+    /// Whether the axes are drawn: not while they would answer a lesson's question.
     pub axes: bool,
-    /// The place that was guessed in a lesson, and the true one.
+    /// The guessed place of a lesson's question, and the true one.
     pub places: Option<Places>,
 }

@@ -1,4 +1,4 @@
-//! Kinds of failure on a map: every object marked by what became of it, and ghosts; by shape as well as by hue.
+//! Kinds of failure on a map: a mark for the verdict on every object and for every ghost, distinct by shape as well as by hue.
 
 use super::frame::Frame;
 use crate::app::jobs::{Fates, Verdict};
@@ -12,18 +12,18 @@ use crate::scene::Reflector;
 use crate::theory::{MapPlace, blob_cell};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 
-/// How near the pointer must be to a mark to be told of it, points.
+/// Largest distance of the pointer from a mark to show its tooltip, points.
 const MARK_REACH_POINTS: f32 = 10.0;
 
 /// Most marks that are drawn.
 const MARKS: usize = 400;
 
-/// What became of everything that the map should show.
+/// Verdicts on all objects that the map should show.
 #[derive(Clone, Copy)]
 pub struct Kinds<'a> {
     /// The verdicts.
     pub fates: &'a Fates,
-    /// Whether they are of the output on screen, and not of an earlier one.
+    /// Whether the verdicts are of the output on screen, and not of an earlier one.
     pub current: bool,
 }
 
@@ -36,7 +36,7 @@ pub enum Sign {
     Missed,
     /// Two rings that overlap; a line leads to the other object.
     Merged,
-    /// A triangle that points to where the output has it.
+    /// A triangle that points to the object's place in the output.
     WrongTooth,
     /// Four corners of a square.
     Ghost,
@@ -60,7 +60,7 @@ impl Sign {
         }
     }
 
-    /// Its name, for `count` of them.
+    /// Name of the kind, for `count` marks.
     pub fn name(self, count: usize) -> &'static str {
         match self {
             Sign::Found => "found",
@@ -73,7 +73,7 @@ impl Sign {
         }
     }
 
-    /// Its colour on maps: those of Okabe and Ito, which differ for the colour-blind, too.
+    /// Colour on maps: those of Okabe and Ito, which differ for the colour-blind, too.
     fn colour(self) -> Color32 {
         match self {
             Sign::Found => Color32::from_rgb(86, 180, 233),
@@ -85,7 +85,7 @@ impl Sign {
         }
     }
 
-    /// Its lines around a place, as large as a ring around a reflector; `way` is where a triangle points.
+    /// Lines of the mark around a place, as large as a ring around a reflector; `way` is the direction of a triangle.
     fn lines(self, at: Pos2, way: Vec2) -> Vec<Vec<Pos2>> {
         let ring = |centre: Pos2, radius: f32| -> Vec<Pos2> {
             (0..=20).map(|i| centre + radius * Vec2::angled(i as f32 * std::f32::consts::TAU / 20.0)).collect()
@@ -110,7 +110,7 @@ impl Sign {
         }
     }
 
-    /// Draws it, with an edge that makes it readable over any picture.
+    /// Draws the mark, with an edge that makes it readable over any picture.
     pub fn draw(self, painter: &Painter, at: Pos2, way: Vec2, current: bool) {
         let colour = if current { self.colour() } else { Color32::from_gray(140) };
         let lines = self.lines(at, way);
@@ -123,14 +123,14 @@ impl Sign {
 }
 
 impl Kinds<'_> {
-    /// How many there are of each, those that occur only.
+    /// Number of marks of each kind that occurs.
     pub fn counts(&self) -> Vec<(Sign, usize)> {
         let signs: Vec<Sign> = self.fates.verdicts.iter().map(|v| Sign::of(v, self.fates)).collect();
         let count = |sign: Sign| (sign, signs.iter().filter(|s| **s == sign).count());
         Sign::ALL.into_iter().map(count).filter(|(_, count)| *count > 0).collect()
     }
 
-    /// Draws the marks; the one under the pointer says which object it is, and why.
+    /// Draws the marks. The one under the pointer shows its object, the verdict and the reason.
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>, above: f32) {
         let mut nearest: Option<(&Verdict, f32)> = None;
         for verdict in self.fates.verdicts.iter().take(MARKS) {
@@ -170,26 +170,26 @@ impl Kinds<'_> {
         Some(Reflector { x_metres, y_metres, reflectivity: 1.0 })
     }
 
-    /// Where a mark is: where the map shows the object, or where a body or a ghost is brightest.
+    /// Place of a mark: the object's place in the map, or the brightest cell of a body or a ghost.
     fn place(&self, frame: Frame<'_>, verdict: &Verdict) -> Option<Pos2> {
         let is_body = |object: usize| self.fates.scene.objects.get(object).is_some_and(|o| o.body().is_some());
         let brightest = verdict.brightest.map(|[bin, column]| MapPlace { bin: bin as f64, column: column as f64 });
         match (verdict.object, brightest) {
-            // A body shines at its ends, its corners and its glint, and seldom at its middle.
+            // A body has its echoes at its ends, its corners and its glint, and seldom at its middle.
             (Some(object), Some(cell)) if is_body(object) => Some(frame.cell(cell)),
             (Some(object), _) => self.centre(object).map(|centre| frame.blob(&centre)),
             (None, cell) => cell.map(|cell| frame.cell(cell)),
         }
     }
 
-    /// Where the output has an object that is on the wrong tooth.
+    /// Place of an object in the output, where that is on the wrong tooth.
     fn shifted(&self, frame: Frame<'_>, verdict: &Verdict, columns: i32) -> Option<Pos2> {
         let centre = self.centre(verdict.object?)?;
         let cell = blob_cell(frame.radar, centre.x_metres, centre.y_metres, Aperture::Full);
         Some(frame.cell(MapPlace { column: cell.column + f64::from(columns), ..cell }))
     }
 
-    /// Which object it is, what became of it, and why that is said.
+    /// Text of a mark: its object, the verdict and the reason.
     fn why(&self, radar: &Radar, verdict: &Verdict) -> String {
         let Fates { scene, failures, eta, .. } = self.fates;
         let eta = eta_text(*eta);
@@ -229,7 +229,7 @@ pub mod tests {
     use crate::scene::Scene;
     use eframe::egui::{Rect, pos2};
 
-    /// One object of every fate and a ghost.
+    /// Objects with one of each verdict, and a ghost.
     pub fn fates() -> Fates {
         let scene = Scene::of_points([(-8.0, 12.0), (-4.0, 16.0), (0.0, 20.0), (3.0, 24.0), (6.0, 28.0)]);
         let objects =

@@ -1,4 +1,4 @@
-//! What fills and marks on a map stand for: fills where other maps have their bar of colours, marks in rows above, where there is room.
+//! Legend of a map: fills in the place of the bar of colours, and marks in rows above, where there is room.
 
 use super::kinds::{Kinds, Sign};
 use crate::app::widgets::axes;
@@ -12,23 +12,23 @@ const ROW: f32 = 18.0;
 /// Most rows: more would leave too little of the map.
 const ROWS: usize = 2;
 
-/// Lower panels have no room for marks above the map, points.
+/// Height of a panel up to which there is no room for marks above the map, points.
 const LEAST_HEIGHT: f32 = 150.0;
 
-/// What is kept for marks above every map of panels so high, points.
+/// Height reserved for marks above every map in a panel `panel_height` points high.
 pub fn reserved(panel_height: f32) -> f32 {
     if panel_height > LEAST_HEIGHT { ROWS as f32 * ROW } else { 0.0 }
 }
 
-/// Width of a mark, what is between it and its name, and what is between entries, points.
+/// Width of a mark; gaps between a mark and its name, and between entries, points.
 const SWATCH: f32 = 14.0;
 const GAPS: [f32; 2] = [5.0, 12.0];
 
-/// Side of a fill's square, what is left of it, between it and its name, and between two fills, points.
+/// Side of a fill's square; gaps left of it, between it and its name, and between two fills, points.
 const SQUARE: f32 = 12.0;
 const BESIDE: [f32; 3] = [8.0, 5.0, 8.0];
 
-/// A fill and what it stands for; a line of the name each.
+/// A fill and its name, drawn one word a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fill {
     inside: Color32,
@@ -37,7 +37,7 @@ pub struct Fill {
 }
 
 impl Fill {
-    /// Hits, false alarms and misses.
+    /// Fills of hits, false alarms and misses.
     pub fn detections(dark: bool) -> Vec<Fill> {
         let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
         let fill = |kind: CellVerdict| Fill {
@@ -48,7 +48,7 @@ impl Fill {
         CellVerdict::SEEN.map(fill).to_vec()
     }
 
-    /// Cells above a threshold and below it.
+    /// Fills of cells above a threshold and below it.
     pub fn mask(dark: bool) -> Vec<Fill> {
         let [below, above] = theme::mask(dark);
         [(above, "above"), (below, "below")]
@@ -65,7 +65,7 @@ struct Entry {
     at: (f32, usize),
 }
 
-/// A legend, laid out.
+/// The entries of a legend with their places.
 #[derive(Debug, Default)]
 pub struct Legend {
     fills: Vec<Fill>,
@@ -74,7 +74,7 @@ pub struct Legend {
 }
 
 impl Legend {
-    /// Of fills, and of marks; no marks where more than two rows of `width` points are needed.
+    /// Legend of fills and marks; without marks where these need more than two rows of `width` points.
     pub fn new(painter: &Painter, fills: Vec<Fill>, kinds: Option<&Kinds<'_>>, width: f32) -> Legend {
         let (mut left, mut row) = (0.0, 0);
         let mut entries = Vec::new();
@@ -93,12 +93,12 @@ impl Legend {
         Legend { fills, entries, current: kinds.is_none_or(|kinds| kinds.current) }
     }
 
-    /// What it takes above the map, points.
+    /// Height of the rows above the map, points.
     fn height(&self) -> f32 {
         self.entries.last().map_or(0.0, |entry| (entry.at.1 + 1) as f32 * ROW)
     }
 
-    /// Draws it above `map` and right of it.
+    /// Draws the legend above `map` and right of it.
     pub fn draw(&self, ui: &Ui, painter: &Painter, map: Rect) {
         let at = map.left_top() - vec2(0.0, self.height() + 4.0);
         let ink = ui.visuals().text_color();
@@ -121,7 +121,7 @@ impl Legend {
         self.label(ui, map);
     }
 
-    /// The same for screen readers.
+    /// Adds the legend's text for screen readers.
     fn label(&self, ui: &Ui, map: Rect) {
         let marks = self.entries.iter().map(|entry| entry.name.as_str());
         let names: Vec<&str> = self.fills.iter().map(|fill| fill.name).chain(marks).collect();

@@ -1,11 +1,11 @@
-//! What a map offers at the pointer: overlays, views, pictures.
+//! Context menu of a map: overlays, views, pictures.
 
 use super::input::Input;
 use crate::app::state::{Command, ExportCommand, Panel, Projection, Units, ViewCommand, WindowCommand};
 use crate::app::widgets::entry::{entry, ticked};
 use eframe::egui::Ui;
 
-/// Draws the menu; what was chosen.
+/// Draws the menu.
 pub fn menu(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let Input { kind, look, .. } = *input;
     let mut tick = |ui: &mut Ui, command: ViewCommand, on: bool| {

@@ -47,7 +47,7 @@ use legend::{Fill, Legend};
 use menu::menu;
 use plot::{draw_axes, is_wide, navigate, rect_of};
 
-/// What is said of a map of an earlier scene.
+/// Text over a map of an earlier scene.
 pub const EARLIER_SCENE: &str = "Previous scene; updating…";
 
 /// Draws a map.
@@ -58,7 +58,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     let is_told = !input.kind.is_above() && input.veil.is_none() && is_wide(area);
     let bar = is_told.then(|| scale::bar(&input));
     let legend = legend_of(ui, &input, area);
-    // Kept in every map, also where nothing is marked: frames beside each other stay aligned.
+    // Reserved in every map, also where nothing is marked: frames beside each other stay aligned.
     let above = if input.look.show_kinds { legend::reserved(area.height()) } else { 0.0 };
     let rect = rect_of(area, input.look.projection, above);
     let response = ui.interact(rect, ui.scope_id().with(("map", input.kind)), Sense::click_and_drag());
@@ -74,7 +74,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
         asked.extend(nudge(ui.ctx(), input.radar.range_resolution_metres()));
     }
     let morph = morph::morph(ui, area, input.look.projection, input.other_view, above);
-    // What the pointer does means the place where everything comes to rest.
+    // Clicks and drags refer to the places at the end of the animation.
     let frame = Frame { view: *view, ..frame };
     point(&input, frame, &response, &mut asked);
     let frame = Frame { morph, ..frame };
@@ -100,7 +100,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     asked
 }
 
-/// One sentence for screen readers: what kind of map it is, and what is to be seen in it.
+/// Gives screen readers one sentence: the kind of the map, and its content.
 fn describe(ui: &Ui, input: &Input<'_>, id: egui::Id) {
     let seen = input.sentence.filter(|_| input.veil.is_none()).unwrap_or_default();
     let old = if input.stale { " Of the previous scene." } else { "" };
@@ -108,7 +108,7 @@ fn describe(ui: &Ui, input: &Input<'_>, id: egui::Id) {
     ui.ctx().accesskit_node_builder(id, |node| node.set_description(description.trim()));
 }
 
-/// What fills and marks stand for, where there is room to say so.
+/// Legend of fills and marks, where there is room for one.
 fn legend_of(ui: &Ui, input: &Input<'_>, area: Rect) -> Legend {
     let has_room = input.veil.is_none() && legend::reserved(area.height()) > 0.0;
     let dark = ui.visuals().dark_mode;
@@ -121,19 +121,19 @@ fn legend_of(ui: &Ui, input: &Input<'_>, area: Rect) -> Legend {
     Legend::new(ui.painter(), fills, input.kinds.as_ref().filter(|_| has_room), width)
 }
 
-/// Marks, the cursor and what is said of an old picture.
+/// Draws marks, the cursor and the text over an outdated picture.
 fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &egui::Response, is_drawn: bool) {
     let rect = frame.rect;
     let is_old = input.stale && is_drawn;
     if !is_drawn && input.veil.is_none() {
-        // What is said in the place of the map stays readable.
+        // The text in the place of the map stays readable.
         return;
     }
     let at_rest = input.veil.is_none() && frame.morph.is_none();
     if let Some(told_apart) = input.told_apart.as_ref().filter(|_| at_rest) {
         told_apart.draw(inner, frame, inner.ctx().theme() == egui::Theme::Dark);
     }
-    // Beneath all that is to be read.
+    // Beneath all texts.
     if let Some(cursor) = &input.cursor {
         let told = input.veil.is_none();
         let cells = input.cells.as_ref();
@@ -152,7 +152,7 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
         overlay::selected(inner, frame, input.scene, input.selection);
         if let Some(theory) = &input.theory {
             theory.draw(inner, frame);
-            // The map that a threshold is of tells the same numbers.
+            // Maps above a threshold leave the numbers out: the map under the threshold shows the same ones.
             if !input.kind.is_above() {
                 theory.tell(inner, frame, pointer, &taken(input, frame));
             }
@@ -173,7 +173,7 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
     }
 }
 
-/// Places that no numbers cover: where the map has the scene's reflectors, and the caption.
+/// Places that text must not cover: blobs of the scene's reflectors, and the caption.
 fn taken(input: &Input<'_>, frame: Frame<'_>) -> Vec<Pos2> {
     let reflectors = input.scene.objects.iter().flat_map(Object::marks).take(overlay::MARKS);
     let caption = input.line.iter().map(|_| frame.rect.left_bottom() + vec2(12.0, -12.0));
@@ -183,7 +183,7 @@ fn taken(input: &Input<'_>, frame: Frame<'_>) -> Vec<Pos2> {
 /// Largest part of a map's height that a caption may cover.
 const MAX_CAPTION_PART: f32 = 0.3;
 
-/// A line at the foot of a map, left of the button in its corner; none where it would cover much of the map.
+/// Draws a caption at the foot of a map, left of the button in its corner; none where it would cover much of the map.
 fn caption_over(painter: &Painter, rect: Rect, line: &str) {
     let room = (rect.width() - 56.0).max(60.0);
     let galley = painter.layout(line.to_owned(), egui::FontId::proportional(14.0), CAPTION_INK, room);
@@ -195,7 +195,7 @@ fn caption_over(painter: &Painter, rect: Rect, line: &str) {
     painter.galley(at, galley, CAPTION_INK);
 }
 
-/// Draws the map itself, or says why there is none; whether there is one.
+/// Draws the picture, or the reason why there is none. Returns whether there is one.
 fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, asked: &mut Vec<Command>) -> bool {
     let (rect, view) = (frame.rect, frame.view);
     let texture = input.texture.filter(|_| input.veil.is_none());
@@ -221,7 +221,7 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
     texture.is_some()
 }
 
-/// Tells where the pointer is; a click predicts where that is asked for.
+/// Reports the pointer's place. A click answers a question that asks for a place.
 fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: &mut Vec<Command>) {
     let Some(pos) = response.hover_pos() else { return };
     let Some(cursor) = cursor_at(input.radar, input.look.projection, frame.view.at(frame.rect, pos)) else { return };
@@ -253,7 +253,7 @@ fn aperture(input: &Input<'_>) -> Option<Aperture> {
     }
 }
 
-/// Middle of the elements that a map is of.
+/// Middle of a map's elements, metres along the array.
 fn centre_x_metres(kind: MapKind, radar: &Radar) -> f64 {
     match kind {
         MapKind::Input0 => radar.end_centre_metres(End::First),

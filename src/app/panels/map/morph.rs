@@ -1,4 +1,4 @@
-//! A map on its way from one kind of coordinates to the other: every cell, mark and curve moves along a straight line on screen.
+//! The animation of a map from one projection to the other: every cell, mark and curve moves along a straight line on screen.
 
 use super::frame::{Frame, Morph};
 use super::plot::rect_of;
@@ -7,13 +7,13 @@ use crate::app::widgets::icons::{self, Icon};
 use eframe::egui::emath::easing::cubic_in_out;
 use eframe::egui::{Color32, Id, Mesh, Painter, Rect, Shape, TextureId, Ui, pos2, vec2};
 
-/// How long it takes, seconds.
+/// Duration of the animation, seconds.
 pub const SECONDS: f32 = 0.5;
 
 /// Cells of the mesh that a picture is drawn on, across and up.
 const MESH: [usize; 2] = [160, 64];
 
-/// The way that is left to `projection` at the moment, where there is any.
+/// The rest of the animation to `projection`; `None` at rest.
 pub fn morph(ui: &Ui, area: Rect, projection: Projection, other: MapView, above: f32) -> Option<Morph> {
     let end = if projection == Projection::Cartesian { 1.0 } else { 0.0 };
     let now = ui.ctx().animate_value_with_time(Id::unique("coordinates of the maps"), end, SECONDS);
@@ -22,14 +22,14 @@ pub fn morph(ui: &Ui, area: Rect, projection: Projection, other: MapView, above:
     (left > 0.0).then(|| Morph { rect: rect_of(area, from, above), view: other, projection: from, left })
 }
 
-/// Draws a picture in coordinates of its own where `frame` shows its cells.
+/// Draws a picture in projection `own` at the places where `frame` shows its cells.
 pub fn picture(painter: &Painter, frame: Frame<'_>, texture: TextureId, own: Projection, tint: Color32) {
     let [across, up] = MESH;
     let mut mesh = Mesh::with_texture(texture);
     for (row, column) in (0..=up).flat_map(|row| (0..=across).map(move |column| (row, column))) {
         let fraction = pos2(column as f32 / across as f32, row as f32 / up as f32);
         let polar = frame.polar_of_cell(fraction);
-        // Row 0 of a picture is range 0, as fractions count.
+        // Row 0 of a picture is range 0, the lower end of the fractions.
         let uv = frame.fraction_in(own, polar, fraction);
         mesh.vertices.push(eframe::egui::epaint::Vertex { pos: frame.at_fraction(polar, fraction), uv, color: tint });
         if row < up && column < across {
@@ -42,7 +42,7 @@ pub fn picture(painter: &Painter, frame: Frame<'_>, texture: TextureId, own: Pro
     painter.add(Shape::mesh(mesh));
 }
 
-/// The button in a map's corner that sends all maps to the other coordinates.
+/// Draws the button in a map's corner that changes the projection of all maps.
 pub fn button(ui: &mut Ui, rect: Rect, kind: MapKind, projection: Projection, asked: &mut Vec<Command>) {
     if rect.width() < 120.0 || rect.height() < 60.0 {
         return;

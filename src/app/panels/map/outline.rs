@@ -6,10 +6,10 @@ use std::f32::consts::PI;
 /// Points of a half circle at each end.
 const HALF_CIRCLE_CORNERS: usize = 8;
 
-/// What lies `radius` from a path, along one side of it and back along the other, round at the ends.
+/// Outline at a distance `radius` around a path, round at the ends.
 pub fn outline(path: &[Pos2], radius: f32) -> Vec<Pos2> {
     let (Some(first), Some(last)) = (path.first(), path.last()) else { return Vec::new() };
-    // The direction at a place is that between its neighbours; along the screen where they all coincide.
+    // The direction at a place is that between its neighbours, or along the screen where all of them coincide.
     let direction = |i: usize| {
         let (before, after) = (path[i.saturating_sub(1)], path[(i + 1).min(path.len() - 1)]);
         let way = (after - before).normalized();

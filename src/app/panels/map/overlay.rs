@@ -1,4 +1,4 @@
-//! What is drawn over a map: true and found reflectors, the pointer's place and the value there.
+//! Overlays of a map: true and found reflectors, beam width, and the cell under the pointer with its value.
 
 use super::frame::{Cells, Frame, Marked};
 use super::outline::{hull, outline};
@@ -23,10 +23,10 @@ const RADIUS: f32 = 6.0;
 const LEAST_BEAM_POINTS: f32 = 12.0;
 const TICK: Vec2 = vec2(0.0, 4.0);
 
-/// How near the pointer must be to a ring to be told the true direction.
+/// Largest distance of the pointer from a ring to show the true direction, points.
 const RING_REACH_POINTS: f32 = 9.0;
 
-/// Those that the method found, as crosses; paler where they are those of an `old` scene.
+/// Draws the reflectors that the method found, as crosses; paler where they are those of an `old` scene.
 pub fn found(painter: &Painter, frame: Frame<'_>, found: &[Reflector], old: bool) {
     let strength = if old { 0.35 } else { 1.0 };
     for r in found.iter().take(MARKS) {
@@ -36,7 +36,7 @@ pub fn found(painter: &Painter, frame: Frame<'_>, found: &[Reflector], old: bool
     }
 }
 
-/// The map of one range bin as a line: Lambda over directions.
+/// Draws the map of one range bin as a line: Lambda over directions.
 pub fn line(painter: &Painter, frame: Frame<'_>, map: &RangeAngleMap, ink: Color32) {
     let cells = frame.radar.left_to_right(&map.lambda);
     let fine = finer(frame.radar, cells);
@@ -46,7 +46,8 @@ pub fn line(painter: &Painter, frame: Frame<'_>, map: &RangeAngleMap, ink: Color
     painter.add(Shape::line(cells.iter().enumerate().map(point).collect(), Stroke::new(1.6, ink)));
 }
 
-/// How wide the beam of the map's elements is, as a bar in a corner: echoes nearer to each other are one. Not where it is too narrow to see.
+/// Draws the beam width of the map's elements as a bar in a corner: echoes nearer to each other are not resolved. Beams too narrow to see or
+/// too wide for the map have none.
 pub fn beam(painter: &Painter, frame: Frame<'_>, columns: f64) {
     let part = columns as f32 / frame.radar.elements as f32;
     let length = part * frame.rect.width() / (frame.view.high.x - frame.view.low.x);
@@ -62,8 +63,7 @@ pub fn beam(painter: &Painter, frame: Frame<'_>, columns: f64) {
     axes::text_on_patch(painter, to + vec2(8.0, 0.0), Align2::LEFT_CENTER, "beam");
 }
 
-/// True reflectors as rings or as outlines of lines: where the map shows what stands there. The one under the `pointer` tells the
-/// direction in which it really stands.
+/// Draws true reflectors at their places in the map, as rings or as outlines of lines. The ring under the `pointer` shows the true direction.
 pub fn marks(painter: &Painter, frame: Frame<'_>, objects: &[Marked], pointer: Option<Pos2>) {
     let mut left = MARKS;
     let mut nearest: Option<(&Reflector, f32)> = None;
@@ -88,7 +88,7 @@ pub fn marks(painter: &Painter, frame: Frame<'_>, objects: &[Marked], pointer: O
     }
 }
 
-/// What is drawn around reflectors.
+/// A shape around reflectors.
 enum Ring {
     Circle(Pos2, f32),
     Outline(Vec<Pos2>),
@@ -103,8 +103,8 @@ impl Ring {
     }
 }
 
-/// A ring around each reflector; around a line whose rings would run together, one outline. Where a line wraps around the end of the
-/// ranges, it is in two pieces: nothing is as far apart as `height` otherwise. All are `wider` than usual by so many points.
+/// A ring around each reflector; around a line whose rings would run together, one outline. A line that wraps around the end of the ranges
+/// has two pieces: without wrapping, no neighbours are `height` apart. All shapes are `wider` than usual by so many points.
 fn rings(object: &Marked, blobs: &[Pos2], height: f32, wider: f32) -> Vec<Ring> {
     let radius = wider + if object.reflectors.len() > 20 && !object.is_line { 2.5 } else { RADIUS };
     let fused = |pair: &[Pos2]| pair[0].distance(pair[1]) < 2.0 * radius;
@@ -115,7 +115,7 @@ fn rings(object: &Marked, blobs: &[Pos2], height: f32, wider: f32) -> Vec<Ring> 
     pieces.map(|piece| Ring::Outline(outline(piece, radius))).collect()
 }
 
-/// One outline around the blobs of each selected object: their echoes stay in sight; a line as the curve that its blobs lie on.
+/// Draws one outline around the blobs of each selected object, so that its echoes stay in sight, and a line as the curve on which its blobs lie.
 pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &Selection) {
     let mut left = MARKS;
     for object in selection.iter().filter_map(|i| scene.objects.get(i)) {
@@ -142,7 +142,7 @@ pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &
 /// Points of a line's curve.
 const CURVE: usize = 96;
 
-/// Where the map has the straight line between two reflectors, with a dot at each end; in pieces where it wraps around the end of the ranges.
+/// Draws the straight line between two reflectors as the map shows it, with a dot at each end; in pieces where it wraps around the end of the ranges.
 fn curve(painter: &Painter, frame: Frame<'_>, first: &Reflector, last: &Reflector) {
     let along = |i: usize| {
         let part = i as f64 / CURVE as f64;
@@ -168,7 +168,7 @@ fn around(mut blobs: Vec<Pos2>, height: f32) -> Vec<Ring> {
     pieces.map(|piece| Ring::Outline(hull(piece, RADIUS + 2.0))).collect()
 }
 
-/// From a ring to where it would be without the beam's squint.
+/// Draws a line from a ring to its place without the beam's squint, with both directions.
 fn true_direction(painter: &Painter, frame: Frame<'_>, reflector: &Reflector) {
     let (from, to) = (frame.blob(reflector), frame.true_direction(reflector));
     for (width, colour) in [(3.0, MARK_EDGE), (1.4, MARK)] {
@@ -190,7 +190,7 @@ fn cross(painter: &Painter, at: Pos2, r: f32, stroke: Stroke) {
     painter.line_segment([at + vec2(-r, r), at + vec2(r, -r)], stroke);
 }
 
-/// The cell under the pointer of whichever panel has it, and its value here.
+/// Draws the cell under the pointer, in any panel, and its value in this map.
 pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<&Cells<'_>>, units: Units) {
     let Some((bin, column)) = cursor.cell(frame.radar) else { return };
     let (rect, at, gap) = (frame.rect, frame.cursor(cursor), 7.0);
@@ -204,7 +204,7 @@ pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Optio
         painter.circle_stroke(at, gap, stroke);
     }
     if let Some(text) = cells.and_then(|cells| value_text(cells, units, bin, column)) {
-        // Away from the pointer: in the corner where it isn't.
+        // In the corner away from the pointer.
         let (corner, align) = if at.y < rect.top() + 40.0 && at.x > rect.center().x {
             (rect.left_top() + vec2(10.0, 8.0), Align2::LEFT_TOP)
         } else {
@@ -214,7 +214,7 @@ pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Optio
     }
 }
 
-/// Value of a cell in Lambda and in decibels relative to the peak, in the chosen units first.
+/// Text of a cell's value in Lambda and in decibels relative to the peak, in the chosen units first.
 fn value_text(cells: &Cells<'_>, units: Units, bin: usize, column: usize) -> Option<String> {
     let (value, is_difference) = (cells.value(bin, column)?, cells.minus.is_some());
     let lambda = format!("{} {}", if is_difference { "ΔΛ" } else { "Λ" }, value.lambda_text(is_difference));
@@ -267,7 +267,7 @@ mod tests {
         (0..5).map(|i| Pos2::new(step * i as f32, 50.0)).collect()
     }
 
-    /// How many rings and outlines mark an object whose reflectors have these five blobs.
+    /// Number of rings and outlines that mark an object whose reflectors have these five blobs.
     fn count(is_line: bool, blobs: &[Pos2]) -> usize {
         let reflector = Reflector { x_metres: 0.0, y_metres: 1.0, reflectivity: 1.0 };
         rings(&Marked { reflectors: vec![reflector; 5], is_line }, blobs, 100.0, 0.0).len()
@@ -295,7 +295,7 @@ mod tests {
         assert_eq!(around(wrapped, 300.0).len(), 2, "what wraps around is in two pieces");
     }
 
-    /// What is drawn of a selected wall, with the pointer away from it or on its nearest blob.
+    /// Shapes drawn for a selected wall, with the pointer away from it or on its nearest blob.
     fn wall(is_under_the_pointer: bool) -> FullOutput {
         let (radar, wall) = (Radar::default(), Object::Line(Line::vertical(-0.832 * 20.0, 0.5548 * 20.0, 0.1, 40)));
         let objects = [Marked { reflectors: wall.reflectors(), is_line: true }];
@@ -349,7 +349,7 @@ mod tests {
                 let off = path.iter().map(|p| p.distance(frame.blob(&r))).fold(f32::INFINITY, f32::min);
                 assert!(off < 3.0, "{projection:?}: a blob is {off} points from the curve");
             }
-            // How far its middle is from the straight line between its ends.
+            // Distance of the curve's middle from the straight line between its ends.
             let (first, last) = (path[0], path[path.len() - 1]);
             (path[path.len() / 2] - first).dot((last - first).normalized().rot90()).abs()
         };

@@ -1,4 +1,4 @@
-//! Where a map goes within its panel, its axes, and what moves it.
+//! A map within its panel: its rectangle, its axes, zoom and pan.
 
 use super::frame::Frame;
 use crate::app::state::{Directions, MapView, Projection};
@@ -7,7 +7,7 @@ use crate::app::widgets::nudge::{pan_keys, zoom_keys};
 use crate::radar::Radar;
 use eframe::egui::{Align2, Painter, Rect, Response, Ui, pos2, vec2};
 
-/// Where the picture goes within the panel, below a legend that is `above` points high: between the same margins in every map.
+/// Rectangle of the picture within the panel, below a legend that is `above` points high. Every map has the same margins.
 pub fn rect_of(area: Rect, projection: Projection, above: f32) -> Rect {
     let right = if is_wide(area) { axes::RIGHT } else { 12.0 };
     let rect = Rect::from_min_max(
@@ -58,14 +58,14 @@ pub fn navigate(ui: &Ui, rect: Rect, response: &Response, view: &mut MapView, pa
     }
 }
 
-/// What it is called where it counts degrees.
+/// Titles of the axis of directions in degrees, the longest first.
 const DEGREE_TITLES: &[&str] =
     &["degrees from straight ahead: − is left, + is right", "degrees from straight ahead", "degrees"];
 
-/// Directions this far apart share a column where nearly all directions have one of their own, in cos(theta).
+/// Least period of the folding, in cos(theta), with which nearly every direction has a column of its own.
 const LEAST_PERIOD_COS: f64 = 1.9;
 
-/// What the axis of directions is called, the longest name first.
+/// Titles of the axis of directions in cos(theta), the longest first.
 fn direction_titles(radar: &Radar) -> &'static [&'static str] {
     if radar.fold_period_cos() < LEAST_PERIOD_COS {
         return &["cos θ, folded: each column stands for two directions", "cos θ, folded"];
@@ -77,17 +77,17 @@ fn direction_titles(radar: &Radar) -> &'static [&'static str] {
     ]
 }
 
-/// With wider columns, in cos(theta), the edges of a map are not taken for its outermost directions.
+/// Widest column, in cos(theta), with which the edges of a map count as its outermost directions.
 const MAX_COLUMN_OF_SLACK_COS: f64 = 0.05;
 
 /// Degrees between marks, the finest first.
 const DEGREES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0];
 
-/// Between the labels of two directions, points.
+/// Gap between the labels of two directions, points.
 const BETWEEN_DIRECTIONS: f32 = 8.0;
 
-/// Marks at round angles from straight ahead, where the axis counts cos θ from `low` to `high` over `length` points: the finest step whose
-/// labels have room. Directions bunch up towards the sides, where labels that have none are left out.
+/// Ticks at round angles from straight ahead, for an axis of cos θ from `low` to `high` over `length` points: the finest step whose labels
+/// have room. Labels crowd towards the sides, where those without room are left out.
 fn degrees(painter: &Painter, low: f64, high: f64, length: f32) -> Vec<Tick> {
     let text = |degrees: f64| format!("{degrees}°").replace('-', "−");
     let part = |degrees: f64| ((degrees.to_radians().sin() - low) / (high - low)) as f32;
@@ -96,16 +96,16 @@ fn degrees(painter: &Painter, low: f64, high: f64, length: f32) -> Vec<Tick> {
         let angles = (-last..=last).map(|i| i as f64 * step);
         angles.filter(|degrees| (-1e-4..=1.0 + 1e-4).contains(&part(*degrees))).collect()
     };
-    // With room for a minus, so that both sides have the same marks.
+    // The room includes a minus, so that both sides have the same marks.
     let room = |degrees: f64| axes::width(painter, &text(-degrees.abs())) + BETWEEN_DIRECTIONS;
-    // Straight ahead directions are farthest apart; the middle of what is shown decides.
+    // Directions are farthest apart straight ahead; the middle of the visible part decides.
     let fits = |step: &&f64| {
         let angles = of(**step);
         let apart = |pair: &[f64]| (part(pair[1]) - part(pair[0])).abs() * length >= room(pair[1]).max(room(pair[0]));
         angles.len() < 4 || angles.windows(2).filter(|pair| apart(pair)).count() * 2 > angles.len()
     };
     let mut angles = of(DEGREES.iter().find(fits).copied().unwrap_or(30.0));
-    // From straight ahead to both sides.
+    // Sorted from straight ahead to both sides.
     angles.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
     let mut taken: Vec<[f32; 2]> = Vec::new();
     let mut ticks = Vec::new();
@@ -121,8 +121,7 @@ fn degrees(painter: &Painter, low: f64, high: f64, length: f32) -> Vec<Tick> {
     ticks
 }
 
-/// Draws both axes of the part that is shown; the title below leaves `free` points at each end. Upwards Lambda is counted where the map is a
-/// line.
+/// Draws both axes of the visible part; the title below leaves `free` points at each end. The vertical axis is Lambda where the map is a line.
 pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, directions: Directions, (free, is_line): (f32, bool)) {
     let Frame { rect, view, radar, projection, .. } = frame;
     let marks;
@@ -147,7 +146,7 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, directions: Direc
                     Axis { ticks: Some(&marks), ..Axis::new(low, high, title).with_slack(slack) }
                 }
             };
-            // The one row of a snapshot stands for no range.
+            // The only row of a snapshot has no range.
             let y = match radar.samples {
                 _ if is_line => Axis::new(view.low.y.into(), view.high.y.into(), "Λ of one range"),
                 1 => Axis { ticks: Some(&[]), ..Axis::new(0.0, 1.0, "one range") },

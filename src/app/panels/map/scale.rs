@@ -1,4 +1,4 @@
-//! What the colours of a map stand for.
+//! Scale of a map's colours.
 
 use super::input::Input;
 use crate::app::state::{MapKind, Units};
@@ -7,7 +7,7 @@ use crate::app::widgets::levels::lowest_db;
 use crate::app::widgets::textures::colour_table;
 use crate::picture::ColourMap;
 
-/// The bar of a map's colours.
+/// The colour bar of a map.
 pub fn bar(input: &Input<'_>) -> Bar {
     let Input { kind, look, .. } = *input;
     let lambda = input.cells.as_ref().and_then(|cells| cells.scale);

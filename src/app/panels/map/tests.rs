@@ -1,4 +1,4 @@
-//! Maps as they are shown: what is told when there is none, and labels that stay inside.
+//! Tests of drawn maps: texts in the place of a picture, and labels that stay inside.
 
 impl<'a> Input<'a> {
     /// A map without a picture.
@@ -81,7 +81,7 @@ fn the_pointer_is_told_in_cells() {
     assert!((cursor.bin - 255.5).abs() < 1.0 && (cursor.column - 511.5).abs() < 1.0, "{cursor:?}");
 }
 
-/// A map whose method refuses, where another can do it.
+/// A map whose method refuses, where another method works.
 fn refused() -> Harness<'static, Vec<Command>> {
     let problem = || Problem { reason: "trained on another radar", instead: Some("capon") };
     let mut map = Harness::new_ui_state(move |ui, asked| draw(ui, Some(problem()), asked), Vec::new());
@@ -222,7 +222,7 @@ fn a_map_of_an_earlier_scene_says_so() {
     assert_eq!([true, false].map(says_so), [true, false]);
 }
 
-/// A map on which what became of objects is marked.
+/// A map with marks for the verdicts on objects.
 fn judged(size: [f32; 2]) -> Harness<'static> {
     let (radar, fates) = (Radar::default(), kinds::tests::fates());
     let mut map = Harness::builder().with_size(size).build_ui(move |ui| {

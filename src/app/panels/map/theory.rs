@@ -1,4 +1,4 @@
-//! What the formulas say of one reflector, drawn over a map with the numbers in it.
+//! Predictions of the formulas for one reflector, drawn over a map with their numbers.
 
 use super::clear::clear_patch;
 use super::frame::Frame;
@@ -11,25 +11,25 @@ use crate::theory::overlay::STREAK;
 use crate::theory::{Ellipse, MapPlace, Overlay, blob_cell};
 use eframe::egui::{Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, vec2};
 
-/// What is drawn.
+/// The predictions to draw, and the position bound.
 #[derive(Clone, Copy)]
 pub struct Theory<'a> {
-    /// What the reflector is called.
+    /// Name of the reflector.
     pub name: &'a str,
-    /// What the formulas say of the reflector on this map.
+    /// Blob, lobes, streak and comb of the reflector that the formulas predict for this map.
     pub overlay: &'a Overlay,
     pub reflector: Reflector,
-    /// How well its place can be known, where that is to be drawn.
+    /// Ellipse of the position bound, where it is drawn.
     pub ellipse: Option<Ellipse>,
-    /// Who listens for that, in words.
+    /// Name of the elements that the bound is for.
     pub listening: &'static str,
-    /// At which signal-to-noise ratio of a sample.
+    /// Signal-to-noise ratio of a sample that the bound is for.
     pub snr: Decibels,
     /// Whether the comb of the two ends belongs on the map.
     pub comb: bool,
 }
 
-/// Colours of what is drawn, and of the line that tells its numbers.
+/// Colours of the drawn items and of their lines of text.
 const BIN: Color32 = Color32::WHITE;
 const BEAM: Color32 = Color32::from_rgb(120, 220, 255);
 const LOBE: Color32 = Color32::from_rgb(255, 224, 100);
@@ -40,9 +40,9 @@ const ALIAS: Color32 = Color32::from_rgb(205, 190, 255);
 
 /// Length of ticks, points.
 const TICK: f32 = 7.0;
-/// The ellipse is drawn larger than this, points.
+/// Least size of the drawn ellipse, points.
 const ELLIPSE: f32 = 9.0;
-/// Least size of a map that has room for the numbers.
+/// Least size of a map that has room for the numbers, points.
 const ROOM: Vec2 = vec2(250.0, 130.0);
 
 impl Theory<'_> {
@@ -72,7 +72,7 @@ impl Theory<'_> {
         }
     }
 
-    /// Where the reflector's blob shows: its peak, its streak and the corners of its half-power box.
+    /// Places on screen of the reflector's peak, its streak and the corners of its half-power box.
     fn places(&self, frame: Frame<'_>) -> Vec<Pos2> {
         let streak = self.overlay.streak.path.iter().map(|cell| frame.cell(*cell));
         std::iter::once(frame.cell(self.overlay.blob.peak)).chain(streak).chain(self.half_power(frame)).collect()
@@ -87,7 +87,7 @@ impl Theory<'_> {
         corners.map(|corner| frame.cell(cell(corner))).to_vec()
     }
 
-    /// The ellipse of the bound around the place the formulas give the reflector, and how many times larger than it is.
+    /// The ellipse of the bound around the reflector's predicted place, and the factor by which it is drawn larger.
     fn outline(&self, frame: Frame<'_>) -> Option<(Vec<Pos2>, f64)> {
         let ellipse = self.ellipse?;
         let Reflector { x_metres, y_metres, .. } = self.reflector;
@@ -106,7 +106,7 @@ impl Theory<'_> {
         Some((outline(times), times))
     }
 
-    /// The numbers, line by line with their colours.
+    /// The lines of text with their colours.
     fn lines(&self, frame: Frame<'_>) -> Vec<(Color32, String)> {
         let radar = frame.radar;
         let Overlay { place, blob, streak, .. } = self.overlay;
@@ -143,7 +143,7 @@ impl Theory<'_> {
         lines
     }
 
-    /// What else shows in the same cell.
+    /// Text of the ranges and directions that share the reflector's cell.
     fn aliases(&self, frame: Frame<'_>) -> String {
         let Overlay { place, fold_partners, wrap_partners_metres, .. } = self.overlay;
         let max = frame.radar.max_range_metres();
@@ -160,8 +160,8 @@ impl Theory<'_> {
         format!("same cell: {} m{wrapped}; {folds}", ranges.join(", "))
     }
 
-    /// Writes the numbers in a corner, clear of the blob and of what else is `taken`; under the `pointer` they make way for the map, but for
-    /// the name.
+    /// Writes the numbers in a corner, clear of the blob and of the `taken` places. Under the `pointer` only the name stays, so that the map
+    /// is in sight.
     pub fn tell(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>, taken: &[Pos2]) {
         let rect = frame.rect;
         if rect.width() < ROOM.x || rect.height() < ROOM.y {
@@ -177,7 +177,7 @@ impl Theory<'_> {
         let places = [self.places(frame).as_slice(), taken].concat();
         let (mut patch, mut count) = clear_patch(rect, &places, &sizes);
         if pointer.is_some_and(|p| patch.contains(p)) {
-            // The map beneath is what is pointed at.
+            // The pointer refers to the map beneath.
             count = 1;
             patch.set_height(sizes[0].y + 6.0);
         }
@@ -197,7 +197,7 @@ fn lobe_columns(overlay: &Overlay) -> impl Iterator<Item = f64> {
     signed.filter_map(|(sign, lobe)| Some(sign * lobe?.columns))
 }
 
-/// A length with the unit that suits it.
+/// Text of a length, in the unit that suits it.
 fn length(metres: f64) -> String {
     match metres {
         m if m >= 1.0 => format!("{m:.2} m"),
@@ -207,7 +207,7 @@ fn length(metres: f64) -> String {
     }
 }
 
-/// A line over any picture; it doesn't cross the map where its places wrap around.
+/// Draws a line over any picture, without the pieces that would cross the map where places wrap around.
 fn line(painter: &Painter, points: &[Pos2], rect: Rect, colour: Color32) {
     let whole = points
         .windows(2)
@@ -270,7 +270,7 @@ mod tests {
             let pixel = |bin: usize, column: usize| {
                 pos2((column as f32 + 0.5) * 10.0, RECT.bottom() - (bin as f32 + 0.5) * 10.0)
             };
-            // Half a cell of ten points is the bar.
+            // The tolerance is half a cell of ten points.
             assert!(within.expand(5.0).contains(pixel(bin, column)), "the peak");
             for side in [-1, 1] {
                 let columns = (1..40).map(|i| (column as i64 + side * i).rem_euclid(128) as usize);

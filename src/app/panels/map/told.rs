@@ -1,4 +1,4 @@
-//! What a map is told.
+//! Input of a map, taken from the state of the app.
 
 use super::frame::{Cells, Marked, Marks};
 use super::{
@@ -18,11 +18,10 @@ use eframe::egui::{Id, TextureFilter, TextureId, TextureOptions, Ui};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What a panel of maps remembers: its pictures on the graphics card, and what the pointer holds.
+/// Pictures of a panel of maps on the graphics card, and the state of the pointer.
 #[derive(Default)]
 pub struct MapMemory {
     textures: BTreeMap<MapKind, Texture>,
-    /// What the pointer holds.
     pub hand: HandMemory,
 }
 
@@ -36,7 +35,7 @@ impl MapMemory {
     }
 }
 
-/// A map in a panel of its own.
+/// Panel of one map.
 pub struct MapPanel;
 
 impl Content for MapPanel {
@@ -61,14 +60,14 @@ impl Content for MapPanel {
     }
 }
 
-/// The reflectors of a scene.
+/// The reflectors of a scene, kept between frames.
 #[derive(Clone, Default)]
 struct Spelled {
     of: Option<Arc<Scene>>,
     marks: Arc<[Marked]>,
 }
 
-/// The reflectors to be marked, object by object: spelled out once a scene, not once a map and frame.
+/// The reflectors to be marked, object by object, computed once a scene and not once a map and frame.
 pub fn marks_of(ui: &Ui, state: &State) -> Arc<[Marked]> {
     let scene = state.scene();
     if !state.settings.show_reflectors {
@@ -85,7 +84,7 @@ pub fn marks_of(ui: &Ui, state: &State) -> Arc<[Marked]> {
     })
 }
 
-/// What a map is told.
+/// Input of a map.
 pub fn map_input<'a>(
     state: &'a State,
     jobs: &'a Jobs,
@@ -102,7 +101,7 @@ pub fn map_input<'a>(
         .filter(|_| !jobs.theory.is_stale())
         .and_then(Result::ok)
         .filter(|r| r.request.radar == *state.radar())
-        // The formulas of the two inputs are those of the ends.
+        // The formulas of both inputs are those of the two ends, and hold for no other layout.
         .filter(|_| settings.layout.is_none() || !matches!(kind, MapKind::Input0 | MapKind::Input1));
     Input {
         kind,
@@ -132,7 +131,7 @@ pub fn map_input<'a>(
     }
 }
 
-/// What tells hits, misses and false alarms of a method's output apart, where there is a target.
+/// Maps and thresholds that separate hits, misses and false alarms of a method's output, where there is a target.
 fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<ToldApart<'a>> {
     let pair = &jobs.pipeline.method(slot).output()?.pair;
     let (output, eta) = jobs.pipeline.judged(state, slot)?;
@@ -141,13 +140,13 @@ fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<Tol
         Some(_) if pair.target.is_none() => None,
         Some(_) => jobs.pipeline.maps.result().and_then(|result| result.detected.target.as_ref()),
     };
-    // Those of another output would be drawn where this one has nothing.
+    // Ghosts of another output would be drawn where this one has nothing.
     let ghosts = fates_of(&jobs.kinds, slot, &jobs.pipeline).filter(|(_, current)| *current);
     let ghosts = ghosts.map_or(&[][..], |(fates, _)| &fates.failures.ghosts);
     Some(ToldApart { output, target: target?, etas: [eta, TARGET_ETA], ghosts })
 }
 
-/// Over which noise the method whose map it is was trained, where the scene has other noise. A recording's noise is not known.
+/// Note on the noise that the map's method was trained on, where the scene has another noise. None for a recording, whose noise is unknown.
 fn note(state: &State, kind: MapKind) -> Option<String> {
     let method = state.method_in(kind.slot()?).filter(|_| state.editor.document().recording().is_none())?;
     method.trained_noise()?;
@@ -155,7 +154,7 @@ fn note(state: &State, kind: MapKind) -> Option<String> {
     untrained_noise(method.as_ref(), state.radar(), &echoing, state.settings.floor)
 }
 
-/// What became of every object, where that is to be marked: on the maps of the whole array.
+/// Verdicts on the objects, where they are marked: on the maps of the whole array.
 fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Kinds<'a>> {
     let slot = match kind {
         MapKind::Target | MapKind::TargetAbove => MethodSlot::First,
@@ -165,14 +164,14 @@ fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Kinds<'a>> 
     Some(Kinds { fates, current })
 }
 
-/// What stands in a map's title.
+/// Text in the title bar of a map.
 pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     let pipeline = &jobs.pipeline;
     if let (MapKind::Input0, Some(layout)) = (kind, &state.settings.layout) {
         return Some(format!("{layout} {}", if is_updating(jobs, kind) { "(updating) " } else { "" }));
     }
     if state.is_predicting() && kind.is_above() {
-        // A threshold may be asked for.
+        // A lesson may ask for the threshold.
         return None;
     }
     let slot = kind.slot().unwrap_or(MethodSlot::First);
@@ -192,15 +191,15 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     })
 }
 
-/// Figures of a method's output against the target. There are none before an open question is answered, and none of a recording: its target is
-/// the recording itself.
+/// Figures of a method's output against the target. There are none while a lesson's question is open, and none for a recording, whose target
+/// is the recording itself.
 pub fn scores(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<Scores> {
     let is_shown = !state.is_predicting() && state.editor.document().recording().is_none();
     jobs.pipeline.scores_in(slot).filter(|_| is_shown)
 }
 
-/// How many echoes a method finds in the recording on screen, and what they explain of it where that is known: "2 echoes found, 99.8 % of the power
-/// explained". Nothing of methods that list none.
+/// Text of the number of echoes that a method finds in the recording on screen, and of the power that they explain where it is known: "2
+/// echoes found, 99.8 % of the power explained". `None` for methods that list no echoes.
 pub fn echoes_found(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<String> {
     state.editor.document().recording()?;
     let count = jobs.pipeline.method(slot).output()?.reflectors.len();
@@ -245,13 +244,13 @@ fn length(metres: f64) -> String {
     }
 }
 
-/// Whether a map is of something else than what is on screen.
+/// Whether a map is of an earlier scene or of another method.
 pub fn is_updating(jobs: &Jobs, kind: MapKind) -> bool {
     let outdated = |slot| jobs.pipeline.method(slot).outdated().is_some();
     jobs.pipeline.is_stale(kind) || kind.slot().is_some_and(outdated)
 }
 
-/// The numbers behind a map's picture.
+/// Values of a map's cells, with the scale of its picture.
 pub fn cells(jobs: &Jobs, kind: MapKind) -> Option<Cells<'_>> {
     let result = jobs.pipeline.maps.result()?;
     if let Some(rescaled) = result.on_one_scale.get(&kind) {
@@ -279,7 +278,7 @@ fn cells_of(map: &ReadyMap) -> Cells<'_> {
     Cells { map: &map.lambda, minus: None, scale: Some(map.scale) }
 }
 
-/// What the formulas say of the map.
+/// Predictions of the formulas for a map, where they exist.
 fn theory(result: &TheoryResult, kind: MapKind) -> Option<Theory<'_>> {
     let [first, last, full] = &result.overlays;
     let overlay = match kind {
@@ -306,13 +305,13 @@ fn places(state: &State, kind: MapKind) -> Option<Places> {
     Some(Places { guess, truth, distance: judged.distance.clone() })
 }
 
-/// The method that is at work where another one's output of the same scene is shown.
+/// The running method, while another method's output of the same scene is shown.
 fn running(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<&'static str> {
     jobs.pipeline.method(slot).of_another_method()?;
     state.method_in(slot).map(|method| method.name())
 }
 
-/// What is said of a map that belongs to something else than what is on screen: whose result it is where only the method is another.
+/// Text over an outdated map: the method that made it where only the method has changed, else that the scene is an earlier one.
 fn old(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     let of_another_method = kind.slot().and_then(|slot| jobs.pipeline.method(slot).of_another_method());
     match (of_another_method, kind.slot().and_then(|slot| state.method_in(slot))) {
@@ -321,13 +320,13 @@ fn old(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     }
 }
 
-/// Why a map is hidden: a lesson asks for a prediction first.
+/// Cover of a map, while a lesson asks for a prediction.
 fn veil(state: &State, kind: MapKind) -> Option<Veil> {
     let run = state.lesson.as_ref().filter(|run| run.is_predicting())?;
     Some(Veil { is_clicked: run.clicked_map() == Some(kind) })
 }
 
-/// Why a map has no picture, and what would help.
+/// Reason why a map has no picture, and a method that would have one.
 fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>> {
     if let Some(reason) = jobs.pipeline.maps.scene_error() {
         return Some(Problem { reason, instead: None });
@@ -345,7 +344,7 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>
         return Some(Problem { reason, instead: None });
     }
     if is_recorded && (matches!(kind, MapKind::Target | MapKind::TargetAbove) || kind.is_difference()) {
-        // Where there is a target, there is a picture, and this is not read.
+        // Not read where there is a target, since the map then has a picture.
         let reason = "The recording has the samples of the two ends alone: what all elements would hear is unknown.";
         return Some(Problem { reason, instead: None });
     }
@@ -361,7 +360,7 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>
     }
     let refusal = jobs.pipeline.method(slot).refusal()?;
     let instead = || state.methods.instead_of(refusal.method, state.radar());
-    // The second is chosen beside the maps.
+    // The second method is chosen beside the maps.
     Some(Problem { reason: &refusal.reason, instead: if slot == MethodSlot::First { instead() } else { None } })
 }
 

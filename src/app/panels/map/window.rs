@@ -1,4 +1,4 @@
-//! The window of a detector around the cell under the pointer: guard cells and training cells, and what they make of the cell.
+//! The window of a detector around the cell under the pointer: guard cells, training cells, and the threshold at the cell.
 
 use super::frame::{Cells, Frame};
 use crate::app::state::Cursor;
@@ -11,13 +11,13 @@ use eframe::egui::{Align2, Painter, Pos2, Shape, Stroke, pos2, vec2};
 /// Points along each side of the window: in Cartesian maps sides are curved.
 const ALONG: usize = 12;
 
-/// How far below the top of the map the text stands, points: below the value of the cell.
+/// Distance of the text below the top of the map, points: below the value of the cell.
 const BELOW: f32 = 28.0;
 
-/// Nearer to the top the pointer would be under a text in the right corner, points.
+/// Distance from the top within which the pointer would be under a text in the right corner, points.
 const NEAR_TOP: f32 = 40.0;
 
-/// What is narrower beyond an edge is a rounding error, as a part of the map's width.
+/// Least width of a piece beyond an edge, as a part of the map's width; less is a rounding error.
 const MIN_PIECE_RATIO: f32 = 1e-4;
 
 /// Draws the window around the pointer's cell.
@@ -36,7 +36,7 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<
         }
     }
     if let Some(found) = cells.and_then(|cells| level_of(cells, cfar, map, [bin, column])) {
-        // Below the value of the cell, in the corner where the pointer isn't.
+        // Below the value of the cell, in the corner away from the pointer.
         let (rect, at) = (frame.rect, frame.cursor(cursor));
         let (corner, align) = match at.y < rect.top() + NEAR_TOP && at.x > rect.center().x {
             true => (rect.left_top() + vec2(10.0, BELOW), Align2::LEFT_TOP),
@@ -46,7 +46,7 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<
     }
 }
 
-/// What the detector makes of one cell of a map.
+/// Power, noise and threshold of a detector at one cell of a map.
 fn level_of(cells: &Cells<'_>, cfar: &Cfar, map: [usize; 2], cell: [usize; 2]) -> Option<Level> {
     let scale = cells.scale?;
     let decades = 2.0 * (scale.peak - scale.floor).max(0.0);

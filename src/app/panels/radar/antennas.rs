@@ -1,4 +1,4 @@
-//! Transmitters and receivers in the panel of the radar: how many there are, where they stand, and the elements that their pairs make.
+//! Transmitters and receivers in the radar panel: their numbers, their places, and the elements that their pairs make.
 
 use crate::app::widgets::number_field::NumberField;
 use crate::radar::{Antennas, Radar, counted};
@@ -10,14 +10,14 @@ pub(super) const NAME: &str = "antennas";
 /// Most transmitters, and most receivers, that the panel offers.
 const MAX_ANTENNAS: usize = 64;
 
-/// The range for which the panel says what midpoints cost, metres.
+/// Range for which the panel states the path error of the pairs' midpoints, metres.
 const NEAR_METRES: f64 = 2.0;
 
-/// What the row is about.
+/// Tooltip of the row.
 pub(super) const TOOLTIP: &str = "Whether every element sends and hears by itself, or each pair of a transmitter and a receiver is an element \
                                   halfway between both. A place of the line that no pair makes is a gap and hears nothing";
 
-/// What follows from the antennas.
+/// Consequence of the antennas.
 pub(super) fn follows(radar: &Radar) -> String {
     match &radar.antennas {
         None => "every element sends and hears by itself".to_owned(),
@@ -25,7 +25,7 @@ pub(super) fn follows(radar: &Radar) -> String {
     }
 }
 
-/// One antenna an element, or pairs, and how many.
+/// Draws the choice between one antenna an element and pairs, with the number of antennas.
 pub(super) fn choices(ui: &mut Ui, radar: &mut Radar, label: Id) {
     ui.horizontal(|ui| {
         let alone = ui.selectable_label(radar.is_monostatic(), "one an element").labelled_by(label);
@@ -40,7 +40,7 @@ pub(super) fn choices(ui: &mut Ui, radar: &mut Radar, label: Id) {
     counts(ui, radar);
 }
 
-/// What follows from antennas that stand apart.
+/// Consequence of antennas that stand apart.
 fn consequence(radar: &Radar, antennas: &Antennas) -> String {
     let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
     let pairs = (0..radar.elements).filter(|n| !radar.is_gap(*n)).map(|n| radar.pair(n));
@@ -60,7 +60,7 @@ fn consequence(radar: &Radar, antennas: &Antennas) -> String {
     format!("{made}; at {NEAR_METRES:.0} m the way is up to {turns:.2} wavelengths longer than that of their midpoints")
 }
 
-/// How many transmitters and receivers there are, where they stand apart.
+/// Draws the numbers of transmitters and receivers, where they stand apart.
 fn counts(ui: &mut Ui, radar: &mut Radar) {
     let Some(antennas) = &radar.antennas else {
         return;
@@ -83,14 +83,14 @@ fn counts(ui: &mut Ui, radar: &mut Radar) {
     }
 }
 
-/// Gives the radar that many antennas at its spacing; counts that make no array leave it as it is.
+/// Gives the radar that many antennas at its spacing. Numbers that make no array leave the radar as it is.
 fn set(radar: &mut Radar, transmitters: usize, receivers: usize) {
     if let Ok(antennas) = Antennas::filled(transmitters, receivers, radar.element_spacing_metres) {
         *radar = radar.clone().with_antennas(antennas);
     }
 }
 
-/// The largest number up to the root of `elements` that divides it: as many transmitters as keep the antennas fewest.
+/// The largest divisor of `elements` up to their root: with so many transmitters there are fewest antennas.
 fn divisor(elements: usize) -> usize {
     (1..=MAX_ANTENNAS).take_while(|n| n * n <= elements).filter(|n| elements.is_multiple_of(*n)).last().unwrap_or(1)
 }

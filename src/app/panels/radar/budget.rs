@@ -1,4 +1,4 @@
-//! The link budget in the panel of the radar: its numbers, SNR against range, and the SNR of what is selected.
+//! The link budget in the radar panel: its numbers, SNR against range, and the SNR of the selected object.
 
 use super::table::{GAP, Table, number};
 use crate::app::widgets::axes::Axis;
@@ -11,12 +11,12 @@ use crate::radar::{LinkBudget, Radar};
 use eframe::egui::{CollapsingHeader, Grid, Label, Sense, Stroke, Ui, vec2};
 use egui_plot::{HLine, LineStyle};
 
-/// An object whose SNR the link budget tells.
+/// An object whose SNR is computed by the link budget.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selected {
-    /// What people call it.
+    /// Name of the object.
     pub name: String,
-    /// Where it stands, (x, y) in metres.
+    /// Place of the object, (x, y).
     pub place_metres: [f64; 2],
     /// Reflectivity of each of its reflectors.
     pub reflectivity: f64,
@@ -37,19 +37,19 @@ const LEAST_DB: f64 = -30.0;
 /// Points of a curve.
 const POINTS: u32 = 120;
 
-/// Width of an element's pattern where one is chosen, degrees.
+/// Width of an element's pattern when one is switched on, degrees.
 const USUAL_WIDTH_DEGREES: f64 = 80.0;
 
-/// What holds without a budget.
+/// Text in place of the numbers, without a link budget.
 const WITHOUT: &str = "None: the thesis' convention. A sample's amplitude is P σ / R², levels in dBm are those of samples, and elements are \
                        isotropic. The floor Receiver takes the usual budget: 12 dBm, 10 dBi, 12 dB.";
 
-/// What the figures leave out.
-const LEFT_OUT: &str = "Ends and array add their elements in phase, as a map does beyond the far field. What is lost between two cells is left out.";
+/// Text of the losses that the figures leave out.
+const LEFT_OUT: &str = "Ends and array add their elements in phase, as a map does beyond the far field. The loss of an echo between two cells is left out.";
 
 const TRANSMIT_POWER: Quantity = Quantity::metres(
     "transmit power",
-    "What a transmitter sends. No sample depends on it: it says how strong the noise beneath them is",
+    "Power that a transmitter sends. No sample depends on it: it sets the noise beneath them",
 )
 .with(" dBm", [-100.0, 150.0], 0.2, 1);
 const ANTENNA_GAIN: Quantity = Quantity::metres(
@@ -59,7 +59,7 @@ const ANTENNA_GAIN: Quantity = Quantity::metres(
 .with(" dBi", [-50.0, 100.0], 0.1, 1);
 const NOISE_FIGURE: Quantity = Quantity::metres(
     "noise figure",
-    "What a receiver adds to the noise that it is given. Below 0 dB it would take some away",
+    "Noise that a receiver adds to that of its input. Below 0 dB it would take some away",
 )
 .with(" dB", [0.0, 100.0], 0.1, 1);
 const CHIRP: Quantity = Quantity::metres(
@@ -68,7 +68,7 @@ const CHIRP: Quantity = Quantity::metres(
 )
 .with(" µs", [0.1, 1e5], 0.1, 2);
 
-/// Draws the group.
+/// Draws the group of the link budget.
 pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Option<&Selected>) {
     CollapsingHeader::new(HEADING).id_salt(HEADING).show_unindented(ui, |ui| {
         let mut has = radar.budget.is_some();
@@ -117,7 +117,7 @@ fn numbers(ui: &mut Ui, table: Table, radar: &mut Radar, mut budget: LinkBudget)
     radar.budget = Some(budget);
 }
 
-/// Isotropic elements, or the width of their pattern.
+/// Draws the choice between isotropic elements and a pattern of a width.
 fn pattern(ui: &mut Ui, table: Table, budget: &mut LinkBudget) {
     let tooltip = "Half-power width of an element: what it sends and hears falls as a power of the cosine of the angle off broadside. It changes \
                    the samples";
@@ -145,7 +145,7 @@ fn pattern(ui: &mut Ui, table: Table, budget: &mut LinkBudget) {
     });
 }
 
-/// SNR against range of an object of a cross section that is chosen beside it.
+/// Draws SNR against range, for an object of a cross section that is chosen above it.
 fn curve(ui: &mut Ui, radar: &Radar) {
     let id = ui.scope_id().with("cross section");
     let mut dbsm = ui.data(|d| d.get_temp(id)).unwrap_or(CAR_DBSM);
@@ -186,7 +186,7 @@ fn curve(ui: &mut Ui, radar: &Radar) {
     ui.weak("Line: by the whole array. Dashes: in a sample. Upright: where ranges wrap around.");
 }
 
-/// The SNR of what is selected.
+/// Text of the SNR of the selected object.
 fn told(radar: &Radar, selected: &Selected) -> String {
     let Selected { name, place_metres: [x, y], reflectivity } = selected;
     let range = x.hypot(*y).max(1e-3);

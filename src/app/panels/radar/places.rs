@@ -7,7 +7,7 @@ use eframe::egui::{Id, TextEdit, Ui};
 const NAMES: [&str; 4] =
     ["transmitters at, mm", "receivers at, mm", "transmitters forward, mm", "receivers forward, mm"];
 
-/// What they hold.
+/// Tooltips of the lists: places along the line, and places off it.
 const TOOLTIPS: [&str; 2] = [
     "Places along x with commas, spaces or tabs between them, as a spreadsheet copies them",
     "How far each stands off the line, towards the scene, in the order of its places along x. An empty list is a straight line",
@@ -16,20 +16,20 @@ const TOOLTIPS: [&str; 2] = [
 /// Digits of a place after the point, millimetres.
 const DECIMALS: usize = 4;
 
-/// Most letters that a list may have.
+/// Maximum length of a list, characters.
 const MOST_LETTERS: usize = 100_000;
 
-/// What is typed into one of the lists.
+/// A text typed into one of the lists.
 #[derive(Clone, Default)]
 struct Typed {
-    /// The places over which it was typed, metres: it is dropped once there are others.
+    /// Places of the list when the text was typed, metres; the text is dropped once they change.
     over: Vec<f64>,
     text: String,
-    /// Why it is not taken.
+    /// Reason why the text is refused.
     problem: Option<String>,
 }
 
-/// Draws all lists, if `radar` has antennas, and takes over what is typed.
+/// Draws all lists, if `radar` has antennas, and applies the typed places.
 pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
     let Some(antennas) = radar.antennas.clone() else {
         return;
@@ -54,7 +54,7 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
     }
 }
 
-/// The antennas once `places` is list number `list` of `own`. Antennas that come anew stand on the line.
+/// The antennas with `places` as list number `list` of `own`. New antennas stand on the line.
 fn taken(own: [&[f64]; 4], list: usize, mut places: Vec<f64>) -> Result<Antennas, AntennasError> {
     let is_off_line = list >= 2;
     if is_off_line && places.is_empty() {
@@ -93,7 +93,7 @@ fn field(ui: &mut Ui, id: Id, (name, tooltip): (&str, &str), own: &[f64], is_fre
     }
 }
 
-/// Places in metres as a list in millimetres.
+/// Text of places in metres, as a list in millimetres.
 fn listed(x_metres: &[f64]) -> String {
     let one = |x: &f64| {
         let text = format!("{:.DECIMALS$}", x * 1e3);
@@ -102,7 +102,7 @@ fn listed(x_metres: &[f64]) -> String {
     x_metres.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// Places in metres that a list in millimetres says.
+/// The places in metres of a list in millimetres.
 fn places(text: &str) -> Result<Vec<f64>, String> {
     let cells = text.split([',', ';', ' ', '\t', '\n', '\r']).filter(|cell| !cell.is_empty());
     let place = |(i, cell): (usize, &str)| match cell.parse::<f64>().ok().filter(|v| v.is_finite()) {
@@ -149,7 +149,7 @@ mod tests {
         Radar { elements: 6, ..Radar::default() }.of_pairs(3, 4).unwrap()
     }
 
-    /// How many transmitters there are after this was typed, and whether a fault was told.
+    /// Number of transmitters after this text was typed, and whether an error was shown.
     fn typed(text: &str) -> (usize, bool) {
         let draw = |ui: &mut Ui, radar: &mut Radar| show(ui, radar, true);
         let mut panel = Harness::builder().with_size([600.0, 300.0]).build_ui_state(draw, radar());

@@ -1,4 +1,4 @@
-//! Draws transmitters, receivers and the elements that their pairs make to one scale.
+//! Drawing of transmitters, receivers and the elements that their pairs make, to one scale.
 //!
 //! The mouse drags an antenna along the line and off it. The arrow keys choose one, and Shift with an arrow moves it.
 
@@ -15,19 +15,19 @@ const HEIGHT: f32 = 54.0;
 /// Room for the names of the rows, points.
 const NAMES: f32 = 84.0;
 
-/// Room beside the antennas, as a part of the line they stand on: they can be dragged there.
+/// Room beside the antennas for dragging, as a part of the line on which they stand.
 const BESIDE: f64 = 0.15;
 
-/// How near the pointer must be to an antenna, points.
+/// Largest distance of the pointer from an antenna, points.
 const REACH: f32 = 8.0;
 
-/// How far off the line an antenna goes at a step, metres.
+/// Step of an antenna off the line, metres.
 const FORWARD_STEP_METRES: f64 = 1e-3;
 
-/// How far the pointer goes for such a step, points. The first takes as much again: who drags along the line stays on it.
+/// Pointer travel for such a step, points. The first step takes twice as much, so that a drag along the line stays on it.
 const FORWARD_STEP_POINTS: f32 = 4.0;
 
-/// How far from its row's middle an antenna off the line is drawn at most, points.
+/// Largest drawn distance of an antenna from its row's middle, points.
 const FORWARD_POINTS: f64 = 5.0;
 
 /// Names of the rows.
@@ -36,12 +36,12 @@ const ROWS: [&str; 3] = ["transmitters", "receivers", "elements"];
 /// One antenna: a row, 0 the transmitters and 1 the receivers, and its number there.
 type One = (usize, usize);
 
-/// Places of the antennas in metres, and how the drawing shows them.
+/// Places of the antennas, and the part of the line that is drawn.
 #[derive(Clone)]
 struct Drawn {
-    /// Transmitters and receivers.
+    /// Places of transmitters and receivers along the line.
     x_metres: [Vec<f64>; 2],
-    /// How far they stand off the line.
+    /// Distances of transmitters and receivers off the line.
     y_metres: [Vec<f64>; 2],
     /// Left and right edge of the drawing.
     span_metres: [f64; 2],
@@ -50,13 +50,13 @@ struct Drawn {
 /// A drag in progress.
 #[derive(Clone)]
 struct Drag {
-    /// The radar when it began.
+    /// The radar at the beginning of the drag.
     radar: Radar,
-    /// The antennas when it began.
+    /// The antennas at the beginning of the drag.
     drawn: Drawn,
     /// The antenna that is dragged.
     one: One,
-    /// Where the pointer was when it began.
+    /// Place of the pointer at the beginning of the drag.
     from: Pos2,
 }
 
@@ -69,14 +69,14 @@ impl Drawn {
         Drawn { x_metres, y_metres, span_metres: [low - beside, high + beside] }
     }
 
-    /// The same where one antenna stands so many metres farther to the right, and so many nearer to the scene.
+    /// The antennas with one of them `along` metres farther to the right and `forward` metres nearer to the scene.
     fn moved(&self, (row, number): One, [along, forward]: [f64; 2]) -> Self {
         let mut moved = self.clone();
         if let Some(x) = moved.x_metres[row].get_mut(number) {
             *x += along;
         }
         if let Some(y) = moved.y_metres[row].get_mut(number).filter(|_| forward != 0.0) {
-            // Whole steps: an antenna that is put back stands on the line again, to the bit.
+            // Whole steps bring an antenna back to the line exactly, to the bit.
             *y = ((*y + forward) / FORWARD_STEP_METRES).round() * FORWARD_STEP_METRES;
         }
         moved
@@ -87,7 +87,7 @@ impl Drawn {
         antennas.off_line(&self.y_metres[0], &self.y_metres[1]).ok()
     }
 
-    /// How far above its row's middle an antenna is drawn, points.
+    /// Drawn height of an antenna above its row's middle, points.
     fn above(&self, (row, number): One) -> f32 {
         let most = self.y_metres.iter().flatten().fold(0.0, |most: f64, y| most.max(y.abs()));
         let y = self.y_metres[row].get(number).copied().unwrap_or_default();
@@ -95,8 +95,8 @@ impl Drawn {
     }
 }
 
-/// How far an antenna goes at a step, metres: elements stay at the even places of the array's line, or of the filled one where they stand
-/// on it.
+/// Step of an antenna along the line, metres: two spacings, which move its elements by one. The spacing is that of the filled array, where
+/// the elements stand on its places.
 fn step_metres(radar: &Radar) -> f64 {
     let times = radar.element_spacing_metres / radar.filled_spacing_metres();
     let on_filled = times > 0.5 && (times - times.round()).abs() < 1e-6 * times;
@@ -131,7 +131,7 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
     }
 }
 
-/// Says over the drawing where the antennas stand and what can be done.
+/// Sets the tooltip of the drawing: the places of the antennas, and how they are dragged.
 fn tell(response: Response, antennas: &Antennas, is_free: bool) {
     let [low, high] = antennas.span_metres();
     let how = match is_free {
@@ -148,7 +148,7 @@ fn tell(response: Response, antennas: &Antennas, is_free: bool) {
     response.on_hover_text(format!("From {:.1} to {:.1} mm along x{depth}.{how}", low * 1e3, high * 1e3));
 }
 
-/// The drag that is in progress. Begins one where an antenna is pressed; a click chooses the antenna.
+/// The drag in progress. A press on an antenna begins one; a click chooses the antenna.
 fn drag(ui: &Ui, strip: &Strip, response: &Response, radar: &Radar, drawn: &Drawn) -> Option<Drag> {
     let (id, chosen) = (response.id.with("drag"), response.id.with("chosen"));
     let under = |pos: Pos2| strip.nearest(drawn, pos);
@@ -212,7 +212,7 @@ fn by_keys(ui: &Ui, response: &Response, drawn: &Drawn, step_metres: f64) -> Opt
     (steps != 0.0 || forward != 0.0).then(|| drawn.moved(one, [steps * step_metres, forward * FORWARD_STEP_METRES]))
 }
 
-/// Where the drawing stands.
+/// Rectangle of the drawing.
 struct Strip {
     rect: Rect,
 }

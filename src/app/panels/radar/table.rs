@@ -1,23 +1,23 @@
-//! The rows of the panel of the radar: a name, a value, and what follows from it.
+//! Rows of the radar panel: name, value and consequence of a constant.
 
 use crate::app::widgets::labelled::Quantity;
 use eframe::egui::{Color32, Id, Label, TextStyle, Ui};
 
-/// Between two columns, points.
+/// Gap between two columns, points.
 pub(super) const GAP: f32 = 12.0;
 
 /// Width of the widest value, two names of windows beside each other, points.
 const VALUE_WIDTH: f32 = 170.0;
 
-/// The least width of a column of consequences, points: in less, a sentence is torn into single words.
+/// Least width of a column of consequences, points: in a narrower one, sentences break into single words.
 const LEAST_CONSEQUENCE_WIDTH: f32 = 150.0;
 
-/// How the constants stand in the panel.
+/// Layout of the rows.
 #[derive(Clone, Copy)]
 pub(super) struct Table {
     /// Width of the longest name of a constant, points.
     pub name_width: f32,
-    /// Width of the column of consequences; `None` where there is no room for one: then each stands below its constant.
+    /// Width of the column of consequences; `None` where it has no room, and each consequence stands below its constant.
     pub consequence_width: Option<f32>,
 }
 
@@ -32,7 +32,7 @@ impl Table {
         Table { name_width, consequence_width: Some(left).filter(|left| *left >= LEAST_CONSEQUENCE_WIDTH) }
     }
 
-    /// A row: the name, what `value` draws, what follows.
+    /// Draws a row: the name, the widget that `value` draws, and the consequence.
     pub fn row<T>(
         self,
         ui: &mut Ui,
@@ -61,7 +61,7 @@ impl Table {
     }
 }
 
-/// A row: name, the number in its unit, what follows. The number as it is after an edit, where there was one.
+/// Draws a row: name, number with its unit, and consequence. Returns the number after an edit.
 pub(super) fn number(
     ui: &mut Ui,
     table: Table,

@@ -4,7 +4,7 @@ use eframe::egui;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-/// A panel that does what it asks for, as the app would.
+/// A panel whose commands are executed as in the app.
 fn panel(radar: Radar, measured: Option<Measured>) -> Harness<'static, (Radar, Vec<Command>)> {
     let draw = move |ui: &mut Ui, state: &mut (Radar, Vec<Command>)| {
         let asked = show(ui, Input { radar: &state.0, measured, selected: None });
@@ -216,7 +216,7 @@ fn click(panel: &mut Harness<'static, Radar>, label: &str) {
     panel.run();
 }
 
-/// Switches a link budget on or off.
+/// Label of the box that switches a link budget on or off.
 const USE: &str = "Use a link budget";
 
 #[test]

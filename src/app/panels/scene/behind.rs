@@ -1,4 +1,4 @@
-//! What stands behind the array: the maps show it mirrored, in front of it.
+//! Mirror images of objects behind the array, which the maps show in front of it.
 
 use super::canvas::Canvas;
 use crate::interact::Place;
@@ -11,7 +11,7 @@ const MAX_OBJECTS_BEHIND: usize = 100;
 /// Radius of a mirror image, points.
 const RADIUS: f32 = 4.5;
 
-/// Draws where the maps show what stands behind the array; what is to be said of it, if anything stands there.
+/// Draws the mirror images of objects behind the array. Returns a sentence on them, if there are any.
 pub fn mirror(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> Option<String> {
     let centres = scene.objects.iter().map(|object| object.centre_metres()).enumerate();
     let behind: Vec<(usize, [f64; 2])> = centres.filter(|(_, [_, y])| *y < 0.0).collect();

@@ -1,4 +1,4 @@
-//! A warning for what stands beyond the maximum range: the maps show it elsewhere.
+//! A warning for objects beyond the maximum range, which the maps show elsewhere.
 
 use super::canvas::Canvas;
 use crate::interact::Place;
@@ -7,7 +7,7 @@ use crate::scene::{Object, Scene, Shape as Body};
 use eframe::egui::{self, Color32, FontId, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2};
 use eframe::egui::{WidgetInfo, pos2, vec2};
 
-/// From the edge of the canvas to the middle of a sign there, points.
+/// Distance from the edge of the canvas to the middle of a sign there, points.
 const INSET: f32 = 13.0;
 
 /// Most signs; the sentence counts all.
@@ -17,21 +17,21 @@ const SIGNS: usize = 100;
 const WIDEST: f32 = 330.0;
 const NARROWEST: f32 = 110.0;
 
-/// From the point of the arc at -60 degrees to the sentence: half a label and the margin, points.
+/// Distance from the point of the arc at -60 degrees to the sentence, points: half a label and the margin.
 const BESIDE_ARC: f32 = 44.0;
 
-/// An object that the maps show elsewhere.
+/// An object that reaches beyond the maximum range.
 struct Beyond<'a> {
     index: usize,
     object: &'a Object,
-    /// Its farthest reflector.
+    /// The object's farthest reflector.
     farthest: Place,
-    /// Whether all of it is beyond.
+    /// Whether the whole object is beyond the maximum range.
     is_whole: bool,
 }
 
-/// Draws a sign beside every object beyond the maximum range, or at the edge of the canvas where it is out of sight; what is to be
-/// said of them.
+/// Draws a sign beside every object beyond the maximum range, or at the edge of the canvas where the object is out of sight. Returns a
+/// sentence on these objects.
 pub fn warn(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> Option<String> {
     if canvas.radar.samples == 1 {
         // A snapshot has no ranges.
@@ -70,7 +70,7 @@ fn beyond<'a>(radar: &Radar, scene: &'a Scene) -> Vec<Beyond<'a>> {
     scene.objects.iter().enumerate().filter_map(of).collect()
 }
 
-/// What is said of them; `None` where there are none.
+/// The sentence on these objects; `None` where there are none.
 fn sentence(radar: &Radar, beyond: &[Beyond<'_>]) -> Option<String> {
     let most = radar.max_range_metres();
     Some(match beyond {
@@ -90,8 +90,8 @@ fn sentence(radar: &Radar, beyond: &[Beyond<'_>]) -> Option<String> {
     })
 }
 
-/// A triangle with an exclamation mark beside the farthest reflector; at the edge of the canvas, with an arrow outwards, where that is out
-/// of sight. Where it is.
+/// Draws a triangle with an exclamation mark beside the farthest reflector, or at the edge of the canvas with an arrow outwards where that is
+/// out of sight. Returns the triangle's place.
 fn sign(painter: &Painter, canvas: Canvas<'_>, one: &Beyond<'_>, ink: Color32) -> Pos2 {
     let (target, inner) = (canvas.at(one.farthest), canvas.rect.shrink(INSET));
     let in_sight = inner.contains(target);
@@ -112,7 +112,7 @@ fn sign(painter: &Painter, canvas: Canvas<'_>, one: &Beyond<'_>, ink: Color32) -
     at
 }
 
-/// Where the line from the middle of `inner` to `target` leaves it.
+/// The point where the line from the middle of `inner` to `target` leaves `inner`.
 fn on_edge(inner: Rect, target: Pos2) -> Pos2 {
     let (middle, to) = (inner.center(), target - inner.center());
     let part = |half: f32, way: f32| if way == 0.0 { f32::INFINITY } else { half / way.abs() };

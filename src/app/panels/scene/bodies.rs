@@ -1,4 +1,4 @@
-//! How bodies are drawn: filled, with the shadow that each end of the array sees behind them, and where each end sees them shine.
+//! Drawings of bodies: outlines, the shadows behind them for each end of the array, and their glints.
 
 use crate::interact::Place;
 use crate::radar::{End, Radar};
@@ -14,7 +14,7 @@ const MAX_BODIES: usize = 60;
 /// Corners that a circle is drawn with.
 const CIRCLE_CORNERS: usize = 40;
 
-/// The outline of a body, filled.
+/// Draws the outline of a body, filled.
 pub fn outline(painter: &Painter, at: &dyn Fn(Place) -> Pos2, shape: &Shape, colour: Color32, halo: Color32) {
     if let Shape::Wall([a, b]) = shape {
         let ends = [at((*a).into()), at((*b).into())];
@@ -53,7 +53,7 @@ fn corners(shape: &Shape) -> Vec<[f64; 2]> {
     }
 }
 
-/// The shadow of every body, as each end of the array sees it, in that end's colour, out to `far_metres` from there.
+/// Draws the shadow of every body for each end of the array, in that end's colour, out to `far_metres` from the end.
 pub fn shadows(
     painter: &Painter,
     at: &dyn Fn(Place) -> Pos2,
@@ -75,8 +75,8 @@ pub fn shadows(
     }
 }
 
-/// What a shape hides from a place, out to `far_metres` from there: its outermost corners on both sides, and what lies behind them.
-/// `None` from within.
+/// The shadow of a shape for a viewer at `from`, out to `far_metres` from there: its outermost corners on both sides, and the places behind
+/// them. `None` from within.
 fn behind(from: [f64; 2], shape: &Shape, far_metres: f64) -> Option<[[f64; 2]; 4]> {
     let (centre, radius) = shape.around();
     let to = [centre[0] - from[0], centre[1] - from[1]];
@@ -100,7 +100,7 @@ fn behind(from: [f64; 2], shape: &Shape, far_metres: f64) -> Option<[[f64; 2]; 4
     Some([*left, *right, beyond(right), beyond(left)])
 }
 
-/// Where each end of the array sees bodies shine, in that end's colour; paler where something stands before it.
+/// Draws the glints of bodies for each end of the array, in that end's colour; paler where something stands before them.
 pub fn glints(painter: &Painter, at: &dyn Fn(Place) -> Pos2, radar: &Radar, scene: &Scene, colours: [Color32; 2]) {
     let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();
     if bodies == 0 || bodies > MAX_BODIES {
@@ -118,7 +118,7 @@ pub fn glints(painter: &Painter, at: &dyn Fn(Place) -> Pos2, radar: &Radar, scen
     }
 }
 
-/// Places where the middle of `end` sees glints, posts and double bounces, each with the part of the amplitude that nothing hides.
+/// Places of the glints, posts and double bounces for the middle of `end`, each with the part of the amplitude that nothing hides.
 pub fn shining(radar: &Radar, seen: &[SeenObject], end: End) -> Vec<(Place, f64)> {
     let antennas = AntennaPlaces::at([radar.end_centre_metres(end), 0.0]);
     let shines = |echo: &PathEcho| matches!(echo.kind, EchoKind::Glint | EchoKind::Post | EchoKind::DoubleBounce);

@@ -1,4 +1,4 @@
-//! How the scene is drawn: ground, rings, spokes, array, objects, grips.
+//! Drawings of the scene: ground, rings, spokes, array, objects, grips.
 
 use super::bodies;
 use crate::app::state::{Cursor, SceneView};
@@ -14,34 +14,33 @@ use std::f64::consts::PI;
 /// Most reflectors that are drawn of one object.
 const DOTS: usize = 400;
 
-/// What the marks of both ends take beside the middle of the array, points.
+/// Width of the marks of both ends beside the middle of the array, points.
 const ENDS_MARKS: f32 = 22.0;
 
 /// Least gap between the labels of two rings, points.
 const BETWEEN_LABELS: f32 = 5.0;
 
-/// Where the canvas is, and what part of the scene it shows.
+/// Rectangle of the canvas, and the part of the scene that it shows.
 #[derive(Clone, Copy)]
 pub struct Canvas<'a> {
-    /// On screen.
+    /// Rectangle on screen.
     pub rect: Rect,
-    /// The visible part.
+    /// The visible part of the scene.
     pub view: SceneView,
     pub radar: &'a Radar,
-    /// How far the radar is drawn to see.
+    /// Largest range that is drawn.
     pub extent_metres: f64,
-    /// Colours.
     pub inks: Inks,
 }
 
 impl Canvas<'_> {
-    /// Where a place of the scene appears.
+    /// Place on screen of a place of the scene.
     pub fn at(&self, place: Place) -> Pos2 {
         self.view.to_screen(self.rect, place)
     }
 }
 
-/// Everything that doesn't move: ground, rings, spokes, fields of view, array.
+/// Draws everything that doesn't move: ground, rings, spokes, fields of view, array.
 pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool, numbers: bool) {
     let Canvas { rect, view, radar, extent_metres: extent, mut inks } = canvas;
     painter.rect_filled(rect, 0.0, inks.beyond);
@@ -99,7 +98,7 @@ fn rings(painter: &Painter, canvas: Canvas<'_>) {
     let step = ranges.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(1.0);
     let last = ranges.last().copied();
     let origin = view.to_screen(rect, Place::new(0.0, 0.0));
-    // How far from the middle the next label may reach: the outermost first, and none into the ends' marks.
+    // Distance from the middle that the next label may reach: the outermost first, and none into the ends' marks.
     let mut free = f32::INFINITY;
     for range in ranges.into_iter().rev().filter(|r| *r > 0.0) {
         painter.add(Shape::line(half_disc(view, rect, Place::new(0.0, 0.0), range), thin));
@@ -116,7 +115,7 @@ fn rings(painter: &Painter, canvas: Canvas<'_>) {
     }
 }
 
-/// What one end can see: its unambiguous angles out to the maximum range (thesis figure 5-6).
+/// Draws the field of view of one end: its unambiguous angles out to the maximum range (thesis figure 5-6).
 fn field_of_view(painter: &Painter, canvas: Canvas<'_>, end: End, colour: Color32) {
     let Canvas { rect, view, radar, extent_metres, .. } = canvas;
     let centre = Place::new(radar.end_centre_metres(end), 0.0);
@@ -127,7 +126,7 @@ fn field_of_view(painter: &Painter, canvas: Canvas<'_>, end: End, colour: Color3
     painter.add(Shape::closed_line(outline, Stroke::new(1.2, colour.gamma_multiply(0.7))));
 }
 
-/// The array to scale on the x axis, its ends in their colours with markers that stay visible when it is small.
+/// Draws the array to scale on the x axis, its ends in their colours with markers that stay visible when the array is small.
 fn array(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, inks: Inks) {
     let at = |x: f64| view.to_screen(rect, Place::new(x, 0.0));
     let half = radar.aperture_metres() / 2.0;
@@ -145,16 +144,14 @@ fn array(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, inks: In
     }
 }
 
-/// How an object is drawn.
+/// Highlighting of an object.
 #[derive(Clone, Copy)]
 pub struct Look {
-    /// Whether it is selected.
     pub selected: bool,
-    /// Whether the pointer is over it.
     pub hovered: bool,
 }
 
-/// An object, as it is when selected, hovered or neither.
+/// Draws an object: selected, hovered or neither.
 pub fn object(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look) {
     let (Canvas { view, inks, .. }, Look { selected, hovered }) = (canvas, look);
     let colour = if selected { inks.selected } else { inks.reflector };
@@ -205,7 +202,7 @@ pub fn object(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look
     }
 }
 
-/// An arrow to where an object will be in a second.
+/// Draws an arrow to the place of an object a second later.
 pub fn velocity(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look) {
     if !object.is_moving() {
         return;
@@ -213,7 +210,7 @@ pub fn velocity(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Lo
     let ([x, y], [vx, vy]) = (object.centre_metres(), object.velocity_metres_per_second());
     let (from, to) = (canvas.at(Place::new(x, y)), canvas.at(Place::new(x + vx, y + vy)));
     let colour = if look.selected { canvas.inks.selected } else { canvas.inks.reflector };
-    // Arrows far out of sight would have no head in it.
+    // A long arrow is cut, so that its head is in sight.
     let way = (to - from) * (canvas.rect.size().max_elem() / (to - from).length()).min(1.0);
     painter.arrow(from, way, Stroke::new(1.2, colour));
 }
@@ -255,7 +252,7 @@ fn turning_arrow(painter: &Painter, at: Pos2, stroke: Stroke) {
     }
 }
 
-/// Reflectors that the method found.
+/// Draws the reflectors that the method found.
 pub fn found(painter: &Painter, canvas: Canvas<'_>, found: &[Reflector]) {
     let stroke = Stroke::new(1.5, canvas.inks.found);
     for r in found.iter().take(2000) {
@@ -265,7 +262,7 @@ pub fn found(painter: &Painter, canvas: Canvas<'_>, found: &[Reflector]) {
     }
 }
 
-/// The place that the pointer has in another panel.
+/// Draws the place that the pointer has in another panel.
 pub fn cursor(painter: &Painter, canvas: Canvas<'_>, cursor: &Cursor) {
     let at = canvas.at(cursor.place);
     let stroke = Stroke::new(1.0, canvas.inks.selected.gamma_multiply(0.8));
@@ -277,14 +274,14 @@ pub fn cursor(painter: &Painter, canvas: Canvas<'_>, cursor: &Cursor) {
     painter.circle_stroke(at, 6.0, stroke);
 }
 
-/// The box that is being drawn to select what lies in it.
+/// Draws the box that is dragged to select objects.
 pub fn selection_box(painter: &Painter, canvas: Canvas<'_>, corner: Place, pointer: Pos2) {
     let colour = canvas.inks.selected;
     let rect = Rect::from_two_pos(canvas.at(corner), pointer);
     painter.rect(rect, 0.0, colour.gamma_multiply(0.12), Stroke::new(1.0, colour), egui::StrokeKind::Middle);
 }
 
-/// How many metres a bar of the scale stands for, in the corner.
+/// Draws a bar of the scale in the corner, with its length.
 pub fn scale_bar(painter: &Painter, canvas: Canvas<'_>) {
     let Canvas { rect, view, inks, .. } = canvas;
     let length = round_length(100.0 * view.metres_per_point);
@@ -300,7 +297,7 @@ fn round_length(at_most: f64) -> f64 {
     [10.0, 5.0, 2.0].into_iter().map(|m| m * decade).find(|v| *v <= at_most * 1.000_001).unwrap_or(decade)
 }
 
-/// A round length in the unit in which it has the fewest digits.
+/// Text of a round length, in the unit in which it has the fewest digits.
 fn length_text(metres: f64) -> String {
     let (length, unit) = match metres {
         m if m >= 999.0 => (m / 1e3, "km"),

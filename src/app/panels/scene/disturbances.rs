@@ -1,4 +1,4 @@
-//! What disturbs the scene, drawn where it stands.
+//! Drawings of the scene's disturbances.
 
 use super::canvas::Canvas;
 use crate::app::widgets::axes;
@@ -9,7 +9,7 @@ use eframe::egui::{Align2, Color32, Painter, Stroke, vec2};
 /// Most reflectors whose ghosts are drawn.
 const MOST_MIRRORED: usize = 400;
 
-/// Draws the wall that mirrors, what is seen in it, and the other radar.
+/// Draws the wall that mirrors, its ghosts, and the other radar.
 pub fn draw(painter: &Painter, canvas: Canvas<'_>, scene: &Scene) {
     if let Some(mirror) = &scene.disturbances.mirror {
         wall(painter, canvas, mirror);
@@ -20,7 +20,7 @@ pub fn draw(painter: &Painter, canvas: Canvas<'_>, scene: &Scene) {
     }
 }
 
-/// Where the radar hears what isn't there: three hollow marks for every reflector before the wall.
+/// Draws the ghosts of the wall: three hollow marks for every reflector before it.
 fn ghosts(painter: &Painter, canvas: Canvas<'_>, scene: &Scene, mirror: &Mirror) {
     let drawn = scene.objects.iter().filter(|object| object.reflector_count() <= MOST_MIRRORED);
     let reflectors = drawn.flat_map(Object::reflectors).take(MOST_MIRRORED);
@@ -30,7 +30,7 @@ fn ghosts(painter: &Painter, canvas: Canvas<'_>, scene: &Scene, mirror: &Mirror)
     }
 }
 
-/// The wall as far as the canvas reaches, hatched on the side that the radar doesn't see.
+/// Draws the wall as far as the canvas reaches, hatched on the side away from the radar.
 fn wall(painter: &Painter, canvas: Canvas<'_>, mirror: &Mirror) {
     let ink = canvas.inks.grid_text;
     let (sin, cos) = mirror.direction_degrees.to_radians().sin_cos();
@@ -51,7 +51,7 @@ fn wall(painter: &Painter, canvas: Canvas<'_>, mirror: &Mirror) {
     }
 }
 
-/// The other radar, with the waves it sends.
+/// Draws the other radar, with the waves it sends.
 fn radar(painter: &Painter, canvas: Canvas<'_>, interferer: &Interferer) {
     let at = canvas.at(Place::new(interferer.x_metres, interferer.y_metres));
     let ink = Color32::from_rgb(214, 72, 62);

@@ -6,7 +6,7 @@ use crate::interact::{Editor, Grip, Place, Snap, grips, hit};
 use crate::scene::Object;
 use eframe::egui::{self, Id, Rect, RectAlign, Response, Sense, Ui, vec2};
 
-/// Gives every handle a name and a place that screen readers and tests can find. The grips of what is selected take the focus: arrow keys
+/// Gives every handle a name and a place that screen readers and tests can find. The grips of selected objects take the focus: arrow keys
 /// then drag them by a range bin of `bin_metres`, with Shift by ten, with Alt by a tenth.
 pub fn show(bin_metres: f64, editor: &mut Editor, view: SceneView, ui: &Ui, rect: Rect) {
     let mut moved = None;
@@ -47,7 +47,7 @@ pub fn show(bin_metres: f64, editor: &mut Editor, view: SceneView, ui: &Ui, rect
     }
 }
 
-/// The part of the canvas that an object takes.
+/// Rectangle of an object on the canvas.
 fn on_screen(object: &Object, view: SceneView, rect: Rect) -> Rect {
     let places = match object.body() {
         Some(body) => {

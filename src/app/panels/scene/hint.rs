@@ -1,4 +1,4 @@
-//! One line over the scene that says what to do or what happened, and an arrow that shows the way.
+//! One line over the scene with a task or a result, and an arrow along the path of a drag.
 
 use super::canvas::Canvas;
 use crate::app::widgets::theme::{CAPTION, CAPTION_INK};
@@ -6,23 +6,22 @@ use crate::interact::Place;
 use eframe::egui::{FontId, Galley, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use std::sync::Arc;
 
-/// What to do, or what happened.
+/// A task, or the result of a drag.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hint {
-    /// In words.
     pub text: String,
-    /// Along which places something is to be dragged; empty where nothing is.
+    /// Places along which an object is to be dragged; empty without a drag.
     pub way: Vec<Place>,
 }
 
-/// Where the arrow begins and ends beside what it leads from and to, points.
+/// Gap between the arrow and the places at its ends, points.
 const ARROW_GAP_POINTS: f32 = 12.0;
 
 /// Length of the arrow's head, points.
 const HEAD: f32 = 11.0;
 
 impl Hint {
-    /// Draws it at the top of the scene, beneath its scale.
+    /// Draws the hint at the top of the scene, beneath the scale.
     pub fn draw(&self, painter: &Painter, canvas: Canvas<'_>) {
         let way: Vec<Pos2> = self.way.iter().map(|place| canvas.at(*place)).collect();
         arrow(painter, &way, Stroke::new(2.5, canvas.inks.selected));
@@ -31,7 +30,7 @@ impl Hint {
         painter.galley(patch.min + vec2(10.0, 5.0), galley, CAPTION_INK);
     }
 
-    /// The text, and the patch beneath it.
+    /// The laid-out text, and the rectangle beneath it.
     pub fn patch(&self, painter: &Painter, canvas: Canvas<'_>) -> (Arc<Galley>, Rect) {
         let room = (canvas.rect.width() - 32.0).max(60.0);
         let galley = painter.layout(self.text.clone(), FontId::proportional(15.0), CAPTION_INK, room);
@@ -41,7 +40,7 @@ impl Hint {
     }
 }
 
-/// An arrow along a curve, without what lies near its ends; none where the curve is short.
+/// Draws an arrow along a curve, without the parts near its ends; none where the curve is short.
 fn arrow(painter: &Painter, way: &[Pos2], stroke: Stroke) {
     let (Some(first), Some(last)) = (way.first(), way.last()) else { return };
     let is_free = |at: &&Pos2| at.distance(*first) > ARROW_GAP_POINTS && at.distance(*last) > ARROW_GAP_POINTS;

@@ -1,4 +1,4 @@
-//! The scene's canvas: what the pointer does in it.
+//! The scene panel: the canvas, with its keys and its pointer.
 
 mod behind;
 mod beyond;
@@ -23,46 +23,46 @@ use eframe::egui::{CursorIcon, Painter, PointerButton, Rect, Response, Sense, Ui
 pub use hint::Hint;
 pub use told::ScenePanel;
 
-/// What the canvas shows beside the scene.
+/// Settings and results that the canvas shows beside the scene.
 pub struct Input<'a> {
     pub radar: &'a Radar,
-    /// Range of what a single sample a chirp heard, metres: it tells none itself.
+    /// Range of the echoes in a recording of one sample a chirp, metres: the sample doesn't measure it.
     pub snapshot_range_metres: Option<f64>,
-    /// Where dragged objects come to rest.
+    /// Snapping of dragged objects.
     pub snap: Snap,
     /// Whether the ends' fields of view are drawn.
     pub fields_of_view: bool,
     /// Reflectors that the method found, where they are drawn.
     pub found: &'a [Reflector],
-    /// Whether they are those of what stood there before.
+    /// Whether the found reflectors are those of an earlier scene.
     pub found_stale: bool,
-    /// Where a search moved each object, from place to place in metres.
+    /// Places through which a search moved each object, (x, y) in metres.
     pub trails: &'a [Vec<[f64; 2]>],
-    /// Where the pointer is, in whichever panel.
+    /// Place of the pointer, in any panel.
     pub cursor: Option<Cursor>,
-    /// Why the scene can't be computed.
+    /// Reason why the scene can't be computed.
     pub error: Option<&'a str>,
-    /// Whether ranges, angles and the scale are told.
+    /// Whether ranges, angles and the scale have labels.
     pub numbers: bool,
-    /// The scene at another time than 0, and that time in seconds: it is looked at, not edited.
+    /// The scene at another time than 0, and that time in seconds; it can't be edited.
     pub moved: Option<(&'a Scene, f64)>,
-    /// What to do here at a first start, or what the first drag did.
+    /// The task at a first start, or the result of the first drag.
     pub hint: Option<Hint>,
-    /// Whether it is told what the maps make of the scene: shadows, glints, and what they show elsewhere. Not while a lesson asks for it.
+    /// Whether effects on the maps are drawn: shadows, glints, and objects that the maps show elsewhere. Not while a lesson asks for them.
     pub tells_maps: bool,
 }
 
-/// How strong marks are drawn that belong to an earlier scene.
+/// Opacity of marks that belong to an earlier scene.
 const OLD_OPACITY: f32 = 0.35;
 
-/// `painter`, paler where what it draws is `old`.
+/// `painter`, with a lower opacity where the marks are `old`.
 fn dimmed(painter: &egui::Painter, old: bool) -> egui::Painter {
     let mut painter = painter.clone();
     painter.set_opacity(if old { OLD_OPACITY } else { 1.0 });
     painter
 }
 
-/// Draws the canvas. Drags and selections go straight to the editor: as commands they would lag a frame.
+/// Draws the canvas. Drags and selections go straight to the editor, since commands would take effect a frame later.
 pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut SceneView) -> Vec<Command> {
     let mut asked = Vec::new();
     let rect = ui.available_rect_before_wrap();
@@ -124,7 +124,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     asked
 }
 
-/// What keys and pointer do to the scene.
+/// Handles keys and pointer, which edit the scene.
 fn edit(
     ui: &Ui,
     input: &Input<'_>,
@@ -142,7 +142,7 @@ fn edit(
     }
 }
 
-/// The objects with what they hide, where they shine and where they move to.
+/// Draws the objects with their shadows, glints and velocities.
 fn objects(
     painter: &Painter,
     canvas: Canvas<'_>,
@@ -166,7 +166,7 @@ fn objects(
     }
 }
 
-/// What the maps show elsewhere than it stands.
+/// Draws the warnings for objects that the maps show elsewhere, and the note on a scene at another time than 0.
 fn elsewhere(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, input: &Input<'_>, scene: &Scene) {
     let later = input.moved.map(|(_, seconds)| format!("At {seconds:.2} s. Press here to go back to 0 s and edit."));
     let scene = input.moved.map_or(scene, |(scene, _)| scene);
@@ -179,7 +179,7 @@ fn elsewhere(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, input: &Input<'_>, 
     }
 }
 
-/// What an empty scene offers, and what is wrong with this one.
+/// Writes the text of an empty scene, and the error of a scene that can't be computed.
 fn say(ui: &Ui, painter: &Painter, rect: Rect, empty: bool, error: Option<&str>) {
     if empty {
         let ink = ui.visuals().weak_text_color();
@@ -196,15 +196,15 @@ fn say(ui: &Ui, painter: &Painter, rect: Rect, empty: bool, error: Option<&str>)
     }
 }
 
-/// What labels take on each side of the half disc, points.
+/// Room for the labels on each side of the half disc, points.
 const LABELS: Vec2 = vec2(30.0, 24.0);
 
-/// How far the radar sees; somewhat beyond what a snapshot heard, whose own range bin is no more than its label.
+/// Largest range that is drawn, metres: the radar's maximum, or for a snapshot somewhat more than the range of its echoes.
 fn extent_metres(radar: &Radar, snapshot_range_metres: Option<f64>) -> f64 {
     snapshot_range_metres.map_or(radar.max_range_metres(), |range| 1.25 * range)
 }
 
-/// Shows everything the radar can see, and what else the scene holds nearby.
+/// Fits the view to the radar's ranges and to the objects nearby.
 fn fit(extent: f64, editor: &Editor, view: &mut SceneView, rect: Rect) {
     let resized = view.fitted.is_some_and(|size| size != rect.size()) && editor.dragged().is_none();
     if !(view.fit || resized) || rect.width() < 40.0 || rect.height() < 40.0 {
@@ -212,7 +212,7 @@ fn fit(extent: f64, editor: &Editor, view: &mut SceneView, rect: Rect) {
     }
     let (mut low, mut high) = (Place::new(-extent, 0.0), Place::new(extent, extent));
     if let Some((a, b)) = editor.bounds() {
-        // Things at a kilometre would make everything else a dot.
+        // An object at a kilometre would make all else a dot.
         let limit = 3.0 * extent;
         low.x_metres = low.x_metres.min(a.x_metres.max(-limit));
         low.y_metres = low.y_metres.min(a.y_metres.max(-limit) - 0.03 * extent);
@@ -242,7 +242,7 @@ fn navigate(view: &mut SceneView, ui: &Ui, rect: Rect, response: &Response) {
     }
 }
 
-/// What keys do while the canvas has the focus.
+/// Handles the keys while the canvas has the focus.
 fn keys(
     radar: &Radar,
     editor: &Editor,
@@ -265,7 +265,7 @@ fn keys(
     }
 }
 
-/// Selects, drags, draws boxes, adds points.
+/// Handles the pointer: selects, drags, draws boxes and adds points.
 fn pointer(
     ui: &Ui,
     input: &Input<'_>,
@@ -294,7 +294,7 @@ fn pointer(
             }
         }
     }
-    // What is dragged in a map is none of this panel's business.
+    // Drags in a map are handled by the map's panel.
     let dragging = response.dragged_by(PointerButton::Primary) || response.drag_stopped_by(PointerButton::Primary);
     if let (Some(_), Some(now), true) = (editor.dragged(), now, dragging) {
         editor.drag_to(view.to_scene(rect, now), input.snap);
@@ -343,7 +343,7 @@ fn context_menu(
             entry(ui, EditCommand::Add(kind, place), true, asked);
         }
         ui.separator();
-        // On empty ground there is nothing to delete; what is selected elsewhere has its entries in the menu Edit.
+        // On empty ground there is nothing to delete; objects selected elsewhere have their entries in the menu Edit.
         if on_object {
             for command in [EditCommand::Cut, EditCommand::Copy, EditCommand::Duplicate, EditCommand::Delete] {
                 entry(ui, command, true, asked);

@@ -13,7 +13,7 @@ struct Held {
     asked: Vec<Command>,
 }
 
-/// What the canvas shows where nothing is found, wrong or moved.
+/// Input of a canvas where nothing is found, wrong or moved.
 fn input(radar: &Radar) -> Input<'_> {
     Input {
         radar,
@@ -45,7 +45,7 @@ fn panel(scene: Scene) -> Harness<'static, Held> {
     panel
 }
 
-/// A point that was dragged 40 to the right.
+/// A point that was dragged 40 points of the screen to the right.
 fn dragged() -> Harness<'static, Held> {
     let mut scene = panel(Scene::of_points([(0.0, 20.0)]));
     let from = scene.get_by_label("point 1: move").rect().center();
@@ -99,7 +99,7 @@ fn ghosts_stand_where_the_radar_hears_them() {
 
 #[test]
 fn labels_stand_around_the_half_disc() {
-    // The last also shows what stands far behind the array: the half disc is small.
+    // The last case also shows a point far behind the array, so that the half disc is small.
     for (size, y_metres) in
         [([280.0, 170.0], 20.0), ([480.0, 300.0], 20.0), ([1400.0, 800.0], 20.0), ([490.0, 170.0], -30.0)]
     {
@@ -152,7 +152,7 @@ fn line(scene: &Harness<'static, Held>) -> crate::scene::Line {
     }
 }
 
-/// Drags a handle in several steps; metres per point.
+/// Drags a handle in several steps. Returns metres per point.
 fn drag(scene: &mut Harness<'static, Held>, handle: &str, by: egui::Vec2) -> f64 {
     let from = scene.get_by_label(handle).rect().center();
     scene.hover_at(from);

@@ -1,4 +1,4 @@
-//! What the scene is told.
+//! Input of the scene panel, taken from the state of the app.
 
 use super::{Input, show};
 use crate::app::content::{Content, Cx, Nothing};

@@ -1,9 +1,9 @@
-//! The way that a search took the objects.
+//! The paths along which a search moved the objects.
 
 use super::canvas::Canvas;
 use eframe::egui::{Painter, Pos2, Stroke};
 
-/// A line from place to place of every object, a ring where it began and a dot at each stop.
+/// Draws a line from place to place of every object, with a ring at its beginning and a dot at each stop.
 pub fn draw(painter: &Painter, canvas: Canvas<'_>, trails: &[Vec<[f64; 2]>]) {
     let ink = canvas.inks.selected;
     for trail in trails.iter().filter(|trail| trail.len() > 1) {

@@ -1,4 +1,4 @@
-//! Commands that put another scene on screen, or this one in a file.
+//! Commands that open, save and make documents.
 
 use crate::app::state::{LiveFrame, SaveAnswer};
 use crate::scene::generate::Kind;
@@ -7,48 +7,48 @@ use std::path::PathBuf;
 /// Another way to read the file of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Way {
-    /// By this of the layouts that are offered.
+    /// In another of the offered layouts.
     Layout(usize),
-    /// Another frame, from 0.
+    /// At another frame, from 0.
     Frame(u64),
     /// With the antennas of the board of this name.
     Board(&'static str),
 }
 
-/// Commands that put another scene on screen, or this one in a file.
+/// A command that opens, saves or makes a document.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DocumentCommand {
-    /// Start with an empty scene.
+    /// Open an empty scene.
     New,
     /// Open this scene file.
     OpenPath(PathBuf),
-    /// Save the scene where it came from, or ask where.
+    /// Save the scene in its own file, or ask for one.
     Save,
     /// Save the scene in this file.
     SaveTo(PathBuf),
-    /// Whether the scene is saved in a file that can't hold all of it, or that another program has written to.
+    /// The answer to a question before a scene is saved.
     AnswerSave(SaveAnswer),
-    /// Put this unsaved document, which another took the place of, on screen again.
+    /// Bring back the unsaved document of this id, which another one replaced.
     Recover(u64),
-    /// Give this unsaved document up.
+    /// Discard the unsaved document of this id.
     Discard(u64),
-    /// Open a scene that comes with the program.
+    /// Open the scene preset of this index.
     Preset(usize),
-    /// Open a recording that comes with the program.
+    /// Open the recording preset of this index.
     Recording(usize),
-    /// Read the file of the recording another way.
+    /// Read the recording's file in another way.
     ReadAnotherWay(Way),
-    /// Show the newest frame of the capture card that is listened to.
+    /// Show the newest frame of the capture card in use.
     ShowFrame(LiveFrame),
     /// Make a random test scene.
     RandomScene(Kind),
-    /// Which random scene is next.
+    /// Choose the next random scene.
     SetNextRandom {
-        /// Seed of its stream.
+        /// Seed of the random stream.
         seed: u64,
-        /// Its number in the stream.
+        /// Number in the stream.
         number: u32,
     },
-    /// Open such a text.
+    /// Open a text that was shared ([`crate::share`]).
     OpenShared(String),
 }

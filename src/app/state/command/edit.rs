@@ -4,14 +4,14 @@ use super::NewObject;
 use crate::interact::blob::BlobHit;
 use crate::interact::{Coordinates, Field, FieldChange, Place, SelectionMode, Snap};
 
-/// Commands that select objects and change the scene on screen.
+/// A command that selects objects or changes the scene on screen.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EditCommand {
     /// Undo the last change of the scene.
     Undo,
-    /// Redo what was undone.
+    /// Redo the last undone change.
     Redo,
-    /// End the current undo step, as when the mouse button is let go.
+    /// End the current undo step, as when the mouse button is released.
     Seal,
     /// Cut the selected objects to the clipboard.
     Cut,
@@ -27,11 +27,11 @@ pub enum EditCommand {
     Delete,
     /// Select every object.
     SelectAll,
-    /// Select these objects.
+    /// Select the objects of these indices.
     Select(Vec<usize>, SelectionMode),
-    /// Select the object after the one that was picked last.
+    /// Select the object after the one selected last.
     SelectNext,
-    /// Select the one before it.
+    /// Select the object before the one selected last.
     SelectPrevious,
     /// Change a number of every selected object.
     SetField(Field, FieldChange),
@@ -39,23 +39,23 @@ pub enum EditCommand {
     Name(String),
     /// Start dragging the object behind a blob.
     Grab(BlobHit),
-    /// Drag what is held here.
+    /// Drag the held object to this place.
     DragTo(Place),
-    /// Let go of it.
+    /// Release the held object.
     Drop,
-    /// Add an object, at a place or where there is room.
+    /// Add an object at a place, or where there is room.
     Add(NewObject, Option<Place>),
     /// Move the selected objects.
     Nudge {
-        /// Along the array.
+        /// Distance along the array.
         dx_metres: f64,
-        /// Ahead of it.
+        /// Distance ahead of the array.
         dy_metres: f64,
     },
-    /// Seed of the noise beneath the scene, which is part of it.
+    /// Set the seed of the noise beneath the scene.
     SetNoiseSeed(u64),
-    /// Where dragged objects come to rest.
+    /// Set the grid that dragged objects snap to.
     SetSnap(Snap),
-    /// In which numbers places are told and entered.
+    /// Set the coordinates in which places are shown and entered.
     SetCoordinates(Coordinates),
 }

@@ -1,12 +1,12 @@
-//! Commands that write for other programs: files and the clipboard.
+//! Commands that export files and copy to the clipboard.
 
 use crate::app::state::MapKind;
 use std::path::PathBuf;
 
-/// Commands that write for other programs: files and the clipboard.
+/// A command that exports a file or copies to the clipboard.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ExportCommand {
-    /// Save the window (.png) or the scene's panels (.svg) in this file.
+    /// Save the scene's panels as a picture (.png or .svg) in this file.
     PictureTo(PathBuf),
     /// Save the maps as NumPy arrays in this file.
     MapsTo(PathBuf),
@@ -16,8 +16,8 @@ pub enum ExportCommand {
     CopyMap(MapKind),
     /// Copy scene, radar, view, method and lesson step as one line of text.
     CopyShared,
-    /// Copy a link to the page that shows what is on screen.
+    /// Copy a link to this page that opens the scene on screen.
     CopyLink,
-    /// Copy what the evaluation found, as CSV.
+    /// Copy the evaluation's rows of the test sets, as CSV.
     CopyEvaluation,
 }

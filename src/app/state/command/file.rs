@@ -1,8 +1,8 @@
-//! What files are asked for: how they are called and how their names end.
+//! Purposes of file dialogs, with their titles, kinds of files and endings.
 
 use std::path::{Path, PathBuf};
 
-/// What is known of a purpose.
+/// Texts of a purpose, as its line of the list has them.
 struct PurposeFacts {
     title: &'static str,
     kind: &'static str,
@@ -10,11 +10,10 @@ struct PurposeFacts {
     name: &'static str,
 }
 
-/// The list of purposes. A line has a purpose's name, the dialog's title, what the files are, how their names may end, and the usual name where
-/// the file is written.
+/// The list of purposes. A line has a purpose's name, the dialog's title, the kind of the files, their endings, and the usual name of a file that is written.
 macro_rules! purposes {
     ($($(#[$meta:meta])* $purpose:ident $(($payload:ty))?: $title:literal, $kind:literal $endings:expr, $name:literal;)*) => {
-        /// What a file is asked for.
+        /// The purpose of a file dialog.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Purpose {
             $($(#[$meta])* $purpose $(($payload))?,)*
@@ -45,19 +44,19 @@ purposes! {
     OpenLog: "Open the log of a training", "Table" ["csv"], "";
     /// A lesson to begin.
     OpenLesson: "Open a lesson", "Lessons" ["toml"], "";
-    /// Where the scene is to be saved.
+    /// The file to save the scene in.
     SaveScene: "Save the scene", "Scenes" ["toml", "npz"], "scene.toml";
-    /// Where a picture is to be written.
+    /// The file to write a picture in.
     ExportPicture: "Export a picture", "Picture" ["png", "svg"], "apertura.png";
-    /// Where the maps are to be written.
+    /// The file to write the maps in.
     ExportMaps: "Export the maps", "NumPy arrays" ["npz"], "maps.npz";
-    /// Where the figures are to be written.
+    /// The file to write the figures in.
     ExportMetrics: "Export the metrics", "Table" ["csv"], "metrics.csv";
     /// Rows of an evaluation to show.
     OpenRows: "Open rows of an evaluation", "Table" ["csv"], "";
-    /// Where the rows are to be saved.
+    /// The file to save the rows in.
     SaveRows: "Save the rows", "Table" ["csv"], "rows.csv";
-    /// A scene of the folder of one's own.
+    /// A scene of the user's own folder, which chooses the folder.
     OwnScenes: "Open any scene of your folder", "Scenes" ["toml", "npz"], "";
 }
 
@@ -72,7 +71,7 @@ impl Purpose {
         self.facts().title
     }
 
-    /// What such files are, and how their names may end.
+    /// Name of the kind of files, and their endings.
     pub fn kind(self) -> (&'static str, &'static [&'static str]) {
         let PurposeFacts { kind, endings, .. } = self.facts();
         (kind, endings)
@@ -83,10 +82,10 @@ impl Purpose {
         self.facts().name
     }
 
-    /// The file that is written where `path` was chosen: with the usual ending where it has none.
+    /// The file to write for a chosen `path`: with the usual ending where it has none.
     ///
     /// # Errors
-    /// A sentence with the endings that there are, where it has another.
+    /// A sentence with the known endings, where `path` has another.
     pub fn destination(self, path: PathBuf) -> Result<PathBuf, String> {
         let endings = self.kind().1;
         match path.extension() {
@@ -97,7 +96,7 @@ impl Purpose {
         }
     }
 
-    /// What is said of a file with another ending.
+    /// The message about a file with an unknown ending.
     pub fn unknown_ending(self, path: &Path) -> String {
         let endings: Vec<String> = self.kind().1.iter().map(|ending| format!(".{ending}")).collect();
         format!("{}: nothing is written with this ending; expected {}", path.display(), endings.join(" or "))

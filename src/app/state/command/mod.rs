@@ -1,5 +1,5 @@
-//! Everything a button, a menu entry, a shortcut, the palette or a panel can ask for, in groups. Each group has a file here, which says
-//! what can be asked, and one of the same name in `app::apply`, which does it.
+//! Every command that a button, a menu entry, a shortcut, the palette or a panel can send, in groups. Each group has a file here and one of the same name in
+//! `app::apply`, which does the commands.
 
 mod document;
 mod edit;
@@ -47,7 +47,7 @@ pub enum NewObject {
 }
 
 impl NewObject {
-    /// All of them, in the order of menus.
+    /// All kinds, in the order of menus.
     pub const ALL: [NewObject; 7] = [
         NewObject::Point,
         NewObject::Line,
@@ -59,7 +59,7 @@ impl NewObject {
     ];
 }
 
-/// The rate of false alarms that a threshold is to keep, and the scenes to try the method on.
+/// The required rate of false alarms for a threshold, and the scenes to try the method on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThresholdChoice {
     /// The rate, percent of the target's dark cells.
@@ -70,34 +70,34 @@ pub struct ThresholdChoice {
     pub count: u32,
 }
 
-/// Something the app can do.
+/// A command to the app.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
-    /// Put another scene on screen, or this one in a file.
+    /// Open, save or make a document.
     Document(DocumentCommand),
     /// Select objects, or change the scene.
     Edit(EditCommand),
-    /// Change the radar or what disturbs it.
+    /// Change the radar, its elements or other disturbances.
     Radar(RadarCommand),
-    /// Look at the scene in another way.
+    /// Change the view of scene and maps.
     View(ViewCommand),
-    /// Try methods on many scenes, or look at what came of it.
+    /// Try methods on many scenes, or use their rows.
     Rows(RowsCommand),
     /// Take a lesson.
     Lesson(LessonCommand),
     /// Start long work or stop it.
     Work(WorkCommand),
-    /// Write for other programs.
+    /// Export a file or copy to the clipboard.
     Export(ExportCommand),
     /// Arrange the window.
     Window(WindowCommand),
-    /// Ask for a file, and do with it what it is asked for.
+    /// Ask for a file, then do the command of its purpose.
     AskFile(Purpose),
-    /// Do these for the guide: undo takes back the settings they change, too.
+    /// Do the commands of a button of the guide; one undo takes back changed settings, too.
     Guided(Vec<Command>),
 }
 
-/// A command of a group is a command.
+/// Conversion of each group's commands to [`Command`].
 macro_rules! groups {
     ($($group:ident($commands:ident)),*) => {$(
         impl From<$commands> for Command {
@@ -122,7 +122,7 @@ groups!(
 );
 
 impl Purpose {
-    /// What is done with the file that was asked for.
+    /// The command for the chosen file.
     pub fn command(self, path: PathBuf) -> Command {
         match self {
             Purpose::Open => DocumentCommand::OpenPath(path).into(),

@@ -1,24 +1,24 @@
-//! Commands that change the radar before the scene, its elements, and what else disturbs it.
+//! Commands that change the radar, its elements, and other disturbances of the scene.
 
 use crate::radar::{BuiltArray, Carrier, Radar, WindowFunction};
 use crate::scene::{Interferer, Mirror};
 use std::sync::Arc;
 
-/// Commands that change the radar before the scene, its elements, and what else disturbs it.
+/// A command that changes the radar, its elements, or other disturbances of the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RadarCommand {
-    /// This radar before the scene.
+    /// Set the radar.
     Set(Box<Radar>),
-    /// A radar of the list of presets.
+    /// Set the radar preset of this index.
     Preset(usize),
-    /// How the carrier's phase is read.
+    /// Set the convention of the carrier's phase.
     SetCarrier(Carrier),
-    /// Which window both transforms use.
+    /// Set the window of both transforms.
     SetWindow(WindowFunction),
-    /// Elements as they are built.
+    /// Set the errors of the elements.
     SetElements(Arc<BuiltArray>),
-    /// Another radar that sends at the same time, or none.
+    /// Set or remove an unsynchronised radar.
     SetInterferer(Option<Interferer>),
-    /// A wall that mirrors, or none.
+    /// Set or remove a wall that mirrors.
     SetMirror(Option<Mirror>),
 }

@@ -1,37 +1,37 @@
-//! Commands about the rows of the panel Evaluate: try methods, open a row, look for worse scenes, keep scenes.
+//! Commands on the rows of the panel Evaluate: try methods, open a row, search for worse scenes, keep scenes.
 
 use crate::app::state::{FailureChoice, SearchChoice};
 use std::path::PathBuf;
 
-/// Commands about the rows of the panel Evaluate: try methods, open a row, look for worse scenes, keep scenes.
+/// A command on the rows of the panel Evaluate: try methods, open a row, search for worse scenes, keep scenes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RowsCommand {
     /// Try methods on scenes, row by row.
     Try(FailureChoice),
-    /// Stop trying; the rows stay.
+    /// Stop the trial of methods; the rows stay.
     CancelTrying,
     /// Show the rows of this file.
     OpenFile(PathBuf),
-    /// Show what this CSV file holds: rows, or the log of a training.
+    /// Show a CSV file: rows, or the log of a training.
     OpenTable(PathBuf),
     /// Save the rows as CSV in this file.
     SaveTo(PathBuf),
-    /// Forget every row.
+    /// Remove every row.
     Clear,
-    /// Bring the rows back that others took the place of.
+    /// Bring back the rows last replaced.
     BringBack,
-    /// Put the scene of this row on screen, with its floor and method.
+    /// Open the scene of the row of this index, with its floor and method.
     Show(usize),
-    /// Look for a worse scene near the one on screen, or for its repair.
+    /// Search for a worse scene near the one on screen, or for its repair.
     Search(SearchChoice),
-    /// Stop looking; what was found stays.
+    /// Stop the search; its findings stay.
     CancelSearch,
-    /// Put what the search found on screen.
+    /// Put the search's last finding on screen.
     TakeFinding,
-    /// Forget the search and its path.
+    /// Drop the search and its path.
     ForgetSearch,
-    /// Keep the scene on screen among one's own, with this note.
+    /// Keep the scene on screen in the user's own folder, with this note.
     KeepScene(String),
-    /// The folder of one's own scenes is the one that this file lies in.
+    /// Make the folder of this file the user's own folder of scenes.
     SetOwnScenes(PathBuf),
 }

@@ -1,4 +1,4 @@
-//! Commands that change how the scene is looked at: which maps, by which method, and what is drawn over them.
+//! Commands that change the view of the scene: maps, method and marks.
 
 use crate::app::state::{
     BoundsSettings, ChirpSettings, Compare, Cursor, Directions, PhasorSettings, Projection, Several, Units,
@@ -9,97 +9,97 @@ use crate::picture::ColourMap;
 use crate::radar::LayoutKind;
 use crate::signal::Floor;
 
-/// Commands that change how the scene is looked at: which maps, by which method, and what is drawn over them.
+/// A command that changes the view of the scene: maps, method or marks.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ViewCommand {
-    /// The pointer is here, in whichever panel.
+    /// Set the pointer's place, from any panel.
     Hover(Cursor),
     /// Show the whole scene.
     FitScene,
     /// Show whole maps.
     ResetMaps,
-    /// Range-angle or Cartesian maps, the other way round.
+    /// Switch between range-angle and Cartesian maps.
     ToggleProjection,
-    /// Range-angle or Cartesian maps.
+    /// Set the coordinates of the maps.
     SetProjection(Projection),
-    /// Lambda or decibels, the other way round.
+    /// Switch between Lambda and decibels.
     ToggleUnits,
-    /// Lambda or decibels on colour bars, cuts, readouts and thresholds.
+    /// Set Lambda or decibels on colour bars, cuts, readouts and thresholds.
     SetUnits(Units),
-    /// cos θ or degrees along the axis of directions.
+    /// Set cos θ or degrees along the axis of directions.
     SetDirections(Directions),
-    /// Inputs, target and output on one scale or each on its own, the other way round.
+    /// Switch between a common scale for inputs, target and output, and one for each.
     ToggleOneScale,
-    /// Maps of few elements on 256 columns or on as many as they have, the other way round.
+    /// Switch maps of few elements between 256 columns and their own number.
     ToggleFineColumns,
-    /// The difference with its sign or without, the other way round.
+    /// Switch between the signed and the absolute difference.
     ToggleAbsoluteDifference,
-    /// The difference on a scale that just holds it or on one up to 1, the other way round.
+    /// Switch the difference's scale between the smallest that holds it and one up to 1.
     ToggleWholeDifference,
-    /// Keep the cuts that are shown while the cursor moves.
+    /// Pin the cuts that are shown; they stay while the cursor moves.
     PinCuts,
-    /// Let the pinned cuts of this number go.
+    /// Unpin the cuts of this index.
     Unpin(usize),
-    /// Let all pinned cuts go.
+    /// Unpin all cuts.
     UnpinAll,
-    /// Colours of the maps.
+    /// Set the maps' colours.
     Colours(ColourMap),
-    /// How maps are normalised.
+    /// Set the normalisation of maps.
     Normalise(Normalisation),
-    /// What lies beneath the reflectors.
+    /// Set the floor beneath the reflectors.
     SetFloor(Floor),
-    /// eta', the threshold of the target.
+    /// Set eta', the threshold of the target.
     SetTargetEta(f32),
-    /// The detector in the place of the thresholds; the thresholds where `None`.
+    /// Set the detector in place of the thresholds; `None` for thresholds.
     SetCfar(Option<Cfar>),
-    /// Detect by a constant false-alarm rate after this statistic, or by thresholds, with the cells that were chosen last.
+    /// Detect at a constant false-alarm rate by this statistic, with the last chosen cells, or by thresholds where `None`.
     Detect(Option<Statistic>),
-    /// eta of the method of this name; its own where `None`.
+    /// Set eta of the method of this name; its own where `None`.
     SetMethodEta(&'static str, Option<f32>),
-    /// What bounds are computed for.
+    /// Set the settings of the bounds.
     SetBounds(BoundsSettings),
-    /// Which phasors are drawn.
+    /// Set the settings of the phasors.
     SetPhasors(PhasorSettings),
-    /// Look at the scene at this time, seconds.
+    /// Set the time of the scene, seconds.
     SetTime(f64),
-    /// Let time go on by itself, or stop it.
+    /// Play or stop the scene's motion or the recording's frames.
     TogglePlay,
-    /// Whether range-Doppler maps of recordings leave out what stands still.
+    /// Set whether range-Doppler maps of recordings leave out static clutter.
     TakeOutStaticClutter(bool),
-    /// Which element's chirp is drawn, and how long it lasts.
+    /// Set the settings of the chirp.
     SetChirp(ChirpSettings),
-    /// List the panels for developers in menus, or not.
+    /// Switch whether menus list the panels for developers.
     ToggleDeveloper,
-    /// Draw true reflectors over the maps.
+    /// Show the true reflectors on the maps.
     MarkReflectors,
-    /// Draw true reflectors over the maps or not.
+    /// Switch the true reflectors on the maps.
     ToggleReflectors,
-    /// Draw the reflectors that the method found or not.
+    /// Switch the method's reflectors on the maps.
     ToggleFound,
-    /// Draw the ends' fields of view or not.
+    /// Switch the ends' fields of view.
     ToggleFieldsOfView,
-    /// Draw over the maps what the formulas say of the selected reflector, or not.
+    /// Switch the theory of the selected reflector on the maps.
     ToggleTheory,
-    /// Mark every object by what became of it in the output.
+    /// Show the fate of every object in the output.
     MarkKinds,
-    /// Mark every object by what became of it in the output, or not.
+    /// Switch the fate of every object in the output.
     ToggleKinds,
-    /// Which map is shown several times, and what differs.
+    /// Set the settings of several maps.
     SetSeveral(Box<Several>),
-    /// Which two methods and maps are compared, and how.
+    /// Set the settings of the comparison.
     SetCompare(Box<Compare>),
-    /// Put the other of two compared maps in the place of the one on screen.
+    /// Show the other one of two compared maps.
     Flip,
-    /// Reconstruct with the method of this name.
+    /// Set the method by its name.
     Method(&'static str),
-    /// Let methods hear these elements; the two ends where `None`.
+    /// Set the elements that methods use; the two ends where `None`.
     Hear(Option<LayoutKind>),
-    /// The next reconstruction method.
+    /// Select the next method.
     NextMethod,
 }
 
 impl ViewCommand {
-    /// What switches each of the things that are drawn over maps.
+    /// The switches of marks drawn over maps.
     pub const OVERLAYS: [ViewCommand; 4] =
         [ViewCommand::ToggleReflectors, ViewCommand::ToggleFound, ViewCommand::ToggleTheory, ViewCommand::ToggleKinds];
 }

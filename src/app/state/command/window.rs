@@ -2,28 +2,28 @@
 
 use crate::app::state::{HelpPage, Panel, Task};
 
-/// Commands that arrange the window.
+/// A command that arranges the window.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WindowCommand {
-    /// Select nothing, end maximising, close the palette.
+    /// End a drag, a maximised panel or a presentation, or select nothing.
     Escape,
-    /// Hide a panel that is in sight, or bring it into sight.
+    /// Hide a panel in sight, or show any other in front.
     TogglePanel(Panel),
     /// Hide a panel.
     ClosePanel(Panel),
     /// Show a panel, in front.
     OpenPanel(Panel),
-    /// Put this view in front of the tile that it shares with others.
+    /// Bring a view to the front of its shared tile.
     OpenView(Panel),
     /// Let a panel fill the window, or end that.
     Maximise(Panel),
-    /// Arrange the panels for a task, as they were left when it was on screen last.
+    /// Switch to the panels of a task, as the user left them.
     ArrangeFor(Task),
-    /// Put all panels where they were at first.
+    /// Restore the default arrangement.
     ResetLayout,
-    /// The scene and the maps in large type, or everything as before.
+    /// Begin or end a presentation of the scene and the maps in large type.
     Present,
-    /// Say on the maps and the scene what they show, or no longer.
+    /// Switch the captions on the maps and the scene.
     ToggleCaptions,
     /// Show a page of help.
     Help(HelpPage),
@@ -31,13 +31,13 @@ pub enum WindowCommand {
     CloseHelp,
     /// Close every message.
     CloseMessages,
-    /// Light or dark.
+    /// Switch between light and dark.
     ToggleTheme,
-    /// Larger interface.
+    /// Enlarge the interface.
     ZoomIn,
-    /// Smaller interface.
+    /// Shrink the interface.
     ZoomOut,
-    /// Interface at its normal size.
+    /// Reset the interface to its normal size.
     ZoomReset,
     /// Show or hide the palette of commands.
     Palette,

@@ -1,28 +1,28 @@
-//! Commands that start long work, or stop it.
+//! Commands that start or stop long work.
 
 use super::ThresholdChoice;
 use crate::app::state::CardPlan;
 use std::path::PathBuf;
 
-/// Commands that start long work, or stop it.
+/// A command that starts or stops long work.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WorkCommand {
-    /// Stop the reconstruction that runs.
+    /// Cancel the reconstruction under way.
     CancelMethod,
-    /// Stop the second method's reconstruction.
+    /// Cancel the second method's reconstruction.
     CancelSecond,
-    /// Look for the threshold at which the method in use keeps a rate of false alarms, and set it.
+    /// Search for the threshold at which the method in use has a given rate of false alarms, and set it.
     FindThreshold(ThresholdChoice),
-    /// Stop that; the threshold stays as it is.
+    /// Cancel the search; the threshold stays.
     CancelThreshold,
     /// Measure run time against error.
     Measure {
-        /// Every algorithm and more reflectors, for about a minute.
+        /// Whether to measure every algorithm with more reflectors, for about a minute.
         thorough: bool,
     },
-    /// Stop measuring.
+    /// Cancel the measurement.
     CancelMeasurement,
-    /// Watch this log of a training.
+    /// Follow this log of a training.
     WatchLog(PathBuf),
     /// Listen to a capture card, and show its newest frame.
     Listen(CardPlan),

@@ -1,23 +1,23 @@
-//! One line of the list of commands, and the keys it may have.
+//! A line of the list of commands, and its key.
 
 use super::super::command::Command;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use std::borrow::Cow;
 
-/// A command that needs nothing more than to be chosen.
+/// A command of the list, complete without further input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
-    /// What it is.
+    /// The command.
     pub command: Command,
     /// Name in menus and the palette.
     pub name: Cow<'static, str>,
     /// One sentence for tooltips.
     pub tooltip: &'static str,
-    /// The key that runs it, if one does.
+    /// Its shortcut, if it has one.
     pub key: Option<KeyboardShortcut>,
 }
 
-/// Commands as the lines of a table: what each is, its name, its sentence for tooltips, and its key.
+/// Commands as the lines of a table: command, name, sentence for tooltips, key.
 macro_rules! entries {
     ($($command:expr, $name:literal, $tooltip:literal, $key:expr;)*) => { &[$(entry($command, $name, $tooltip, $key)),*] };
 }

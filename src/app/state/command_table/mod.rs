@@ -1,4 +1,4 @@
-//! The one list of commands: what each is called, what it does, and its key. Menus, tooltips, shortcuts and the palette read it.
+//! The list of commands with their names, tooltips and keys, for menus, tooltips, shortcuts and the palette.
 
 mod entry;
 mod scenes;
@@ -20,7 +20,7 @@ use eframe::egui::{Key, KeyboardShortcut};
 use entry::{alt, command, key, named};
 use std::sync::OnceLock;
 
-/// Keys of [`Task::ALL`], with Alt.
+/// Keys of [`Task::ALL`], pressed with Alt.
 const TASK_KEYS: [Key; 4] = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
 
 fn arrange(task: Task, digit: Key) -> Entry {
@@ -39,7 +39,7 @@ fn random(kind: Kind) -> Entry {
     named(Command::Document(DocumentCommand::RandomScene(kind)), name, tooltip, key)
 }
 
-/// What shows and hides each panel, pages of help, what lets a panel fill the window, and what copies a map.
+/// Commands that show and hide each panel, open pages of help, maximise a panel, and copy a map.
 fn of_panels() -> Vec<Entry> {
     let toggle = |panel: Panel| {
         let name = format!("Show or hide: {}", panel.title());
@@ -70,19 +70,19 @@ fn preset((index, preset): (usize, &presets::Preset)) -> Entry {
     named(Command::Document(DocumentCommand::Preset(index)), name, tooltip, None)
 }
 
-/// Every command of the table, of every panel, of every kind of random scene and of every preset, in the order the palette lists them, as far as
-/// there are such here. The methods are not among them: they are the app's.
+/// Every command of the table, of the panels, of the kinds of random scenes and of the presets, in the order of the palette. The list has those that a desktop
+/// or a page offers. Methods are not in it: each app has its own.
 pub fn listed() -> &'static [Entry] {
     static LISTED: OnceLock<Vec<Entry>> = OnceLock::new();
     LISTED.get_or_init(|| listed_where(if platform::IN_A_BROWSER { on_a_page } else { on_a_desktop }))
 }
 
-/// The same of a page in a browser, wherever this program runs.
+/// The commands that a page in a browser offers, also in a desktop program.
 pub fn listed_on_a_page() -> Vec<Entry> {
     listed_where(on_a_page)
 }
 
-/// The commands of [`everything`] that `keys` offers here, each with the key that it gives them.
+/// The commands of [`everything`] for which `keys` returns `Some`, each with the key inside.
 fn listed_where(keys: impl Fn(&Command, Option<KeyboardShortcut>) -> Option<Option<KeyboardShortcut>>) -> Vec<Entry> {
     everything()
         .into_iter()
@@ -90,7 +90,7 @@ fn listed_where(keys: impl Fn(&Command, Option<KeyboardShortcut>) -> Option<Opti
         .collect()
 }
 
-/// Every command, whether a desktop has it or a page.
+/// Every command of desktops and pages.
 fn everything() -> Vec<Entry> {
     let radar = |(index, preset): (usize, &RadarPreset)| {
         named(Command::Radar(RadarCommand::Preset(index)), format!("Radar: {}", preset.name), preset.about, None)
@@ -110,7 +110,7 @@ fn everything() -> Vec<Entry> {
     all
 }
 
-/// The commands that have a key, longer shortcuts first: Ctrl+Shift+Z would also match Ctrl+Z.
+/// The commands with a key, those with Shift or Alt first: Ctrl+Shift+Z would also match Ctrl+Z.
 pub fn shortcuts() -> &'static [(KeyboardShortcut, Command)] {
     static SHORTCUTS: OnceLock<Vec<(KeyboardShortcut, Command)>> = OnceLock::new();
     SHORTCUTS.get_or_init(|| {
@@ -121,7 +121,7 @@ pub fn shortcuts() -> &'static [(KeyboardShortcut, Command)] {
 }
 
 impl Command {
-    /// Its line of the list, where it has one: what is added or closed somewhere in particular is called as anywhere.
+    /// The command's line of the list, where it has one. Adding at a place has the line of adding anywhere; opening or closing a panel has its switch's.
     pub fn entry(&self) -> Option<&'static Entry> {
         let like = match self {
             Command::Edit(EditCommand::Add(kind, _)) => Command::Edit(EditCommand::Add(*kind, None)),

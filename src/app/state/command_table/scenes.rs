@@ -6,7 +6,7 @@ use crate::interact::Coordinates;
 use crate::recording::card::USUAL_PORT;
 use eframe::egui::Key;
 
-/// In the order in which the palette lists them.
+/// The commands, in the order of the palette.
 pub(super) const COMMANDS: &[Entry] = {
     use Command::*;
     entries! {

@@ -1,4 +1,4 @@
-//! Commands that choose what is shown: maps, scales, the floor, the detector, the radar's signal, colours, lessons and the window itself.
+//! Commands for maps, scales, the floor, the detector, the radar's signal, colours, lessons and the window.
 
 use super::super::command::{Command, LessonCommand, Purpose, RadarCommand, ViewCommand, WindowCommand, WorkCommand};
 use super::super::{Directions, Projection, Units};
@@ -10,7 +10,7 @@ use crate::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
 use crate::signal::Floor;
 use eframe::egui::Key;
 
-/// In the order in which the palette lists them.
+/// The commands, in the order of the palette.
 pub(super) const COMMANDS: &[Entry] = {
     use Command::*;
     entries! {

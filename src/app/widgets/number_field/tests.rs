@@ -4,7 +4,7 @@ use eframe::egui::{Event, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-/// A field for x, one for a count, and how often the first asked for another x.
+/// A field for x, a field for a count, and the number of changes of x.
 struct Shown {
     x_metres: f64,
     count: u32,
@@ -109,7 +109,7 @@ fn a_wrong_entry_stays_in_the_field() {
     enter(&mut panel, "x", "abc");
     assert_eq!(field(&panel, "x").value().as_deref(), Some("abc"));
     assert!(says(&panel, "Enter a number from −10000 to 10000 m."));
-    // A click elsewhere takes the focus away, not the entry.
+    // A click elsewhere removes the focus, but keeps the entry.
     panel.get_by_label("count").click();
     panel.run();
     assert_eq!(field(&panel, "x").value().as_deref(), Some("abc"));

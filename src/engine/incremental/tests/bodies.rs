@@ -1,4 +1,4 @@
-//! Scenes of bodies: what moves is computed again, with what it hides or reveals.
+//! Scenes of bodies: a moved body is computed again with the objects that it hides or reveals.
 
 use super::*;
 use crate::scene::{Block, Post, Wall};

@@ -1,4 +1,4 @@
-//! What a dataset is made of.
+//! The manifest of a dataset.
 
 use crate::radar::Radar;
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ pub const VERSION: u32 = 2;
 /// Name of the manifest in the dataset's folder.
 pub const FILE_NAME: &str = "manifest.json";
 
-/// What a dataset holds and what made it.
+/// Contents and origin of a dataset.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of the format.
@@ -21,14 +21,14 @@ pub struct Manifest {
     pub seed: u64,
     /// Kinds of scenes: example `i` of a split is of kind `i % kinds`.
     pub kinds: Vec<String>,
-    /// What lies beneath the echoes.
+    /// Floor of the scenes.
     pub floor: String,
     /// The radar; none where each example has its own.
     pub radar: Option<Radar>,
-    /// The elements that are heard in the place of the two ends.
+    /// Numbers of the elements whose samples replace those of the two ends.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<Vec<usize>>,
-    /// The elements that are off: their share of the scenes, and the largest tolerances in decibels, degrees and millimetres. None where all are ideal.
+    /// The errors of elements: their share of the scenes, and the largest tolerances in decibels, degrees and millimetres. None where all elements are exact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elements: Option<[f64; 4]>,
     /// Type and axes of each array.
@@ -40,35 +40,35 @@ pub struct Manifest {
 /// An array of a shard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ArrayEntry {
-    /// NumPy's name of its numbers.
+    /// NumPy's name of the array's type.
     pub dtype: String,
-    /// Names of its axes; the first is the example.
+    /// Names of the array's axes; the first is the example.
     pub axes: Vec<String>,
-    /// Its shape behind the first axis.
+    /// The array's shape behind the first axis.
     pub shape: Vec<usize>,
 }
 
 /// A shard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShardEntry {
-    /// How many examples it has.
+    /// Number of examples.
     pub examples: u32,
     /// Kind of each example.
     pub kinds: Vec<String>,
     /// Radar of each example, where each has its own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub radars: Vec<Radar>,
-    /// Its files by array.
+    /// The shard's files by array.
     pub files: BTreeMap<String, FileEntry>,
 }
 
 /// A file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FileEntry {
-    /// Its name from the dataset's folder on.
+    /// The file's path from the dataset's folder.
     pub name: String,
-    /// How long it is.
+    /// Length of the file.
     pub bytes: u64,
-    /// SHA-256 of it.
+    /// SHA-256 of the file, hexadecimal.
     pub sha256: String,
 }

@@ -1,7 +1,7 @@
 //! Examples on disk, for programs that read files: shards of NumPy arrays in three splits, and a manifest with their hashes.
 //!
 //! ```text
-//! DIR/manifest.json                 format, what made it, the files of each split with their SHA-256
+//! DIR/manifest.json                 format, origin, the files of each split with their SHA-256
 //! DIR/train/00000.ends.npy          complex128 [examples, 2, 12, 512]; of a layout 00000.heard.npy [examples, elements, samples]
 //! DIR/train/00000.fine.npy ...      the live network's input, where the radar has its shape, and the targets by their names
 //! DIR/validation/...  DIR/test/...
@@ -55,10 +55,10 @@ impl FromStr for DatasetPrecision {
     }
 }
 
-/// What of an example is written.
+/// A part of an example that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExamplePart {
-    /// What is heard: samples of both ends, or of the elements of a layout.
+    /// The samples of both ends, or of the elements of a layout.
     Ends,
     /// The live network's input.
     Features,
@@ -67,8 +67,8 @@ pub enum ExamplePart {
 }
 
 impl ExamplePart {
-    /// What is written of examples before `radars` where nothing else is asked for: without the live network's input where that needs another radar,
-    /// or hears no two ends.
+    /// The default parts of examples of `radars`: without the live network's input where the network doesn't fit the radar's shape, or where
+    /// there is a layout.
     pub fn usual(radars: &Radars, layout: Option<&[usize]>) -> Vec<ExamplePart> {
         let fits = layout.is_none()
             && match radars {
@@ -131,34 +131,34 @@ enum ArrayKind {
 const SPLITS: [(&str, Purpose); 3] =
     [("train", Purpose::Training), ("validation", Purpose::Validation), ("test", Purpose::Test)];
 
-/// What to write.
+/// The contents of a dataset to write.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DatasetRequest {
-    /// Kinds of scenes, each as often.
+    /// Kinds of scenes, in equal numbers.
     pub kinds: Vec<Kind>,
     /// Scenes of each kind for training, validation and test.
     pub counts: [u32; 3],
     /// Seed of the scenes.
     pub seed: u64,
-    /// What lies beneath them.
+    /// Floors of the scenes.
     pub floors: Floors,
-    /// The elements that hear them.
+    /// Arrays of the scenes.
     pub arrays: Arrays,
-    /// The radars that see them.
+    /// Radars of the scenes.
     pub radars: Radars,
-    /// The elements that are heard, in the place of the two ends.
+    /// Numbers of the elements whose samples replace those of the two ends.
     pub layout: Option<Vec<usize>>,
-    /// Of features and targets.
+    /// Precision of features and targets.
     pub precision: DatasetPrecision,
-    /// What of an example is written.
+    /// The parts of an example to write.
     pub parts: Vec<ExamplePart>,
-    /// Examples of a shard; as many are in memory at once, some 6 MB each.
+    /// Examples of a shard, all of which are in memory at once, some 6 MB each.
     pub shard: u32,
 }
 
 impl DatasetRequest {
-    /// Scenes of each kind for training, validation and test: a tenth of `training` where nothing else is said, and no test scenes beside
-    /// [`Kind::World`], which makes none.
+    /// Scenes of each kind for training, validation and test. By default there are a tenth of `training` for validation and for test, and no
+    /// test scenes with [`Kind::World`], which has none.
     pub fn counts(kinds: &[Kind], training: u32, validation: Option<u32>, test: Option<u32>) -> [u32; 3] {
         let tenth = training.div_ceil(10);
         let of_test = if kinds.contains(&Kind::World) { 0 } else { tenth };
@@ -166,11 +166,11 @@ impl DatasetRequest {
     }
 }
 
-/// Why there is no dataset.
+/// The reason why a dataset can't be written.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum DatasetError {
-    /// What is asked for can't be.
+    /// The request is invalid.
     #[error("{0}")]
     Request(String),
     /// A file or folder can't be written.

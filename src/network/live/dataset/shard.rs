@@ -11,7 +11,7 @@ use half::f16;
 use num_complex::Complex64;
 
 impl ArrayKind {
-    /// Its file's name behind the shard's number.
+    /// Name of the array's file behind the shard's number.
     pub fn name(self) -> &'static str {
         match self {
             ArrayKind::Ends => "ends",
@@ -26,7 +26,7 @@ impl ArrayKind {
         }
     }
 
-    /// Names of its axes.
+    /// Names of the array's axes.
     pub fn axes(self) -> &'static [&'static str] {
         match self {
             ArrayKind::Ends => &["example", "end", "element", "sample"],
@@ -40,7 +40,7 @@ impl ArrayKind {
         }
     }
 
-    /// Its shape behind the number of examples.
+    /// The array's shape behind the number of examples.
     pub fn shape(self, radar: &Radar) -> Vec<usize> {
         match self {
             ArrayKind::Ends => vec![2, radar.end_elements, radar.samples],
@@ -55,7 +55,7 @@ impl ArrayKind {
         }
     }
 
-    /// NumPy's name of its numbers. What is small keeps its bits: the thesis' floor lies 230 dB below its echoes.
+    /// NumPy's name of the array's type. Small arrays and samples keep all bits: the thesis' floor lies 230 dB below its echoes.
     pub fn dtype(self, precision: DatasetPrecision) -> &'static str {
         match (self, precision) {
             (ArrayKind::Ends | ArrayKind::Layout(_), _) => "<c16",
@@ -65,7 +65,7 @@ impl ArrayKind {
         }
     }
 
-    /// The whole file of these examples.
+    /// The whole file of the array for these examples.
     pub fn file(self, examples: &[Example], radar: &Radar, precision: DatasetPrecision) -> Vec<u8> {
         let shape: Vec<usize> = [examples.len()].into_iter().chain(self.shape(radar)).collect();
         let mut bytes = header(self.dtype(precision), &shape);
@@ -124,7 +124,7 @@ fn header(dtype: &str, shape: &[usize]) -> Vec<u8> {
     bytes
 }
 
-/// The nearest half-precision number, ties to even; what is larger than any becomes the largest.
+/// The nearest half-precision number, ties to even; larger numbers become the largest finite one.
 fn half_of(value: f32) -> f16 {
     f16::from_f32(value.clamp(f16::MIN.to_f32(), f16::MAX.to_f32()))
 }

@@ -74,7 +74,7 @@ fn columns_of_a_physical_radar_rise_with_cos_theta() {
         ((at % columns) as f64 / columns as f64 - 0.5) * 2.0
     };
     let input = example.input.as_ref().unwrap();
-    // The whole array's target, what both ends agree on, and one end's beams.
+    // The whole array's target, the minimum of both ends' Capon spectra, and one end's beams.
     let target = strongest(decades(&example).as_slice().unwrap(), 1024);
     let fine = strongest(&input.fine[..512 * 256], 256);
     let coarse = strongest(&input.coarse[..512 * 64], 64);
@@ -120,7 +120,7 @@ fn targets_differ_in_noise_and_element_errors() {
     let ([of_ideal, of_measured, of_calibrated], [ideal, measured, calibrated]) = (maps(&off), maps(&ideal));
     let distance = |a: &Array2<f64>, b: &Array2<f64>| (a - b).mapv(f64::abs).mean().unwrap();
     assert_eq!(measured, calibrated, "no element is off");
-    // Where the map without noise isn't the rounding of its transforms.
+    // Only cells well above the rounding of the transforms are compared in the map without noise.
     let peak = ideal.fold(f64::MIN, |most, v| v.max(most));
     let loud = |map: &Array2<f64>| map.mapv(|v| if v > peak - 8.0 { v } else { 0.0 });
     assert!(distance(&loud(&of_ideal), &loud(&ideal)) < 1e-3 && distance(&of_calibrated, &calibrated) < 1e-5);

@@ -28,7 +28,7 @@ const MOST_LOOKS: usize = 4;
 const ONE_LINE_RADIANS: f64 = 0.045;
 const ONE_LINE_METRES: f64 = 1.0;
 
-/// How much echoes behind a point speak against its being an edge, as a part of those ahead of it.
+/// Weight of echoes behind a point against its being an edge, as a part of the weight of those ahead of it.
 const BEHIND: f64 = 0.5;
 
 /// Radians by which a wall may deviate from its direction.
@@ -114,7 +114,7 @@ fn directions(fit: &Fit) -> Vec<f64> {
     directions
 }
 
-/// How clearly and how far echoes go on from `from` in a direction; `None` where they soon end.
+/// Clarity and length of the echoes from `from` on in a direction; `None` where they soon end.
 fn going_on(presence: impl Fn([f64; 2]) -> Presence, bin_metres: f64, from: [f64; 2], radians: f64) -> Option<f64> {
     let (sin, cos) = radians.sin_cos();
     let least_power = LEAST_EVEN * presence(from).even_power;

@@ -1,4 +1,4 @@
-//! Plain beams of each end over range: where both detectors look first.
+//! Plain beams of each end over range, the first step of both detectors.
 
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
@@ -34,7 +34,7 @@ pub fn end_beams(radar: &Radar, samples: &[Complex64], count: usize) -> [Array2<
     })
 }
 
-/// All elements' profiles, real and imaginary parts of one after the other's, added with their steering phases.
+/// Kernel that sums all elements' profiles, real and imaginary parts of one after the other's, with their steering phases.
 struct Steer<'a> {
     profiles: [&'a [f64]; 2],
     steering: &'a [Complex64],
@@ -75,6 +75,6 @@ fn cos_of_beam(beam: usize, count: usize) -> f64 {
 /// The beam, of `count`, in whose part of cos(theta) this cosine falls.
 #[inline(always)]
 pub fn beam_of_cos(cos: f64, count: usize) -> usize {
-    // A float cast saturates: what lies below -1 is the first beam.
+    // A float cast saturates: cosines below -1 fall into the first beam.
     (((cos + 1.0) * (0.5 * count as f64)) as usize).min(count - 1)
 }

@@ -1,18 +1,18 @@
-//! Where reflectors and lines of them may be: sources of candidates, none of which is held against the samples here.
+//! Sources of candidates for reflectors and lines of them; none of the candidates is tested against the samples here.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
-//! | `unexplained` | what is left of the samples, as sources look at it |
-//! | `view` | at which range and in which direction an end sees a place |
+//! | `unexplained` | the residual, as sources use it |
+//! | `view` | the range and the direction of a place from an end |
 //! | `end_beams` | each end's plain beams |
-//! | `registered` | both ends' beams laid over each other |
+//! | `registered` | both ends' beams on a common grid |
 //! | `peaks` | points where a residual stands out, both ends registered |
 //! | `tones` | ranges from one element's chirp |
 //! | `pairs` | points that both ends' tones agree on |
 //! | `phased` | each end's beams with their phases, and lines looked up in them |
 //! | `strides` | lines from their first two reflectors |
 //! | `edges` | lines from their first reflector alone |
-//! | `runs` | how many range bins in a row hold an echo |
+//! | `runs` | the number of successive range bins with an echo |
 
 pub mod edges;
 pub mod end_beams;

@@ -1,5 +1,5 @@
-//! Where to start: each end's tones, paired. A reflector is one tone at the first end and one at the last; their two ranges say where
-//! it is, and each end's phases say in which direction, so that true pairs agree and others don't.
+//! Pairs of both ends' tones. A reflector is one tone at the first end and one at the last; their two ranges give its place, and each end's
+//! phases its direction, so that true pairs agree and others don't.
 
 use super::tones::{Tone, gains_of_tones, tones};
 use crate::radar::{self, End, Radar};
@@ -19,7 +19,7 @@ const MOST_APART: f64 = 3.0;
 /// Pairs that agree within this part of what is allowed are points.
 const SURELY_ONE: f64 = 0.2;
 
-/// Range bins within which the last end is searched for what the first end's direction predicts.
+/// Range bins within which the last end is searched for the prediction of the first end's direction.
 const SEARCH_BINS: f64 = 2.0;
 
 /// Standard deviations of noise that are allowed.
@@ -31,7 +31,7 @@ const AS_ONE_ROUNDS: usize = 4;
 /// A tone is alone where no other is heard within this many range bins.
 const ALONE_BINS: f64 = 3.0;
 
-/// Where tones are hardly told apart, directions and gains may be off by this many times what is allowed; what they lead to is a guess.
+/// Factor of the tolerances of directions and gains where tones are hardly separated; pairs within them are guesses.
 const GUESS: f64 = 6.0;
 
 /// Guesses that one tone takes part in.
@@ -53,18 +53,18 @@ struct Heard {
     bins: f64,
     cos: f64,
     amplitude: f64,
-    /// How far noise may have turned the direction.
+    /// Largest error of the direction's cosine by noise.
     cos_tolerance: f64,
     /// Whether no other tone is near.
     is_alone: bool,
 }
 
-/// A point that both ends hear.
+/// A point with a tone at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paired {
     /// The point.
     pub atom: Atom,
-    /// How far the ends are from agreeing, as a part of what is allowed: directions and gains together.
+    /// Disagreement of the ends, as a part of the tolerance: directions and gains together.
     pub apart: f64,
     /// Whether neither end hears another tone near its own.
     pub is_alone: bool,
@@ -83,12 +83,12 @@ struct Pair {
     first: usize,
     last: usize,
     point: Paired,
-    /// Directions at both ends and gains: how far they are from agreeing, as parts of what is allowed.
+    /// Disagreements of the directions at both ends and of the gains, as parts of their tolerances.
     disagreements: [f64; 3],
 }
 
 impl Pair {
-    /// Whether the same tones speak for `other` as they do for this.
+    /// Whether the same tones support `other` as well as this pair.
     fn sounds_like(&self, other: &Self) -> bool {
         let differences = self.disagreements.iter().zip(other.disagreements).map(|(own, other)| (own - other).abs());
         self.last == other.last && differences.sum::<f64>() < ALIKE_ERRORS
@@ -98,7 +98,7 @@ impl Pair {
 /// An end's element nearest to its middle, and the tones heard there.
 struct Listener {
     x_metres: f64,
-    /// From this element to the next, from which directions are told.
+    /// Distance from this element to the next, which gives directions.
     step_metres: f64,
     /// Antennas of both, where transmitters stand apart from receivers.
     antennas: Option<[radar::Pair; 2]>,
@@ -118,7 +118,7 @@ impl Listener {
         [self.x_metres + range_metres * cos, range_metres * (1.0 - cos * cos).max(0.0).sqrt()]
     }
 
-    /// By how much more this element measures of the place at (x, y) than one antenna would that sends and hears where it stands.
+    /// Excess of this element's range and cosine for the place at (x, y) over those of a single antenna at the element's place.
     fn more_than_one_antenna(&self, [x, y]: [f64; 2]) -> Seen {
         let Some([own, next]) = &self.antennas else { return Seen::default() };
         let dx = x - self.x_metres;
@@ -128,7 +128,7 @@ impl Listener {
         Seen { range_metres: measured - alone, cos: cos - dx / alone }
     }
 
-    /// What one antenna here would measure of the place that this element measures at a range and in a direction.
+    /// Range and cosine of a single antenna here, for the place that this element measures at a range and in a direction.
     fn as_one_antenna(&self, range_metres: f64, cos: f64) -> Seen {
         let measured = Seen { range_metres, cos };
         let nearer = |seen: Seen| {
@@ -139,7 +139,7 @@ impl Listener {
     }
 }
 
-/// What both ends' tones lead to.
+/// Points and guesses from both ends' tones.
 #[derive(Debug, Clone, Default)]
 pub struct Pairs {
     /// Points, each of tones of its own, those first on which the ends agree best.
@@ -246,7 +246,7 @@ fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: 
     Some(Listener { x_metres, step_metres, antennas, heard: heard.collect() })
 }
 
-/// What tone `i` of the first end may be paired with if its range has wrapped this often.
+/// The pairs of tone `i` of the first end, if its range has wrapped this often.
 fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps: usize) -> Vec<Pair> {
     let (bins, bin_metres) = (radar.samples as f64, radar.range_resolution_metres());
     let between = last.x_metres - first.x_metres;

@@ -1,7 +1,7 @@
-//! Where a residual still holds reflectors: both ends' beams laid over each other on the polar grid of the array's centre.
+//! Peaks of a residual: both ends' beams on the polar grid of the array's centre.
 //!
-//! Magnitudes are multiplied, not amplitudes added: the phase between the ends changes with every column of the full map, and what stands in one end
-//! alone is a ghost.
+//! Magnitudes are multiplied, not amplitudes added, since the phase between the ends changes with every column of the full map; a peak of one
+//! end alone is a ghost.
 
 use super::end_beams::{BEAMS_PER_ELEMENT, end_beams};
 use super::registered::Registered;
@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Columns of the common polar grid for each element of an end.
 const COLUMNS_PER_ELEMENT: usize = 10;
 
-/// One look at the residual finds no two places within this many range bins of each other: what the stronger leaves comes first.
+/// Least distance in range bins of two places from one look at the residual: the residual of the stronger one comes first.
 const ALONE_BINS: usize = 8;
 
 /// Range bins beyond rows that count as within.
@@ -23,7 +23,7 @@ const EDGE_BINS: f64 = 1.0;
 /// Fewest cells of the common grid that are worth a task of their own.
 const LEAST_CELLS: usize = 4096;
 
-/// A place where something stands out.
+/// A place with a peak.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
     /// Position along the array.
@@ -34,7 +34,7 @@ pub struct Candidate {
     pub power: f64,
 }
 
-/// Looks for what stands out on the common grid.
+/// A search for peaks on the common grid.
 pub struct Detector {
     grid: Registered,
     beams: usize,
@@ -45,7 +45,7 @@ pub struct Detector {
 static LAST: Mutex<Option<(Radar, Arc<Detector>)>> = Mutex::new(None);
 
 impl Detector {
-    /// The detector of `radar`, kept from the last time where that was for the same.
+    /// The detector of `radar`, the last one if it was made for the same radar.
     pub fn of(radar: &Radar) -> Arc<Detector> {
         // Nothing is computed while the lock is held.
         let last = LAST.lock().unwrap_or_else(PoisonError::into_inner).clone();
@@ -57,7 +57,7 @@ impl Detector {
         detector
     }
 
-    /// For the ends of `radar`.
+    /// The detector for the ends of `radar`.
     fn new(radar: &Radar) -> Self {
         let (beams, columns) = (BEAMS_PER_ELEMENT * radar.end_elements, COLUMNS_PER_ELEMENT * radar.end_elements);
         Detector { grid: Registered::new(radar, beams, columns), beams, bins: radar.samples }
@@ -87,7 +87,7 @@ impl Detector {
         found
     }
 
-    /// The place (x, y; metres) of the greatest power that both ends hear in these rows, or at their edges.
+    /// The place (x, y; metres) of the greatest power at both ends in these rows, or at their edges.
     pub fn strongest_within(&self, radar: &Radar, residual: &[Complex64], rows: &Rows) -> Option<[f64; 2]> {
         let powers = self.powers(radar, residual);
         let bins = self.bins as f64;
@@ -116,14 +116,14 @@ impl Detector {
         (0..self.grid.places_metres.len() as u32).into_par_iter().with_min_len(LEAST_CELLS)
     }
 
-    /// The powers of `residual` in them.
+    /// The powers of `residual` in the cells.
     fn powers(&self, radar: &Radar, residual: &[Complex64]) -> Powers<'_> {
         let magnitudes = end_beams(radar, residual, self.beams)
             .map(|beams| beams.into_par_iter().map(|v| v.norm_sqr().sqrt() as f32).collect());
         Powers { cells: &self.grid.cells, magnitudes }
     }
 
-    /// Amplitude that a reflector in range bin `own` may show in every other at one end, against its own there.
+    /// Largest amplitude of a reflector in range bin `own` in every other bin at one end, relative to its own.
     fn side_lobes(&self, own: usize) -> Vec<f64> {
         let lobe = |other: usize| {
             let apart = own.abs_diff(other);
@@ -135,7 +135,7 @@ impl Detector {
     }
 }
 
-/// What both ends' beams hold in the cells of the common grid.
+/// Both ends' beams in the cells of the common grid.
 struct Powers<'a> {
     cells: &'a [Vec<u32>; 2],
     magnitudes: [Vec<f32>; 2],
@@ -149,7 +149,7 @@ impl Powers<'_> {
     }
 }
 
-/// The strongest of some cells, the first of those that are alike.
+/// The strongest of some cells, the first of equal ones.
 fn strongest(cells: impl Iterator<Item = (f32, u32)>) -> Option<(f32, u32)> {
     cells.reduce(|a, b| if b.0 > a.0 { b } else { a })
 }

@@ -1,7 +1,7 @@
-//! Beams of both ends with their phases, and what rows of reflectors would have left in them.
+//! Beams of both ends with their phases, and the echoes of rows of reflectors in them.
 //!
-//! A row's echoes are looked up in the beams where they would stand and added with the phases they would have: far cheaper than to
-//! write out samples, and good enough to tell which rows are worth that.
+//! A row's echoes are looked up in the beams at their places and added with their phases: this is far cheaper than computing samples, and good
+//! enough to choose the rows for that.
 
 use super::end_beams::{beam_of_cos, end_beams};
 use super::view::View;
@@ -13,20 +13,20 @@ use std::f64::consts::TAU;
 /// Beams formed by each end: fine enough to take the nearest.
 const BEAMS: usize = 96;
 
-/// Nearest that a place of a row counts as, metres.
+/// Least distance of a row's place, metres; nearer places count as this far.
 const NEAREST_METRES: f64 = 0.05;
 
 /// Beams of both ends, referred to the middle of the chirp and of the end so that they vary slowly with range and angle.
 pub struct PhasedBeams {
     /// `[beam * bins + range bin]` for each end.
     beams: [Vec<Complex64>; 2],
-    /// How each end sees places.
+    /// The view of each end.
     pub views: [View; 2],
     bins: usize,
     bins_per_metre: f64,
     /// Phase of an echo at the middle of the chirp, turns a metre.
     pub turns_per_metre: f64,
-    /// Referred to the middle of the chirp, the rows of an even number of samples change sign with every wrap.
+    /// Sign of a wrap: referred to the middle of the chirp, the rows of an even number of samples change sign with every wrap.
     wrap_sign: f64,
 }
 
@@ -35,11 +35,11 @@ pub struct PhasedBeams {
 pub struct Row {
     /// The first place (x, y), metres.
     pub first_metres: [f64; 2],
-    /// From one place to the next (x, y), metres.
+    /// Step from one place to the next (x, y), metres.
     pub step_metres: [f64; 2],
 }
 
-/// What a reflector would have left at an end, its phase taken off.
+/// A reflector's echo at an end, without its phase.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Heard {
     /// Value times the amplitude 1/R^2.
@@ -51,12 +51,12 @@ pub struct Heard {
 /// Power of the strongest beam of every range bin at each end.
 pub struct Strongest([Vec<f64>; 2]);
 
-/// What the beams hold at a place: of both ends what is less.
+/// The beams' power at a place, the smaller of both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Presence {
     /// Power of the beam that looks there, as a part of the strongest beam's in the same range bin.
     pub part: f64,
-    /// Power of that strongest beam, evened out over range: as much for one reflectivity everywhere.
+    /// Power of that strongest beam, scaled over range so that it is constant for one reflectivity.
     pub even_power: f64,
 }
 
@@ -101,7 +101,7 @@ impl PhasedBeams {
         }))
     }
 
-    /// What there is at (x, y), metres.
+    /// The beams' power at (x, y), metres.
     pub fn presence(&self, strongest: &Strongest, place_metres: [f64; 2]) -> Presence {
         let of_end = |end: usize| {
             let (range, cos) = self.views[end].of_place(place_metres, NEAREST_METRES);
@@ -124,7 +124,7 @@ impl PhasedBeams {
         self.bins_per_metre.recip()
     }
 
-    /// Part of the power at the places of `row`, one for each of `heard`, that adds up as a row of one gain would have it.
+    /// Coherent part of the power at the places of `row`, one for each of `heard`, under one gain for the row.
     #[inline(always)]
     pub fn part_adding_up<const FMA: bool>(&self, row: &Row, heard: &mut [Heard]) -> f64 {
         if row.place_metres((heard.len() - 1) as f64)[1] <= 0.0 {
@@ -139,7 +139,7 @@ impl PhasedBeams {
         added / f64::max(all, f64::MIN_POSITIVE)
     }
 
-    /// What each reflector of `row`, one for each of `heard`, would have left at an end.
+    /// Writes the echo of each reflector of `row` at an end, one for each of `heard`.
     #[inline(always)]
     pub fn listen<const FMA: bool>(&self, end: usize, row: &Row, heard: &mut [Heard]) {
         let PhasedBeams { bins, bins_per_metre, turns_per_metre, wrap_sign, .. } = *self;
@@ -160,7 +160,7 @@ impl PhasedBeams {
                 let beam = &self.beams[end][beam_of_cos(cos.0[lane], BEAMS) * bins..][..bins];
                 let low = at.0[lane] as usize;
                 let part = at.0[lane] - low as f64;
-                // Neighbouring rows differ by half a turn (the middle of the chirp): `new` already took that off.
+                // Neighbouring rows differ by half a turn (the middle of the chirp), which `new` has removed.
                 let row = |k: usize| if k < bins { beam[k] } else { wrapped(beam, k, wrap_sign) };
                 let value = row(low) * (1.0 - part) + row(low + 1) * part;
                 let amplitude = amplitude.0[lane];
@@ -173,15 +173,15 @@ impl PhasedBeams {
 
 /// Echoes of a row together.
 pub struct AddedUp {
-    /// Of what is weighted.
+    /// Sum of the weighted values.
     pub sum: Complex64,
-    /// Of the weights. The square of the sum over them is the power that a row of one gain has.
+    /// Sum of the weights. The square of the sum over them is the power of a row of one gain.
     pub weight: f64,
     /// Sum of the powers of all echoes.
     pub power: f64,
 }
 
-/// What these echoes add up to.
+/// The sums over these echoes.
 #[inline(always)]
 pub fn added_up(heard: &[Heard]) -> AddedUp {
     let mut out = AddedUp { sum: Complex64::default(), weight: 0.0, power: 0.0 };

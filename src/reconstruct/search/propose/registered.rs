@@ -1,22 +1,22 @@
-//! Both ends' beams laid over each other on the polar grid of the array's centre: the ends see a reflector at different ranges and angles, so
-//! each cell looks up its own range and angle at each end.
+//! Both ends' beams on the polar grid of the array's centre: a reflector has different ranges and angles at the ends, so each cell looks up its
+//! own range and angle at each end.
 
 use super::end_beams::beam_of_cos;
 use super::view::View;
 use crate::radar::{End, Radar};
 
-/// Where every cell of a polar grid lies in the beams of each end.
+/// The places of a polar grid's cells in the beams of each end.
 pub struct Registered {
     /// Centre (x, y) of every cell, metres, range after range; one wrap beyond the maximum range included.
     pub places_metres: Vec<[f64; 2]>,
     /// `[beam * range bins + range bin]` for each end.
     pub cells: [Vec<u32>; 2],
-    /// Those range bins alone.
+    /// Range bin of each of those cells, for each end.
     pub bins: [Vec<u32>; 2],
 }
 
 impl Registered {
-    /// For the ends of `radar`, each with so many `beams`; the grid has so many `columns` over cos(theta).
+    /// The table for the ends of `radar`, each with so many `beams`; the grid has so many `columns` over cos(theta).
     pub fn new(radar: &Radar, beams: usize, columns: usize) -> Self {
         let (bins, bin_metres) = (radar.samples, radar.range_resolution_metres());
         let place = |i: usize| {

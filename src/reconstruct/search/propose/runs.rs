@@ -1,4 +1,4 @@
-//! How many range bins in a row hold an echo.
+//! The number of successive range bins with an echo.
 
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
@@ -8,13 +8,13 @@ use num_complex::Complex64;
 /// Power of an echo in a range bin, over that of the noise.
 const ABOVE_NOISE: f64 = 4.0;
 
-/// Weakest echo, over the strongest, when ranges are evened out by the 1/R^4 law of power.
+/// Weakest echo, over the strongest, after scaling by the 1/R^4 law of power.
 const WEAKEST: f64 = 1e-6;
 
-/// Range bins that are added before ranges are evened out: near the array the law holds no more.
+/// Range bins that are added before this scaling: near the array the law no longer holds.
 const NEAR_BINS: f64 = 10.0;
 
-/// Range bins in a row that only something longer than a few reflectors fills.
+/// Fewest successive range bins that count as longer than a few reflectors.
 pub const LONG_RUN_BINS: usize = 18;
 
 /// Length of the longest row of neighbouring range bins that hold an echo, at either end, in `residual` (all samples of both ends, not windowed). An echo

@@ -45,7 +45,7 @@ const MOST_FOLLOWED: usize = 3000;
 /// Most reflectors of a row.
 const MOST_REFLECTORS: usize = 140;
 
-/// Growth of the row from one look to the next.
+/// Growth of the row's length from one step to the next.
 const GROWTH: f64 = 1.4;
 
 /// Moves of a row at each length.
@@ -167,8 +167,8 @@ impl Grid {
     }
 }
 
-/// How finely steps of about this length are tried over the first few reflectors, so many wavelengths apart over all of them: along the
-/// line of sight, and across.
+/// Steps of a grid over the first few reflectors, for rows of about this step, so that neighbours differ by so many wavelengths over all of
+/// them: along the line of sight, and across.
 pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64, wavelengths: f64) -> [f64; 2] {
     let range = from[0].hypot(from[1]).max(0.1);
     let between = (beams.views[1].centre_metres - beams.views[0].centre_metres).abs().max(1e-3);
@@ -180,7 +180,7 @@ pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64, wav
     [along, (along * range / between).min(curved)]
 }
 
-/// All steps of a grid tried over the first few reflectors.
+/// Kernel that tries all steps of a grid over the first few reflectors.
 struct Glance<'a> {
     beams: &'a PhasedBeams,
     grid: &'a Grid,
@@ -218,7 +218,7 @@ pub fn summits(parts: &[f64], rows: usize, most: usize) -> Vec<usize> {
     summits
 }
 
-/// A row on its way over more and more reflectors.
+/// A row that is followed over more and more reflectors.
 struct Followed {
     start: Start,
     /// Part of the power at its places that adds up; 0 where it has passed its end.
@@ -232,7 +232,7 @@ impl Followed {
         Followed { start, part: 1.0, most: 0.0, best: None }
     }
 
-    /// Over its first `count` reflectors, where their echoes add up.
+    /// Moves the row over its first `count` reflectors to where their echoes add up.
     fn lengthen(&mut self, beams: &PhasedBeams, count: usize) {
         if self.part == 0.0 {
             return;
@@ -251,7 +251,7 @@ impl Followed {
     }
 }
 
-/// A row where its echoes add up to most.
+/// A row at the largest sum of its echoes.
 struct Climbed {
     row: Row,
     added: f64,
@@ -264,7 +264,7 @@ impl Climbed {
         self.added / f64::max(self.all, f64::MIN_POSITIVE)
     }
 
-    /// Its first `count` reflectors, over which it was moved.
+    /// The row's first `count` reflectors, over which it was moved.
     fn stride(&self, count: usize) -> Stride {
         let [x_metres, y_metres] = self.row.first_metres;
         let [dx_metres, dy_metres] = self.row.step_metres;
@@ -273,7 +273,7 @@ impl Climbed {
     }
 }
 
-/// Derivatives of what adds up, and their products.
+/// Derivatives of the echoes' phases, and their products.
 struct Slope {
     added: f64,
     all: f64,

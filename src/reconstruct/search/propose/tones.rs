@@ -1,10 +1,9 @@
 //! Ranges from a single chirp of a single element.
 //!
-//! One element hears every reflector at one distance: its chirp is a sum of as many pure tones, for any near field across
-//! the array. ESPRIT (R. Roy and T. Kailath, "ESPRIT: estimation of signal parameters via rotational invariance techniques", 1989) on
-//! the Hankel matrix of the chirp tells them apart without a grid and without a search, as finely as the noise lets it. The signal
-//! subspace comes from a random projection (N. Halko, P. G. Martinsson, J. A. Tropp, "Finding structure with randomness", 2011), which
-//! costs little where the tones are few.
+//! One element has every reflector at one distance: its chirp is a sum of as many pure tones, for any near field across the array. ESPRIT (R.
+//! Roy and T. Kailath, "ESPRIT: estimation of signal parameters via rotational invariance techniques", 1989) on the Hankel matrix of the chirp
+//! separates them without a grid and without a search, as finely as the noise allows. The signal subspace comes from a random projection (N.
+//! Halko, P. G. Martinsson, J. A. Tropp, "Finding structure with randomness", 2011), which costs little where the tones are few.
 
 use crate::signal::floor::unit_noise;
 use crate::signal::split::STRIDE;
@@ -16,7 +15,7 @@ use std::f64::consts::TAU;
 /// Part of the chirp's samples that are rows of the Hankel matrix.
 const ROWS: f64 = 0.55;
 
-/// Fewest samples that this is tried on.
+/// Fewest samples of a chirp for this method.
 const LEAST_SAMPLES: usize = 32;
 
 /// Columns of the first random projection.
@@ -37,7 +36,7 @@ const ABOVE_NOISE: f64 = 1.6;
 /// A column of the projection above this many times all noise in it holds tones.
 const FAR_ABOVE_NOISE: f64 = 4.0;
 
-/// A tone neither grows nor decays by more than this part a sample: what does stands for several that are not told apart.
+/// Largest growth or decay of a tone a sample: faster ones stand for several tones that are not separated.
 const STEADY: f64 = 2e-2;
 
 /// A tone: `exp(j tau bins n / samples + growth n)` in sample n.
@@ -68,19 +67,19 @@ pub fn tones(chirp: &[Complex64], noise_variance: f64) -> Option<Vec<Tone>> {
     Some(phasors.iter().map(tone).filter(|tone| tone.growth.abs() < STEADY).collect())
 }
 
-/// What takes all rows of an orthonormal basis but the last to all but the first, in the least-squares sense. The Gram matrix of the former
-/// lacks one row's product of the identity, so that its inverse is known.
+/// The least-squares solution of a map from all rows of an orthonormal basis but the last to all but the first. The Gram matrix of the former is
+/// the identity less one row's product, so that its inverse is known.
 fn rotation(basis: &Mat<Complex64>) -> Mat<Complex64> {
     let (rows, count) = (basis.nrows(), basis.ncols());
     let turned = basis.subrows(0, rows - 1).adjoint() * basis.subrows(1, rows - 1);
     let last = basis.subrows(rows - 1, 1);
-    // Nothing is left where one tone is a pulse in the last row.
+    // The difference is 0 where one tone is a pulse in the last row.
     let left = (1.0 - last.squared_norm_l2()).max(f64::EPSILON);
     let missed = last * &turned;
     Mat::from_fn(count, count, |i, j| turned[(i, j)] + last[(0, i)].conj() * missed[(0, j)] / left)
 }
 
-/// An orthonormal basis of what of the chirp's Hankel matrix stands out of the noise, a column for each tone.
+/// An orthonormal basis of the part of the chirp's Hankel matrix above the noise, a column for each tone.
 fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Complex64>> {
     let rows = (ROWS * chirp.len() as f64) as usize;
     let columns = chirp.len() - rows + 1;
@@ -99,7 +98,7 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Compl
         let qr = projected.qr();
         let wider = ((GROWTH * width as f64) as usize).min(most_width);
         let brought = |column: usize| qr.thin_R()[(column, column)].norm();
-        // What the last columns still brought is far more than noise: there are more tones than columns.
+        // The last columns still add far more than noise: there are more tones than columns.
         if (width - SPARE..width).all(|column| brought(column) > FAR_ABOVE_NOISE * all_noise) {
             if width == most_width {
                 return None;
@@ -108,7 +107,7 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Compl
             continue;
         }
         let range = qr.compute_thin_Q();
-        // Columns after the last that brought much hold what is weak, and noise.
+        // Columns after the last large one hold weak tones and noise.
         let strong =
             (0..width).rev().find(|column| brought(*column) > FAR_ABOVE_NOISE * all_noise).map_or(0, |c| c + 1);
         let enough = Some(strong + WEAK).filter(|enough| *enough < width);

@@ -1,4 +1,4 @@
-//! What is left of the samples, as sources of candidates look at it.
+//! The residual of the samples, as sources of candidates use it.
 
 use super::phased::PhasedBeams;
 use super::runs::{LONG_RUN_BINS, longest_run_bins};
@@ -9,30 +9,30 @@ use crate::task::Task;
 use num_complex::Complex64;
 use std::cell::OnceCell;
 
-/// What is left of the samples, and what is known so far.
+/// The residual of the samples, with the objects found so far.
 pub struct Unexplained<'a> {
     /// The radar.
     pub radar: &'a Radar,
-    /// What is left of the samples, channel by channel, not windowed.
+    /// The residual, channel by channel, not windowed.
     pub flat: &'a [Complex64],
-    /// The noise beneath it.
+    /// The noise in the residual.
     pub hearing: Hearing,
     /// The objects found so far.
     pub found: &'a Fit,
     /// Places (x, y), metres, where points may be: those first on which the ends agree best.
     pub points_metres: &'a [[f64; 2]],
-    /// To be cancelled by.
+    /// The task, which may be cancelled.
     pub task: &'a Task,
     beams: OnceCell<PhasedBeams>,
 }
 
 impl<'a> Unexplained<'a> {
-    /// What `found` leaves, laid out as `flat`.
+    /// The residual `flat` of the fit `found`.
     pub fn new(radar: &'a Radar, flat: &'a [Complex64], hearing: Hearing, found: &'a Fit, task: &'a Task) -> Self {
         Unexplained { radar, flat, hearing, found, points_metres: &[], task, beams: OnceCell::new() }
     }
 
-    /// The same with places where points may be.
+    /// The residual with places where points may be.
     pub fn with_points(self, points_metres: &'a [[f64; 2]]) -> Self {
         Unexplained { points_metres, ..self }
     }
@@ -42,7 +42,7 @@ impl<'a> Unexplained<'a> {
         self.beams.get_or_init(|| PhasedBeams::new(self.radar, self.flat))
     }
 
-    /// Whether something longer than a few reflectors is left.
+    /// Whether the residual has something longer than a few reflectors.
     pub fn is_long(&self) -> bool {
         let variance = self.hearing.noise_variance(self.radar, self.flat);
         longest_run_bins(self.radar, self.flat, variance) >= LONG_RUN_BINS

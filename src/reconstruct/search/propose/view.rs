@@ -1,8 +1,8 @@
-//! How an end sees a place: at which range, and in which direction.
+//! The range and the direction of a place from an end.
 //!
-//! Elements that send and hear by themselves see it from the end's middle. Where transmitters stand apart from receivers, the range is that of
-//! the pairs beside the end's middle, and the direction follows from how much nearer the last pair is than the first: the phases of an
-//! end's elements tell no more.
+//! For elements that transmit and receive by themselves these are measured from the end's middle. Where transmitters stand apart from receivers,
+//! the range is that of the pairs beside the end's middle, and the direction follows from the difference between the ranges of the first pair
+//! and the last: the phases of an end's elements contain no more.
 
 use crate::radar::{End, Pair, Radar};
 use crate::signal::simd::Lanes;
@@ -14,12 +14,12 @@ pub struct View {
     pairs: Option<ViewOfPairs>,
 }
 
-/// Pairs that speak for an end, their antennas' x counted from its middle, metres.
+/// Pairs that represent an end, with their antennas' x counted from its middle, metres.
 struct ViewOfPairs {
     middle: [Pair; 2],
     first: Pair,
     last: Pair,
-    /// From the first element to the last.
+    /// Distance from the first element to the last.
     length_metres: f64,
 }
 
@@ -79,7 +79,7 @@ impl View {
         (range.0[0], cos.0[0])
     }
 
-    /// By how much the range grows for each metre that the place at (x, y) moves along x and along y.
+    /// Derivatives of the range of the place at (x, y) by x and by y.
     #[inline(always)]
     pub fn slope(&self, [x, y]: [f64; 2], nearest_metres: f64) -> [f64; 2] {
         let dx = x - self.centre_metres;

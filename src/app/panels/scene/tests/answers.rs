@@ -8,7 +8,7 @@ use crate::scattering::{EchoKind, heard_in_the_middle};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-/// A step's scene as it is drawn with what the maps make of it, or without.
+/// A step's scene, drawn with or without its effects on the maps.
 fn step_drawn(step: &Step, tells_maps: bool) -> (Harness<'static, Held>, Vec<egui::Shape>) {
     let (radar, scene) = (step.radar.clone(), step.scene());
     let draw = move |ui: &mut Ui, held: &mut Held| {
@@ -21,7 +21,7 @@ fn step_drawn(step: &Step, tells_maps: bool) -> (Harness<'static, Held>, Vec<egu
     (panel, shapes)
 }
 
-/// Where the answer to a step's question lies in the scene: the place that is asked for, and where bodies shine.
+/// Places in the scene that answer a step's question: the place that is asked for, and the glints of bodies.
 fn answers(step: &Step) -> Vec<Place> {
     let heard = heard_in_the_middle(&step.radar, &step.scene());
     let mut places: Vec<Place> = heard
