@@ -15,7 +15,7 @@ use std::time::Instant;
 const SAMPLES: usize = 256;
 const RUNS: usize = 7;
 
-/// What sets up four receivers of 256 samples and 64 chirps a frame.
+/// A `.cfg` of four receivers, 256 samples and 64 chirps a frame.
 const CONFIG: &str = "channelCfg 15 1 0\nadcCfg 2 1\nadcbufCfg -1 0 0 1 1\nprofileCfg 0 77 7 7 58 0 0 68 1 256 5500 0 0 30\n\
                       chirpCfg 0 0 0 0 0 0 0 1\nframeCfg 0 0 64 0 100 1 0\n";
 

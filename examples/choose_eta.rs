@@ -1,5 +1,5 @@
-//! How the methods' thresholds and settings were chosen, on validation scenes: prints the figures, and fails where a method's own setting
-//! is not the one chosen.
+//! Choice of the methods' thresholds and settings, on validation scenes: prints the figures, and fails where a method's own setting is not the one
+//! chosen.
 //!
 //! One rule for the thresholds of all methods: the threshold at which the mean false-alarm rate over the validation scenes of the three
 //! sets is the mean of the thesis' own rates, 0.65 %; or the highest threshold that detects 99.9 % on average, where that one is higher.
@@ -27,7 +27,7 @@ const FALSE_ALARM: f64 = 0.0065;
 /// Mean P_D at which a method needs no more false alarms.
 const DETECTION: f64 = 0.999;
 
-/// How far a method's own threshold may lie from the one chosen: Lambda that a percent or two of one of the rates is worth.
+/// Largest difference of a method's own threshold from the one chosen: Lambda that a percent or two of one of the rates is worth.
 const TOLERANCE: f32 = 0.005;
 
 /// Methods with the thesis' own thresholds.

@@ -54,7 +54,7 @@ struct Arguments {
 /// Bounds of the confidences that are counted together.
 const DOUBT_EDGES: [f64; 6] = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0];
 
-/// A listed reflector is there where a true one lies within so many range bins and columns.
+/// Range bins and columns within which a true reflector makes a listed one right.
 const NEAR_CELLS: [f64; 2] = [1.0, 2.0];
 
 /// The methods, in the order of the columns.
@@ -121,7 +121,7 @@ impl Arguments {
         METHODS.iter().map(ask).collect()
     }
 
-    /// Of the reflectors that are listed with about the same confidence: the mean of what is said, the part that is there, and the count.
+    /// Prints, for reflectors that are listed with about the same confidence, the mean confidence, the part that is there, and the count.
     fn print_confidence(&self, name: &str, kind: Kind, answers: &[Vec<TimedAnswer>]) {
         let mut bins = [[0.0; 3]; DOUBT_EDGES.len() - 1];
         for (number, answer) in (self.first..).zip(answers) {
@@ -155,7 +155,7 @@ impl Arguments {
         Generator::new(&Radar::default(), Reading::Program, purpose, self.seed).scene(kind, number)
     }
 
-    /// Gives the trial the samples of elements that are off.
+    /// Gives the trial the samples of elements with errors.
     fn put_off(&self, trial: &mut Trial, scene: &Scene, floor: Floor, number: u32) -> Outcome {
         let tolerances = Tolerances { gain: Decibels(0.3), phase_degrees: 3.0, position_millimetres: 0.0 };
         let array = tolerances.times(self.elements_off).build(&trial.radar, self.seed.wrapping_add(number.into()));
@@ -177,8 +177,8 @@ fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
     values.clone().sum::<f64>() / values.count().max(1) as f64
 }
 
-/// Means of all scenes, the largest reflector, hybrid's time over live's, and the scenes in which gains of elements were found; the ratio is that of hybrid to the better of both experts, with the
-/// standard error of their paired difference.
+/// Means of all scenes, the largest reflector, hybrid's time over live's, and the scenes in which gains of elements were found; the ratio is that of
+/// hybrid to the better of both experts, with the standard error of their paired difference.
 fn print_row(name: &str, answers: &[Vec<TimedAnswer>], largest: f64) {
     let error = |method: usize| answers.iter().map(move |a| a[method].metrics.squared_error);
     let [live, nomp, hybrid] = [0, 1, 2].map(|method| mean(error(method)));

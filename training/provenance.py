@@ -39,7 +39,7 @@ class Part:
     def __init__(self, initial, maps, optimiser):
         import torch
         self.began, self.first = time.time(), maps
-        # Of paths the last part says enough.
+        # The last part of a path is enough.
         self.record = {
             "started": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
             "commit": commit(), "programs_sha256": programs(), "arguments": [a.rsplit("/", 1)[-1] for a in sys.argv[1:]], "torch": torch.__version__, "optimiser": optimiser,

@@ -34,7 +34,7 @@ def main(folder):
     with torch.no_grad():
         log, minimum, picture = model.with_picture(fine[None], coarse[None], rows[None], scalars[None], constants[None])
         of_cells, hidden = doubt.parts(picture)
-        # A rectangular window, other spacing and migration, and a pattern.
+        # Constants of a rectangular window, another spacing and migration, and a pattern.
         other = torch.tensor([0.2, -0.1, 0, 0, 1, 1.5])
         other_log, other_minimum, _ = model.with_picture(fine[None], coarse[None], rows[None], scalars[None], other[None])
         of_scene = doubt.scene(hidden)[:, 0]

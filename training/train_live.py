@@ -202,10 +202,10 @@ class Run:
             fill(self.model, state["model"], self.path)
             fill(self.doubt, state["doubt"], self.path)
             for group in state["optimizer"]["param_groups"]:
-                group.update(kept)  # where the steps are counted follows from this
+                group.update(kept)  # "capturable" decides on which device steps are counted
             self.optimizer.load_state_dict(state["optimizer"])
             for group in self.optimizer.param_groups:
-                group.update(kept)  # loading copies
+                group.update(kept)  # loading copied the groups
             self.step, self.drawn, self.parts, maps = state["step"], state["drawn"], json.loads(state["parts"]), state.get("maps")
             self.average.load_state_dict(state["average"])
             if args.export:
@@ -307,7 +307,7 @@ def train(run, args, team):
     scenes = scenes_of(args, run.drawn, team)
     saved, validated, losses = 0.0, float("-inf"), []
     while True:
-        # The first process' clock is that of all, whose rates must be the same.
+        # All processes use the first one's clock: their rates must be the same.
         seconds = team.agreed(clock.seconds())
         done = run.step >= args.steps if args.steps is not None else seconds > 60 * args.minutes
         if team.is_first:
@@ -357,7 +357,7 @@ def main(args):
     options.refuse_untrained(args, run.maps)
     if args.export:
         sets = validation_sets(args)
-        # Written as 16-bit floats, half the bytes for a page to load; the figures are those of what is written.
+        # Weights are written as 16-bit floats, half the bytes for a page to load; the figures are those of the written weights.
         for tensor in (*run.average.state_dict().values(), *run.doubt.state_dict().values()):
             tensor.copy_(tensor.half())
         report = figures(estimate_with(run.average, team.device), sets)

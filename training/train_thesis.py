@@ -145,10 +145,10 @@ class Run:
             fill(self.average, state["average"], self.path)
             for optimizer, saved in zip(self.optimizers, state["optimizers"], strict=True):
                 for group in saved["param_groups"]:
-                    group.update({name: value for name, value in kept.items() if name in group})  # where the steps are counted follows from this
+                    group.update({name: value for name, value in kept.items() if name in group})  # "capturable" decides on which device steps are counted
                 optimizer.load_state_dict(saved)
                 for group in optimizer.param_groups:
-                    group.update({name: value for name, value in kept.items() if name in group})  # loading copies
+                    group.update({name: value for name, value in kept.items() if name in group})  # loading copied the groups
             self.step = state["step"]
         else:
             self.optimizers = optimizers(self.model, args.muon, **kept)
@@ -266,7 +266,7 @@ def train(run, args, team):
         run.prepare(rate)
         losses.append(step(batch))
         run.scenes = scenes.drawn
-        # A crop is a part of a map.
+        # A crop counts as a part of a map.
         maps, rows, _ = batch["truth"].shape
         run.maps += maps * rows / ROWS * team.size
         if len(losses) == args.log_every:

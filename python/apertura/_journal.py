@@ -55,7 +55,7 @@ class Journal:
                 if len(line) == _LONGEST_LINE:
                     raise ValueError(f"{self.path}: line {number} is no row of a campaign; remove the file to begin anew")
                 if not line.endswith(b"\n"):
-                    # It was stopped within a line.
+                    # The writer was stopped within a line.
                     break
                 try:
                     entry = json.loads(line)
@@ -84,7 +84,7 @@ class Journal:
                 self._origins[_origin(row)] = {part: row[part] for part in PARTS}
                 self._append({"origin": _origin(row), "parts": self._origins[_origin(row)]})
             self._append({name: value for name, value in row.items() if name not in PARTS})
-            # Rows share what made them: a row takes half the memory then.
+            # Rows share the dict of their conditions: a row takes half the memory then.
             self.rows[key_of(row)] = {**row, **self._origins.get(_origin(row), {})} if row.get("error") is None else row
         self._file.flush()
 

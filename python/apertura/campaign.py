@@ -113,7 +113,7 @@ def rows_of(run: Run, keys: Sequence[Key]) -> list[dict[str, Any]]:
     try:
         run.evaluate(keys, keep)
     except ValueError:
-        # One failed: the rest one by one, so that no failure hides another row.
+        # A row failed: the others run one by one, so that no failure hides another row.
         for key in keys:
             if key not in found:
                 try:
@@ -186,7 +186,7 @@ def work(client: Any, run: Run, done: Any, on_rows: Callable[[list[dict[str, Any
         if error is None:
             on_rows(future.result())
         elif isinstance(error, KilledWorker) and len(keys) > 1:
-            # One of them ends every worker that tries it.
+            # One of these rows ends every worker that tries it.
             for key in keys:
                 waiting.add(submit([key]))
         elif isinstance(error, KilledWorker):
@@ -313,7 +313,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    # By its own name, so that workers import what they run and start with nothing of this process.
+    # Imported by its own name, so that workers import this module and start with nothing of this process.
     from apertura import campaign as own
 
     own.main()

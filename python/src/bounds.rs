@@ -1,4 +1,4 @@
-//! Which elements are heard, and what no unbiased estimator can beat.
+//! Elements of layouts, and bounds of unbiased estimators.
 
 use crate::arrays::{numbers, owned, reflectors};
 use crate::errors::named;

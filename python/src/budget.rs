@@ -6,7 +6,7 @@ use apertura::radar::budget;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 
-/// What the radar equation needs beside the radar's other constants. A point of reflectivity g has a radar cross section of g^2 square metres.
+/// Figures of the radar equation beside the radar's other constants. A point of reflectivity g has a radar cross section of g^2 square metres.
 ///
 /// Args:
 ///     transmit_power_dbm: Power that a transmitter sends, in dBm.

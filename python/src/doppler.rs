@@ -11,7 +11,7 @@ use num_complex::Complex64;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 
-/// What chirps are simulated of.
+/// Scene, radar and noise of a simulation of chirps.
 struct Chirps {
     scene: apertura::scene::Scene,
     radar: apertura::radar::Radar,
@@ -20,7 +20,7 @@ struct Chirps {
 }
 
 impl Chirps {
-    /// The scene as it stands after `seconds`; what is not given is the scene's.
+    /// The scene as it stands after `seconds`; arguments that are not given are the scene's own.
     fn of(scene: &Scene, radar: Option<&Radar>, floor: &str, seed: Option<i128>, seconds: f64) -> PyResult<Self> {
         if !seconds.is_finite() {
             return Err(value(format!("seconds is {seconds}; expected a finite number")));

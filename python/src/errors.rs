@@ -9,17 +9,17 @@ use std::fmt::Display;
 use std::io;
 use std::str::FromStr;
 
-/// What was given can't be used.
+/// A ValueError with the text of `error`.
 pub fn value(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// What a name says, read with `FromStr`.
+/// The value that a name stands for, read with `FromStr`.
 pub fn named<T: FromStr<Err: Display>>(name: &str) -> PyResult<T> {
     name.parse().map_err(value)
 }
 
-/// Something that should not happen.
+/// A RuntimeError: a fault of the library itself.
 pub fn runtime(error: impl Display) -> PyErr {
     PyRuntimeError::new_err(error.to_string())
 }

@@ -140,7 +140,7 @@ pub fn evaluate<'py>(
 /// Set, number of the scene, method.
 type Key = (String, u32, String);
 
-/// What an evaluation is asked for.
+/// The scenes, methods and rows of an evaluation.
 struct Run {
     campaign: Campaign,
     sets: Vec<SceneSet>,
@@ -259,7 +259,7 @@ fn kept(error: KeptError) -> PyErr {
     }
 }
 
-/// Rows that are asked for and can't be.
+/// Refuses rows that are asked for and that the run doesn't have.
 fn check_only(
     only: Option<&HashSet<Key>>,
     sets: &[SceneSet],

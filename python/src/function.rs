@@ -13,7 +13,7 @@ use std::sync::{Mutex, PoisonError};
 /// Longest name, characters.
 const MAX_NAME: usize = 40;
 
-/// Lambda outside of these is taken for something else.
+/// Range of values outside which a map can't be Lambda.
 const LAMBDA: [f64; 2] = [-1.0, 2.0];
 
 /// A Python function that makes maps of the samples of two ends.
@@ -23,11 +23,11 @@ pub struct Function {
     is_decades: bool,
     /// `apertura.serve.called` with the function bound to it.
     called: Py<PyAny>,
-    /// What it raised last.
+    /// The exception that the function raised last.
     raised: Mutex<Option<PyErr>>,
 }
 
-/// What is said of a function beside itself.
+/// Name, description and settings of a function.
 pub struct Said<'a> {
     pub name: &'a str,
     pub description: &'a str,
@@ -77,7 +77,7 @@ impl Function {
         Ok(Function { about, weights, is_decades: answers == "decades", called, raised: Mutex::new(None) })
     }
 
-    /// What the function raised, once.
+    /// The exception that the function raised last, taken.
     pub fn take_raised(&self) -> Option<PyErr> {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
@@ -119,7 +119,7 @@ impl Function {
     }
 }
 
-/// Whether a method may be called so.
+/// Whether `name` is a valid name of a method.
 pub fn is_name(name: &str) -> bool {
     (1..=MAX_NAME).contains(&name.len()) && name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c))
 }

@@ -1,4 +1,4 @@
-//! The library `apertura` as a Python module. `apertura/_apertura.pyi` says what each name takes and gives.
+//! The library `apertura` as a Python module. `apertura/_apertura.pyi` has the arguments and results of each name.
 
 mod arrays;
 mod bounds;

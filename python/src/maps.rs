@@ -24,7 +24,7 @@ use std::sync::OnceLock;
 pub struct Maps {
     radar: radar::Radar,
     normalisation: Normalisation,
-    /// Where the elements stand that heard the samples.
+    /// Places and errors of the elements that heard the samples.
     elements: BuiltArray,
     signal: BeatSignal,
     full: OnceLock<LogMap>,
@@ -55,7 +55,7 @@ impl Maps {
         Radar(self.radar.clone())
     }
 
-    /// How decades become Lambda in `target` and `inputs`.
+    /// Normalisation of decades to Lambda in `target` and `inputs`.
     #[getter]
     fn normalisation(&self) -> String {
         self.normalisation.to_string()
@@ -155,7 +155,7 @@ pub fn maps(samples: &Bound<'_, PyAny>, radar: Option<&Radar>, normalisation: &s
     Ok(Maps::new(radar, BuiltArray::default(), BeatSignal { samples }, named(normalisation)?))
 }
 
-/// What pickle makes maps of.
+/// Maps from their pickled fields.
 #[pyfunction]
 #[pyo3(name = "_maps", signature = (samples, radar, normalisation, elements=None))]
 pub fn pickled(

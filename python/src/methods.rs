@@ -24,13 +24,13 @@ pub struct Method {
     made_of: MadeOf,
 }
 
-/// What makes a method again in another process.
+/// The source from which a method is made again in another process.
 enum MadeOf {
-    /// Its name.
+    /// The method's name.
     Name,
     /// A file of weights.
     Weights(PathBuf),
-    /// A function, and what is said of it: description, told, answers and weights.
+    /// A function, and its texts: description, told, answers and weights.
     Function(Py<PyAny>, [String; 4]),
 }
 
@@ -115,7 +115,7 @@ pub fn methods_of(any: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<dyn Reconstructor>
     items.enumerate().map(|(i, item)| method_of(&item?, &format!("methods[{i}]"))).collect()
 }
 
-/// An error of the library with what a function raised as its cause.
+/// An error of the library whose cause is the exception that a function raised.
 pub fn caused(py: Python<'_>, error: PyErr, methods: &[Arc<dyn Reconstructor>]) -> PyErr {
     let raised = FUNCTIONS
         .lock()
@@ -225,7 +225,7 @@ impl Method {
         self.inner.description()
     }
 
-    /// What it knows beside samples and radar.
+    /// The method's knowledge beside samples and radar.
     #[getter]
     fn told(&self) -> &'static str {
         self.inner.about().told
@@ -243,7 +243,7 @@ impl Method {
         self.inner.eta()
     }
 
-    /// Why the method can't work on samples of a radar, or None where it can.
+    /// The reason for which the method can't work on samples of a radar, or None where it can.
     ///
     /// Args:
     ///     radar: The radar; that of table 3.1 where none is given.

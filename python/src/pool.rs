@@ -25,7 +25,7 @@ static FIRST_PROCESS: AtomicU32 = AtomicU32::new(0);
 static ASKED_THREADS: AtomicUsize = AtomicUsize::new(0);
 static ASKED_IN: AtomicU32 = AtomicU32::new(0);
 
-/// Notes which process loaded the module: another one is a fork of it.
+/// Stores the process that loaded the module: another one is a fork of it.
 pub fn remember_process() {
     FIRST_PROCESS.store(std::process::id(), Ordering::Relaxed);
 }
@@ -44,7 +44,7 @@ pub fn current() -> PyResult<&'static ThreadPool> {
     let process = std::process::id();
     let wanted = wanted(process);
     let there = CURRENT.load(Ordering::Acquire);
-    // SAFETY: what was stored is never freed.
+    // SAFETY: a stored pool is never freed.
     if let Some(pool) = unsafe { there.as_ref() }
         && pool.process == process
         && (wanted == 0 || wanted == pool.threads)

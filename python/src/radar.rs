@@ -146,7 +146,8 @@ impl Radar {
         ALL.iter().map(|p| p.id).collect()
     }
 
-    /// The radar of a TOML file that holds one in a table [radar]: a scene, a recording, or nothing else. What the table leaves out is table 3.1's.
+    /// The radar of a TOML file that holds one in a table [radar]: a scene, a recording, or nothing else. Keys that the table leaves out are table
+    /// 3.1's.
     ///
     /// Raises:
     ///     OSError: The file can't be read.
@@ -227,7 +228,7 @@ impl Radar {
         self.0.chirp_seconds
     }
 
-    /// What the radar equation needs; None in the thesis' convention.
+    /// Figures of the radar equation; None in the thesis' convention.
     #[getter]
     fn budget(&self) -> Option<LinkBudget> {
         self.0.budget.map(LinkBudget)

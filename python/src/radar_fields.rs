@@ -1,4 +1,4 @@
-//! The fields of a radar as Python says them: names, lists of places and the dict that makes it again.
+//! The fields of a radar under their Python names: names of choices, lists of places, and the constructor's dict.
 
 use crate::budget::LinkBudget;
 use crate::errors::value;
@@ -56,7 +56,7 @@ pub fn antennas_of(along: [Option<Vec<f64>>; 2], off: [Option<Vec<f64>>; 2]) -> 
     antennas.off_line(&of_transmitters, &of_receivers).map(Some).map_err(value)
 }
 
-/// What the constructor makes the radar of again: a dict of its arguments.
+/// The constructor's arguments for this radar, as a dict.
 pub fn fields_of<'py>(radar: &radar::Radar, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
     let fields = PyDict::new(py);
     fields.set_item("transmit_power_watts", radar.transmit_power_watts)?;
@@ -92,7 +92,7 @@ pub fn fields_of<'py>(radar: &radar::Radar, py: Python<'py>) -> PyResult<Bound<'
     Ok(fields)
 }
 
-/// The fields that a radar has where none is named, in a convention if one is.
+/// The fields of a radar that names none of them, in a convention if one is given.
 pub fn usual_of(
     convention: Option<&str>,
     carrier: Option<&str>,

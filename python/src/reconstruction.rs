@@ -1,4 +1,4 @@
-//! What methods answer.
+//! Answers of methods.
 
 use crate::arrays::{numbers, owned, reflectors, rows_of, view};
 use crate::errors::value;
@@ -10,7 +10,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// What a method found.
+/// A method's answer.
 #[pyclass(module = "apertura", frozen)]
 pub struct Reconstruction {
     answer: reconstruct::Reconstruction,
@@ -89,7 +89,7 @@ impl Reconstruction {
     }
 }
 
-/// What pickle makes a reconstruction of.
+/// A reconstruction from its pickled fields.
 #[pyfunction]
 #[pyo3(name = "_reconstruction")]
 pub fn reconstruction(fields: &Bound<'_, PyDict>) -> PyResult<Reconstruction> {

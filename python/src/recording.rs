@@ -74,13 +74,13 @@ impl Recording {
         ALL.iter().map(|p| p.id).collect()
     }
 
-    /// What it is called.
+    /// The recording's name.
     #[getter]
     fn name(&self) -> &str {
         &self.0.name
     }
 
-    /// Where it comes from and what to look for.
+    /// The recording's source, and hints on its echoes.
     #[getter]
     fn notes(&self) -> &str {
         &self.0.notes
@@ -117,13 +117,13 @@ impl Recording {
         self.0.range_metres
     }
 
-    /// What looks wrong and can't be known from the samples, a sentence each.
+    /// Doubts that the samples can't settle, a sentence each.
     #[getter]
     fn doubts(&self) -> Vec<String> {
         self.0.doubts.clone()
     }
 
-    /// What methods are told of its noise: that it is white. Its level they measure themselves.
+    /// The noise that methods take the recording's for: white. They measure its level themselves.
     #[getter]
     fn floor(&self) -> String {
         NoisePrior::UNKNOWN.to_string()
@@ -160,7 +160,7 @@ impl Recording {
     }
 }
 
-/// What pickle makes a recording of.
+/// A recording from its pickled fields.
 #[pyfunction]
 #[pyo3(name = "_recording", signature = (name, notes, radar, samples, ends, missing, range_metres, doubts))]
 #[expect(clippy::too_many_arguments, reason = "one a field")]

@@ -1,4 +1,4 @@
-//! What errors of the elements cost.
+//! The cost of element errors.
 
 use crate::arrays::layout_of;
 use crate::errors::{named, value, whole};

@@ -30,7 +30,7 @@ pub fn write_rows_to(py: Python<'_>, path: PathBuf, rows: Vec<Bound<'_, PyDict>>
     write_atomically(&path, |out| write_rows(out, &rows)).map_err(|e| system(&e, format!("{}: {e}", path.display())))
 }
 
-/// Rows of dicts, read as the program reads a file of them.
+/// Rows from dicts, read as the program reads a file of rows.
 pub fn rows_of(py: Python<'_>, rows: &[Bound<'_, PyDict>]) -> PyResult<Vec<Row>> {
     let names: Vec<&str> = Column::all().map(Column::name).collect();
     let mut text = names.join(",");

@@ -277,13 +277,13 @@ impl Scene {
         PyList::new(py, objects?)
     }
 
-    /// What the scene is called.
+    /// The scene's name.
     #[getter]
     fn name(&self) -> &str {
         &self.0.scene.name
     }
 
-    /// What it is meant to show.
+    /// Notes on the purpose of the scene.
     #[getter]
     fn notes(&self) -> &str {
         &self.0.scene.notes

@@ -1,4 +1,4 @@
-//! What rows allow to say of methods and of bad scenes.
+//! Statistics of rows: comparisons of methods, and rules on bad scenes.
 
 use crate::errors::value;
 use crate::rows::rows_of;

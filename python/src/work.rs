@@ -8,10 +8,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-/// How often signals and progress are looked at.
+/// Time between two looks at signals and progress.
 const TICK: Duration = Duration::from_millis(30);
 
-/// Who is told the part that is done.
+/// A Python function that takes the part that is done.
 pub type Progress<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 enum Event<E, T> {
@@ -19,7 +19,7 @@ enum Event<E, T> {
     Done(std::thread::Result<T>),
 }
 
-/// Hands what is found while work goes on to the thread that waits for it.
+/// Sends findings of running work to the thread that waits for it.
 pub struct Finder<E, T>(Sender<Event<E, T>>);
 
 impl<E, T> Finder<E, T> {
@@ -28,13 +28,13 @@ impl<E, T> Finder<E, T> {
     }
 }
 
-/// Runs `job` on the threads of this process, with the interpreter free for others. A signal handler that raises, or `progress`, cancels the
-/// task; what they raised comes once the work has stopped.
+/// Runs `job` on the threads of this process, with the interpreter free for other threads. A signal handler that raises, or `progress`, cancels the
+/// task; their exception is raised once the work has stopped.
 pub fn run<T: Send>(py: Python<'_>, progress: Progress<'_, '_>, job: impl FnOnce(&Task) -> T + Send) -> PyResult<T> {
     run_watched(py, progress, |task, _: &Finder<(), T>| job(task), |()| Ok(()))
 }
 
-/// [`run`], with `on_found` called on this thread for all that the job finds meanwhile.
+/// [`run`], with `on_found` called on this thread for each finding of the job.
 pub fn run_watched<T: Send, E: Send>(
     py: Python<'_>,
     progress: Progress<'_, '_>,
@@ -94,8 +94,8 @@ pub fn run_watched<T: Send, E: Send>(
     }
 }
 
-/// [`run_watched`] on a thread of the pool, on which a function of one's own was asked: it must not wait for the pool. Ctrl-C and progress are those of
-/// the work outside.
+/// [`run_watched`] on a thread of the pool that called a function of one's own: it must not wait for the pool. Ctrl-C and progress are those of the
+/// work outside.
 fn within<T: Send, E: Send>(
     py: Python<'_>,
     task: &Task,

@@ -18,18 +18,18 @@ use num_complex::Complex64;
 /// Standard deviations below which no unbiased estimate of one reflector's position can stay.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionBound {
-    /// Of the range from the array's centre, metres.
+    /// Standard deviation of the range from the array's centre, metres.
     pub range_metres: f64,
-    /// Of cos(theta).
+    /// Standard deviation of cos(theta).
     pub cos_theta: f64,
-    /// Of x, metres.
+    /// Standard deviation of x, metres.
     pub x_metres: f64,
-    /// Of y, metres; infinite on the array's axis, where a line array can't tell a small y from none.
+    /// Standard deviation of y, metres; infinite on the array's axis, where a line array can't tell a small y from none.
     pub y_metres: f64,
     /// Covariance of the errors of x and y, square metres; 0 where `y_metres` is infinite.
     pub xy_covariance_metres2: f64,
-    /// Of the reflector's amplitude (its reflectivity, the place being estimated too), as a part of it. With a gain for each half of
-    /// the layout it is that of the mean of both.
+    /// Relative standard deviation of the reflector's amplitude (its reflectivity), the place being estimated too. With a gain for each half of the
+    /// layout it is that of the mean of both.
     pub amplitude: f64,
 }
 
@@ -56,7 +56,7 @@ impl PositionBound {
     }
 }
 
-/// Why there is no bound.
+/// A reason for which there is no bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum BoundsError {
@@ -170,17 +170,17 @@ impl PlacedEcho {
     }
 }
 
-/// Echoes of all reflectors at all elements, and which gain each element has.
+/// Echoes of all reflectors at all elements, and the index of each element's gain.
 ///
 /// Each reflector's derivatives by range and cos(theta) are made orthogonal to its own signal. This only reparametrises the gains, so the
 /// bound on the position is unchanged. It keeps the matrix well conditioned: the carrier's hundreds of turns a metre belong to the gain.
 struct Model {
-    /// `[reflectors][elements]`.
+    /// Echoes, `[reflectors][elements]`.
     echoes: Vec<Vec<PlacedEcho>>,
-    /// Which gain each element has, from 0.
+    /// Index of each element's gain, from 0.
     group: Vec<usize>,
     groups: usize,
-    /// Mean relative change by range and by cos(theta), `[reflectors][gains]`: what belongs to the gains.
+    /// Mean relative change by range and by cos(theta), `[reflectors][gains]`: the part that the gains take up.
     own: Vec<Vec<[Complex64; 2]>>,
 }
 

@@ -12,7 +12,7 @@ pub struct Lobes {
     pub highest_side_lobe: f64,
     /// cos(theta) of that side lobe, less the reflector's.
     pub highest_side_lobe_offset: f64,
-    /// Root mean square beyond the main lobe.
+    /// Root mean square of the ambiguity function beyond the main lobe.
     pub side_lobe_rms: f64,
 }
 
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     fn of(layout: &Layout) -> Lobes {
-        // So far out that waves are plane and the textbook's figures hold.
+        // A place so far out that waves are plane and the textbook's figures hold.
         let centre = Polar { range_metres: 3e4, cos_theta: 0.0 };
         let (cosines, likeness) = cut(&Radar::default(), layout, centre, 8);
         lobes(&cosines, &likeness, 0.0).unwrap()

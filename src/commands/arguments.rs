@@ -18,7 +18,7 @@ pub struct FloorArgs {
     pub floor: Floor,
 }
 
-/// The methods that were named, or else those of one's own, or else `usual`.
+/// The methods that were named, or else the programs of one's own, or else `usual`.
 pub fn chosen(named: &[String], own: &[&'static str], usual: &str) -> Vec<String> {
     match (named, own) {
         ([], []) => vec![usual.to_owned()],

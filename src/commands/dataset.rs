@@ -79,7 +79,7 @@ pub struct Args {
 /// Ratios of --thermal, those that the live network was trained at.
 const THERMAL: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 
-/// How often the progress is drawn.
+/// Time between two drawings of the progress.
 const TICK: Duration = Duration::from_millis(100);
 
 impl Args {

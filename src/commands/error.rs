@@ -1,9 +1,9 @@
-//! What makes a command fail.
+//! Errors of commands.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Why a command failed. Every message names the file or argument, what is wrong with it and what was expected.
+/// An error of a command. Every message names the file or argument, the fault and the expected value.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs)] // The messages name every field.
@@ -13,10 +13,10 @@ pub enum CommandError {
     /// The arguments make no sense together.
     #[error("{0}")]
     Usage(String),
-    /// The error of a subcommand's own room.
+    /// An error of the room that the subcommand uses.
     #[error("{0}")]
     Failed(Box<dyn Error + Send + Sync>),
-    /// The same, about a file.
+    /// An error of the room that the subcommand uses, about a file.
     #[error("{}: {source}", path.display())]
     FailedOn { path: PathBuf, source: Box<dyn Error + Send + Sync> },
 }

@@ -8,10 +8,10 @@ use plotters::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
-/// What a figure's drawing gives back.
+/// The result of drawing a figure.
 pub type DrawingResult<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
-/// Something that can be drawn on any of plotters' areas.
+/// A figure that can be drawn on any of plotters' areas.
 pub trait Plot {
     /// Width and height in pixels.
     fn size(&self) -> (u32, u32);
@@ -43,7 +43,7 @@ pub fn save_numbers(numbers: &impl Serialize, folder: &Path, stem: &str) -> Resu
     write(folder, stem, "json", text.as_bytes())
 }
 
-/// A number beside an axis, as short as a reader needs it: 0.3 and not 0.30000000000000004.
+/// A number beside an axis, as short as possible: 0.3 and not 0.30000000000000004.
 pub fn tick(value: &f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-4..1e6).contains(&size) {

@@ -24,7 +24,7 @@ impl Frames {
         &self.0
     }
 
-    /// How many there are; 1 where the file counts none.
+    /// Number of frames; 1 where the file counts none.
     pub fn count(&self) -> usize {
         self.0.origin.as_ref().map_or(1, |origin| origin.frames.max(1) as usize)
     }
@@ -32,7 +32,7 @@ impl Frames {
     /// Frame `n`, read as the one that was opened.
     ///
     /// # Errors
-    /// [`CommandError`] names the file and what is wrong with the frame.
+    /// [`CommandError`] names the file and the fault of the frame.
     pub fn at(&self, n: usize) -> Result<Recording, CommandError> {
         let Some(origin) = &self.0.origin else { return Ok(self.0.clone()) };
         let frame = origin.with(origin.taken, n as u64).map_err(CommandError::failed)?;

@@ -52,7 +52,7 @@ impl Args {
         if let Some(output) = &self.output {
             check_output(output, &imported.origin.data)?;
         }
-        // What can't be read in the end is no import.
+        // A file whose recording can't be read is no import.
         let recording = imported.recording().map_err(CommandError::failed)?;
         if self.json {
             print(&described(&imported, &recording.doubts).to_string())?;

@@ -1,4 +1,4 @@
-//! What a subcommand looks at: a scene that is simulated, or a recording.
+//! The input of a subcommand: a scene that is simulated, or a recording.
 
 use super::CommandError;
 use crate::recording::raw::boards::{self, Board};
@@ -16,13 +16,12 @@ pub enum InputArgs {
 }
 
 impl InputArgs {
-    /// Reads what another copy of the program shared as text, a `.toml` with a table `[recording]` or a raw capture as a recording, anything
-    /// else as a scene.
+    /// Reads a shared text as a scene, a `.toml` with a table `[recording]` or a raw capture as a recording, any other file as a scene.
     pub fn load(path: &Path) -> Result<InputArgs, CommandError> {
         InputArgs::load_with(path, None)
     }
 
-    /// The same; `config` is the `.cfg` of a raw capture.
+    /// [`InputArgs::load`] with the `.cfg` of a raw capture.
     pub fn load_with(path: &Path, config: Option<&Path>) -> Result<InputArgs, CommandError> {
         if let Some(text) = shared_text(path) {
             return Ok(InputArgs::Scene(Box::new(SharedScene::from_text(text).map_err(CommandError::failed)?.file)));
@@ -42,7 +41,7 @@ pub struct ConfigArg {
     pub config: Option<PathBuf>,
 }
 
-/// Reads a recording, and says on standard error what looks wrong about it; `config` is the `.cfg` of a raw capture.
+/// Reads a recording, and prints warnings about it on standard error; `config` is the `.cfg` of a raw capture.
 pub fn load_recording(path: &Path, config: Option<&Path>) -> Result<Recording, CommandError> {
     let recording = match config {
         None => recording::file::load(path),
@@ -57,7 +56,7 @@ pub fn load_recording(path: &Path, config: Option<&Path>) -> Result<Recording, C
     Ok(recording)
 }
 
-/// Says on standard error what is doubtful of the file `path`.
+/// Prints the doubts about the file `path` on standard error.
 pub fn print_doubts(path: &Path, doubts: &[String]) {
     doubts.iter().for_each(|doubt| eprintln!("note: {}: {doubt}", path.display()));
 }

@@ -42,7 +42,7 @@ pub struct Args {
 /// False-alarm rate at which P_D is read.
 const FALSE_ALARM: f64 = 0.01;
 
-/// Where the reflector of the side lobes stands: 20 m ahead.
+/// Place of the reflector whose side lobes are measured: 20 m ahead.
 const CENTRE: Polar = Polar { range_metres: 20.0, cos_theta: 0.0 };
 
 /// Columns to each side of the reflector that are drawn.

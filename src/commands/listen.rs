@@ -86,7 +86,7 @@ impl Args {
     }
 }
 
-/// A line on a frame: its strongest echo, and what it lacks.
+/// A line on a frame: its strongest echo, and its lost bytes.
 fn told(origin: &Origin, frame: &CardFrame) -> Result<String, CommandError> {
     let recording = origin.recording_of(&frame.bytes).map_err(CommandError::failed)?;
     let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };

@@ -233,7 +233,7 @@ impl Args {
         }
     }
 
-    /// What the layout's elements hear, where there is one.
+    /// Samples of the layout's elements, where a layout is given.
     fn heard(&self, radar: &Radar, signal: Option<&BeatSignal>) -> Result<Option<Arc<LayoutSamples>>, CommandError> {
         let Some(layout) = self.layout.numbers(radar)? else { return Ok(None) };
         let alone = || CommandError::Usage(format!("{}: {ENDS_ALONE}, or no --layout", self.input.display()));
@@ -246,7 +246,7 @@ impl Args {
     }
 }
 
-/// How many decibels Lambda stands for under min-max normalisation.
+/// The sentence on the decibels that Lambda stands for under min-max normalisation.
 fn span(full: &LogMap) -> String {
     let decibels = 20.0 * (full.max() - full.min());
     format!(
@@ -255,7 +255,7 @@ fn span(full: &LogMap) -> String {
     )
 }
 
-/// Why a frame has no map of the whole array.
+/// Reason for which a recording has no map of the whole array.
 const ENDS_ALONE: &str = "the recording has the two ends alone; expected samples of every element";
 
 #[derive(Clone, Copy)]

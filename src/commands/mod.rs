@@ -67,7 +67,7 @@ const ENVIRONMENT: &str = "Environment:
                  least squares and burn choose for themselves
   APERTURA_LOG   messages on standard error, such as debug (default: warnings)";
 
-/// What the program can do beside opening its window.
+/// Subcommands of the program.
 #[derive(Debug, Subcommand)]
 enum Command {
     Bench(bench::Args),
@@ -143,9 +143,9 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// The command line as `clap` knows it, for what is made from it: man pages, completions.
+/// The command line as `clap` has it, for man pages and completions.
 pub fn command() -> clap::Command {
-    // A negative number is a value, so that what is allowed is told, and not an unknown option.
+    // A negative number is a value, so that a message names the allowed values, and not an unknown option.
     Cli::command().mut_subcommands(|command| command.allow_negative_numbers(true))
 }
 

@@ -1,4 +1,4 @@
-//! Arguments that choose a network's weights and what computes it.
+//! Arguments that choose a network's weights and the backend that computes it.
 
 use super::CommandError;
 use super::own_method::OwnMethodArgs;

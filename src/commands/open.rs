@@ -96,7 +96,7 @@ impl Args {
     }
 }
 
-/// The window library's message without the place in its own source that it names, and without all that it looked for.
+/// The window library's message without the line of its source and the list of backends that it tried.
 fn shortened(message: &str) -> String {
     let plain = message.split_once("os error at ").and_then(|(before, after)| {
         let (_, place_and_reason) = after.split_once(".rs:")?;
@@ -111,7 +111,7 @@ fn shortened(message: &str) -> String {
     plain.as_deref().unwrap_or(message).trim_end_matches('.').to_owned()
 }
 
-/// Why the app did not open.
+/// A reason for which the window did not open.
 enum WindowError {
     NoWindow(String),
     #[cfg(feature = "app")]

@@ -21,7 +21,7 @@ impl RadarArg {
         self.radar.is_some()
     }
 
-    /// The radar, and where a recording's file tells it, the range of its snapshot. What the file leaves out is table 3.1's.
+    /// The radar, and where a recording's file tells it, the range of its snapshot. Keys that the file leaves out are table 3.1's.
     pub fn load(&self) -> Result<(Radar, Option<f64>), CommandError> {
         self.radar.as_deref().map_or_else(|| Ok((Radar::default(), None)), load)
     }

@@ -69,7 +69,7 @@ pub struct Args {
     seed: Option<u64>,
 }
 
-/// What is told where nothing says the interval.
+/// Note where the interval of chirps is unknown.
 const UNKNOWN_INTERVAL: &str = "Nothing says the interval of chirps: a step of velocity is shown as 1 m/s. radar.chirp_interval_seconds of a TOML says it.";
 
 /// Chirps where neither the scene nor the command says how many.

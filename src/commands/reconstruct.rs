@@ -75,7 +75,7 @@ impl Args {
             return Err(CommandError::Usage(format!("{name}: an archive is written; expected a name ending in .npz")));
         }
         let own = self.network.start_own()?;
-        // A name that is wrong is told before anything is read.
+        // A wrong name is reported before any file is read.
         let asked = self.method.as_deref().or(own.first().copied()).map(|name| self.method(name)).transpose()?;
         if self.all_frames {
             return self.of_frames(asked);
@@ -225,7 +225,7 @@ impl Args {
         Ok(TwoEnds { first, last: last.map_err(CommandError::on(&self.input))? })
     }
 
-    /// The method of an input that is not told another.
+    /// The method for an input where none is named.
     fn usual(&self, radar: &Radar) -> Result<Arc<dyn Reconstructor>, CommandError> {
         let layout = self.layout.numbers(radar)?;
         let usual =
@@ -233,7 +233,7 @@ impl Args {
         self.method(usual.name())
     }
 
-    /// What the elements that are looked at heard.
+    /// Samples of the elements that are looked at.
     fn heard(&self, recording: &Recording) -> Result<Heard, CommandError> {
         let Some(layout) = self.layout.numbers(&recording.radar)? else { return Ok(Heard::ends(recording.two_ends())) };
         let alone = "holds the samples of the two ends alone; leave --layout out";
@@ -254,7 +254,7 @@ impl Args {
         let milliseconds = started.elapsed().as_secs_f64() * 1e3;
         let mut found = find(method, radar, ends, &request, &answer)?;
         if radar.samples == 1 {
-            // Where a single sample's echoes come from is only known from elsewhere.
+            // The range of a single sample's echoes comes from elsewhere.
             found.iter_mut().for_each(|f| f.range_metres = snapshot_range_metres.unwrap_or(f64::NAN));
         }
         Ok(Answer { eta: method.eta_of(&answer), map: answer.lambda.lambda, milliseconds, found })
@@ -271,7 +271,7 @@ impl Args {
     }
 }
 
-/// Adds what was found, a list of each figure.
+/// Adds the echoes found, an array for each figure.
 fn add_found<'a>(
     out: &mut NpzOutput<'_>,
     found: &(impl Iterator<Item = &'a Detection> + Clone),
@@ -314,7 +314,7 @@ fn print_echoes(found: &[Detection]) -> Result<(), CommandError> {
 /// Confidence below which an echo is called doubtful.
 const DOUBTFUL: f64 = 0.5;
 
-/// What is read.
+/// The input file's samples and radar.
 struct Input {
     radar: Radar,
     range_metres: Option<f64>,
@@ -327,7 +327,7 @@ enum Samples {
     MagPhase(Array3<f64>),
 }
 
-/// What the two ends heard, or another layout in their place.
+/// Samples of the two ends, or of another layout in their place.
 struct Heard {
     ends: TwoEnds,
     layout: Option<Arc<LayoutSamples>>,
@@ -344,7 +344,7 @@ impl Heard {
     }
 }
 
-/// What is written.
+/// The output file's arrays and figures.
 struct Answer {
     map: Array2<f32>,
     eta: f32,

@@ -134,7 +134,7 @@ impl Args {
     }
 }
 
-/// What was measured, and on what; its JSON is documented in the command's help.
+/// The report, with the settings of its measurements; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     set: u8,
@@ -192,7 +192,7 @@ fn unit(rows: &[RobustnessRow]) -> String {
 fn chart(scenes: u32, rows: &[RobustnessRow], methods: &[Arc<dyn Reconstructor>]) -> LineChart {
     let ends = rows.iter().flat_map(|r| {
         let [low, mean, high] = bar_of(r);
-        // A bar of one that is not sure at all would make the axis as long as it.
+        // The bar of a very uncertain mean is cut, since the axis would have to be as long.
         [low.max(mean / 3.0), high]
     });
     let error = widened(span(ends), 1.3);

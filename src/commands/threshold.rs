@@ -63,7 +63,7 @@ pub struct Args {
     json: bool,
 }
 
-/// What was found; its JSON is documented in the command's help.
+/// The report; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
 struct Report {
     method: String,

@@ -133,7 +133,7 @@ fn go<S: Student>(recipe: &Recipe, config: &S::Config, run: &TrainingRun, resume
     ))
 }
 
-/// What trains: asked for once, when it starts.
+/// The program and the arguments of the training, read once at its start.
 fn origin() -> Origin {
     let program = std::env::current_exe().and_then(|path| sha256::of_file(&path));
     Origin {

@@ -1,4 +1,4 @@
-//! `apertura worsen`: near a scene, one on which a method does worse; or the smallest move after which it is right.
+//! `apertura worsen`: a search near a scene for one on which a method does worse, or for the smallest move after which it is right.
 
 use super::arguments::{FloorArgs, chosen, real, seed, whole};
 use super::network_args::NetworkArgs;
@@ -62,7 +62,7 @@ pub struct Args {
     floor: FloorArgs,
 }
 
-/// Metres; a move below it changes nothing that a map shows.
+/// Smallest reach of a search, metres: smaller moves change no visible cell of a map.
 const MIN_REACH_METRES: f64 = 1e-6;
 
 /// A year.
@@ -109,7 +109,7 @@ impl Args {
         print(&format!("wrote {}", self.output.display()))
     }
 
-    /// Where only the time is said, it alone ends the search.
+    /// Number of tries: without bound where only the time is given.
     fn most_tries(&self) -> u32 {
         let otherwise = if self.minutes.is_some() { u32::MAX } else { WorseningSearch::default().tries };
         self.tries.unwrap_or(otherwise)
@@ -152,7 +152,7 @@ fn called(scene: &Scene, path: &std::path::Path) -> String {
     if scene.name.is_empty() { path.display().to_string() } else { scene.name.clone() }
 }
 
-/// What differs between two scenes of the same objects.
+/// The differences between two scenes of the same objects, a line each.
 fn changes(before: &Scene, after: &Scene) -> String {
     let mut lines = Vec::new();
     for (i, (a, b)) in before.objects.iter().zip(&after.objects).enumerate() {

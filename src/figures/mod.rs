@@ -1,7 +1,7 @@
 //! Every figure of the thesis, drawn from this program's data.
 //!
-//! A figure is a function from a [`SceneSource`] of simulated data to a [`Sheet`](sheet::Sheet) of panels; [`draw`] makes files of sheets,
-//! [`pages`] the page that shows them beside one another. [`ALL`] lists them with what each shows and what differs from the printed one.
+//! A figure is a function from a [`SceneSource`] of simulated data to a [`Sheet`](sheet::Sheet) of panels; [`draw`] makes files of sheets, [`pages`]
+//! the page of all figures. [`ALL`] lists the figures with their subjects and their differences from the printed ones.
 
 mod canvas;
 mod diagrams;
@@ -27,7 +27,7 @@ pub struct Figure {
     /// Its number in the thesis, as `4-7`.
     pub number: &'static str,
     pub shows: &'static str,
-    /// What differs from the printed one, and why.
+    /// The differences from the printed figure, and their reasons.
     pub differs: &'static str,
     /// Whether it takes less than a second.
     pub cheap: bool,

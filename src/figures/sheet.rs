@@ -34,7 +34,7 @@ pub enum PanelContent {
 pub struct SheetAxis {
     /// Quantity and unit.
     pub label: &'static str,
-    /// From and to, in that unit; from may be the larger.
+    /// The ends of the axis in that unit; the first may be the larger.
     pub span: Range<f64>,
 }
 
@@ -45,7 +45,7 @@ pub struct SheetChart {
     pub series: Vec<Series>,
 }
 
-/// How a series is drawn.
+/// The stroke of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
     /// A line from point to point.
@@ -75,7 +75,7 @@ pub struct SheetCells {
     /// Values in [0, 1], `[rows from below, columns]`; NaN stays paper.
     pub values: Array2<f32>,
     pub colours: ColourMap,
-    /// What 0 and 1 stand for, beside the colour bar; `None` for no bar.
+    /// Labels of 0 and 1 beside the colour bar; `None` for no bar.
     pub ends_of_bar: Option<(&'static str, &'static str)>,
     /// Places with a ring around them, in the axes' units.
     pub rings: Vec<(f64, f64)>,
@@ -97,9 +97,9 @@ pub enum Ink {
     Dark,
     /// Paler than text.
     Pale,
-    /// What the figure is about.
+    /// Colour of the figure's subject.
     Accent,
-    /// What it is compared with.
+    /// Colour of a comparison.
     Second,
 }
 
@@ -150,7 +150,7 @@ impl Series {
         Series { name, stroke: Stroke::Solid, points: points.into_iter().collect() }
     }
 
-    /// The same points drawn otherwise.
+    /// The series with another stroke.
     pub fn with(self, stroke: Stroke) -> Self {
         Series { stroke, ..self }
     }

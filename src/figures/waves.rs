@@ -14,7 +14,7 @@ fn decibels(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     values.into_iter().map(|v| 20.0 * (v.max(1e-18 * peak) / peak).log10()).collect()
 }
 
-/// Transmitted and received chirp, and the difference frequency the mixer gives.
+/// Transmitted and received chirp, and the difference frequency at the mixer's output.
 pub fn chirps(source: &SceneSource) -> Result<Sheet, FigureError> {
     let (range, bandwidth, carrier) = (21.0, source.radar.bandwidth_hz / 1e9, source.radar.carrier_hz / 1e9);
     // A chirp of 1 microsecond, so that the delay is wider than the line.

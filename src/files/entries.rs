@@ -9,7 +9,7 @@ const ENTRY_BYTES: u64 = 46;
 
 /// Checks that the list at the end of an archive can hold as many entries as it claims; leaves `file` at its beginning.
 /// # Errors
-/// [`io::ErrorKind::InvalidData`] where it can't, and what the system says.
+/// [`io::ErrorKind::InvalidData`] where it can't, and errors of the file.
 pub fn check_entries(file: &mut (impl Read + Seek)) -> io::Result<()> {
     let length = file.seek(SeekFrom::End(0))?;
     file.seek(SeekFrom::Start(length.saturating_sub(TAIL_BYTES)))?;

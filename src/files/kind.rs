@@ -3,15 +3,15 @@
 use super::read_start;
 use std::path::Path;
 
-/// As much of a file as its kind is told by.
+/// Bytes of the beginning of a file by which its kind is found.
 const START_BYTES: u64 = 1 << 16;
 
-/// What the file at `path` is, as a noun for a message: "an ONNX model"; `None` where nothing is recognised or it can't be read.
+/// The kind of the file at `path`, as a noun for a message: "an ONNX model"; `None` where no kind is recognised or the file can't be read.
 pub fn kind_at(path: &Path) -> Option<&'static str> {
     kind_of(&read_start(path, START_BYTES).ok()?)
 }
 
-/// The same of a file that begins with `bytes`.
+/// The kind of a file that begins with `bytes`.
 pub fn kind_of(bytes: &[u8]) -> Option<&'static str> {
     let begins = |start: &[u8]| bytes.starts_with(start);
     Some(match bytes {
@@ -33,7 +33,7 @@ pub fn kind_of(bytes: &[u8]) -> Option<&'static str> {
     })
 }
 
-/// What a zip archive holds, by the name of its first entry, which stands 30 bytes behind its start.
+/// The kind of a zip archive, by the name of its first entry, which stands 30 bytes behind its start.
 fn archive(bytes: &[u8]) -> &'static str {
     let length = bytes.get(26..28).map_or(0, |n| usize::from(n[0]) + 256 * usize::from(n[1]));
     let name = bytes.get(30..30 + length).unwrap_or_default();

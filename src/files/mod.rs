@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Writes a file in one step: `write` fills a temporary file beside `path`, which then takes its place. A reader sees the
 /// old file or the new one, never a part; on any error the old one stays as it was.
 /// # Errors
-/// What `write` returns, or what the system says: the folder is missing, `path` is a folder, a device or a pipe, the disk is full.
+/// The error of `write`, or an [`io::Error`]: the folder is missing, `path` is a folder, a device or a pipe, the disk is full.
 pub fn write_atomically<E: From<io::Error>>(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<Draft>) -> Result<(), E>,
@@ -40,7 +40,7 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_atomically(path, |out| out.write_all(bytes))
 }
 
-/// The error of a folder that takes no file; the temporary file's name in the system's message would lead nowhere.
+/// The error of a folder that takes no file. The system's message would name the temporary file.
 fn unwritable(folder: &Path, error: &io::Error) -> io::Error {
     io::Error::new(
         error.kind(),
@@ -50,8 +50,8 @@ fn unwritable(folder: &Path, error: &io::Error) -> io::Error {
 
 /// Reads a file of at most `most` bytes.
 /// # Errors
-/// What the system says; [`io::ErrorKind::FileTooLarge`] for a longer file, [`io::ErrorKind::InvalidInput`] for a folder, a device or a pipe,
-/// which may never end.
+/// An [`io::Error`]: [`io::ErrorKind::FileTooLarge`] for a longer file, [`io::ErrorKind::InvalidInput`] for a folder, a device or a pipe, which may
+/// never end.
 pub fn read_bounded(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let found = fs::metadata(path)?;
     if !found.is_file() {
@@ -66,7 +66,7 @@ pub fn read_bounded(path: &Path, most: u64) -> io::Result<Vec<u8>> {
         return Err(too_large(found.len()));
     }
     let mut bytes = Vec::with_capacity(found.len() as usize);
-    // It may grow while it is read.
+    // The file may grow while it is read.
     File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }

@@ -1,6 +1,6 @@
-//! NumPy's single arrays (`.npy`): a look at the header before anything is allocated for what it promises.
+//! NumPy's single arrays (`.npy`): the header is checked before memory is reserved by its sizes.
 //!
-//! `ndarray_npy` takes the header's word for the number of elements, and for its own length; a damaged one may say anything.
+//! `ndarray_npy` trusts the header's number of elements, and its own length. A damaged header may give any.
 
 use ndarray_npy::npy::header::Header;
 use std::io::{self, Read};
@@ -50,7 +50,7 @@ pub fn header_bytes(file: &mut impl Read) -> io::Result<Vec<u8>> {
 
 /// Checks that an array's file (`.npy`: header, numbers) is as long as its header says, so that reading it allocates no more.
 /// # Errors
-/// What is wrong with it.
+/// The fault of the file.
 pub fn check(file: &[u8]) -> Result<(), String> {
     let mut numbers = file;
     let header = header_bytes(&mut numbers).map_err(|e| e.to_string())?;

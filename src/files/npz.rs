@@ -20,7 +20,7 @@ use zip::{CompressionMethod, ZipArchive};
 /// Most bytes that one array of an archive may have, unless [`Npz::at_most`] says otherwise: 1 GiB, the samples of the largest radar.
 pub const MAX_ARRAY_BYTES: u64 = 1 << 30;
 
-/// Why an archive could not be read or written. Messages don't name the file: its opener does.
+/// An error of reading or writing an archive. Messages don't name the file: its opener does.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum NpzError {
@@ -215,7 +215,7 @@ impl NpzOutput<'_> {
     /// Adds arrays `[rows, columns]` as one of `shape` `[count, rows, columns]` under `key`. `next` makes them in order, and one is held at
     /// a time.
     /// # Errors
-    /// What `next` returns, an array of another shape, or [`NpzError::Io`] when the disk is full.
+    /// The error of `next`, an array of another shape, or [`NpzError::Io`] when the disk is full.
     pub fn add_stack<T: WritableElement + Clone>(
         &mut self,
         key: &str,
@@ -260,7 +260,7 @@ fn write_error(error: WriteNpzError) -> NpzError {
 
 /// Writes an archive in one step, uncompressed as `numpy.savez` does: `fill` adds the arrays.
 /// # Errors
-/// What `fill` returns, or [`NpzError::Io`].
+/// The error of `fill`, or [`NpzError::Io`].
 pub fn write_npz(path: &Path, fill: impl FnOnce(&mut NpzOutput) -> Result<(), NpzError>) -> Result<(), NpzError> {
     write_atomically(path, |out| {
         let mut output = NpzOutput { writer: NpzWriter::new(out) };

@@ -1,10 +1,10 @@
-//! Blobs of a map as handles: whose blob is under the pointer, and where a reflector goes when its blob is moved.
+//! Blobs of a map as handles: the blob under the pointer, and the place of a reflector after its blob is moved.
 
 use super::{Grip, Place, hit::Hit};
 use crate::radar::{Polar, Radar};
 use crate::scene::{Reflector, Scene};
 
-/// How far from the middle of a blob it can still be grabbed, in points of the view: blobs are wider than points of the scene.
+/// Radius around the middle of a blob within which it can be grabbed, in points of the view: blobs are wider than points of the scene.
 pub const BLOB_RADIUS_POINTS: f64 = 12.0;
 
 /// A blob that was hit.
@@ -12,19 +12,19 @@ pub const BLOB_RADIUS_POINTS: f64 = 12.0;
 pub struct BlobHit {
     /// Index of the object.
     pub object: usize,
-    /// Where that reflector of the object stands whose blob it is.
+    /// Place of the object's reflector that makes the blob.
     pub place: Place,
 }
 
 impl BlobHit {
-    /// The same as a hit of the object in the scene.
+    /// The blob as a hit of its object in the scene.
     pub fn as_hit(&self, scene: &Scene) -> Option<Hit> {
         let place = scene.objects.get(self.object)?.centre_metres().into();
         Some(Hit { object: self.object, grip: Grip::Body, place })
     }
 }
 
-/// The reflector whose blob is nearest to the pointer; `distance_points` tells how far from it a reflector's blob is drawn.
+/// The reflector whose blob is nearest to the pointer; `distance_points` gives the distance of a reflector's blob, points of the view.
 pub fn nearest(scene: &Scene, distance_points: impl Fn(&Reflector) -> f64) -> Option<BlobHit> {
     let mut best: Option<(f64, BlobHit)> = None;
     for (object, o) in scene.objects.iter().enumerate() {
@@ -39,11 +39,9 @@ pub fn nearest(scene: &Scene, distance_points: impl Fn(&Reflector) -> f64) -> Op
     best.map(|(_, hit)| hit)
 }
 
-/// Where a reflector at `place` goes when its blob on the map of the elements around (`centre_x_metres`, 0) is moved as the pointer moves
-/// from `from` to `to`.
+/// The place of a reflector at `place` after its blob was dragged from `from` to `to`, on the map of the elements around (`centre_x_metres`, 0).
 ///
-/// Ranges that wrapped around and directions that were folded stay so, and what stands behind the array stays behind it: the blob alone
-/// doesn't tell.
+/// Ranges that wrapped around and directions that were folded stay so, and reflectors behind the array stay behind it: the blob alone doesn't tell.
 pub fn moved(radar: &Radar, centre_x_metres: f64, place: Place, from: Polar, to: Polar) -> Place {
     let blob = radar.blob_of(centre_x_metres, place.x_metres, place.y_metres);
     let range = (blob.range_metres + to.range_metres - from.range_metres).max(0.0);

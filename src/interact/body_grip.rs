@@ -6,7 +6,7 @@ use crate::scene::body::{MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES};
 use crate::scene::shape::direction;
 use crate::scene::{Block, Object, Polygon, Wall};
 
-/// The grips of a body but for the body itself; the one that turns it stands `beyond_metres` away from it.
+/// The grips of a body but for the body itself. The turning grip stands `beyond_metres` away from it.
 pub(super) fn grips(object: &Object, beyond_metres: f64) -> Vec<GripPlace> {
     let at = |grip, [x, y]: [f64; 2]| GripPlace { grip, place: Place::new(x, y) };
     let corners = |corners: &[[f64; 2]]| -> Vec<GripPlace> {
@@ -77,7 +77,7 @@ fn move_corner(block: &mut Block, corner: usize, to: Place) {
     let along = direction(block.angle_degrees);
     let (dx, dy) = (to.x_metres - stays[0], to.y_metres - stays[1]);
     let (length, width) = (dx * along[0] + dy * along[1], dy * along[0] - dx * along[1]);
-    // A corner that is dragged past the one that stays doesn't turn the box inside out.
+    // A corner that is dragged past the opposite one doesn't turn the box inside out.
     let (ahead, left) = (matches!(corner, 1 | 2), matches!(corner, 2 | 3));
     let size = |v: f64, positive: bool| (if positive { v } else { -v }).clamp(MIN_SIZE_METRES, MAX_SIZE_METRES);
     (block.length_metres, block.width_metres) = (size(length, ahead), size(width, left));
@@ -87,7 +87,7 @@ fn move_corner(block: &mut Block, corner: usize, to: Place) {
     block.y_metres = stays[1] + l * along[1] + w * along[0];
 }
 
-/// Turns a polygon about its middle so that what pointed ahead points towards `to`.
+/// Turns a polygon about its middle so that the side that faced ahead faces `to`.
 fn turn(polygon: &mut Polygon, to: Place) {
     let [x, y] = polygon.centre_metres();
     let Some(angle) = angle_to([x, y], to) else { return };

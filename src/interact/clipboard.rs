@@ -1,9 +1,9 @@
-//! Objects as text: the same TOML as a scene file, so that what is copied can be pasted into one.
+//! Objects as text: the same TOML as a scene file, so that a copy can be pasted into one.
 
 use crate::radar::Radar;
 use crate::scene::{Object, Scene, SceneError};
 
-/// Why text can't be pasted.
+/// A reason for which text can't be pasted.
 #[derive(Debug, thiserror::Error)]
 pub enum PasteError {
     /// The text is not a scene.

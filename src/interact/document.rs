@@ -1,6 +1,6 @@
-//! The document: a scene and its radar, the file they are kept in, and what of them is on disk.
+//! The document: a scene and its radar, their file, and the content that is on disk.
 //!
-//! Undo, the autosave and the window's title all speak of it. It is shared and never changed in place: an edit makes another.
+//! Undo, the autosave and the window's title all use it. It is shared and never changed in place: an edit makes another.
 
 use crate::platform::fs;
 use crate::radar::Radar;
@@ -28,20 +28,20 @@ impl Content {
     }
 }
 
-/// A scene and its radar, where they are kept, and whether they are.
+/// A scene and its radar, with their path and the content that was saved.
 ///
-/// Cheap to copy. Two documents are the same one, at different times, where their [`Document::id`] is the same.
+/// Cheap to clone. Two documents are the same one, at different times, where their [`Document::id`] is the same.
 #[derive(Debug, Clone)]
 pub struct Document {
     id: u64,
     content: Content,
     path: Option<Arc<Path>>,
-    /// What is on disk, or can be had again as easily; `None` where it is nowhere.
+    /// The content on disk, or one that can be made again as easily; `None` for none.
     saved: Option<Content>,
     measured: Option<Measured>,
 }
 
-/// Name of the table of a scene file that says what the scene is laid over.
+/// Name of the table of a scene file that names the recording under the scene.
 const BACKGROUND_TABLE: &str = "over";
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -56,7 +56,7 @@ fn recording_source(path: &Path, name: &str) -> String {
     if is_shipped { name.to_owned() } else { beside().unwrap_or_else(|| name.to_owned()) }
 }
 
-/// A recording that stands where the echoes of the scene would: the scene is what is laid over it.
+/// A recording in place of the scene's echoes: the scene lies over it.
 #[derive(Debug, Clone)]
 struct Measured {
     recording: Arc<Recording>,
@@ -86,7 +86,7 @@ impl Document {
         Document { id: NEXT.fetch_add(1, Ordering::Relaxed), content, path, saved, measured: None }
     }
 
-    /// A scene that comes with the program: untitled, and nothing is lost with it.
+    /// A scene that comes with the program: untitled and never unsaved.
     pub fn shipped(file: SceneFile) -> Self {
         let content = Content::of(file);
         Document::new(content.clone(), None, Some(content))
@@ -114,7 +114,7 @@ impl Document {
         Ok(document)
     }
 
-    /// Writes it to `path`, a whole path, as a scene; the name of the recording it is laid over with it, where the format has room.
+    /// Writes the document to `path`, a whole path, as a scene; with the name of the recording under it, where the format has room.
     /// # Errors
     /// [`SceneFileError`]; the file is then as it was. A recording is never replaced.
     pub(super) fn write(&self, path: &Path) -> Result<(), SceneFileError> {
@@ -139,7 +139,7 @@ impl Document {
         losses
     }
 
-    /// Where it is kept, or where its user would look for it: beside the recording that it is laid over.
+    /// The document's path, or the path of a scene beside the recording that it is laid over.
     pub fn likely_path(&self) -> Option<PathBuf> {
         let beside = |recording: &str| {
             let recording = Path::new(recording);
@@ -149,13 +149,13 @@ impl Document {
         self.path().map(Path::to_path_buf).or_else(|| self.recording_source().map(beside))
     }
 
-    /// What was read from `path`, a whole path without links.
+    /// A document that was read from `path`, a whole path without links.
     pub fn opened(path: &Path, file: SceneFile) -> Self {
         let content = Content::of(file);
         Document::new(content.clone(), Some(path.into()), Some(content))
     }
 
-    /// What an autosave kept of the document at `path`: not what that file holds.
+    /// A document at `path` from an autosave's copy, which differs from the file.
     pub fn unsaved(path: Option<&Path>, file: SceneFile) -> Self {
         Document::new(Content::of(file), path.map(Arc::from), None)
     }
@@ -192,7 +192,8 @@ impl Document {
         Ok(())
     }
 
-    /// The same recording read another way: with what is laid over it, where its radar stays the same. `None` where no recording is there.
+    /// The document over `recording`, the same file read another way: with the same scene, where the radar stays the same. `None` where the document
+    /// has no recording.
     pub fn read_another_way(&self, recording: Recording) -> Option<Self> {
         let before = self.measured.as_ref()?;
         let is_same_radar = recording.radar == before.recording.radar;
@@ -204,7 +205,7 @@ impl Document {
         Some(Document { measured: Some(measured), ..document })
     }
 
-    /// The recording that stands where the echoes of the scene would, if one does.
+    /// The recording in place of the scene's echoes, if there is one.
     pub fn recording(&self) -> Option<&Arc<Recording>> {
         self.measured.as_ref().map(|m| &m.recording)
     }
@@ -213,7 +214,7 @@ impl Document {
         self.measured.as_ref().map(|m| &*m.source)
     }
 
-    /// Which document it is, through all its edits.
+    /// Number of the document, the same through all its edits.
     pub fn id(&self) -> u64 {
         self.id
     }
@@ -228,12 +229,12 @@ impl Document {
         &self.content.radar
     }
 
-    /// The file it is kept in; `None` where it has none yet.
+    /// Path of the document's file; `None` where it has none yet.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
-    /// Its file's name, that of the recording it is laid over, the scene's own, or "untitled".
+    /// The name of its file, of the recording under it, or of the scene, or "untitled".
     pub fn name(&self) -> String {
         let name = self.path().or(self.recording_source().map(Path::new)).and_then(Path::file_name);
         let of_scene = || match self.scene().name.as_str() {
@@ -243,7 +244,7 @@ impl Document {
         name.map_or_else(of_scene, |n| n.to_string_lossy().into_owned())
     }
 
-    /// Its name, with a mark where it is not on disk as it is.
+    /// The document's name, with a mark while it is unsaved.
     pub fn title(&self) -> String {
         format!("{}{}", self.name(), if self.is_modified() { " •" } else { "" })
     }
@@ -253,7 +254,8 @@ impl Document {
         !self.saved.as_ref().is_some_and(|saved| saved.same(&self.content))
     }
 
-    /// Whether its file is there and holds something else than is known of it. Nothing is known after a restart: then it isn't said.
+    /// Whether the document's file is there and has another content than was last read or written here. After a restart that content isn't known, and
+    /// the answer is false.
     pub(super) fn is_outdated(&self) -> bool {
         let (Some(path), Some(saved)) = (self.path(), &self.saved) else { return false };
         fs::exists(path) && !Document::read(path).is_ok_and(|on_disk| on_disk.content.same(saved))
@@ -270,7 +272,7 @@ impl Document {
             && self.content.same(&other.content)
     }
 
-    /// Whether nothing at all happened between this and `other`, told without a look at the objects.
+    /// Whether `other` is this document without any change since, by comparing pointers alone.
     pub(super) fn untouched_since(&self, other: &Document) -> bool {
         self.id == other.id
             && self.path == other.path
@@ -290,7 +292,7 @@ impl Document {
         Arc::make_mut(&mut self.content.radar)
     }
 
-    /// Takes note that `path` now holds what `kept` does; `kept` is this document or another one.
+    /// Records that `path` now holds the content of `kept`; `kept` is this document or another one.
     ///
     /// A document that is the same as `kept` goes by that path from now on. Another of the same path now differs from its file.
     pub(super) fn note_kept(&mut self, kept: &Document, path: &Path) {
@@ -303,14 +305,14 @@ impl Document {
     }
 }
 
-/// What a dead window left.
+/// The documents that a dead window left.
 #[derive(Debug, Default)]
 pub struct Restored {
     /// The document that was on screen, if it was unsaved.
     pub on_screen: Option<Document>,
     /// Unsaved documents that were not on screen, the latest last.
     pub left: Vec<Document>,
-    /// Files that could not be read: why, and where they are kept.
+    /// Files that could not be read: the reason, and the place where they are kept.
     pub problems: Vec<String>,
 }
 

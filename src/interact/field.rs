@@ -1,11 +1,11 @@
-//! The numbers of an object that can be read and set, by name: a form shows those of one object, or those that several have in common.
+//! The numbers of an object that can be read and set, by name. A form shows those of one object, or those that several have in common.
 
 use crate::radar::budget::{cross_section_dbsm, reflectivity_of};
 use crate::scene::body::{MAX_ROUGHNESS_MILLIMETRES, MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES};
 use crate::scene::{MAX_SPEED_METRES_PER_SECOND, Object};
 use serde::{Deserialize, Serialize};
 
-/// In which numbers places are told and entered.
+/// Coordinates in which places are shown and entered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coordinates {
@@ -31,7 +31,7 @@ pub enum Field {
     AngleDegrees,
     /// Distance between a line's neighbouring reflectors, metres.
     Spacing,
-    /// Where a line leads, degrees: 0 straight ahead, 90 along the array to the right.
+    /// Direction of a line, degrees: 0 straight ahead, 90 along the array to the right.
     Direction,
     /// Standard deviation of a cluster along x, metres.
     SpreadX,
@@ -61,20 +61,20 @@ pub enum Field {
     CrossSection,
 }
 
-/// The cross section of what reflects nothing, dBsm.
+/// The cross section for a reflectivity of 0, dBsm.
 const MIN_DBSM: f64 = -300.0;
 
-/// What happens to a number.
+/// A change of a field's value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FieldChange {
-    /// It becomes this.
+    /// A new value.
     To(f64),
-    /// It grows by this.
+    /// A step that is added to the value.
     By(f64),
 }
 
 impl FieldChange {
-    /// What becomes of `value`.
+    /// The value after the change.
     pub fn of(self, value: f64) -> f64 {
         match self {
             FieldChange::To(new) => new,
@@ -86,7 +86,7 @@ impl FieldChange {
 /// A field that several objects have, and its value in them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SharedField {
-    /// Which.
+    /// The field.
     pub field: Field,
     /// Its value in the first of the objects.
     pub first: f64,
@@ -122,7 +122,7 @@ impl Field {
         }
     }
 
-    /// Its value; `None` where the object has no such number.
+    /// The field's value in `object`; `None` where the object has no such number.
     pub fn get(self, object: &Object) -> Option<f64> {
         let [x, y] = object.anchor_metres();
         let range = x.hypot(y);
@@ -163,7 +163,7 @@ impl Field {
         })
     }
 
-    /// Sets it, in the nearest value that makes sense (counts are whole, cosines at most 1); nothing where the object has no such number.
+    /// Sets the field to the nearest valid value (counts are whole, cosines at most 1); no effect where the object has no such number.
     pub fn set(self, object: &mut Object, value: f64) {
         match (self, &mut *object) {
             (Field::X, _) => object.set_anchor([value, object.anchor_metres()[1]]),
@@ -200,7 +200,7 @@ impl Field {
         }
     }
 
-    /// Range and direction: either stays when the other is set. cos(theta) says nothing of ahead or behind; that stays, too.
+    /// Range and direction: either stays when the other is set. cos(theta) doesn't tell ahead from behind, so that stays, too.
     fn set_polar(self, object: &mut Object, value: f64) {
         let [x, y] = object.anchor_metres();
         let range = x.hypot(y);

@@ -1,4 +1,4 @@
-//! The parts of an object that can be grabbed, and what dragging each of them means. Those of bodies are in [`super::body_grip`].
+//! The parts of an object that can be grabbed, and the effect of dragging each. Those of bodies are in [`super::body_grip`].
 //!
 //! ```text
 //!     ↻  turn: the line turns about its middle; length and number kept
@@ -20,7 +20,7 @@ pub const MAX_LINE_COUNT: usize = 2000;
 
 const SPACING_GRIP_OFFSET_POINTS: f64 = 16.0;
 
-/// How far beyond the far end the grip lies that turns a line, in points of the view.
+/// Distance of the grip that turns a line from the line's far end, in points of the view.
 const TURN_GRIP_OFFSET_POINTS: f64 = 26.0;
 
 /// The grips of `object`, [`Grip::Body`] last, in a view where one point covers `metres_per_point`.
@@ -57,7 +57,7 @@ pub fn grips(object: &Object, metres_per_point: f64) -> Vec<GripPlace> {
     }
 }
 
-/// `before` with `grip` moved from where it was to `to`.
+/// `before` after `grip` is dragged to `to`.
 pub fn move_grip(before: &Object, grip: Grip, to: Place) -> Object {
     let mut after = before.clone();
     match (&mut after, grip) {
@@ -96,7 +96,7 @@ fn along(line: &Line) -> [f64; 2] {
     Line { spacing_metres: sign, ..line.clone() }.step_metres()
 }
 
-/// How far `to` is from `from` along the line, metres; negative against it.
+/// Length from `from` to `to` along the line, metres; negative against it.
 fn length_along(line: &Line, from: Place, to: Place) -> f64 {
     let [x, y] = along(line);
     (to.x_metres - from.x_metres) * x + (to.y_metres - from.y_metres) * y

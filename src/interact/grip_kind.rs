@@ -1,4 +1,4 @@
-//! What can be grabbed.
+//! The parts of an object that can be grabbed.
 
 use super::Place;
 
@@ -28,7 +28,7 @@ pub enum Grip {
 }
 
 impl Grip {
-    /// What dragging it does, for tooltips and screen readers.
+    /// The effect of dragging the grip, for tooltips and screen readers.
     pub fn describe(self) -> &'static str {
         match self {
             Grip::Body => "move",
@@ -52,8 +52,8 @@ impl Grip {
 /// A grip and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GripPlace {
-    /// What is grabbed.
+    /// The grip.
     pub grip: Grip,
-    /// Where.
+    /// Its place.
     pub place: Place,
 }

@@ -1,4 +1,4 @@
-//! Undo and redo: whole documents, shared, with what was done to them.
+//! Undo and redo: whole documents, shared, with labels of the steps.
 
 use super::document::Document;
 use super::selection::Selection;
@@ -24,7 +24,7 @@ struct Step {
     before: Snapshot,
 }
 
-/// What was done, and what was undone.
+/// Steps that were done, and steps that were undone.
 #[derive(Debug, Clone, Default)]
 pub struct History {
     done: Vec<Step>,
@@ -33,7 +33,7 @@ pub struct History {
 }
 
 impl History {
-    /// Records that `label` happened to `before`.
+    /// Records a step: `before` is the state before it, `label` its name.
     pub(super) fn push(&mut self, label: &str, merge_key: Option<&str>, before: Snapshot) {
         self.undone.clear();
         let merges = !self.sealed
@@ -52,12 +52,12 @@ impl History {
         self.sealed = true;
     }
 
-    /// What undo would undo.
+    /// The label of the step that undo takes back.
     pub fn undo_label(&self) -> Option<&str> {
         self.done.last().map(|s| s.label.as_str())
     }
 
-    /// What redo would redo.
+    /// The label of the step that redo does again.
     pub fn redo_label(&self) -> Option<&str> {
         self.undone.last().map(|s| s.label.as_str())
     }
@@ -86,7 +86,7 @@ impl History {
     }
 }
 
-/// How many of the newest steps to keep: at most `steps`, with at most `objects` in all their scenes; the last one always.
+/// Number of the newest steps to keep: at most `steps`, with at most `objects` in all their scenes; the last one always.
 fn newest(done: &[Step], steps: usize, objects: usize) -> usize {
     let (mut held, mut kept) = (0, 0);
     let mut later: Option<&Arc<Scene>> = None;

@@ -1,4 +1,4 @@
-//! What lies under the pointer, or inside a box.
+//! The grip under the pointer, and the objects inside a box.
 
 use super::grip::grips;
 use super::grip_kind::Grip;
@@ -8,14 +8,14 @@ use crate::scene::{Object, Scene};
 /// Smallest radius of a target, in points of the view.
 pub const TARGET_RADIUS_POINTS: f64 = 9.0;
 
-/// What was hit.
+/// A grip under the pointer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     /// Index of the object.
     pub object: usize,
-    /// Which part of it.
+    /// The grip of the object.
     pub grip: Grip,
-    /// Where that part is: a drag keeps the distance between pointer and grip.
+    /// Place of the grip: a drag keeps the distance between pointer and grip.
     pub place: Place,
 }
 
@@ -63,7 +63,7 @@ fn body_distance(object: &Object, at: Place) -> f64 {
         Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => {
             let Some(shape) = object.body().map(|body| body.shape()) else { return f64::INFINITY };
             let (_, radius) = shape.around();
-            // As within a cluster: a small thing that lies on a large one can be grabbed.
+            // As within a cluster: a small object that lies on a large one can be grabbed.
             shape.distance_metres([at.x_metres, at.y_metres]) + 1e-3 * centre.distance_metres(at) / radius.max(1e-9)
         }
     }

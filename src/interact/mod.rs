@@ -1,7 +1,6 @@
-//! Editing a document by hand, without any GUI crate: what is hit, how it moves, where it snaps, what is selected, what can be undone,
-//! and what of it is on disk.
+//! Editing a document by hand, without any GUI crate: hits, drags, snapping, selection, undo, and the saved content.
 //!
-//! Everything here is in metres of the scene. A view tells how many metres one of its points covers, and the rest follows:
+//! All places are in metres of the scene. A view gives the metres that one of its points covers.
 //!
 //! ```text
 //!  pointer ──► hit::test ──► Editor::begin_drag ──► drag_to ──► drag_to ──► end_drag     (one step of the history)

@@ -1,17 +1,17 @@
-//! Which objects of a scene are selected.
+//! The selected objects of a scene.
 
 use std::collections::BTreeSet;
 
-/// How newly picked objects meet those already selected.
+/// The effect of newly picked objects on those already selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SelectionMode {
-    /// They replace them.
+    /// The picked objects replace the selected ones.
     Replace,
-    /// They join them; a picked object that was selected leaves.
+    /// The picked objects join the selected ones; a picked object that was selected leaves.
     Toggle,
-    /// They join them.
+    /// The picked objects join the selected ones.
     Add,
-    /// Everything from the object picked before to the last of them takes their place.
+    /// Everything from the object picked before to the last picked one replaces the selected ones.
     Range,
 }
 

@@ -1,4 +1,4 @@
-//! Where a dragged object may come to rest.
+//! Grids that a dragged object snaps to.
 
 use super::Place;
 use crate::radar::Radar;

@@ -13,15 +13,15 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Challenge {
-    /// What is asked for.
+    /// The task, in words for the learner.
     pub ask: String,
-    /// Every one must hold.
+    /// Requirements, all of which must hold.
     #[serde(rename = "require")]
     pub requirements: Vec<Requirement>,
     /// Objects visible only in the maps, which the learner's objects should reproduce.
     #[serde(default)]
     pub hidden: Vec<Object>,
-    /// One that meets it: checked before the lesson begins, and shown on request.
+    /// A state that meets the challenge: checked before the lesson begins, and shown on request.
     pub solution: Solution,
 }
 
@@ -41,7 +41,7 @@ pub struct Solution {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Requirement {
-    /// What is measured.
+    /// The measured quantity.
     pub measure: Measure,
     /// Lower bound.
     #[serde(default)]
@@ -61,7 +61,7 @@ pub enum Measure {
         map: MapName,
         object: ObjectNumber,
     },
-    /// How far Lambda falls between two objects' blobs, below the weaker of the two.
+    /// Fall of Lambda between two objects' blobs, below the weaker of the two.
     Dip {
         map: MapName,
         objects: [ObjectNumber; 2],
@@ -70,7 +70,7 @@ pub enum Measure {
     SquaredError,
     /// SE of the learner's whole-array map against that of the hidden objects.
     Unexplained,
-    /// That SE, over the SE of what the method makes of both ends of the hidden objects: below 1 the learner is nearer than the method.
+    /// `Unexplained` over the SE of the method's output on both ends of the hidden objects: below 1 the learner is nearer than the method.
     UnexplainedOverMethod,
     /// Number of objects.
     Objects,
@@ -133,7 +133,7 @@ impl Challenge {
 }
 
 impl Requirement {
-    /// Checks that it can be measured on a scene of `objects` objects, and met by some number.
+    /// Checks that the requirement can be measured on a scene of `objects` objects, and met by some number.
     fn check(&self, objects: usize, hides: bool) -> Result<(), String> {
         match (self.at_least, self.at_most) {
             (None, None) => return Err("a requirement has no bound; expected at_least or at_most".to_owned()),

@@ -8,18 +8,18 @@ use crate::scene::Scene;
 /// A requirement, measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
-    /// What is wanted, as a sentence without its full stop.
+    /// The wanted value, as a sentence without its full stop.
     pub wanted: String,
-    /// What there is, with its unit.
+    /// The present value, with its unit.
     pub found: String,
-    /// Whether it holds.
+    /// Whether the requirement holds.
     pub holds: bool,
 }
 
 impl Challenge {
     /// Measures every requirement on what the learner made; `hidden` is the stage of [`Challenge::hidden_scene`].
     /// # Errors
-    /// A sentence when something can't be measured: an object is gone, the method refuses.
+    /// A sentence for a value that can't be measured: an object is gone, the method refuses.
     pub fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Vec<Measured>, String> {
         self.requirements.iter().map(|r| r.measure(stage, hidden)).collect()
     }

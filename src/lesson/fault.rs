@@ -3,7 +3,7 @@
 /// A mistake in a step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
-    /// What the line begins with; empty for the step's first line.
+    /// Beginning of the line; empty for the step's first line.
     key: &'static str,
     /// Number of the line among those that begin so, from 0.
     number: usize,
@@ -11,12 +11,12 @@ pub(super) struct Fault {
 }
 
 impl Fault {
-    /// On the step's first line that begins with `key`.
+    /// A fault on the step's first line that begins with `key`.
     pub(super) fn at(key: &'static str, message: impl Into<String>) -> Fault {
         Fault::at_number(key, 0, message)
     }
 
-    /// On the line number `number` (from 0) of those that begin with `key`.
+    /// A fault on line number `number` (from 0) of those that begin with `key`.
     pub(super) fn at_number(key: &'static str, number: usize, message: impl Into<String>) -> Fault {
         Fault { key, number, message: message.into() }
     }

@@ -18,7 +18,7 @@ pub const FORMAT: u32 = 1;
 /// Largest lesson file that is read, bytes: sixty times the longest shipped one.
 pub const MAX_LESSON_BYTES: u64 = 1 << 20;
 
-/// A lesson: a few steps, each a text, a scene, a prediction and something to change.
+/// A lesson: a few steps, each with a text, a scene, a prediction and a task.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lesson {
@@ -26,7 +26,7 @@ pub struct Lesson {
     pub format: u32,
     /// Title.
     pub title: String,
-    /// What the learner will know afterwards, one sentence.
+    /// The lesson's aim: the learner's new knowledge, one sentence.
     pub about: String,
     /// Steps, at least one.
     #[serde(rename = "step")]
@@ -37,7 +37,7 @@ pub struct Lesson {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Step {
-    /// What the learner reads first.
+    /// The step's text, read first.
     pub text: String,
     /// Name of a scene that comes with the program, in place of `object`s.
     #[serde(default)]
@@ -45,38 +45,38 @@ pub struct Step {
     /// The scene's objects.
     #[serde(default, rename = "object")]
     pub objects: Vec<Object>,
-    /// What differs from table 3.1.
+    /// The radar; keys that are left out are table 3.1's.
     #[serde(default)]
     pub radar: Radar,
-    /// How it is looked at.
+    /// Settings of the view.
     #[serde(default)]
     pub view: StepView,
     /// The prediction, made before the maps are shown.
     #[serde(default)]
     pub predict: Option<Question>,
-    /// What the learner changes afterwards.
+    /// A task for the learner after the maps are shown.
     #[serde(default)]
     pub challenge: Option<Challenge>,
 }
 
-/// What is wrong with a lesson's text, and where.
+/// A fault in a lesson's text, with its line.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {message}")]
 pub struct LessonTextError {
     /// Line, from 1.
     pub line: usize,
-    /// What is wrong, with the key, and what was expected.
+    /// The fault, its key, and the expected value.
     pub message: String,
 }
 
-/// Why a lesson could not be opened.
+/// An error of opening a lesson.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // Names and messages say it.
 pub enum LessonError {
     #[error("{}: {source}", path.display())]
     Io {
         path: PathBuf,
-        /// What the system said.
+        /// The error of the file system.
         source: std::io::Error,
     },
     #[error("{}: larger than {MAX_LESSON_BYTES} bytes, which no lesson is", path.display())]
@@ -127,7 +127,7 @@ impl Lesson {
 }
 
 impl Step {
-    /// The scene the learner sees, or places things into.
+    /// The scene that the learner sees, or places objects into.
     pub fn scene(&self) -> Scene {
         let preset = self.preset.as_deref().and_then(Preset::by_id).and_then(|p| p.load().ok());
         preset.map_or_else(|| Scene { objects: self.objects.clone(), ..Scene::default() }, |file| file.scene)

@@ -26,7 +26,7 @@ fn key(lesson: &str, step: usize) -> String {
 }
 
 impl Progress {
-    /// Name of who is learning now; empty where no name was given.
+    /// Name of today's learner; empty where no name was given.
     pub fn learner(&self) -> &str {
         &self.learner
     }
@@ -62,7 +62,7 @@ impl Progress {
         guesses.fold((0, 0), |(made, right), guess| (made + 1, right + usize::from(guess)))
     }
 
-    /// Forgets what the learner did.
+    /// Deletes the learner's records.
     pub fn reset(&mut self) {
         self.records.remove(&self.learner);
     }

@@ -16,7 +16,7 @@ pub enum Quantity {
     MaximumRangeMetres,
     /// Length of the whole array, metres.
     ApertureMetres,
-    /// Where the whole array's far field begins ([`Radar::far_field_metres`]), metres.
+    /// Least range of the whole array's far field ([`Radar::far_field_metres`]), metres.
     FarFieldMetres,
     /// Columns of one beam of an end: the map's columns over the end's elements.
     EndBeamColumns,
@@ -25,7 +25,7 @@ pub enum Quantity {
     GratingLobeCos,
     /// The range at which an object appears: its own, wrapped at the maximum, metres.
     ApparentRangeMetres,
-    /// By how many range bins the two ends differ on the distance of an object.
+    /// Difference of the two ends' distances from an object, range bins.
     EndsDifferenceBins,
     /// The largest radial velocity that has a column of its own, metres a second.
     UnambiguousVelocityMetresPerSecond,
@@ -74,9 +74,9 @@ impl Quantity {
         }
     }
 
-    /// Its value.
+    /// The quantity's value, in its unit.
     /// # Errors
-    /// A sentence when it needs an object that is not named or not there.
+    /// A sentence where the quantity needs an object that is not named or not there.
     pub fn of(self, radar: &Radar, scene: &Scene, object: Option<ObjectNumber>) -> Result<f64, String> {
         let thing = || -> Result<&Object, String> {
             let number =

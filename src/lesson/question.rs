@@ -7,13 +7,13 @@ use super::stage::{Cell, MapName, Stage};
 use crate::evaluate::{TARGET_ETA, detection_rates, eta_text};
 use serde::Deserialize;
 
-/// A question with what is said of a right and of a wrong answer.
+/// A question with the replies to a right and to a wrong answer.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Question {
     /// The question.
     pub ask: String,
-    /// How it is answered.
+    /// The form of the answer, and the truth.
     pub answer: Answer,
     /// Reply to a right guess, one sentence.
     pub right: String,
@@ -26,7 +26,7 @@ pub struct Question {
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[allow(missing_docs)] // Names and messages say it.
 pub enum Answer {
-    /// By clicking where a peak will be in a map.
+    /// A click at the place of a peak in a map.
     Click {
         map: MapName,
         /// The object whose blob is meant; without one, the brightest cell of the map.
@@ -43,16 +43,16 @@ pub enum Answer {
         object: Option<ObjectNumber>,
         /// Its unit, beside the field.
         unit: String,
-        /// Percent a right guess may be off.
+        /// Most percent that a right guess may be off.
         within_percent: f64,
     },
     Choice {
-        /// What can be chosen.
+        /// The options.
         options: Vec<String>,
         /// The right one, from 1.
         right: usize,
     },
-    /// By setting a threshold that keeps objects and lets few other cells through.
+    /// A threshold that keeps objects and lets few other cells through.
     Threshold {
         map: MapName,
         /// Objects whose blobs must exceed it.
@@ -62,7 +62,7 @@ pub enum Answer {
     },
 }
 
-/// What a learner answered.
+/// A learner's answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // Names and messages say it.
 pub enum Guess {
@@ -92,7 +92,7 @@ pub enum Truth {
 pub struct Judgement {
     /// Whether it is close enough.
     pub is_right: bool,
-    /// How far off, in the question's own terms.
+    /// The distance from the truth, in the question's own terms.
     pub distance: String,
     /// The question's sentence on it.
     pub sentence: String,
@@ -169,9 +169,9 @@ impl Question {
         })
     }
 
-    /// What `guess` is worth.
+    /// Judges `guess`.
     /// # Errors
-    /// A sentence when the truth can't be had, or the guess is of another kind than the question.
+    /// A sentence when the truth can't be computed, or the guess is of another kind than the question.
     pub fn judge(&self, stage: &Stage, guess: Guess) -> Result<Judgement, String> {
         let truth = self.truth(stage)?;
         let (is_right, distance) = match (&self.answer, guess, truth) {

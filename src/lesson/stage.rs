@@ -17,7 +17,7 @@ pub struct StepView {
     pub floor: Floor,
     /// Seed of the floor's noise.
     pub seed: u64,
-    /// How maps are normalised.
+    /// Normalisation of the maps.
     pub normalisation: Normalisation,
     /// Whether all maps have one scale of brightness.
     pub one_scale: bool,
@@ -98,7 +98,7 @@ impl Stage {
 
     /// A map.
     /// # Errors
-    /// Why the method has no output.
+    /// The reason for which the method has no output.
     pub fn map(&self, name: MapName) -> Result<&RangeAngleMap, String> {
         match name {
             MapName::Input0 => Ok(&self.maps[0]),
@@ -108,7 +108,7 @@ impl Stage {
         }
     }
 
-    /// Where the middle of an object is expected in every map: range wrapped, angle squinted.
+    /// Cell of the middle of an object in every map: range wrapped, angle squinted.
     pub fn expected(&self, object: &Object) -> Cell {
         let [x_metres, y_metres] = object.centre_metres();
         let blob = self.radar.blob_of(0.0, x_metres, y_metres);

@@ -9,10 +9,10 @@ use super::stage::Stage;
 use crate::scene::Scene;
 
 impl Lesson {
-    /// Simulates every step: each question must have an answer, each challenge must be unmet at the start and met by its solution.
-    /// `text` is what the lesson was read from, for the lines of what is wrong.
+    /// Simulates every step: each question must have an answer, each challenge must be unmet at the start and met by its solution. `text` is the
+    /// lesson's text, for the lines of faults.
     /// # Errors
-    /// [`LessonTextError`] names the line, the step and what fails.
+    /// [`LessonTextError`] names the line, the step and the fault.
     pub fn try_out(&self, text: &str) -> Result<(), LessonTextError> {
         for (index, step) in self.steps.iter().enumerate() {
             step.try_out().map_err(|fault| LessonTextError {

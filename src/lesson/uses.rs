@@ -4,7 +4,7 @@ use super::file::Lesson;
 use super::question::Answer;
 use super::stage::StepView;
 
-/// What a lesson needs beside scene, radar and the maps of ends and whole array.
+/// The parts that a lesson needs beside scene, radar and the maps of ends and whole array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Uses {
     /// A method's output: a question or a challenge measures it, or a step names a method of its own.
@@ -19,7 +19,7 @@ impl Uses {
 }
 
 impl Lesson {
-    /// What the lesson's steps need.
+    /// The parts that the lesson's steps need.
     pub fn uses(&self) -> Uses {
         let usual = StepView::default().method;
         let output = self.steps.iter().any(|step| {

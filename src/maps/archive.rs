@@ -9,17 +9,17 @@ use crate::signal::{BeatSignal, LayoutSamples, TwoEnds};
 use ndarray::{Array1, Axis, Ix0, arr0};
 use std::path::Path;
 
-/// Version of the archive's keys. Version 1 (before there was a key for it) had neither axes nor constants; version 2 knew no transmitters
-/// apart from receivers, and is what is written where there are none.
+/// Version of the archive's keys. Version 1 (before there was a key for it) had neither axes nor constants. Version 2 has no transmitters apart from
+/// receivers, and is written where there are none.
 pub const FORMAT_VERSION: i64 = 3;
 /// Version of archives of radars whose elements send and hear by themselves.
 const MONOSTATIC_VERSION: i64 = 2;
 
 /// Keys of the antennas, in the order of [`Antennas::new`].
 const ANTENNA_KEYS: [&str; 2] = ["transmitter_x_metres", "receiver_x_metres"];
-/// Keys of how far they stand off the line, in the order of [`Antennas::off_line`].
+/// Keys of the antennas' distances from the line, in the order of [`Antennas::off_line`].
 const OFF_LINE_KEYS: [&str; 2] = ["transmitter_y_metres", "receiver_y_metres"];
-/// Key of whether `polar_full` is focused: 1, or not there.
+/// Key that is 1 where `polar_full` is focused, and missing otherwise.
 const FOCUS_KEY: &str = "focus_off_line";
 
 const BUDGET_KEYS: [&str; 3] = ["transmit_power_dbm", "antenna_gain_dbi", "noise_figure_db"];
@@ -70,7 +70,7 @@ pub fn write_maps(
     Ok(full)
 }
 
-/// The same of a recording: nothing is known of its reflectors, and `polar_full` is there where all its elements were recorded.
+/// The archive of a recording: [`write_maps`] without reflectors, and with `polar_full` where all elements were recorded.
 /// # Errors
 /// As [`write_maps`].
 pub fn write_recorded_maps(
@@ -92,7 +92,7 @@ pub fn write_recorded_maps(
 /// Writes the maps of a recording's frames: `polar_full` (f64 `[frames, samples, elements]`), with the axes of [`write_maps`]. `next` makes
 /// the map of each frame in order, and one is held at a time.
 /// # Errors
-/// What `next` returns, or [`NpzError::Io`].
+/// The error of `next`, or [`NpzError::Io`].
 pub fn write_frames(
     path: &Path,
     radar: &Radar,
@@ -108,7 +108,7 @@ pub fn write_frames(
 
 /// The radar of an archive that [`write_maps`] wrote; `None` for one without the radar's constants: version 1, or the author's own.
 /// # Errors
-/// [`NpzError`] names a constant that is missing, damaged or of another type, or what of the radar makes no sense.
+/// [`NpzError`] names a constant that is missing, damaged or of another type, or a fault of the radar.
 pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
     if !archive.has(VERSION_KEY) {
         return Ok(None);
@@ -200,7 +200,7 @@ fn expected(key: &str, found: f64, expected: String) -> NpzError {
     NpzError::Damaged { key: key.to_owned(), reason: format!("it is {found}; expected {expected}") }
 }
 
-/// Which directions the columns of a map stand for (`cos_theta`), and how they run (`columns_left_to_right`).
+/// Adds the directions of the columns of a map (`cos_theta`), and their order (`columns_left_to_right`).
 /// # Errors
 /// As [`NpzOutput::add`].
 pub fn add_columns(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {

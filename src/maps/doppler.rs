@@ -57,7 +57,7 @@ impl RangeDopplerMap {
     pub fn of(radar: &Radar, samples: ChirpSamples) -> RangeDopplerMap {
         let (chirps, elements, bins) = samples.samples.dim();
         let empty = || RangeDopplerMap { power: Array2::zeros((bins, chirps)) };
-        // In the order of its axes, whichever way the samples run.
+        // The samples in the order of the axes, in any memory layout.
         let Ok(rows) = samples.samples.to_shape((chirps * elements, bins)) else { return empty() };
         let profiles = channels_range_transform(radar, rows.view()).profiles;
         drop(rows);

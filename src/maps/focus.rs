@@ -87,13 +87,13 @@ fn nodes(turns: f64) -> Vec<f64> {
     (0..count).map(|i| (1.0 - ((2 * i + 1) as f64 * PI / (2 * count) as f64).cos()) / 2.0).collect()
 }
 
-/// The part of node `i` in what is interpolated `at` a sine between nodes, before all are divided by their sum.
+/// The weight of node `i` for an interpolation `at` a sine between nodes, before all weights are divided by their sum.
 fn part(nodes: &[f64], i: usize, at: f64) -> f64 {
     let sign = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
     sign * ((2 * i + 1) as f64 * PI / (2 * nodes.len()) as f64).sin() / (at - nodes[i])
 }
 
-/// The samples that elements on the line would measure of far reflectors whose direction has this sine.
+/// The samples turned to those that elements on the line would measure of far reflectors whose direction has this sine.
 fn turned_back(radar: &Radar, samples: ArrayView2<'_, Complex64>, y_metres: &[f64], sine: f64) -> Array2<Complex64> {
     let mut turned = samples.as_standard_layout().into_owned();
     turned.outer_iter_mut().into_par_iter().zip(y_metres).for_each(|(mut row, y)| {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// How decades become Lambda in [0, 1].
+/// A normalisation of decades to Lambda in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Normalisation {
@@ -56,7 +56,7 @@ pub struct LambdaScale {
 }
 
 impl LambdaScale {
-    /// The scale for a map whose cells lie between `min` and `max` decades. A map that is flat has no range: nothing in it is a peak.
+    /// The scale for a map whose cells lie between `min` and `max` decades. A flat map has no range, and no cell of it is a peak.
     pub fn new(min: f64, max: f64, normalisation: Normalisation) -> Self {
         let floor = match normalisation {
             Normalisation::MinMax => min,

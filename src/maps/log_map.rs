@@ -57,7 +57,7 @@ impl LogMap {
         *cells.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
-    /// How this map's decades become Lambda.
+    /// The scale from this map's decades to Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
         LambdaScale::new(self.min, self.max, normalisation)
     }

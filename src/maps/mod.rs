@@ -1,4 +1,4 @@
-//! From the beat signal to pictures: range profiles, complex range-angle map, log-magnitude, Lambda, threshold, Cartesian view.
+//! Maps from the beat signal: range profiles, complex range-angle map, log-magnitude, Lambda, threshold, Cartesian view.
 //!
 //! Every map is `[range bin, column]`, row `k1` at `k1 * c / 2B`, column `k2` at cos(theta) = `(k2 - N_a/2) / (N_a/2)` (half-wavelength spacing,
 //! one-way carrier; under the two-way carrier cos(theta) falls from column to column). Transforms are orthonormal: `1/sqrt(N_r)` over range,
@@ -54,7 +54,7 @@ impl LogMaps {
         }
     }
 
-    /// All three maps of a beat signal; of elements off the array's line it knows what `radar` says of its antennas.
+    /// All three maps of a beat signal, for elements off the array's line by the antennas of `radar` alone.
     pub fn of_signal(radar: &Radar, signal: &BeatSignal) -> LogMaps {
         LogMaps::heard_by(radar, &BuiltArray::default(), signal)
     }

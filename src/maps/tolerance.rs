@@ -18,7 +18,7 @@ pub fn tolerance_for(floor: Floor, normalisation: Normalisation) -> f64 {
     }
 }
 
-/// Why maps of this floor and normalisation must not be made in `precision`, if so.
+/// The reason for which maps of this floor and normalisation must not be made in `precision`, if there is one.
 ///
 /// Without a floor the smallest cells are rounding errors, and normalising by them shows these in place of the scene. Amplitudes beyond the
 /// range of f32: [`plan::refusal`].

@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Which elements a map is made of.
+/// The elements that a map is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Aperture {
     /// Every element.
@@ -112,7 +112,7 @@ pub fn angle_transform(radar: &Radar, profiles: &RangeProfiles, aperture: Apertu
 
 /// Range-angle map of the raw samples of a few neighbouring channels, `[channels, samples]`.
 ///
-/// This is what a reconstruction does with one end: it has no other elements.
+/// A reconstruction makes this map of one end: it has no other elements.
 pub fn channels_map(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> ComplexMap {
     angle_transform_of(radar, channels_range_transform(radar, samples).profiles.view())
 }
@@ -143,7 +143,7 @@ impl ComplexMap {
     /// `log10(|Y| + guard)` of every cell, the [`guard`] that of the largest.
     pub fn log_magnitude(&self) -> LogMap {
         let largest = self.cells.iter().map(Complex64::norm_sqr).filter(|v| v.is_finite()).fold(0.0, f64::max);
-        // Squares of what is smaller than 1e-160 are zero.
+        // Squares of magnitudes below 1e-160 are zero.
         let guard = if largest > 0.0 { guard(largest.sqrt()) } else { LOG_GUARD };
         LogMap::new(Zip::from(&self.cells).par_map_collect(|v| (v.norm() + guard).log10()))
     }

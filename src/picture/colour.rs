@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 /// Red, green and blue, 0 to 255.
 pub type Rgb = [u8; 3];
 
-/// How a number in [0, 1] becomes a colour.
+/// A map from numbers in [0, 1] to colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ColourMap {

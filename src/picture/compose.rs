@@ -1,4 +1,4 @@
-//! From a signal to a picture's bytes: maps, reconstruction, panels.
+//! The bytes of a picture from a signal: maps, reconstruction, panels.
 
 use super::inputs::{HeardByLayout, InputMap};
 use super::{ColourMap, DetectedCells, Panels, PictureError, encode_png, render, render_svg};
@@ -22,7 +22,7 @@ pub enum PictureFormat {
 }
 
 impl PictureFormat {
-    /// The kind that a file's name says, if it is one of these.
+    /// The format by the ending of a file's name, if it is one of these.
     pub fn of_path(path: &Path) -> Option<PictureFormat> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "png" => Some(PictureFormat::Png),
@@ -32,14 +32,14 @@ impl PictureFormat {
     }
 }
 
-/// How the maps are made, judged and painted.
+/// Settings of the maps, of their thresholds and of their colours.
 #[derive(Debug, Clone)]
 pub struct Style {
     /// The floor beneath a scene's signal; a recording has noise of its own.
     pub floor: Floor,
     /// The elements that the method hears; those of the two ends where `None`.
     pub layout: Option<LayoutKind>,
-    /// How decades become Lambda.
+    /// Normalisation of decades to Lambda.
     pub normalisation: Normalisation,
     /// Colours of the maps.
     pub colours: ColourMap,
@@ -65,7 +65,7 @@ impl Default for Style {
     }
 }
 
-/// Why there is no picture.
+/// A reason for which a picture can't be made.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // Names and messages say it.
 pub enum ComposeError {

@@ -20,10 +20,10 @@ pub enum CellVerdict {
 }
 
 impl CellVerdict {
-    /// Those that are seen, in the order of a legend.
+    /// The visible verdicts, in the order of a legend.
     pub const SEEN: [CellVerdict; 4] = [CellVerdict::Hit, CellVerdict::Rim, CellVerdict::FalseAlarm, CellVerdict::Miss];
 
-    /// Of a cell that the `target` has or not, and the `output`; a rim is a false alarm by itself.
+    /// The verdict on a cell, by whether the `target` and the `output` exceed their thresholds there; a rim counts as a false alarm.
     pub fn of(target: bool, output: bool) -> CellVerdict {
         match (target, output) {
             (true, true) => CellVerdict::Hit,
@@ -49,7 +49,7 @@ impl CellVerdict {
     pub fn fill(self, dark: bool) -> Rgb {
         match (self, dark) {
             (CellVerdict::Nothing, true) => [18, 22, 30],
-            // As the line around hits, so that both are one quiet band.
+            // The fill of a rim is the line around hits, so that both are one quiet band.
             (CellVerdict::Rim, _) => CellVerdict::Hit.outline(dark),
             (CellVerdict::Miss, true) => [40, 92, 176],
             (CellVerdict::FalseAlarm, true) => [232, 152, 40],
@@ -75,8 +75,8 @@ impl CellVerdict {
     }
 }
 
-/// What each cell of an output above `etas[0]` is beside a target above `etas[1]`, both `[range bins, columns]`. The cells of `ghosts` are false
-/// alarms; others that the target has not are the rim of something.
+/// The verdict on each cell of an output above `etas[0]` beside a target above `etas[1]`, both `[range bins, columns]`. The cells of `ghosts` are
+/// false alarms; other cells that the target has not are the rim of an echo.
 pub fn told_apart(
     output: ArrayView2<'_, f32>,
     target: ArrayView2<'_, f32>,
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
     use ndarray::array;
 
-    /// What common colour deficiencies make of linear red, green and blue, at full severity (Machado, Oliveira and Fernandes, 2009, table 1).
+    /// Matrices of common colour deficiencies for linear red, green and blue, at full severity (Machado, Oliveira and Fernandes, 2009, table 1).
     const VISIONS: [(&str, [[f64; 3]; 3]); 4] = [
         ("all three cones", [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
         (

@@ -8,7 +8,7 @@ use plotters::prelude::*;
 /// Power over direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// What it is called.
+    /// The curve's name in the legend.
     pub name: String,
     /// Angle from broadside in degrees, positive towards +x, rising; and decibels below the curve's own strongest.
     pub points: Vec<(f64, f64)>,
@@ -25,14 +25,14 @@ pub struct Mark {
     pub below_strongest_db: f64,
 }
 
-/// Everything the picture of a snapshot shows.
+/// The contents of the picture of a snapshot.
 #[derive(Debug, Clone)]
 pub struct DirectionAxis<'a> {
     /// Its title.
     pub name: &'a str,
     /// A line beneath it.
     pub about: &'a str,
-    /// The curves, the one that matters most last.
+    /// The curves, the most important one last.
     pub curves: &'a [Curve],
     /// The detections.
     pub found: &'a [Mark],

@@ -10,7 +10,7 @@ use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (900, 700);
 
-/// The bytes of a file with the map, its axes and what its colours stand for.
+/// The bytes of a file with the map, its axes and the scale of its colours.
 /// # Errors
 /// [`PictureError`] when plotters can't draw.
 pub fn compose_range_doppler(

@@ -17,7 +17,7 @@ pub struct InputMap {
 }
 
 impl InputMap {
-    /// Those of both ends.
+    /// The input maps of both ends.
     pub(super) fn of_ends(radar: &Radar, ends: [&LogMap; 2], normalisation: Normalisation) -> Vec<InputMap> {
         let of_end = |(number, (end, map)): (usize, (End, &LogMap))| {
             let elements = radar.end_range(end);
@@ -38,7 +38,7 @@ pub(super) struct HeardByLayout {
 }
 
 impl HeardByLayout {
-    /// Of the samples of every element; `signal` is `None` where the two ends alone were recorded.
+    /// The samples and the map of `layout`, from the samples of every element; `signal` is `None` where the two ends alone were recorded.
     /// # Errors
     /// [`ComposeError`] where `radar` has no such elements, or their samples are missing.
     pub(super) fn of(

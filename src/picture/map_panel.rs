@@ -8,7 +8,7 @@ use crate::radar::{FEW_COLUMNS, Radar};
 use ndarray::{Array2, CowArray, Ix2};
 use plotters::prelude::*;
 
-/// What a panel paints: cells `[range bins, columns]` as they are drawn, the leftmost column first.
+/// The cells of a panel, `[range bins, columns]` as they are drawn, the leftmost column first.
 #[derive(Debug, Clone)]
 pub(super) enum MapCells<'a> {
     Lambda(CowArray<'a, f32, Ix2>, ColourMap),
@@ -29,14 +29,14 @@ const HIT: Rgb = [245, 245, 240];
 const TITLE_HEIGHT: i32 = 40;
 const BAR_SPACE: i32 = 62;
 
-/// Right of the legend, pixels.
+/// Space to the right of the legend, pixels.
 const LEGEND_MARGIN: i32 = 8;
 
 pub(super) struct MapAxes {
-    /// To the right, rising.
+    /// Values at the left and the right end of the axis, rising.
     pub x: [f64; 2],
     pub y: [f64; 2],
-    /// What is counted to the right.
+    /// Title of the axis to the right.
     pub x_title: &'static str,
     /// Digits of its labels after the point.
     pub x_digits: usize,
@@ -159,7 +159,7 @@ fn colour_bar<B: DrawingBackend>(
 }
 
 fn legend<B: DrawingBackend>(area: &PanelArea<B>) -> Result<(), PictureError> {
-    // Over the room that a colour bar takes in other panels: the title stands left of it.
+    // The legend takes the space of the colour bar in other panels: the title stands left of it.
     let (width, _) = area.dim_in_pixel();
     let mut x = width as i32 - LEGEND_MARGIN;
     for detection in CellVerdict::SEEN.into_iter().rev() {

@@ -1,7 +1,7 @@
 //! Pictures of a scene and its maps, drawn without a display.
 //!
-//! [`render`] draws what the app shows: the scene on the left, the maps of both ends, of the whole array and of a reconstruction on
-//! the right, and both after a threshold. Without the feature `pictures` there are only the colour maps.
+//! [`render`] draws the same panels as the app: the scene on the left, the maps of both ends, of the whole array and of a reconstruction on the
+//! right, and both after a threshold. Without the feature `pictures` there are only the colour maps.
 
 pub mod colour;
 mod detections;

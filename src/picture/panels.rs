@@ -1,4 +1,4 @@
-//! Every panel on one picture: what [`render`] and [`render_svg`] draw.
+//! The picture of all panels, drawn by [`render`] and [`render_svg`].
 
 use super::canvas::{Drawing, FAINT_INK, INK, PAPER, PanelArea, PictureError};
 use super::detections::{CellVerdict, told_apart};
@@ -19,18 +19,19 @@ use image::RgbImage;
 use ndarray::{Array2, CowArray};
 use plotters::prelude::*;
 
-/// Everything a picture shows.
+/// The contents of a picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Panels<'a> {
-    /// The scene; of a recording its name and notes, and what was found in it.
+    /// The scene; of a recording its name and notes, and the echoes found in it as objects.
     pub scene: &'a Scene,
-    /// Of a recording what the method found in it, the strongest first. It is drawn and told in place of what only a known scene has.
+    /// Of a recording the echoes that the method found, the strongest first. They are drawn and listed in place of the figures that need a known
+    /// scene.
     pub found: Option<&'a [Detection]>,
     /// The radar that looks at it.
     pub radar: &'a Radar,
-    /// What the maps were made of (reflectors, carrier, floor, normalisation), in words.
+    /// The maps' settings (reflectors, carrier, floor, normalisation), in words.
     pub about: &'a str,
-    /// Of both ends, or of a layout alone.
+    /// The input maps of both ends, or of a layout alone.
     pub inputs: &'a [InputMap],
     /// Lambda of the whole array ("target"), where it is known.
     pub target: Option<&'a RangeAngleMap>,
@@ -53,9 +54,9 @@ pub struct Panels<'a> {
 pub struct DetectedCells {
     /// The detector.
     pub cfar: Cfar,
-    /// Of the target.
+    /// Detected cells of the target.
     pub target: RangeAngleMap,
-    /// Of the output.
+    /// Detected cells of the output.
     pub output: RangeAngleMap,
 }
 
@@ -126,7 +127,7 @@ impl Drawing for Panels<'_> {
 
         let (width, height) = ((WIDTH as i32 - LEFT - MARGIN) / 3, (HEIGHT as i32 - HEADER - 16) / 2);
         for (index, panel) in self.map_panels().iter().enumerate() {
-            // Without a second input its place stays free.
+            // Without a second input the second panel's place stays free.
             let place = if index == 0 { 0 } else { index as i32 + 2 - self.inputs.len() as i32 };
             let (column, row) = (place % 3, place / 3);
             let area = root.clone().shrink((LEFT + column * width, HEADER + row * height), (width, height));
@@ -180,7 +181,7 @@ impl<'a> Panels<'a> {
         panels
     }
 
-    /// The maps and thresholds that hits and misses are counted by.
+    /// The maps and thresholds by which hits and misses are counted.
     fn judged(&self) -> Judged<'a> {
         match self.detected {
             Some(cells) => Judged { target: Some(&cells.target), output: &cells.output, etas: [DETECTED; 2] },
@@ -235,7 +236,7 @@ fn short(eta: f32) -> String {
     if exact.len() > "0.000".len() { format!("{eta:.3}") } else { exact }
 }
 
-/// How many echoes were found, and where the strongest is.
+/// The sentence on the number of echoes and the place of the strongest.
 fn strongest_of(found: &[Detection]) -> String {
     let Some(strongest) = found.first() else { return "no echo found".to_owned() };
     let Detection { range_metres, cos_theta, .. } = strongest;

@@ -1,4 +1,4 @@
-//! PNG files that say which program made them, so that it may replace them without asking.
+//! PNG files with the name of this program in them, so that it may replace them without asking.
 
 use super::canvas::PictureError;
 use image::codecs::png::{PngDecoder, PngEncoder};

@@ -42,7 +42,7 @@ pub fn maps_of(recording: &Recording) -> ([LogMap; 2], Option<LogMap>) {
     }
 }
 
-/// Reconstructs from the recording's two ends and draws what it shows; the bytes of a file.
+/// Reconstructs from the recording's two ends and draws the panels or curves; the bytes of a file.
 /// # Errors
 /// [`ComposeError`] when the method fails or the picture can't be drawn.
 pub fn compose_recording(
@@ -76,7 +76,7 @@ fn request(recording: &Recording, style: &Style, heard: Option<Arc<LayoutSamples
     }
 }
 
-/// What a layout hears of a recording, where `style` has one.
+/// Samples and map of a layout on a recording, where `style` has one.
 fn heard_by_layout(recording: &Recording, style: &Style) -> Result<Option<HeardByLayout>, ComposeError> {
     let of_layout = |layout| {
         HeardByLayout::of(&recording.radar, &BuiltArray::default(), recording.signal(), layout, style.normalisation)
@@ -188,7 +188,7 @@ fn degrees(cos_theta: f64) -> f64 {
     cos_theta.clamp(-1.0, 1.0).asin().to_degrees()
 }
 
-/// Decibels, one a column of a map that has so many, over degrees; directions beyond end-fire are left out.
+/// Decibels over degrees, from one value a column of a map of so many columns; directions beyond end-fire are left out.
 fn over_degrees(radar: &Radar, decibels: Vec<f64>) -> Vec<(f64, f64)> {
     let fine = Radar { elements: decibels.len(), ..radar.clone() };
     let place = |(column, db): (usize, f64)| (fine.cos_of_column(column as f64), db);

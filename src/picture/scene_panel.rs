@@ -142,7 +142,7 @@ fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64
                 .draw_series([PathElement::new(outline(&body.shape()), colour.stroke_width(2))])
                 .map_err(PictureError::new)?;
         }
-        // A line array sees y and -y alike: what lies behind is drawn ahead, hollow.
+        // A line array sees y and -y alike: reflectors behind it are drawn ahead, hollow.
         chart
             .draw_series(object.reflectors().iter().filter(|r| r.x_metres.hypot(r.y_metres) <= max).map(|r| {
                 let style = if r.y_metres < 0.0 { ShapeStyle::from(colour) } else { colour.filled() };

@@ -7,11 +7,11 @@
 use super::Radar;
 use ndarray::{Array2, ArrayView2, Axis};
 
-/// A map of so many columns is fine enough for the eye, and half a column counts for nothing.
+/// Number of columns from which a map is fine enough for the eye, and half a column is neglected.
 pub const FEW_COLUMNS: usize = 128;
 
 impl Radar {
-    /// How far from the map's edge column 0 has its middle, columns.
+    /// Distance of the middle of column 0 from the map's edge, columns.
     fn middle_of_first_column(&self) -> f64 {
         let is_halved = self.elements < FEW_COLUMNS && self.elements.is_multiple_of(2);
         if is_halved { 0.0 } else { 0.5 }
@@ -35,7 +35,7 @@ impl Radar {
         from_first * self.elements as f64 - self.middle_of_first_column()
     }
 
-    /// The same among the columns of [`Radar::left_to_right`].
+    /// [`Radar::column_across`] among the columns of [`Radar::left_to_right`].
     pub fn drawn_column_across(&self, across: f64) -> f64 {
         let column = self.column_across(across);
         if self.columns_fall() { self.elements as f64 - 1.0 - column } else { column }

@@ -64,12 +64,12 @@ impl Midpoints {
         self.x_metres[self.x_metres.len() - 1] - self.x_metres[0]
     }
 
-    /// The place of each on the line whose neighbouring places stand `spacing_metres` apart, from 0.
+    /// The place of each midpoint on the line whose neighbouring places stand `spacing_metres` apart, from 0.
     fn places(&self, spacing_metres: f64) -> impl Iterator<Item = f64> {
         self.x_metres.iter().map(move |x| ((x - self.x_metres[0]) / spacing_metres).round())
     }
 
-    /// The largest spacing of a line that all stand on.
+    /// The largest spacing of a line on which all midpoints stand.
     fn spacing_metres(&self) -> Result<f64, AntennasError> {
         let mean = self.length_metres() / (self.x_metres.len() - 1) as f64;
         let apart = self.x_metres.windows(2).map(|two| two[1] - two[0]).filter(|apart| *apart > ONE_PLACE * mean);
@@ -82,7 +82,7 @@ impl Midpoints {
             .fold(even(1), |found, divisions| found.or_else(|first| even(divisions).or(Err(first))))
     }
 
-    /// `about_metres`, made to fit the whole line, or which pair stands off it.
+    /// `about_metres`, made to fit the whole line; the error names a pair off the line.
     fn even(&self, about_metres: f64) -> Result<f64, AntennasError> {
         let spacing_metres = self.length_metres() / (self.length_metres() / about_metres).round();
         for (i, place) in self.places(spacing_metres).enumerate() {

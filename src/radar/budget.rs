@@ -26,7 +26,7 @@ pub const NOISE_TEMPERATURE_KELVIN: f64 = 290.0;
 /// SNR at which a single pulse detects a steady target with P_D 0.9 and P_FA 1e-6 (Skolnik, figure 2.6: 13.2 dB).
 pub const DETECTION_SNR: Decibels = Decibels(13.0);
 
-/// What the radar equation needs beside the radar's other constants.
+/// Figures of the radar equation beside the radar's other constants.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LinkBudget {
@@ -55,7 +55,7 @@ impl Default for LinkBudget {
 impl LinkBudget {
     /// Checks every number.
     /// # Errors
-    /// [`RadarError::Budget`] names the first that can't be, what is allowed, and why.
+    /// [`RadarError::Budget`] names the first invalid number, the values allowed, and the reason.
     pub fn validate(&self) -> Result<(), RadarError> {
         let width = self.half_power_width_degrees.unwrap_or(90.0);
         for (field, value, is_usable, expected) in [
@@ -122,13 +122,13 @@ impl Pattern {
         cos_off_broadside.abs().powf(self.exponent / 2.0).max(MIN_ONE_WAY_AMPLITUDE)
     }
 
-    /// The same from an antenna at (x, y) to a place, metres.
+    /// [`Pattern::amplitude`] from an antenna at (x, y) to a place, metres.
     pub fn amplitude_between(self, [from_x, from_y]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
         let (across, ahead) = (x - from_x, y - from_y);
         self.amplitude(ahead / across.hypot(ahead))
     }
 
-    /// Relative change of [`Pattern::amplitude`] where the logarithm of the cosine changes by so much.
+    /// Relative change of [`Pattern::amplitude`] for the change `of_log_cos` of the cosine's logarithm.
     pub fn relative_change(self, of_log_cos: f64) -> f64 {
         self.exponent / 2.0 * of_log_cos
     }
@@ -137,7 +137,7 @@ impl Pattern {
 /// An echo by the radar equation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkFigures {
-    /// Level at which one element receives it.
+    /// Level of the echo at one element.
     pub received: DecibelMilliwatts,
     /// Level of one receiver's noise in a sample.
     pub noise: DecibelMilliwatts,
@@ -158,7 +158,7 @@ fn gain(weights: &[f64]) -> Decibels {
 }
 
 impl Radar {
-    /// Its link budget, or that of [`LinkBudget::default`] where it has none.
+    /// The radar's link budget, or [`LinkBudget::default`] where it has none.
     pub fn budget_or_usual(&self) -> LinkBudget {
         self.budget.unwrap_or_default()
     }
@@ -196,8 +196,8 @@ impl Radar {
         gain(&self.window.weights(elements))
     }
 
-    /// The echo of an object at a range, in a direction given by the cosine of its angle off broadside. What is lost between two cells is
-    /// left out, and so is that a map doesn't focus nearer than the far field.
+    /// The echo of an object at a range, in a direction given by the cosine of its angle off broadside. The loss between two cells is left out, and
+    /// so is the loss of a map that doesn't focus nearer than the far field.
     pub fn link(&self, cross_section_dbsm: f64, range_metres: f64, cos_off_broadside: f64) -> LinkFigures {
         let pattern = self.pattern().map_or(0.0, |p| 40.0 * p.amplitude(cos_off_broadside).log10());
         let received = DecibelMilliwatts(self.received(cross_section_dbsm, range_metres).0 + pattern);
@@ -246,7 +246,7 @@ mod tests {
         assert!((link.noise.watts() / noise - 1.0).abs() < 1e-7, "{link:?}");
         assert!((link.noise.0 + 88.97).abs() < 0.01, "-174 dBm a hertz, 73 dB of bandwidth, 12 dB: {link:?}");
         assert!((link.sample.0 - 10.0 * (received / noise).log10()).abs() < 1e-6);
-        // Hann loses 10 log10 1.5 of what the number of points gains.
+        // Hann loses 10 log10 1.5 of the gain of the number of points.
         assert!((link.range.0 - link.sample.0 - 10.0 * (512.0f64 / 1.5).log10()).abs() < 0.02, "{link:?}");
         assert!((link.array.0 - link.range.0 - 10.0 * (1024.0f64 / 1.5).log10()).abs() < 0.02, "{link:?}");
         let falls = range_of_snr_metres(DETECTION_SNR, link.array, 50.0);

@@ -42,7 +42,7 @@ impl Radar {
         (column - (self.chirps / 2) as f64) * self.velocity_resolution_metres_per_second()
     }
 
-    /// How far a radial velocity moves an echo along the range within a chirp, metres: the phase turns `kappa v T` times more while the beat is
+    /// Shift of an echo along the range by a radial velocity within a chirp, metres: the phase turns `kappa v T` times more while the beat is
     /// counted, each a range bin. In the physical convention this is `v f T / B`, `f` that of the middle of the chirp.
     pub fn doppler_range_shift_metres(&self, velocity_metres_per_second: f64) -> f64 {
         let turns = self.middle_turns_per_metre() * velocity_metres_per_second * self.chirp_seconds;

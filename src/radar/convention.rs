@@ -10,13 +10,12 @@
 //! that falls by `B`. So the thesis' radar is a physical one that sends and hears at 38.5 GHz, falls to 36.5 GHz, and has its elements a
 //! quarter of a wavelength (1.947 mm) apart; `tests/library/which_radar.rs` holds the two to each other, sample by sample.
 //!
-//! Both follow from [`Carrier`]: the signed turns of the carrier for each wavelength of range, which is all that the samples know of a
-//! convention.
+//! Both follow from [`Carrier`]: the signed turns of the carrier for each wavelength of range. Samples depend on the convention by these alone.
 
 use super::{Carrier, Radar, SPEED_OF_LIGHT};
 use serde::{Deserialize, Serialize};
 
-/// Which convention the samples of a radar follow.
+/// The convention of a radar's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Convention {
@@ -28,7 +27,7 @@ pub enum Convention {
 }
 
 impl Convention {
-    /// Both, the thesis' first.
+    /// Both conventions, the thesis' first.
     pub const ALL: [Convention; 2] = [Convention::Thesis, Convention::Physical];
 
     /// Its name, as files and the command line have it.
@@ -44,7 +43,7 @@ impl Convention {
         Convention::ALL.into_iter().find(|c| c.name() == name)
     }
 
-    /// How the carrier's phase depends on the distance.
+    /// Dependence of the carrier's phase on the distance.
     pub fn carrier(self) -> Carrier {
         match self {
             Convention::Thesis => Carrier::OneWay,
@@ -71,12 +70,12 @@ impl From<Carrier> for Convention {
 }
 
 impl Radar {
-    /// The convention that its samples follow, at any spacing of its elements.
+    /// The convention of the radar's samples, at any spacing of its elements.
     pub fn convention(&self) -> Convention {
         self.carrier.into()
     }
 
-    /// The spacing that belongs to its convention, metres.
+    /// The spacing that belongs to the radar's convention, metres.
     pub fn filled_spacing_metres(&self) -> f64 {
         self.convention().filled_spacing_metres(self.carrier_hz, self.bandwidth_hz)
     }
@@ -106,7 +105,7 @@ mod tests {
         assert_eq!(radar.carrier, Carrier::TwoWay);
         let period = radar.fold_period_cos();
         assert!((2.0..2.0 + 1e-3).contains(&period), "cos(theta) repeats after {period}");
-        // In the table's own spacing half of them share columns with others.
+        // In the table's own spacing half of the directions share columns with others.
         let as_spaced = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
         assert!(as_spaced.fold_period_cos() < 1.0);
     }

@@ -4,7 +4,7 @@ use super::{BuiltArray, Decibels, ElementError};
 
 const COLUMNS: [&str; 4] = ["place in mm", "forward in mm", "gain in dB", "phase in degrees"];
 
-/// Why a text is no list of elements.
+/// A reason for which a text is no list of elements.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ElementListError {

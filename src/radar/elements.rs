@@ -20,7 +20,7 @@ pub struct ElementError {
     pub position_millimetres: f64,
     /// Offset from the array's line towards the scene, millimetres.
     pub forward_millimetres: f64,
-    /// Whether it is dead: it receives nothing.
+    /// Whether the element is dead: it receives nothing.
     pub dead: bool,
 }
 
@@ -37,7 +37,7 @@ impl Default for ElementError {
 }
 
 impl ElementError {
-    /// What its samples are multiplied with: gain and phase, 0 for a dead element.
+    /// Factor of the element's samples: gain and phase, 0 for a dead element.
     pub fn response(&self) -> Complex64 {
         if self.dead {
             return Complex64::default();
@@ -50,16 +50,16 @@ impl ElementError {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerances {
-    /// What it amplifies by.
+    /// Of the gain.
     pub gain: Decibels,
-    /// What it turns the phase by, degrees.
+    /// Of the phase, degrees.
     pub phase_degrees: f64,
     /// Of the position along the array, millimetres.
     pub position_millimetres: f64,
 }
 
 impl Tolerances {
-    /// All of them `factor` times as large.
+    /// All tolerances `factor` times as large.
     pub fn times(&self, factor: f64) -> Self {
         Tolerances {
             gain: Decibels(factor * self.gain.0),
@@ -68,8 +68,8 @@ impl Tolerances {
         }
     }
 
-    /// An array built with these tolerances; the same seed builds the same, and one of twice the tolerances is twice as far off. Of pairs of antennas
-    /// the antennas are off: two pairs share what their common antenna is off by, and each pair has the standard deviations that are asked for.
+    /// An array built with these tolerances. The same seed builds the same array, and twice the tolerances give twice the errors. Of pairs, the
+    /// antennas have the errors: two pairs share the error of their common antenna, and each pair has the standard deviations that are asked for.
     pub fn build(&self, radar: &Radar, seed: u64) -> BuiltArray {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut drawn = |count: usize| -> Vec<[f64; 3]> {
@@ -99,7 +99,7 @@ impl Tolerances {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(try_from = "Lists", into = "Lists")]
 pub struct BuiltArray {
-    /// One an element of the radar, in the radar's order.
+    /// The errors of each element of the radar, in the radar's order.
     pub elements: Vec<ElementError>,
 }
 
@@ -177,7 +177,7 @@ impl TryFrom<Lists> for BuiltArray {
 
 const MAX_ELEMENTS: usize = 65536;
 
-/// Why a list of element errors is refused.
+/// A reason for which a list of element errors is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum BuiltArrayError {
@@ -197,7 +197,7 @@ impl BuiltArray {
         self.elements.iter().all(|e| *e == ElementError::default())
     }
 
-    /// The same for an array of `count` elements, the additional ones ideal.
+    /// The errors for an array of `count` elements, the additional ones ideal.
     pub fn fitted(&self, count: usize) -> Self {
         let mut elements = self.elements.clone();
         if !elements.is_empty() {
@@ -351,7 +351,7 @@ mod tests {
         let asked = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.0 };
         let draws = 400;
         let spreads: Vec<f64> = (0..draws).map(|seed| asked.build(&radar, seed).spread().phase_degrees).collect();
-        // The mean around which the phases are counted takes one element's worth: 191 of 192 remain.
+        // The mean of the phases takes one degree of freedom: 191 of 192 remain.
         let variance = spreads.iter().map(|s| s * s).sum::<f64>() / draws as f64;
         assert!((variance / (100.0 * 191.0 / 192.0) - 1.0).abs() < 0.02, "{variance}");
         let mean = spreads.iter().sum::<f64>() / draws as f64;

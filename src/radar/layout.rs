@@ -19,7 +19,7 @@ pub struct Layout {
 pub enum LayoutError {
     #[error("a random layout of {asked} elements was asked for; the aperture has room for 1 to {places}")]
     Random { asked: usize, places: usize },
-    /// As [`check_layout`] says.
+    /// The fault by [`check_layout`].
     #[error("{0}")]
     Elements(String),
     #[error("the elements of {0} don't stand on the radar's own grid")]
@@ -28,7 +28,7 @@ pub enum LayoutError {
 
 /// Checks a layout that is a list of numbers of elements.
 /// # Errors
-/// The element that is not there or that is given twice, and what was expected.
+/// The element that is not there or is given twice, and the values allowed.
 pub fn check_layout(layout: &[usize], elements: usize) -> Result<(), String> {
     if layout.is_empty() {
         return Err("the layout has no element; expected at least one".to_owned());
@@ -64,7 +64,7 @@ impl Layout {
         Layout::of_elements(radar, radar.end_range(end))
     }
 
-    /// Both ends of `radar`: what the sparse sensor keeps.
+    /// Both ends of `radar`: the elements of the sparse sensor.
     pub fn two_ends(radar: &Radar) -> Self {
         Layout::of_elements(
             radar,
@@ -146,7 +146,7 @@ pub struct VirtualElement {
     pub transmitter: usize,
     /// Index of the receiver.
     pub receiver: usize,
-    /// Where the virtual element stands, metres.
+    /// Place of the virtual element, metres.
     pub x_metres: f64,
 }
 

@@ -21,7 +21,7 @@ pub enum LayoutKind {
     Nested { neighbours: usize, apart: usize },
     /// `many` elements `step` apart, and twice `step` elements `many` apart (Vaidyanathan and Pal 2011).
     Coprime { step: usize, many: usize },
-    /// Every so many-th element.
+    /// Every `step`-th element.
     Thinned { step: usize },
     /// Elements at random places of the whole aperture.
     Random { elements: usize, seed: u64 },
@@ -38,16 +38,16 @@ const MAX_CHANNELS: usize = 64;
 const MAX_LISTED_ELEMENTS: usize = 65_536;
 
 impl LayoutKind {
-    /// How layouts are named.
+    /// Names of layouts, for messages and help.
     pub const NAMES: &str = "full, two-ends, one-end, nested=AxB (A neighbours and B elements A + 1 apart), coprime=MxN (N elements M apart and 2 M elements N apart), \
                              thinned=K (every K-th element), random=N or random=N:SEED (the outermost two among them), mimo=TxR (up to 64 each), or numbers of \
                              elements as 0-11 1012-1023";
 
-    /// Where the elements stand on `radar`.
+    /// The layout's elements on `radar`.
     /// # Errors
     /// [`LayoutError`] for elements that `radar` has not.
     pub fn layout(&self, radar: &Radar) -> Result<Layout, LayoutError> {
-        // One element too many is enough to be refused.
+        // One element too many is enough for an error.
         let steps = |count: usize, step: usize| (0..count.min(radar.elements + 1)).map(move |k| k.saturating_mul(step));
         let numbers: Vec<usize> = match self {
             LayoutKind::Full => return Ok(Layout::uniform(radar)),
@@ -106,7 +106,7 @@ pub fn ranges(numbers: &[usize]) -> String {
     runs.map(text).collect::<Vec<_>>().join(" ")
 }
 
-/// The numbers that [`ranges`] writes; commas may stand between them too.
+/// The numbers in a text of [`ranges`]; commas may stand between them too.
 fn listed(text: &str) -> Option<Vec<usize>> {
     let mut numbers = Vec::new();
     for run in text.split([' ', ',']).filter(|run| !run.is_empty()) {

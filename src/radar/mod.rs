@@ -1,6 +1,6 @@
 //! The radar: every constant of the thesis' table 3.1 as one validated value.
 //!
-//! Nothing else in the crate knows a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
+//! No other code in the crate has a carrier, a bandwidth or an element count: change the [`Radar`] and the whole pipeline follows.
 
 mod across;
 mod antennas;
@@ -41,13 +41,13 @@ use std::ops::Range;
 /// Speed of light in vacuum, metres per second.
 pub const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
-/// Duration of a chirp where none is said, seconds: 512 samples at 20 MHz.
+/// Duration of a chirp where a text gives none, seconds: 512 samples at 20 MHz.
 pub const CHIRP_SECONDS: f64 = 25.6e-6;
 
 /// Most chirps that a radar may send one after another.
 pub const MAX_CHIRPS: usize = 4096;
 
-/// How the carrier's phase depends on the distance to a reflector.
+/// Dependence of the carrier's phase on the distance to a reflector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Carrier {
@@ -107,7 +107,7 @@ pub struct Radar {
     /// Time that the samples of a chirp span, in seconds: they are taken at `samples / chirp_seconds` hertz. Echoes at rest don't depend on
     /// it, since a beat turns `2 R B / c` times in a chirp of any length; table 3.1 says none, and [`CHIRP_SECONDS`] stands for it.
     pub chirp_seconds: f64,
-    /// Which way the carrier's phase is read.
+    /// Dependence of the carrier's phase on the distance.
     pub carrier: Carrier,
     /// Weights of the samples and of the elements in the two transforms that make a map.
     pub window: WindowFunction,
@@ -119,14 +119,13 @@ pub struct Radar {
     pub focus_off_line: bool,
     /// Chirps that are sent one after another: 1 as in the thesis. A map of ranges and directions is made of the first.
     pub chirps: usize,
-    /// From the beginning of a chirp to that of the next, seconds: at least [`Radar::chirp_seconds`] where there are several.
+    /// Time from the beginning of a chirp to that of the next, seconds: at least [`Radar::chirp_seconds`] where there are several.
     pub chirp_interval_seconds: f64,
-    /// What the radar equation needs ([`budget`]); `None` in the thesis' convention, where levels are those of samples and elements are
-    /// isotropic.
+    /// Figures of the radar equation ([`budget`]); `None` in the thesis' convention, where levels are those of samples and elements are isotropic.
     pub budget: Option<LinkBudget>,
 }
 
-/// What is wrong with a [`Radar`].
+/// A fault of a [`Radar`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum RadarError {

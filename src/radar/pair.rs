@@ -1,4 +1,4 @@
-//! Pairs of antennas: who sends, and who hears the echo.
+//! Pairs of antennas: a transmitter, and the receiver of its echoes.
 
 use super::{BuiltArray, Radar};
 
@@ -9,9 +9,9 @@ pub struct Pair {
     pub transmitter_x_metres: f64,
     /// x of the receiver, metres.
     pub receiver_x_metres: f64,
-    /// How far the transmitter stands off the array's line, towards the scene, metres.
+    /// Distance of the transmitter from the array's line, towards the scene, metres.
     pub transmitter_y_metres: f64,
-    /// How far the receiver stands off the array's line, towards the scene, metres.
+    /// Distance of the receiver from the array's line, towards the scene, metres.
     pub receiver_y_metres: f64,
 }
 
@@ -42,7 +42,7 @@ impl Pair {
         transmitter == receiver
     }
 
-    /// How far the middle between both antennas stands off the array's line, metres.
+    /// Distance of the middle between both antennas from the array's line, towards the scene, metres.
     pub fn forward_metres(&self) -> f64 {
         (self.transmitter_y_metres + self.receiver_y_metres) / 2.0
     }
@@ -55,8 +55,7 @@ impl Pair {
 }
 
 impl Radar {
-    /// The antennas of element `n`: one that hears what it sent, or a transmitter and a receiver. Beyond the last element it is as if the
-    /// line went on.
+    /// The antennas of element `n`: one that sends and hears, or a transmitter and a receiver. Beyond the last element the line goes on.
     pub fn pair(&self, n: usize) -> Pair {
         let of_antennas = self.antennas.as_ref().and_then(|antennas| antennas.pair(n));
         of_antennas.unwrap_or_else(|| Pair::at(self.element_x_metres(n)))
@@ -64,7 +63,7 @@ impl Radar {
 }
 
 impl BuiltArray {
-    /// [`Radar::pair`], where the element really stands, along the line and off it: both antennas are off by as much.
+    /// [`Radar::pair`] at the element's true place, along the line and off it: both antennas have its offset.
     pub fn pair(&self, radar: &Radar, n: usize) -> Pair {
         let (pair, along, forward) =
             (radar.pair(n), self.element(n).position_millimetres * 1e-3, self.forward_metres(n));

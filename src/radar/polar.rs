@@ -1,4 +1,4 @@
-//! Range bins and columns as distances and directions; where waves count as plane.
+//! Range bins and columns as distances and directions, and the distances beyond which waves count as plane.
 
 use super::Radar;
 
@@ -93,7 +93,7 @@ mod tests {
         let pairs = Radar { bandwidth_hz: 1e9, ..Radar::default() }.of_pairs(12, 16).unwrap();
         for radar in [Radar::default(), physical, pairs] {
             let far = radar.far_field_metres();
-            // Of a point straight ahead, against one element in the middle of the line.
+            // Phase of a point straight ahead, against one element in the middle of the line.
             let degrees = |n| 360.0 * radar.carrier_turns_per_metre() * (radar.pair(n).range_metres(0.0, far) - far);
             let most = (0..radar.elements).map(|n| degrees(n).abs()).fold(0.0, f64::max);
             assert!((most - 22.5).abs() < 0.01, "{most} degrees");

@@ -3,14 +3,14 @@
 use super::{AntennasError, CHIRP_SECONDS, Carrier, Radar, SPEED_OF_LIGHT, WindowFunction};
 use std::sync::LazyLock;
 
-/// A radar ready to look with.
+/// A radar that comes with the program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RadarPreset {
     /// Short name.
     pub id: &'static str,
     /// Name for menus.
     pub name: &'static str,
-    /// What it is, and what its maps show.
+    /// A description of the radar and of its maps.
     pub about: &'static str,
     /// The radar.
     pub radar: Radar,

@@ -1,12 +1,12 @@
-//! A radar as files have it: every constant by its name, and short words for what belongs together.
+//! The radar's table in files: every constant by its name, and short words for constants that belong together.
 
 use super::{Antennas, CHIRP_SECONDS, Carrier, Convention, LinkBudget, Radar, WindowFunction};
 use serde::{Deserialize, Serialize};
 
-/// The table `[radar]`: what is left out is that of table 3.1. `convention` says `carrier` and, where that is left out,
-/// `element_spacing_metres`. `transmitter_x_metres` with `receiver_x_metres` says `elements` and `element_spacing_metres`, and that ends are
-/// at most half of the elements. `transmitter_y_metres` and `receiver_y_metres`, each as long as the list of x, say how far the antennas stand
-/// off the line; all stand on it where nothing is said.
+/// The table `[radar]`: keys that are left out are table 3.1's. `convention` gives `carrier` and, where that is left out, `element_spacing_metres`.
+/// `transmitter_x_metres` with `receiver_x_metres` gives `elements` and `element_spacing_metres`, and ends of at most half of the elements.
+/// `transmitter_y_metres` and `receiver_y_metres`, each as long as the list of x, are the antennas' distances from the line; without them all stand
+/// on it.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct Said {
@@ -43,7 +43,7 @@ pub(super) struct Said {
     budget: Option<LinkBudget>,
 }
 
-/// How far a spacing may lie from that of the pairs beside which it is said, as a part of it.
+/// Largest relative difference between a spacing and that of the pairs beside it in a text.
 const SAME_SPACING: f64 = 1e-3;
 
 impl From<Radar> for Said {
@@ -66,7 +66,7 @@ impl From<Radar> for Said {
             transmitter_y_metres: off_line.map(|a| a.transmitter_y_metres().to_vec()),
             receiver_y_metres: off_line.map(|a| a.receiver_y_metres().to_vec()),
             focus_off_line: radar.focus_off_line.then_some(true),
-            // One chirp is what a radar had before it could have more: a text that says nothing is read by older programs, too.
+            // One chirp is the only count of older programs: a text without the key is read by them, too.
             chirps: Some(radar.chirps).filter(|chirps| *chirps != 1),
             chirp_interval_seconds: Some(radar.chirp_interval_seconds).filter(|s| *s != CHIRP_SECONDS),
             budget: radar.budget,
@@ -119,7 +119,7 @@ impl TryFrom<Said> for Radar {
 }
 
 impl Said {
-    /// The antennas, and whether what is said beside them agrees.
+    /// The antennas; the error names a key beside them that disagrees.
     fn antennas(&self) -> Result<Option<Antennas>, String> {
         let (transmitters, receivers) = match (&self.transmitter_x_metres, &self.receiver_x_metres) {
             (None, None) => {

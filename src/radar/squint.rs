@@ -17,7 +17,7 @@ impl Radar {
         1.0 + self.beat_turns_per_metre(self.middle_sample()) / self.carrier_turns_per_metre()
     }
 
-    /// Range (not wrapped) and cos(theta) at which the map of elements around (`centre_x_metres`, 0) has a reflector at (x, y).
+    /// Range (not wrapped) and cos(theta) of the blob of a reflector at (x, y), on the map of elements around (`centre_x_metres`, 0).
     pub fn blob_of(&self, centre_x_metres: f64, x_metres: f64, y_metres: f64) -> Polar {
         let seen = self.polar_of(x_metres - centre_x_metres, y_metres);
         Polar { cos_theta: seen.cos_theta * self.squint(), ..seen }

@@ -49,7 +49,7 @@ impl fmt::Display for DecibelMilliwatts {
     }
 }
 
-/// An amount of memory in bytes, printed as a person reads it: "4.0 GiB".
+/// An amount of memory in bytes, printed with a prefix: "4.0 GiB".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Bytes(pub u64);
 

@@ -1,4 +1,4 @@
-//! How the phase of an echo grows with its range.
+//! Growth of an echo's phase with its range.
 //!
 //! Equation 3.1 turns the carrier's phase `s q / lambda` a metre of range, and the beat's phase `n1 / (N dR)` a metre at sample `n1` of
 //! `N`, where `dR` is the range resolution. Both together are the echo's wave number, in turns: [`Radar::turns_per_metre`].
@@ -12,7 +12,7 @@ impl Radar {
         self.carrier.turns_per_wavelength() / self.wavelength_metres()
     }
 
-    /// The same in radians.
+    /// Radians of the carrier's phase for each metre of range, signed.
     pub fn carrier_radians_per_metre(&self) -> f64 {
         TAU * self.carrier.turns_per_wavelength() / self.wavelength_metres()
     }
@@ -32,7 +32,7 @@ impl Radar {
         (self.samples as f64 - 1.0) / 2.0
     }
 
-    /// Turns of an echo's phase in the middle of the chirp for each metre of range, signed: what decides the column of a blob.
+    /// Turns of an echo's phase in the middle of the chirp for each metre of range, signed: they decide the column of a blob.
     pub fn middle_turns_per_metre(&self) -> f64 {
         self.turns_per_metre(self.middle_sample())
     }

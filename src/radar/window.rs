@@ -21,7 +21,7 @@ pub enum WindowFunction {
 }
 
 impl WindowFunction {
-    /// All of them, the thesis' first.
+    /// All windows, the thesis' first.
     pub const ALL: [WindowFunction; 4] =
         [WindowFunction::Hann, WindowFunction::Hamming, WindowFunction::Blackman, WindowFunction::Rectangular];
 
@@ -45,7 +45,7 @@ impl WindowFunction {
         }
     }
 
-    /// The window for `len` points: this one from three on. One point or none isn't weighed, as by NumPy's windows, and neither are two, of
+    /// The window for `len` points: `self` from three points on. One point or none has no weights, as in NumPy's windows, and neither have two, of
     /// which most windows would leave nothing.
     pub fn for_points(self, len: usize) -> WindowFunction {
         if len < 3 { WindowFunction::Rectangular } else { self }
@@ -74,7 +74,7 @@ pub fn hann_at(len: usize, n: f64) -> f64 {
     0.5 - 0.5 * (TAU * n / (len as f64 - 1.0)).cos()
 }
 
-/// Fewest points of a Hann window of which more than one weighs anything.
+/// Fewest points of a Hann window with more than one weight above 0.
 const MIN_HANN_POINTS: usize = 4;
 
 /// [`hann`] for a chirp of `samples`; ones where it would leave one sample or none.

@@ -1,4 +1,4 @@
-//! Real samples as complex ones.
+//! Analytic signals: real samples as complex ones.
 
 use crate::signal::simd::Simd;
 use ndarray::{Array, ArrayView, Axis, Dimension};
@@ -24,7 +24,7 @@ pub(super) fn analytic(samples: &[Complex64], len: usize) -> Vec<Complex64> {
     }
     let mut line = samples.to_vec();
     Simd::chosen().forward_fft::<f64>(samples.len()).process(&mut line);
-    // Back by the conjugate of the forward transform of the conjugate; half the amplitude stands in the other half of the spectrum.
+    // The transform back is the conjugate of the forward transform of the conjugate. Half the amplitude stands in the other half of the spectrum.
     let scale = 2.0 / samples.len() as f64;
     let mut positive = vec![Complex64::default(); len];
     positive.iter_mut().zip(&line[..half]).for_each(|(to, v)| *to = scale * v.conj());

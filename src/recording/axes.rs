@@ -10,7 +10,7 @@ use std::fmt;
 /// Most numbers whose chirps are joined.
 const MOST_JOINED: usize = 1 << 23;
 
-/// What an axis of an array counts.
+/// The quantity that an axis of an array counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum AxisKind {
@@ -44,11 +44,11 @@ impl fmt::Display for AxisKind {
     }
 }
 
-/// Which of several chirps or loops are looked at.
+/// The chirp or loop that is taken of several, or the way to join them all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(untagged, expecting = "expected a number from 0, \"mean\" or \"strongest\"")]
 pub enum Chirp {
-    /// One, from 0.
+    /// The chirp or loop of this number, from 0.
     Number(usize),
     /// A way to join them all.
     Joined(Join),
@@ -60,20 +60,20 @@ impl Default for Chirp {
     }
 }
 
-/// How chirps are joined.
+/// A way to join chirps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Join {
-    /// Their complex mean: what stands still stays, what moves fades.
+    /// Their complex mean: echoes that stand still stay, moving ones fade.
     Mean,
     /// Of each range bin the strongest Doppler cell and those that stand out beside it, transmitters in turn compensated for their velocities.
     Strongest,
 }
 
-/// Why an array is not what its axes say.
+/// An array that doesn't fit its axes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AxesError {
-    /// Another number of axes.
+    /// The text names another number of axes than the array has.
     #[error("recording.axes names {named} axes, but the array has shape {shape:?}")]
     Count {
         /// Axes named.
@@ -81,10 +81,10 @@ pub enum AxesError {
         /// Shape found.
         shape: Vec<usize>,
     },
-    /// An axis stands twice, or too many or too few say what the elements are.
+    /// An axis is named twice, or too many or too few axes count the elements.
     #[error("recording.axes: {0}")]
     Kinds(String),
-    /// The numbers are real and no chirps.
+    /// The numbers are real, and no axis counts samples.
     #[error(
         "the array holds real numbers; expected complex ones, an axis \"iq\" of length 2, or real samples of an axis \"sample\""
     )]
@@ -100,10 +100,10 @@ pub enum AxesError {
     /// The numbers are complex already.
     #[error("the array holds complex numbers; expected no axis \"iq\"")]
     Complex,
-    /// The axis of real and imaginary part is none.
+    /// The axis of real and imaginary part has another length than 2.
     #[error("axis \"iq\" has length {0}; expected 2, real and imaginary part")]
     Iq(usize),
-    /// Which chirp was not said.
+    /// An array of several chirps without a choice of one.
     #[error("the array has {0} chirps; expected recording.chirp = 0 to {last}, \"mean\" or \"strongest\"", last = .0.saturating_sub(1))]
     ChirpUnsaid(usize),
     /// There is no such chirp.
@@ -173,8 +173,8 @@ pub(super) fn in_turn(
     })
 }
 
-/// Sorts `numbers` into `[loops, transmitters, receivers, samples]`, where there are chirps to join; at most so many numbers that they are
-/// held several times.
+/// Sorts `numbers` into `[loops, transmitters, receivers, samples]`, where there are chirps to join. At most [`MOST_JOINED`] numbers are
+/// taken, since they are held several times: further chirps are left out.
 ///
 /// # Errors
 /// [`AxesError`] where `kinds` are not the array's axes.
@@ -281,7 +281,7 @@ fn one_chirp(
     kinds.remove(place);
     let chirps = values.shape()[place];
     let number = match chirp {
-        // Where no loops are joined, the strongest cell is that of what stands still.
+        // Where no loops are joined, the strongest cell is that of the echoes that stand still: the mean.
         Some(Chirp::Joined(Join::Mean | Join::Strongest)) => {
             return values.mean_axis(Axis(place)).ok_or(AxesError::NoChirp { asked: 0, chirps });
         }

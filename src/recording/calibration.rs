@@ -8,16 +8,16 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Calibration {
-    /// What each element amplifies by, decibels.
+    /// Gain of each element, decibels.
     pub gain_db: Vec<f64>,
-    /// What each element turns the phase by, degrees.
+    /// Phase shift of each element, degrees.
     pub phase_degrees: Vec<f64>,
 }
 
 /// A list that fits no array.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CalibrationError {
-    /// Another length.
+    /// A list has another length than the file has elements.
     #[error("recording.calibration.{list} has {found} numbers; expected {expected}, one for each element of the file")]
     Length {
         /// Name of the list.
@@ -27,14 +27,14 @@ pub enum CalibrationError {
         /// Elements of the file.
         expected: usize,
     },
-    /// Not a usable number.
+    /// A number is not finite or too large.
     #[error(
         "recording.calibration.{list} holds {value} for element {element}; expected a number from -{most} to {most}"
     )]
     Value {
         /// Name of the list.
         list: &'static str,
-        /// Which element.
+        /// Index of the element.
         element: usize,
         /// The number.
         value: f64,
@@ -61,7 +61,7 @@ impl Calibration {
             if !values.is_empty() && values.len() != elements {
                 return Err(CalibrationError::Length { list, found: values.len(), expected: elements });
             }
-            // Not finite is not within either.
+            // NaN is not within the bounds either.
             if let Some((element, value)) = values.iter().enumerate().find(|(_, v)| v.is_nan() || v.abs() > most) {
                 return Err(CalibrationError::Value { list, element, value: *value, most });
             }

@@ -12,33 +12,33 @@ pub const USUAL_PORT: u16 = 4098;
 
 /// Longest packet, bytes.
 const PACKET_BYTES: usize = 1 << 16;
-/// How often the end of a silence is looked for.
+/// Time between two looks for the end of a silence.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// What became of a frame that was handed on.
+/// The receiver's answer to a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Handed {
-    /// It is looked at.
+    /// The frame is looked at.
     Taken,
-    /// It, or one before it, is never looked at: the one before was still at work.
+    /// The frame, or one before it, is never looked at: the one before was still at work.
     Dropped,
-    /// No more are wanted.
+    /// No more frames are wanted.
     Ended,
 }
 
-/// What came so far.
+/// Counts of frames and packets so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CardSummary {
     /// Frames that were handed on, dropped ones counted.
     pub frames: u64,
     /// Frames that were dropped.
     pub dropped: u64,
-    /// What became of the packets.
+    /// Counts of packets.
     pub packets: PacketCounts,
 }
 
 impl CardSummary {
-    /// All of it in a sentence.
+    /// All counts in a sentence.
     pub fn sentence(&self) -> String {
         let PacketCounts { packets, strange, late, lost_bytes, lost_frames, restarts } = self.packets;
         format!(
@@ -55,11 +55,11 @@ pub struct Card {
     socket: UdpSocket,
     /// Bytes of a frame.
     pub frame_bytes: usize,
-    /// Where frames are written as they come; what is lost stays zeros.
+    /// File of the frames as they come, with zeros for lost bytes.
     pub log: Option<File>,
-    /// Frames after which it ends.
+    /// Frames after which listening ends.
     pub most_frames: Option<u64>,
-    /// It ends after so long without a packet.
+    /// Time without a packet after which listening ends.
     pub silence: Option<Duration>,
 }
 
@@ -67,7 +67,7 @@ impl Card {
     /// Listens on `port` of every address of this machine, or on a free one for 0.
     ///
     /// # Errors
-    /// What the system says: another program may have the port.
+    /// An error of the socket: another program may have the port.
     pub fn listen(port: u16, frame_bytes: usize) -> io::Result<Card> {
         let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, port))?;
         socket.set_read_timeout(Some(PATIENCE))?;
@@ -77,15 +77,15 @@ impl Card {
     /// The port that it listens on.
     ///
     /// # Errors
-    /// What the system says.
+    /// An error of the socket.
     pub fn port(&self) -> io::Result<u16> {
         self.socket.local_addr().map(|address| address.port())
     }
 
-    /// Receives until it is to end: hands whole frames to `frames`, and asks `goes_on` with what came, ten times a second or more.
+    /// Receives packets until the end: hands whole frames to `frames`, and asks `goes_on` with the counts so far, ten times a second or more.
     ///
     /// # Errors
-    /// What the system says of the port or the log.
+    /// An error of the socket or of the log file.
     pub fn run(
         mut self,
         mut frames: impl FnMut(CardFrame) -> Handed,

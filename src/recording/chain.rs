@@ -1,8 +1,8 @@
-//! Files that are read as one: those that go on from one to the next, and those of the chips of a cascade.
+//! Several files that are read as one: continued files of a capture, and files of the chips of a cascade.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// Something to read a data file from.
+/// A source of a data file's bytes.
 pub(super) trait Source: Read + Seek {}
 
 impl<T: Read + Seek> Source for T {}
@@ -17,7 +17,7 @@ impl Chain {
     /// The files in order.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of a file whose size can't be read.
     pub fn new(files: Vec<Box<dyn Source>>) -> io::Result<Self> {
         let sized = |mut file: Box<dyn Source>| file.seek(SeekFrom::End(0)).map(|bytes| (file, bytes));
         Ok(Chain { files: files.into_iter().map(sized).collect::<io::Result<_>>()?, at: 0 })
@@ -48,7 +48,7 @@ impl Seek for Chain {
     }
 }
 
-/// Where `to` leads from `at` in so many bytes.
+/// The position after a seek by `to` from the position `at`, in a file of `bytes` bytes.
 fn place(to: SeekFrom, at: u64, bytes: u64) -> io::Result<u64> {
     let place = match to {
         SeekFrom::Start(at) => Some(at),
@@ -71,10 +71,10 @@ pub(super) struct Chips {
 }
 
 impl Chips {
-    /// The files in the order of the receivers; what one has more than another is left out.
+    /// The files in the order of the receivers. All are cut to the length of the shortest.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of a file whose size can't be read.
     pub fn new(mut files: Vec<Box<dyn Source>>) -> io::Result<Self> {
         let sizes = files.iter_mut().map(|file| file.seek(SeekFrom::End(0))).collect::<io::Result<Vec<u64>>>()?;
         Ok(Chips { files, samples: sizes.into_iter().min().unwrap_or(0) / CHIP_BYTES, at: 0 })

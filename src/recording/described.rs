@@ -1,4 +1,4 @@
-//! The recording that a text describes: the TOML, and what it names.
+//! The recording that a text describes: the TOML, and the files that it names.
 
 use super::capture::Plan;
 use super::chain::Source;
@@ -82,7 +82,7 @@ fn check_format(text: &str) -> Result<(), Fault> {
     }
 }
 
-/// What a recording's text says, before its samples are read.
+/// The parts of a recording's text, before its samples are read.
 pub(super) struct Parts {
     pub format: u32,
     pub name: String,
@@ -130,7 +130,7 @@ pub(super) fn parts(text: &str, path: &Path, open: Open<'_>) -> Result<Parts, Re
     Ok(Parts { format, name, notes, table, radar, profile, signs, says_interval })
 }
 
-/// Reads a recording from the text of its TOML, which stands at `path`, and what `open` opens; `frame` in place of the one that the text says.
+/// Reads a recording from the text of its TOML at `path`, and from the files that `open` opens; `frame` is taken in place of the text's.
 pub(super) fn from_parts(
     text: &str,
     path: &Path,
@@ -156,7 +156,8 @@ pub(super) fn from_parts(
     Ok(Recording { name, notes, radar, samples, missing, range_metres, doubts, origin: None })
 }
 
-/// How many whole frames the recording of a text has, and which of them the text says; `None` where it counts neither frames nor loops.
+/// Number of whole frames in the recording of a text, and the number of the frame that the text takes; `None` where the text counts neither frames
+/// nor loops.
 pub(super) fn frames_of(text: &str, path: &Path, open: Open<'_>) -> Result<Option<[u64; 2]>, RecordingError> {
     let Parts { table, profile, .. } = parts(text, path, open)?;
     let counted = || -> Result<u64, Fault> {
@@ -179,7 +180,7 @@ pub struct FrameLoops {
     pub radar: Radar,
     /// `[loops, elements, samples]`.
     pub samples: ChirpSamples,
-    /// Whether the interval is known; where not, it is such that velocities are 1 m/s apart.
+    /// Whether the interval is known; an unknown one is set so that velocities are 1 m/s apart.
     pub knows_interval: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Warnings about a recording: what looks wrong but may be right.
+//! Warnings about a recording that looks wrong but may be right.
 
 use super::Recorded;
 use crate::maps::channels_range_transform;
@@ -6,13 +6,12 @@ use crate::radar::{Carrier, Radar};
 
 /// Part of the power in the far half of the range axis above which the beat's sign is doubted.
 const FAR_PART: f64 = 0.9;
-/// Spacing from which directions fold in the two-way reading, wavelengths: a quarter, and what a carrier off the middle of the band adds.
+/// Spacing from which directions fold in the two-way reading, wavelengths: a quarter, and a little more for a carrier off the middle of the band.
 const FOLDS_FROM: f64 = 0.26;
 /// Least samples that tell one half of the range axis from the other.
 const LEAST_SAMPLES: usize = 8;
 
-/// Sentences on what the samples or the radar make unlikely; empty where nothing does. Only `physical` recordings are doubted: what an
-/// older text says is taken as it is.
+/// Warnings, a sentence each, where samples or radar are unlikely. Only `physical` recordings are doubted: an older text is taken as it is.
 pub(super) fn doubts(radar: &Radar, samples: &Recorded, physical: bool) -> Vec<String> {
     let mut doubts = Vec::new();
     if !physical {

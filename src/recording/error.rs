@@ -8,17 +8,17 @@ use crate::scene::file::SceneTextError;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a recording could not be read.
+/// An error of reading a recording, with its file.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {fault}", path.display())]
 pub struct RecordingError {
     /// The file.
     pub path: PathBuf,
-    /// What is wrong with it.
+    /// The fault.
     pub fault: Fault,
 }
 
-/// What can be wrong with one of a recording's files.
+/// A fault in one of a recording's files.
 #[derive(Debug, thiserror::Error)]
 pub enum Fault {
     /// The system could not read it.
@@ -27,17 +27,17 @@ pub enum Fault {
     /// The TOML can't be understood.
     #[error("{0}")]
     Text(#[from] SceneTextError),
-    /// A key says something that can't be.
+    /// A key has a value that can't be used, or is missing.
     #[error("{key} {found}; expected {expected}")]
     Key {
         /// The key.
         key: String,
-        /// What it says, or that it is missing.
+        /// The value found, or that the key is missing.
         found: String,
-        /// What would do.
+        /// The values allowed.
         expected: String,
     },
-    /// The radar can't be.
+    /// The radar is invalid.
     #[error("{0}")]
     Radar(#[from] RadarError),
     /// The array can't be read.
@@ -69,9 +69,9 @@ pub enum Fault {
     Count {
         /// "elements" or "samples".
         what: &'static str,
-        /// How many there are.
+        /// Their number in the array.
         found: usize,
-        /// How many there should be, and why.
+        /// The number expected, and its reason.
         expected: String,
         /// Elements and samples that the axes make of the array.
         shape: (usize, usize),

@@ -15,28 +15,28 @@ use rayon::prelude::*;
 /// Most reflectors that a recording is explained with: their gains are fitted together.
 pub const MAX_EXPLAINING: usize = 512;
 
-/// What is added to the diagonal of the fit, relative to it: reflectors that no element distinguishes share their gain.
+/// Ridge on the diagonal of the fit, relative to it: reflectors that no element distinguishes share their gain.
 const SHARED_GAIN_RIDGE: f64 = 1e-10;
 
 /// A recording explained by reflectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Explanation {
-    /// Complex gain of each reflector: what the echo of reflectivity 1 at its place is multiplied with. Its magnitude is the reflectivity
-    /// in the recording's own unit.
+    /// Complex gain of each reflector: a factor of the echo of reflectivity 1 at its place. Its magnitude is the reflectivity in the recording's own
+    /// unit.
     pub gains: Vec<Complex64>,
-    /// Part of the recording's power that they explain, 0 to 1.
+    /// Part of the recording's power that the reflectors explain, 0 to 1.
     pub explained: f64,
-    /// The recording less their echoes.
+    /// The recording less the reflectors' echoes.
     pub residual: Recording,
 }
 
-/// Why reflectors can't explain a recording.
+/// A reason for which reflectors can't explain a recording.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExplainError {
     /// The recording's radar can't see the scene.
     #[error("{0}")]
     Scene(#[from] SceneError),
-    /// Too many gains to fit.
+    /// The scene has too many reflectors.
     #[error("the scene has {0} reflectors; at most {MAX_EXPLAINING} are fitted to a recording")]
     TooMany(usize),
     /// The gains can't be told from each other at all.

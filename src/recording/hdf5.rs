@@ -24,7 +24,7 @@ pub(super) fn h5_shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize
     Ok(Hdf5::open(file)?.shapes()?)
 }
 
-/// [`matlab::read_mat`], and the same of version 7.3.
+/// [`matlab::read_mat`], also for version 7.3.
 pub(super) fn read_mat(mut file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
     if !is_new(&mut file)? {
         return Ok(matlab::read_mat(file, key)?);
@@ -35,7 +35,7 @@ pub(super) fn read_mat(mut file: impl Read + Seek, key: &str) -> Result<Numbers,
     })
 }
 
-/// [`matlab::shapes`], and the same of version 7.3.
+/// [`matlab::shapes`], also for version 7.3.
 pub(super) fn mat_shapes(mut file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     if !is_new(&mut file)? {
         return Ok(matlab::shapes(file)?);

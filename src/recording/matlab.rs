@@ -2,7 +2,7 @@
 //! by themselves, in structs or in cells.
 //!
 //! The crates that read them know no complex numbers (`mat5`) or inflate without a bound (`matfile`), so this reader is the
-//! program's own. It reads forward only, and asks for no memory before the size was compared with what the file says elsewhere.
+//! program's own. It reads forward only. Before it asks for memory, it compares a size with the file's other sizes.
 
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
 use flate2::read::ZlibDecoder;
@@ -10,7 +10,7 @@ use ndarray::{ArrayD, Axis, IxDyn, ShapeBuilder, ShapeError, stack};
 use num_complex::Complex64;
 use std::io::{self, Read};
 
-/// Why an array could not be read.
+/// An error of reading an array.
 #[derive(Debug, thiserror::Error)]
 pub enum MatError {
     /// The system could not read.
@@ -27,12 +27,12 @@ pub enum MatError {
         /// The names the file has.
         found: String,
     },
-    /// Something other than numbers.
+    /// The array holds no numbers.
     #[error("\"{key}\" is {found}; expected an array of numbers")]
     Kind {
         /// The name.
         key: String,
-        /// What it is.
+        /// The kind of the array, in words.
         found: &'static str,
     },
     /// More numbers than are read.
@@ -46,9 +46,9 @@ pub enum MatError {
     /// The bytes contradict themselves or end too soon.
     #[error("{what} can't be read: {reason}")]
     Damaged {
-        /// Which part of the file.
+        /// The damaged part of the file.
         what: String,
-        /// What is wrong.
+        /// The fault.
         reason: String,
     },
 }
@@ -93,7 +93,7 @@ pub(super) fn shapes(file: impl Read) -> Result<Vec<(String, Vec<usize>)>, MatEr
     Ok(search.shapes)
 }
 
-/// What is looked for, and what was met on the way.
+/// The array that is looked for, and the names and shapes of the arrays read so far.
 #[derive(Default)]
 struct Search<'a> {
     want: Option<&'a str>,
@@ -147,8 +147,8 @@ fn header(file: &mut impl Read) -> Result<bool, MatError> {
     }
 }
 
-/// Reads flags, dimensions and name of an array, and its numbers where it is the one that is looked for. What a struct or a cell holds has
-/// no name of its own: it is called `named`.
+/// Reads flags, dimensions and name of an array, and its numbers where it is the one that is looked for. An array inside a struct or a cell has no
+/// name of its own and is called `named`.
 fn matrix(
     file: &mut dyn Read,
     big_endian: bool,
@@ -273,7 +273,7 @@ fn cells(
     Ok(())
 }
 
-/// What a class is where it is not made of numbers.
+/// The kind of a class that is not made of numbers.
 fn no_numbers(class: u32) -> Option<&'static str> {
     match class {
         6..=15 => None,

@@ -2,25 +2,25 @@
 //!
 //! A recording is a data file and a TOML beside it that says what the data are. Of a raw capture without one the layout is found by evidence.
 //!
-//! | file | what it reads |
+//! | file | content |
 //! |---|---|
 //! | [`file`], `described`, `said_radar`, `said_recording` | the TOML: `[radar]` and `[recording]` |
-//! | `samples` | what the data files hold, in the order of the elements |
+//! | `samples` | samples of the data files, in the order of the elements |
 //! | `chain` | files that go on from one to the next |
 //! | `numpy` | `.npy` and `.npz` |
 //! | `matlab` | `.mat`, versions 5 and 7 |
 //! | `hdf5` | `.h5`, and `.mat` of version 7.3 |
 //! | `capture`, `profile` | samples of a capture card, and the `.cfg` that set the radar up |
-//! | [`layout`] | how the bytes of a raw capture stand for samples, by evidence |
+//! | [`layout`] | layouts of a raw capture's bytes, by evidence |
 //! | [`raw`] | raw captures and arrays as they are: the text that describes them is made |
-//! | `origin`, `reread` | where a recording comes from, what else its bytes could be, its frames, and reading them |
+//! | `origin`, `reread` | the file of a recording, its frames and other ways to read it |
 //! | [`packets`], [`card`] | packets that a capture card sends, to frames; listening to them |
 //! | `axes`, `analytic` | an array of any shape, of real samples too, to `[elements, samples]` |
-//! | `calibration` | what is taken off each element |
-//! | `signs` | which way phases turn, and where on the chirp the carrier lies |
-//! | `doubts` | what looks wrong and can't be known from the samples |
+//! | `calibration` | gains and phases that are taken off each element |
+//! | `signs` | the sign of the phases, and the place of the carrier on the chirp |
+//! | `doubts` | warnings that the samples can't settle |
 //!
-//! [`presets`] come with the program. [`explain`] tells what reflectors leave unexplained.
+//! [`presets`] come with the program. [`explain`] fits reflectors to a recording and returns the residual.
 
 mod analytic;
 mod axes;
@@ -69,31 +69,31 @@ use std::sync::Arc;
 /// Samples of a radar's elements, and the radar.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// What it is called, if it has a name.
+    /// The recording's name; empty for none.
     pub name: String,
-    /// Where it comes from and what to look for.
+    /// The recording's source, and hints on its echoes.
     pub notes: String,
     /// The radar that measured it. Its carrier is the one that the maps' formula needs for these samples, which is not always the
     /// one that the text says.
     pub radar: Radar,
-    /// What its elements measured.
+    /// The measured samples.
     pub samples: Recorded,
     /// Elements of the whole array that measured nothing, in rising order; their samples are silence.
     pub missing: Vec<usize>,
-    /// Range of everything in a snapshot (`radar.samples` = 1), metres: its one sample cannot tell.
+    /// Range of all echoes of a snapshot (`radar.samples` = 1), metres: its one sample cannot tell.
     pub range_metres: Option<f64>,
-    /// What looks wrong and can't be known from the samples, a sentence each.
+    /// Doubts that the samples can't settle, a sentence each.
     pub doubts: Vec<String>,
-    /// Where it comes from, where no text of its user's describes it: other ways to read the same file.
+    /// The file, and other ways to read it, where no text of the user's describes it.
     pub origin: Option<Arc<Origin>>,
 }
 
-/// Whose samples a recording holds.
+/// The elements whose samples a recording holds, with the samples.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Recorded {
-    /// Those of every element: the whole array's map is known.
+    /// Samples of every element: the whole array's map is known.
     All(BeatSignal),
-    /// Those of the two ends alone.
+    /// Samples of the two ends alone.
     Ends(TwoEnds),
 }
 

@@ -19,8 +19,8 @@ pub(super) enum Numbers {
 const MOST_SIGNED: f64 = i16::MAX as f64;
 
 impl Numbers {
-    /// Takes 16-bit integers whose sign was lost back to what they were: 65535 is -1. Those are told by whole parts from 0 to 65535 of
-    /// which some lie beyond 32767. A sentence says so where it was done.
+    /// Gives 16-bit integers that lost their sign their sign again: 65535 is -1. Such numbers are whole, from 0 to 65535, and some lie beyond 32767.
+    /// Returns a sentence where it was done.
     pub fn mend_signs(&mut self) -> Option<String> {
         let is_word = |v: f64| v.fract() == 0.0 && (0.0..=65535.0).contains(&v);
         let signed = |v: f64| if v > MOST_SIGNED { v - 65536.0 } else { v };
@@ -50,7 +50,7 @@ impl Numbers {
     }
 }
 
-/// How many numbers an array of `shape` holds; `None` where they are more than [`MAX_NUMBERS`].
+/// Number of numbers in an array of `shape`; `None` above [`MAX_NUMBERS`].
 pub(super) fn bounded_count(shape: &[usize]) -> Option<usize> {
     shape.iter().try_fold(1usize, |n, len| n.checked_mul(*len)).filter(|n| *n <= MAX_NUMBERS)
 }

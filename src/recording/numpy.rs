@@ -1,4 +1,4 @@
-//! NumPy's `.npy` and `.npz` files: what the header says is checked before any memory is asked for.
+//! NumPy's `.npy` and `.npz` files. The header's sizes are checked before any memory is asked for.
 
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
 use crate::files::hdf5::half_value;
@@ -10,24 +10,24 @@ use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement};
 use num_complex::{Complex32, Complex64};
 use std::io::{Cursor, Read, Seek};
 
-/// Why an array could not be read.
+/// An error of reading an array.
 #[derive(Debug, thiserror::Error)]
 pub enum NumpyError {
-    /// The archive, or one of its keys.
+    /// The archive, or one of its keys, can't be read.
     #[error("{0}")]
     Archive(#[from] NpzError),
     /// The header is none of NumPy's.
     #[error("{what} can't be read: {reason}; expected what numpy.save writes")]
     Damaged {
-        /// Which array.
+        /// The array.
         what: String,
-        /// What is wrong.
+        /// The fault.
         reason: String,
     },
     /// More numbers than are read.
     #[error("{what} has shape {shape:?}; expected at most {MAX_NUMBERS} numbers")]
     TooLarge {
-        /// Which array.
+        /// The array.
         what: String,
         /// Its shape.
         shape: Vec<usize>,
@@ -37,7 +37,7 @@ pub enum NumpyError {
         "{what} holds {found}; expected complex or real numbers, integers of 16 or more bits or int8, or pairs of int16"
     )]
     Type {
-        /// Which array.
+        /// The array.
         what: String,
         /// NumPy's name of the type.
         found: String,

@@ -1,8 +1,8 @@
-//! Where a recording that was opened without a text comes from, and what else its bytes could be.
+//! The source of a recording that was opened without a text, and other ways to read its bytes.
 
 use std::path::PathBuf;
 
-/// One way to read a file: a layout of a raw capture, or what the axes of an array count.
+/// One way to read a file: a layout of a raw capture, or kinds of an array's axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Offer {
     /// The layout in a sentence's words.
@@ -15,7 +15,7 @@ pub struct Offer {
     pub toml: String,
 }
 
-/// Where a recording comes from whose file can be read otherwise: another way, or another frame of it.
+/// The source of a recording whose file can be read in another way, or of which another frame can be taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Origin {
     /// The file with the samples, or the TOML that describes them.
@@ -24,17 +24,17 @@ pub struct Origin {
     pub config: Option<PathBuf>,
     /// Ways to read the file, the most likely first; the TOML alone where there is one.
     pub offers: Vec<Offer>,
-    /// Which of them was taken.
+    /// Index of the way that was taken, in `offers`.
     pub taken: usize,
-    /// What was found, a sentence each.
+    /// The findings on the file, a sentence each.
     pub sentences: Vec<String>,
-    /// What is doubtful whichever way the file is read, a sentence each.
+    /// Doubts that hold for every way to read the file, a sentence each.
     pub doubts: Vec<String>,
     /// The board whose antennas were taken, where one was.
     pub board: Option<&'static str>,
     /// Whole frames of the file.
     pub frames: u64,
-    /// Which of them is looked at, from 0.
+    /// Number of the frame that is looked at, from 0.
     pub frame: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Packets of a capture card to frames: in order again, with zeros for those that are lost, in bounded memory.
+//! Frames from the packets of a capture card: in order again, with zeros for lost packets, in bounded memory.
 //!
 //! A packet has 4 bytes of number, 6 of the count of bytes before it, and the data ("DCA1000EVM Data Capture Card", SPRUIJ4).
 
@@ -10,9 +10,9 @@ const HEADER_BYTES: usize = 10;
 const MOST_DATA_BYTES: usize = 1 << 16;
 /// Frames that may be open at once: packets of the next arrive before the last of this one.
 const OPEN: usize = 2;
-/// So many bytes beyond a frame end it, though some of it is missing: packets may be so much out of order.
+/// Number of bytes beyond a frame that end it, though some of it is missing: packets may be out of order by as much.
 const REORDERED_BYTES: u64 = 64 * 1456;
-/// A count of bytes that lies so many frames beyond the last is that of another capture.
+/// Number of frames beyond the last from which a count of bytes is that of another capture.
 const MOST_SKIPPED: u64 = 4096;
 
 /// A frame of the capture.
@@ -22,16 +22,16 @@ pub struct CardFrame {
     pub number: u64,
     /// Its bytes; those that are lost are zeros.
     pub bytes: Vec<u8>,
-    /// How many of them are lost.
+    /// Number of lost bytes.
     pub lost_bytes: u64,
 }
 
-/// What became of the packets.
+/// Counts of packets, of losses and of new beginnings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PacketCounts {
     /// Packets that were taken.
     pub packets: u64,
-    /// Packets that are none: shorter than their header, or longer than any.
+    /// Packets that are not a card's: shorter than the header, or longer than any.
     pub strange: u64,
     /// Packets of frames that were given away already, and packets that came twice.
     pub late: u64,
@@ -59,17 +59,17 @@ pub struct Packets {
 }
 
 impl Packets {
-    /// For frames of so many bytes, at least one.
+    /// Packets of frames of `frame_bytes` bytes, at least one.
     pub fn new(frame_bytes: usize) -> Self {
         Packets { frame_bytes: frame_bytes.max(1), open: VecDeque::new(), next: None, counts: PacketCounts::default() }
     }
 
-    /// What became of the packets so far.
+    /// Counts so far.
     pub fn counts(&self) -> PacketCounts {
         self.counts
     }
 
-    /// Takes a packet; the frames that are whole by it, or given up.
+    /// Takes a packet, and returns the frames that are whole now or given up.
     pub fn take(&mut self, packet: &[u8]) -> Vec<CardFrame> {
         let Some((header, data)) = packet.split_at_checked(HEADER_BYTES).filter(|(_, d)| d.len() <= MOST_DATA_BYTES)
         else {
@@ -89,7 +89,7 @@ impl Packets {
         }
         let into = at % self.frame_bytes as u64;
         if self.next.is_none() && self.open.is_empty() && into > REORDERED_BYTES {
-            // What came before this packet was never listened to: the next frame is the first.
+            // Packets before this one were never listened to: the next frame is the first.
             self.next = Some(number + 1);
         }
         self.place(at, data, &mut done);

@@ -1,4 +1,4 @@
-//! Recordings read again: by any of the texts that describe a file, or another frame of it.
+//! Recordings read again: by another of the texts that describe a file, or from another frame.
 
 use super::described::{FrameLoops, beside, from_parts, loops_of};
 use super::samples::Open;
@@ -24,7 +24,7 @@ impl Origin {
         self.read(&beside(self.folder()))
     }
 
-    /// The same of a frame whose bytes are here in place of the file.
+    /// The recording of a frame whose bytes are given in place of the file.
     ///
     /// # Errors
     /// As [`Origin::recording`].

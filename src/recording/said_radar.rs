@@ -3,7 +3,7 @@
 use super::{Fault, RadarProfile};
 use crate::radar::Radar;
 
-/// The radar of a recording, which must say what it is.
+/// The radar of a recording, whose text must give its constants.
 pub(super) fn said_radar(mut table: toml::Table, profile: Option<&RadarProfile>) -> Result<Radar, Fault> {
     if let Some(profile) = profile {
         for (key, value) in [("carrier_hz", profile.carrier_hz()), ("bandwidth_hz", profile.bandwidth_hz())] {

@@ -6,7 +6,7 @@ use crate::radar::{End, Radar};
 use serde::Deserialize;
 use std::path::Path;
 
-/// What the table says; `check` holds it to the radar.
+/// The keys of the table; `check` holds them to the radar.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Table {
@@ -17,9 +17,9 @@ pub(super) struct Table {
     pub axes: Option<Vec<AxisKind>>,
     pub chirp: Option<Chirp>,
     pub frame: Option<usize>,
-    /// How many transmitters send in turn along the axis of chirps.
+    /// Number of transmitters that send in turn along the axis of chirps.
     pub transmitters_in_turn: Option<usize>,
-    /// Which transmitters and receivers form the line of elements; all where nothing is said.
+    /// Transmitters and receivers that form the line of elements; all where nothing is said.
     pub transmitters_taken: Option<Vec<usize>>,
     pub receivers_taken: Option<Vec<usize>>,
     #[serde(default)]
@@ -36,12 +36,12 @@ pub(super) struct Table {
     #[serde(default)]
     pub calibration: Calibration,
     pub capture: Option<Capture>,
-    /// Whether the text says places of antennas.
+    /// Whether the text gives places of antennas.
     #[serde(skip)]
     pub has_places: bool,
 }
 
-/// Whose samples a file holds.
+/// The elements whose samples a file holds.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Covers {
@@ -51,7 +51,7 @@ pub(super) enum Covers {
 }
 
 impl Table {
-    /// What the TOML says must make sense by itself.
+    /// Checks that the keys of the TOML agree with each other and with `radar`.
     pub fn check(&self, radar: &Radar) -> Result<(), Fault> {
         match (radar.samples, self.range_metres) {
             (1, Some(range)) if range.is_finite() && range > 0.0 => {}
@@ -79,7 +79,7 @@ impl Table {
         Ok(())
     }
 
-    /// What is done about signs and the carrier; the carrier of a `.cfg` is that in the middle of the samples.
+    /// The changes that signs and carrier ask of the samples. The carrier of a `.cfg` is that in the middle of the samples.
     pub fn signs(&self, format: u32, radar: &Radar, has_profile: bool) -> Result<Signs, Fault> {
         let Table { carrier_at, beat_sign, sweep, conjugate, .. } = *self;
         let carrier_at = match carrier_at {
@@ -93,7 +93,7 @@ impl Table {
         Said { format, carrier_at, beat_sign, sweep, conjugate }.signs(radar)
     }
 
-    /// Looks at another frame than the text says.
+    /// Chooses another frame than the text's.
     pub fn look_at(&mut self, frame: Option<u64>) {
         match (&mut self.capture, frame) {
             (_, None) => {}
@@ -110,7 +110,7 @@ impl Table {
         self.beat_sign != Some(BeatSign::Negative)
     }
 
-    /// Elements of the whole array that the file is to hold, in its order.
+    /// Elements of the whole array that the file should hold, in its order.
     pub fn covered(&self, radar: &Radar) -> Vec<usize> {
         match self.covers() {
             Covers::All => (0..radar.elements).collect(),
@@ -118,19 +118,19 @@ impl Table {
         }
     }
 
-    /// Whose samples the file holds.
+    /// The elements whose samples the file holds.
     pub fn covers(&self) -> Covers {
         if self.first.is_some() { Covers::Ends } else { self.elements }
     }
 
-    /// Whether the file counts transmitters and receivers whose places the text says: then those say which element is which.
+    /// Whether the file counts transmitters and receivers whose places the text gives: the places then give each element's pair.
     pub fn counts_pairs(&self) -> bool {
         let has_both = |axes: &Vec<AxisKind>| axes.contains(&AxisKind::Transmitter);
         let in_turn = self.transmitters_in_turn.is_some();
         self.has_places && (self.capture.is_some() || in_turn || self.axes.as_ref().is_some_and(has_both))
     }
 
-    /// How the name of the data file ends, in small letters.
+    /// Ending of the data file's name, in small letters, without the dot.
     pub fn extension(&self) -> String {
         Path::new(&self.file).extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
     }

@@ -19,8 +19,8 @@ use std::io;
 /// Opens a data file by the name that the TOML gives it.
 pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
 
-/// Reads what the table names, with all that it says done, and sentences on what is doubtful of a capture; the radar says how many elements
-/// and samples there are to be.
+/// Reads the samples that the table names, with all its corrections, and sentences on doubts about a capture. The radar gives the numbers of elements
+/// and samples expected.
 ///
 /// # Errors
 /// [`Fault`] names the key or the array, and what was expected of it.
@@ -36,7 +36,7 @@ pub(super) fn read_samples(
     Ok((sorted(table, radar, rows)?, notes))
 }
 
-/// The file's samples as `[elements, samples]`, with all that was said of them done.
+/// The file's samples as `[elements, samples]`, with all corrections of the table.
 fn read(
     table: &Table,
     radar: &Radar,
@@ -64,8 +64,7 @@ fn read(
     Ok((rows, notes))
 }
 
-/// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text says where they stand;
-/// zeros at gaps.
+/// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text gives their places; zeros at gaps.
 fn in_element_order(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Array2<Complex64>, Fault> {
     let Some(antennas) = radar.antennas.as_ref().filter(|_| table.counts_pairs()) else { return Ok(rows) };
     let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
@@ -147,7 +146,7 @@ fn array_loops(table: &Table, open: Open<'_>) -> Result<Array3<Complex64>, Fault
     Ok(rows.select(Axis(1), &places))
 }
 
-/// How many frames the arrays of a table have.
+/// Number of frames in the arrays of a table.
 pub(super) fn count_frames(table: &Table, open: Open<'_>) -> Result<u64, Fault> {
     let place = table.axes.iter().flatten().position(|kind| *kind == AxisKind::Frame);
     let Some(place) = place else { return Ok(1) };
@@ -239,7 +238,7 @@ fn read_arrays(table: &Table, radar: &Radar, open: Open<'_>) -> Result<(Array2<C
     Ok((rows, notes))
 }
 
-/// Of each range bin the strongest Doppler cell, `[elements, samples]`, and what was done.
+/// The strongest Doppler cell of each range bin, `[elements, samples]`, and the sentence on it.
 fn joined(
     table: &Table,
     radar: &Radar,
@@ -288,7 +287,7 @@ fn no_such(key: &str, taken: &[usize], count: usize) -> Fault {
     Fault::key(key, format!("is {taken:?}"), format!("numbers from 0 to {}, each once", count.saturating_sub(1)))
 }
 
-/// What real samples are taken for, and complex ones that are real.
+/// A note on real samples, or on complex ones whose imaginary parts are zero.
 fn told_of_real(numbers: &Numbers, kinds: &[AxisKind]) -> Option<String> {
     let stored = match numbers {
         Numbers::Real(_) if !kinds.contains(&AxisKind::Iq) => {

@@ -1,5 +1,5 @@
-//! Which way the phases of a recording turn, and at which sample its carrier was measured: from the samples of a physical radar to
-//! those that the maps' formula takes.
+//! The sign of a recording's phases, and the sample at which its carrier was measured: from the samples of a physical radar to those that the maps'
+//! formula takes.
 //!
 //! A physical radar's sample `n` has the phase `s 2 pi f_n (R_t + R_r) / c`, where R_t and R_r are the distances from the transmitter
 //! and from the receiver. The sign `s` is one for all samples, and `f_n` rises or falls by `B / N` from sample to sample. The program's
@@ -16,7 +16,7 @@ use super::Fault;
 use crate::radar::{Carrier, Radar};
 use serde::Deserialize;
 
-/// The format that is written down today; texts that name none are of format 1.
+/// The format of today's texts; texts that name none are of format 1.
 pub const FORMAT: u32 = 3;
 
 /// The format of a text that names none.
@@ -24,7 +24,7 @@ pub(super) fn oldest() -> u32 {
     1
 }
 
-/// Where on the chirp the frequency `radar.carrier_hz` lies.
+/// Place of the frequency `radar.carrier_hz` on the chirp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum CarrierAt {
@@ -45,7 +45,7 @@ pub(super) enum BeatSign {
     Negative,
 }
 
-/// Which way the frequency goes from sample to sample.
+/// Direction of the frequency from sample to sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Sweep {
@@ -56,7 +56,7 @@ pub(super) enum Sweep {
     Down,
 }
 
-/// What the text says of signs, as it stands there.
+/// The keys on signs, as they stand in the text.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Said {
     /// The text's format.
@@ -68,7 +68,7 @@ pub(super) struct Said {
     pub conjugate: Option<bool>,
 }
 
-/// What is done to the samples, and to the carrier.
+/// Changes of the samples and of the carrier that bring a recording to the maps' formula.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Signs {
     /// Every sample is conjugated.
@@ -80,7 +80,7 @@ pub(super) struct Signs {
 }
 
 impl Said {
-    /// What follows for the samples of `radar`, whose carrier is as the text says it.
+    /// The changes for the samples of `radar`, whose carrier is as the text says it.
     ///
     /// # Errors
     /// [`Fault::Key`] names the key that is missing, or that does not go with the others.
@@ -124,7 +124,7 @@ impl Said {
     }
 }
 
-/// What is done to a physical radar's samples.
+/// The changes of a physical radar's samples.
 fn physical(radar: &Radar, at: CarrierAt, beat: BeatSign, sweep: Sweep) -> Signs {
     let rises = sweep == Sweep::Up;
     // The beat's phase is the carrier's less what it was at the first sample: both signs are one where the frequency rises.

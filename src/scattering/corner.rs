@@ -27,7 +27,7 @@ fn one_order(wave: &Wave, antennas: &AntennaPlaces, first: &Face, second: &Face)
     let receives = outside(V::from(antennas.receiver_metres), second) > 0.0;
     let sends = outside(transmitter, first) > 0.0;
     let is_open = sends && receives && outside(image, second) > MIN_DISTANCE_METRES;
-    // Where rays from the image through the ends of the first arm meet the line of the second.
+    // Places on the line of the second arm that rays from the image through the ends of the first arm meet.
     let hit = |end: V| {
         let ray = end - image;
         let down = ray.dot(second.outward());

@@ -24,7 +24,7 @@ impl From<Object> for SeenObject {
     }
 }
 
-/// Bodies that may hide something, each with the index of its object.
+/// Bodies that may hide others, each with the index of its object.
 struct Bodies {
     array: Array,
     screens: Vec<(usize, Arc<Object>, Screen)>,
@@ -44,7 +44,7 @@ impl Bodies {
         Bodies { array, screens, strips }
     }
 
-    /// Those that may hide a part of object `index`. With a mirror, all.
+    /// Bodies that may hide a part of object `index`; with a mirror, all other bodies.
     fn hiding(&self, index: usize, object: &Object, all: bool) -> Arc<[Arc<Object>]> {
         let is_other = |(other, ..): &&(usize, Arc<Object>, Screen)| *other != index;
         if all {
@@ -56,7 +56,7 @@ impl Bodies {
         let near = near.into_iter().filter_map(|at| self.screens.get(at));
         let mut found: Vec<_> = near.filter(is_other).filter(may_pass).map(|(_, object, _)| object.clone()).collect();
         if found.is_empty() && object.body().is_none() {
-            // A point that nothing can hide is summed another way, to other last bits: that asks `may_pass` alone.
+            // A point that nothing can hide is summed by another algorithm, to other last bits, so `may_pass` alone decides.
             found.extend(self.screens.iter().find(may_pass).map(|(_, object, _)| object.clone()));
         }
         found.into()
@@ -67,7 +67,7 @@ impl Bodies {
 const MIN_PARALLEL_OBJECTS: usize = 32;
 
 impl SeenObject {
-    /// Every object of a scene, with what may hide it from `radar`.
+    /// Every object of a scene, with the bodies that may hide it from `radar`.
     pub fn all(radar: &Radar, scene: &Scene) -> Vec<SeenObject> {
         let bodies = Bodies::of(radar, scene);
         let is_mirrored = scene.disturbances.mirror.is_some();
@@ -81,12 +81,12 @@ impl SeenObject {
         scene.objects.par_iter().enumerate().with_min_len(MIN_PARALLEL_OBJECTS).map(seen).collect()
     }
 
-    /// It made ready, before `radar`.
+    /// The object's scatterer before `radar`.
     pub fn scatterer(&self, radar: &Radar) -> Scatterer {
         Scatterer::new(radar, &self.object, self.hidden_by.iter().map(Arc::as_ref))
     }
 
-    /// Most echoes that it gives one element.
+    /// Most echoes of the object at one element.
     pub fn echo_count(&self) -> usize {
         self.object.echo_count()
     }
@@ -96,7 +96,7 @@ impl SeenObject {
     }
 }
 
-/// All that echoes: reflectors that nothing hides, and everything else.
+/// All echoing objects of a scene: reflectors that nothing hides, and the other objects.
 #[derive(Debug, Clone, Default)]
 pub struct Echoing {
     /// Reflectors that nothing hides.
@@ -106,7 +106,7 @@ pub struct Echoing {
 }
 
 impl Echoing {
-    /// All that echoes in `scene`, with what a mirror makes of it.
+    /// All echoing objects of `scene`, with their images in a mirror.
     pub fn of(radar: &Radar, scene: &Scene) -> Self {
         if !scene.has_bodies() {
             return Echoing { points: scene.echoing(radar), scatterers: Vec::new() };
@@ -133,7 +133,7 @@ impl Echoing {
         all
     }
 
-    /// Most echoes that they give one element.
+    /// Most echoes of all at one element.
     pub fn len(&self) -> usize {
         Sources::from(self).len()
     }
@@ -156,12 +156,12 @@ pub fn heard_in_the_middle(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho
     all
 }
 
-/// What echoes, as the algorithms for samples take it.
+/// Echoing objects, as the algorithms for samples take them.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a> {
     /// Reflectors that nothing hides.
     pub points: &'a [Reflector],
-    /// Everything else.
+    /// Bodies, and points that are partly hidden.
     pub scatterers: &'a [Scatterer],
 }
 
@@ -190,7 +190,7 @@ impl<'a, const N: usize> From<&'a [Reflector; N]> for Sources<'a> {
 }
 
 impl Sources<'_> {
-    /// Most echoes that they give one element.
+    /// Most echoes of all at one element.
     pub fn len(&self) -> usize {
         self.points.len() + self.scatterers.iter().map(Scatterer::echo_count).sum::<usize>()
     }

@@ -43,7 +43,7 @@ impl Face {
         self.lit_echoes(wave, antennas, [0.0, self.length_metres])
     }
 
-    /// The same where only the stretch `lit_metres` along it is lit.
+    /// The three echoes where only the stretch `lit_metres` along the face is lit.
     pub(super) fn lit_echoes(&self, wave: &Wave, antennas: &AntennaPlaces, lit_metres: [f64; 2]) -> [PathEcho; 3] {
         let [low, high] = lit_metres;
         let seen = Heights::new(self, antennas);
@@ -86,7 +86,7 @@ struct Heights {
     transmitter: f64,
     receiver: f64,
     same_side: bool,
-    /// Whether they stand outside.
+    /// Whether both antennas stand outside.
     outside: bool,
 }
 
@@ -132,7 +132,7 @@ impl Heights {
     fn edge(&self, u: f64, foot_range_metres: f64, wave: &Wave) -> Edge {
         let Heights { along_transmitter: t, along_receiver: q, transmitter: ht, receiver: hr, .. } = *self;
         let (rt, rr) = (hypotenuse(u - t, ht), hypotenuse(u - q, hr));
-        // Of the mean of both angles of incidence.
+        // Sine and cosine for the mean of both angles of incidence.
         let (s, c) = ((u - t) / rt + (u - q) / rr, ht / rt + hr / rr);
         let norm = hypotenuse(s, c).recip();
         let (s, c) = (s * norm, c * norm);

@@ -44,7 +44,7 @@ impl V {
         self.0 * o.0 + self.1 * o.1
     }
 
-    /// What turns from `self` to `o`, counter-clockwise.
+    /// Cross product of `self` and `o`: positive where `o` lies counter-clockwise.
     pub fn cross(self, o: V) -> f64 {
         self.0 * o.1 - self.1 * o.0
     }

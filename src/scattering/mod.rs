@@ -1,6 +1,6 @@
 //! Echoes of bodies: for every pair of antennas a few, each with a range and a complex amplitude.
 //!
-//! | file | what it gives |
+//! | file | echo or effect |
 //! |---|---|
 //! | [`face`] | a straight face: its glint, where the angles in and out agree, and the diffraction of its two ends |
 //! | [`post`] | a circle: the echo of its specular point |
@@ -10,7 +10,7 @@
 //! | [`shadow`] | diffraction past an obstacle between antenna and scatterer |
 //! | `sight` | bodies that may affect an object |
 //! | `strips` | fast search of bodies near the ways to an object |
-//! | [`transition`] | Fresnel's transition from light to shadow, for the two above |
+//! | [`transition`] | Fresnel's transition from light to shadow, for faces and shadows |
 //! | [`parts`] | a polygon as convex parts, for shadows |
 //!
 //! [`Scatterer`] is one object made ready; [`Echoing`] a whole scene. An echo of range `R` and amplitude `A` adds
@@ -95,10 +95,10 @@ impl Wave {
     }
 }
 
-/// What kind of echo it is.
+/// The kind of an echo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EchoKind {
-    /// A point's.
+    /// The echo of a point.
     Point,
     /// The mirror reflection of a face.
     Glint,
@@ -131,13 +131,13 @@ impl EchoKind {
 pub struct PathEcho {
     /// Half the way there and back, metres.
     pub range_metres: f64,
-    /// Its amplitude in the middle of the chirp; 0 where there is no such echo.
+    /// Amplitude in the middle of the chirp; 0 where there is no such echo.
     pub amplitude: Complex64,
-    /// Where it comes from, (x, y) in metres.
+    /// Place of the reflection, (x, y) in metres.
     pub place_metres: [f64; 2],
     /// Cosine of the angle of incidence there.
     pub cos_incidence: f64,
-    /// What kind of echo it is.
+    /// Kind of the echo.
     pub kind: EchoKind,
     /// Whether it is reflected as by a mirror, so that its way goes on straight behind the face.
     pub is_mirrored: bool,

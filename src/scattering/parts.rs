@@ -34,7 +34,7 @@ fn is_inside(outline: &[[f64; 2]], a: usize, b: usize) -> bool {
     let count = outline.len();
     let at = |i: usize| V::from(outline[i % count]);
     let (from, to) = (at(a), at(b));
-    // At `from`, between the two edges that meet there, counted through the inside.
+    // The angle at `from`, between the two edges that meet there, counted through the inside.
     let (after, before) = (at(a + 1) - from, at(a + count - 1) - from);
     let way = to - from;
     let turn = |v: V| {

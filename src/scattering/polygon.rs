@@ -63,7 +63,7 @@ impl Outline {
             }
         }
         for (corner, _) in self.is_inner.iter().enumerate().filter(|(_, inner)| **inner) {
-            // The images of a right inner corner are all of it: its apex has no echo of its own.
+            // The two orders of a right inner corner are its whole echo: its apex has none of its own.
             out[begin + count + corner].amplitude = Complex64::default();
         }
         for corner in &self.inner {

@@ -5,7 +5,7 @@ use super::geometry::{V, root};
 use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
 
-/// Radii over the wavelength, as physical wave number times radius, from which on the next term improves the first.
+/// Least size, as physical wave number times radius, from which the next term improves the first.
 const MIN_REFINED_SIZE: f64 = 5.0;
 
 const STEPS: usize = 3;
@@ -24,7 +24,7 @@ impl Circle {
         Circle { centre: centre_metres.into(), radius_metres, reflectivity }
     }
 
-    /// Its echo; none where an antenna stands inside. `refined` adds the next term of the series.
+    /// The post's echo; none where an antenna stands inside. `refined` adds the next term of the series.
     pub fn echo(&self, wave: &Wave, antennas: &AntennaPlaces, refined: bool) -> PathEcho {
         let Circle { centre, radius_metres: radius, reflectivity } = *self;
         let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(|p| V::from(p) - centre);

@@ -1,4 +1,4 @@
-//! Rough surfaces: the coherent echoes fall as Ament's factor says, and what they lose is scattered by Lambert's law in the plane.
+//! Rough surfaces: the coherent echoes fall by Ament's factor, and the lost power is scattered by Lambert's law in the plane.
 //!
 //! Beckmann and Spizzichino, *The Scattering of Electromagnetic Waves from Rough Surfaces* (1963). The diffuse part is a row of points at
 //! jittered places, each of a phase of its own that is the same for all elements.
@@ -20,7 +20,7 @@ pub fn coherent(wave: &Wave, deviation_metres: f64, cos_incidence: f64) -> f64 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Grain {
     place: V,
-    /// Of length 1.
+    /// Phase factor, of magnitude 1.
     phase: Complex64,
 }
 

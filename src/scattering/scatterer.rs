@@ -66,13 +66,13 @@ impl Scatterer {
         Scatterer { wave, source, deviation_metres, rough, obstacles, mirror: None, is_refined: true }
     }
 
-    /// The same body seen also in a plane mirror. Points have ghosts of their own.
+    /// The scatterer of the same body seen also in a plane mirror. Points have ghosts of their own.
     pub fn in_mirror(self, mirror: Mirror) -> Self {
         let is_body = !matches!(self.source, Source::Points(_));
         Scatterer { mirror: is_body.then_some(mirror), ..self }
     }
 
-    /// The same without the second term of a post's series.
+    /// The scatterer without the second term of a post's series.
     #[cfg(test)]
     pub(super) fn unrefined(self) -> Self {
         Scatterer { is_refined: false, ..self }
@@ -139,7 +139,7 @@ impl Scatterer {
         }
     }
 
-    /// Applies the element pattern; `towards` is where a wave leaves for and comes from.
+    /// Applies the element pattern; `towards` is the place to which a wave leaves and from which it returns.
     fn through_pattern(
         &self,
         antennas: &AntennaPlaces,
@@ -155,7 +155,7 @@ impl Scatterer {
         }
     }
 
-    /// Both ways by the mirror, and one way each: both orders of the latter are one echo of twice the amplitude.
+    /// Ghosts of the body: both ways by the mirror, and one way each. The two orders of the latter are one echo of twice the amplitude.
     fn ghosts(&self, mirror: &Mirror, antennas: &AntennaPlaces, out: &mut Vec<PathEcho>) {
         let count = self.echo_count() / 3;
         let image = |[x, y]: [f64; 2]| mirror.image_metres(x, y);

@@ -36,9 +36,9 @@ enum Convex {
 pub struct Passage {
     /// Factor of the field, but for the phase of the detour.
     pub factor: Complex64,
-    /// How much longer the way over the nearer edge is, metres; 0 where the way is clear.
+    /// Length of the way over the nearer edge above that of the straight way, metres; 0 where the straight way is clear.
     pub detour_metres: f64,
-    /// Where the edge stands: its distance from the antenna over the rest of the way.
+    /// Place of the edge: its distance from the antenna over the rest of the way.
     pub part: f64,
 }
 
@@ -96,18 +96,18 @@ impl Obstacle {
     }
 }
 
-/// One way from an antenna to where an echo comes from.
+/// One way, from an antenna to the place of an echo.
 struct Way {
     antenna: V,
     unit: V,
-    /// Square of how near to the way an edge may be for its ripple to have faded wherever it stands, square metres.
+    /// Square of the distance from the way beyond which an edge's ripple has faded anywhere along it, square metres.
     widest_square: f64,
     ray: Ray,
 }
 
 impl Way {
-    /// The way from `antenna` to `place` at a wave of `radians_per_metre` there and back; `beyond_metres` is how far it goes on behind
-    /// `place`, straight in the mirror of a face.
+    /// The way from `antenna` to `place` at a wave of `radians_per_metre` there and back. `beyond_metres` is its length behind `place`, straight in
+    /// the mirror of a face.
     fn new(radians_per_metre: f64, antenna: V, place: V, beyond_metres: f64) -> Self {
         let way = place - antenna;
         let full = way.norm();
@@ -189,7 +189,7 @@ impl Edges {
         }
         let part = l / (ray.whole - l).max(1e-9);
         if top > 0.0 && low < 0.0 {
-            // What passes both edges, turned back by the phase of the shorter detour.
+            // The fields past both edges, the farther one turned by the phase between the two detours.
             let (shorter, longer) = (top.min(-low), top.max(-low));
             let turn = Complex64::cis((shorter - longer) * (shorter + longer));
             let detour_metres = shorter * shorter / ray.half_kappa;
@@ -226,7 +226,7 @@ pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &AntennaPlac
     echo
 }
 
-/// An echo whose way there passes an obstacle; `back` is the way back where that is another.
+/// The echo, of which the way there passes an obstacle; `back` is the way back where it is another.
 ///
 /// A glint's way passes the obstacle, the mirror and the obstacle's image in it: two edges that act as one where the obstacle touches the
 /// face, and apart where it is far from it.
@@ -236,7 +236,7 @@ fn past(there: Passage, back: Option<Passage>, echo: PathEcho) -> PathEcho {
     let (factor, power) = if echo.is_mirrored {
         let correlation = (there.part * back.part).max(0.0).sqrt().min(1.0);
         let power = -(0.25 + correlation.asin() / TAU).log2();
-        // Each way to its own power: neither turns by half a turn, their product may.
+        // Each way is raised to its own power: neither turns by half a turn, their product may.
         let raised = there.factor.powf(power / 2.0);
         (raised * if is_one { raised } else { back.factor.powf(power / 2.0) }, power)
     } else {

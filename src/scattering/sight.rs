@@ -1,4 +1,4 @@
-//! Which bodies can shadow an object at all: those near enough to the paths between the array and the object to change its echoes.
+//! Choice of the bodies that can shadow an object at all: those near enough to the paths between the array and the object to change its echoes.
 //!
 //! All ways together are the convex hull of the array and of the object. A body has no effect on a way, to the last bit, where the detour over
 //! each of its corners is so long that its ripple has faded ([`FADED`]). A detour of a given length is an ellipse around the ends of the way, so
@@ -10,12 +10,12 @@ use super::shadow::FADED;
 use crate::radar::{BuiltArray, Radar};
 use crate::scene::{Object, Shape};
 
-/// Where the antennas stand.
+/// The rectangle around all antennas.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Array {
     /// Corners of the rectangle around all antennas, metres.
     corners: [V; 4],
-    /// Half a detour over which everything has faded, metres.
+    /// Half a detour over which every effect has faded, metres.
     faded: f64,
 }
 
@@ -23,9 +23,9 @@ pub(super) struct Array {
 #[derive(Debug, Clone)]
 pub(super) struct Screen {
     corners: Vec<V>,
-    /// How far it reaches beyond its corners, metres.
+    /// Radius of a post around its corner, metres; 0 for other bodies.
     radius: f64,
-    /// Greatest distance of any of it from an antenna, metres.
+    /// Greatest distance of any of its points from an antenna, metres.
     farthest: f64,
 }
 
@@ -33,9 +33,9 @@ pub(super) struct Screen {
 #[derive(Debug, Clone)]
 pub(super) struct Ways {
     hull: Vec<V>,
-    /// How far the object reaches beyond its corner, metres; 0 for all but posts.
+    /// Radius of a post around its corner, metres; 0 for other objects.
     radius: f64,
-    /// The longest way, and on in the mirror of a face, metres.
+    /// Length of the longest way, with its way on in the mirror of a face, metres.
     longest: f64,
     faded: f64,
 }
@@ -59,7 +59,7 @@ impl Array {
         self.corners.into_iter().flat_map(far).fold(0.0, f64::max)
     }
 
-    /// A body, as what may hide something.
+    /// A body as an obstacle.
     pub fn screen(&self, shape: &Shape) -> Screen {
         let (corners, radius) = corners_of(shape);
         let corners = hull(corners);
@@ -102,12 +102,12 @@ impl Screen {
 }
 
 impl Ways {
-    /// The convex hull of all ways, counter-clockwise, but for what a post's radius adds.
+    /// The convex hull of all ways, counter-clockwise, without a post's radius.
     pub fn hull(&self) -> &[V] {
         &self.hull
     }
 
-    /// From this distance on, metres, nothing beside the hull has an effect on a way.
+    /// Distance from the hull, metres, beyond which no body has an effect on a way.
     pub fn widest(&self) -> f64 {
         self.margin(f64::INFINITY) + self.radius
     }
@@ -120,7 +120,7 @@ impl Ways {
         !(apart(&self.hull) || apart(&screen.corners))
     }
 
-    /// How far beside a way nothing has an effect any more that stands at most so far along it, metres.
+    /// Distance from a way beyond which bodies at most `along` metres along it have no effect, metres.
     fn margin(&self, along: f64) -> f64 {
         // The ellipse of all places over which a detour is twice `faded`, widest in the middle of the way.
         let (half, faded) = (self.longest / 2.0, self.faded);

@@ -1,8 +1,8 @@
-//! Bodies sorted by where they stand, so that those near a polygon are found without asking all of them.
+//! Bodies sorted by place, so that those near a polygon are found without testing all of them.
 
 use super::geometry::V;
 
-/// Beyond what rounding adds to any distance in a scene, metres.
+/// A margin above the rounding of any distance in a scene, metres.
 const SURELY_METRES: f64 = 1e-6;
 
 /// Discs in strips along x, one above the other; in each they are sorted by x.
@@ -17,7 +17,7 @@ struct Strip {
     span: [f64; 2],
     /// Radius of the largest disc, metres.
     largest: f64,
-    /// x of every centre in metres, and which disc it is.
+    /// x of every centre in metres, and the disc's number.
     discs: Vec<(f64, usize)>,
 }
 

@@ -5,7 +5,7 @@
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// From here on the series for large arguments is used.
+/// Least argument for which the series for large arguments is used.
 const SERIES_ARGUMENT: f64 = 6.0;
 
 /// `e^{j pi/4}`.

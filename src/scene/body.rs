@@ -39,7 +39,7 @@ macro_rules! body {
                 /// Standard deviation of the surface's height, millimetres: 0 is smooth.
                 #[serde(default, skip_serializing_if = "is_zero")]
                 pub roughness_millimetres: f64,
-                /// Which of all surfaces of this roughness.
+                /// Seed of the surface's random heights.
                 #[serde(default, skip_serializing_if = "is_first")]
                 pub seed: u64,
             }
@@ -54,7 +54,7 @@ body! {
         pub x_metres: f64,
         /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
-        /// From end to end, metres.
+        /// Length from end to end, metres.
         pub length_metres: f64,
         /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
         #[serde(default, skip_serializing_if = "is_zero")]
@@ -99,19 +99,19 @@ body! {
     }
 }
 
-/// What is read where no reflectivity is written.
+/// Reflectivity of a body whose file gives none.
 pub(super) fn one() -> f64 {
     1.0
 }
 
-/// What a body is made of.
+/// The surface of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface {
     /// Reflection coefficient of the surface, of the amplitude: 1 for metal.
     pub reflectivity: f64,
     /// Standard deviation of the surface's height, millimetres: 0 is smooth.
     pub roughness_millimetres: f64,
-    /// Which of all surfaces of this roughness.
+    /// Seed of the random heights.
     pub seed: u64,
 }
 
@@ -241,7 +241,7 @@ pub enum Body<'a> {
 }
 
 impl Body<'_> {
-    /// What it is made of.
+    /// The body's surface.
     pub fn surface(&self) -> Surface {
         let (reflectivity, roughness_millimetres, seed) = match self {
             Body::Wall(w) => (w.reflectivity, w.roughness_millimetres, w.seed),
@@ -262,7 +262,7 @@ impl Body<'_> {
         }
     }
 
-    /// Points that its roughness scatters from; 0 for a smooth one and for posts.
+    /// Points that the body's roughness scatters from; 0 for a smooth body and for posts.
     pub fn diffuse_count(&self) -> usize {
         if self.surface().roughness_millimetres == 0.0 {
             return 0;
@@ -285,7 +285,7 @@ impl Body<'_> {
             }
     }
 
-    /// Where it echoes from, as an antenna at `from_metres` sees it alone: the feet of perpendiculars on its faces, the ends of faces that
+    /// Places that echo to an antenna at `from_metres`, with no other body in between: feet of perpendiculars on the faces, ends of the faces that
     /// are seen, a post's nearest point. (x, y) in metres.
     pub fn echo_places_metres(&self, from_metres: [f64; 2]) -> Vec<[f64; 2]> {
         let shape = self.shape();

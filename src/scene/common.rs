@@ -1,13 +1,13 @@
-//! What all kinds of objects have: fields of files, and a match over the kinds.
+//! Parts common to all kinds of objects: fields of files, and a match over the kinds.
 
-/// An object: what is its own, then what every object has.
+/// An object: its own fields, then the fields of every object.
 macro_rules! moving {
     ($(#[$about:meta])* pub struct $name:ident { $($fields:tt)* }) => {
         $(#[$about])*
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct $name {
-            /// What the object is called, where it has a name; at most [`MAX_NAME_CHARACTERS`](super::MAX_NAME_CHARACTERS).
+            /// Name of the object, empty for none; at most [`MAX_NAME_CHARACTERS`](super::MAX_NAME_CHARACTERS).
             #[serde(default, skip_serializing_if = "String::is_empty")]
             pub name: String,
             $($fields)*
@@ -22,7 +22,7 @@ macro_rules! moving {
 }
 pub(super) use moving;
 
-/// The same of an object of any kind.
+/// One expression for an object of any kind.
 macro_rules! of_each {
     ($object:expr, $one:ident => $what:expr) => {
         match $object {

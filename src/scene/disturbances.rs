@@ -5,7 +5,7 @@ use crate::radar::{BuiltArray, ElementError, Radar};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// Everything that disturbs a scene; nothing by default.
+/// All disturbances of a scene; none by default.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Disturbances {
@@ -31,9 +31,9 @@ pub struct Interferer {
     pub x_metres: f64,
     /// Position ahead of the array, metres.
     pub y_metres: f64,
-    /// Its amplitude at the array: the radar's power times this over the distance in metres.
+    /// Strength of its amplitude: at the array it is the radar's power times this over the distance in metres.
     pub strength: f64,
-    /// When its frequency crosses ours, as a part of our chirp: 0 at the first sample, 1 after the last.
+    /// Time at which its frequency crosses ours, as a part of our chirp: 0 at the first sample, 1 after the last.
     pub crossing: f64,
     /// Duration, as a fraction of our chirp.
     pub duration: f64,
@@ -55,7 +55,7 @@ impl Interferer {
     }
 }
 
-/// A straight wall that mirrors what stands on the radar's side of it.
+/// A straight wall that mirrors objects on the radar's side of it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Mirror {
@@ -87,7 +87,7 @@ impl Mirror {
         self.distance_metres(0.0, 0.0) * self.distance_metres(x_metres, y_metres) > 0.0
     }
 
-    /// Where the mirror image of a place stands, (x, y) in metres.
+    /// Mirror image of a place, (x, y) in metres.
     pub fn image_metres(&self, x_metres: f64, y_metres: f64) -> [f64; 2] {
         let (sin, cos) = self.direction_degrees.to_radians().sin_cos();
         let twice = 2.0 * self.distance_metres(x_metres, y_metres);
@@ -109,7 +109,7 @@ impl Mirror {
         let mean = (there.range_metres + image.range_metres) / 2.0;
         // An echo over one way each falls with the product of both ranges.
         let one_way = of.reflectivity * self.reflection * mean * mean / (there.range_metres * image.range_metres);
-        // Elements of a pattern send one way and hear the other; a point in one of the two directions would go through it twice.
+        // Elements of a pattern send one way and hear the other; a point in one of the two directions would have the pattern twice.
         let left = |y: f64, range: f64| radar.pattern().map_or(1.0, |pattern| pattern.amplitude(y / range));
         let both = left(of.y_metres, there.range_metres) * left(y, image.range_metres);
         let towards = |x: f64, y: f64, range: f64| Reflector {
@@ -126,7 +126,7 @@ impl Mirror {
 }
 
 impl Disturbances {
-    /// Whether there is nothing of the kind.
+    /// Whether there are no disturbances.
     pub fn is_none(&self) -> bool {
         self.elements.is_ideal() && self.interferer.is_none() && self.mirror.is_none()
     }
@@ -150,7 +150,7 @@ impl Disturbances {
 
     /// Checks that every number is usable and that the elements are those of `radar`.
     /// # Errors
-    /// [`SceneError`] names what is wrong.
+    /// [`SceneError`] names the fault.
     pub fn validate(&self, radar: &Radar) -> Result<(), SceneError> {
         self.elements.validate(radar)?;
         let check = |what, field, value: f64, low: f64, high: f64| {

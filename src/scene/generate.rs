@@ -40,7 +40,7 @@ pub enum Reading {
     Text,
 }
 
-/// What scenes are for. Scenes of different purposes come from disjoint random streams.
+/// The purpose of a scene. Scenes of different purposes come from disjoint random streams.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Purpose {
@@ -101,7 +101,7 @@ impl Generator {
     /// Seed of the noise beneath a scene, below 2^53.
     fn noise_seed(&self, kind: Kind, number: u32) -> u64 {
         let mut rng = self.rng(kind, number);
-        // Far beyond the scene's own draws from the stream.
+        // This position lies far beyond the scene's own draws from the stream.
         rng.set_word_pos(1 << 40);
         rng.random::<u64>() >> 11
     }
@@ -154,7 +154,7 @@ impl Generator {
         Object::Point(Point::new(range * angle.cos(), range * angle.sin()))
     }
 
-    /// Where a line is asked to start: (x, y) before clipping.
+    /// Start of a line: (x, y) in metres before clipping.
     fn line_start(&self, rng: &mut ChaCha8Rng) -> (f64, f64) {
         let y_part = match self.reading {
             Reading::Program => 1.0,

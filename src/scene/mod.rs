@@ -38,10 +38,10 @@ pub struct Reflector {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// What the scene is called, if it has a name.
+    /// The scene's name; empty for none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// What the scene is meant to show.
+    /// Notes on the purpose of the scene.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub notes: String,
     /// Picks the noise of the floor beneath the scene, where there is noise. TOML holds it up to 2^63.
@@ -85,7 +85,7 @@ pub const MIN_ELEMENT_DISTANCE_METRES: f64 = 1e-6;
 /// Most reflectors, and most objects, that a scene may hold.
 pub const MAX_REFLECTORS: usize = 200_000;
 
-/// Why a scene can't be simulated. Messages count objects from 1, as the app does.
+/// A reason for which a scene can't be simulated. Messages count objects from 1, as the app does.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum SceneError {
@@ -123,7 +123,7 @@ impl Scene {
         self.objects.iter().flat_map(Object::reflectors).collect()
     }
 
-    /// Whether nothing in it reflects, so that its samples are noise alone, or zero.
+    /// Whether no object reflects, so that the samples are noise alone, or zero.
     pub fn is_silent(&self) -> bool {
         self.objects.iter().all(|object| object.reflectivity() == 0.0 || object.echo_count() == 0)
     }
@@ -143,7 +143,7 @@ impl Scene {
         self.objects.iter().fold(0, |n, o| n.saturating_add(o.reflector_count()))
     }
 
-    /// Most echoes that it gives one element, without making them.
+    /// Most echoes of the scene at one element, without making them.
     pub fn echo_count(&self) -> usize {
         self.objects.iter().fold(0, |n, o| n.saturating_add(o.echo_count()))
     }

@@ -112,7 +112,7 @@ impl Line {
         }
     }
 
-    /// From one reflector to the next, (x, y) in metres. Exactly (0, spacing) straight ahead.
+    /// Step from one reflector to the next, (x, y) in metres. Exactly (0, spacing) straight ahead.
     pub fn step_metres(&self) -> [f64; 2] {
         // Counted from straight ahead, where sine and cosine are exact.
         let (sin, cos) = (self.direction_degrees - straight_ahead()).to_radians().sin_cos();
@@ -195,13 +195,13 @@ impl Object {
         of_each!(self, one => &one.name)
     }
 
-    /// Names it, or takes its name where the text is empty; of a longer text the first [`MAX_NAME_CHARACTERS`].
+    /// Sets the object's name, or takes it away where the text is empty; of a longer text the first [`MAX_NAME_CHARACTERS`] are kept.
     pub fn set_name(&mut self, name: &str) {
         let name: String = name.chars().filter(|c| !c.is_control()).take(MAX_NAME_CHARACTERS).collect();
         of_each!(self, one => one.name = name);
     }
 
-    /// The body that it is; `None` for what is made of points.
+    /// The object as a body; `None` for objects made of points.
     pub fn body(&self) -> Option<Body<'_>> {
         match self {
             Object::Point(_) | Object::Line(_) | Object::Gaussian(_) => None,
@@ -272,7 +272,7 @@ impl Object {
         of_each!(self, one => one.reflectivity = reflectivity);
     }
 
-    /// The numbers of its surface that can be changed; `None` for what is made of points: roughness in millimetres, and seed.
+    /// Roughness of the surface in millimetres, and its seed, to be changed; `None` for objects made of points.
     pub fn roughness_mut(&mut self) -> Option<(&mut f64, &mut u64)> {
         match self {
             Object::Point(_) | Object::Line(_) | Object::Gaussian(_) => None,

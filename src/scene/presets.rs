@@ -78,7 +78,7 @@ impl Preset {
     }
 }
 
-/// What the program shows when it is given no scene.
+/// The scene that the program shows without a file.
 pub fn default_scene() -> SceneFile {
     ALL[0].load().unwrap_or_default()
 }

@@ -9,7 +9,7 @@ impl Object {
         matches!(self, Object::Wall(_) | Object::Box(_) | Object::Polygon(_))
     }
 
-    /// Turns a body about its middle, counter-clockwise; what is round or made of points stays as it is.
+    /// Turns a body about its middle, counter-clockwise; round bodies and objects made of points stay as they are.
     pub fn turn(&mut self, degrees: f64) {
         match self {
             Object::Wall(w) => w.angle_degrees += degrees,

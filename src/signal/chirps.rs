@@ -1,10 +1,9 @@
 //! Samples of several chirps while objects move.
 //!
-//! Within a chirp the range of every echo runs in a straight line that leads from where it is at the beginning of the chirp to where it is
-//! at the beginning of the next: `R + D n / N` at sample `n` of `N`, put into equation 3.3 as it stands. What this leaves out is the
-//! curvature of the range, at most `v^2 Tc^2 / (8 R)` metres for a speed `v` at range `R` and an interval `Tc`: 3e-9 m for 20 m/s at 10 m
-//! and 25.6 microseconds. Amplitudes are those of the beginning of the chirp. Echoes of a body that appear or vanish between two chirps stand still in
-//! between.
+//! Within a chirp the range of every echo runs in a straight line, from its value at the beginning of the chirp to that at the beginning of the next:
+//! `R + D n / N` at sample `n` of `N`, put into equation 3.3 as it stands. The curvature of the range is left out: it is at most `v^2 Tc^2 / (8 R)`
+//! metres for a speed `v` at range `R` and an interval `Tc`, 3e-9 m for 20 m/s at 10 m and 25.6 microseconds. Amplitudes are those of the beginning
+//! of the chirp. Echoes of a body that appear or vanish between two chirps stand still in between.
 //!
 //! Objects at rest are evaluated once, by the algorithms of a single chirp. Without moving objects the first chirp has the bits of
 //! [`simulate_ends`](super::simulate_ends). Each chirp has its own noise. An interferer is the same in every chirp.
@@ -117,7 +116,7 @@ pub fn simulate_chirps_for(
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Moving {
     Nothing,
-    /// Those that move; they change nothing of what rests.
+    /// The objects that move; they don't change the echoes of those at rest.
     Some,
     Everything,
 }
@@ -198,7 +197,7 @@ impl Motion<'_> {
         }
         let seconds = |chirp: usize| chirp as f64 * self.radar.chirp_interval_seconds;
         let [now, next] = [chirp, chirp + 1].map(|c| self.moving.at(self.radar, self.scene, seconds(c)));
-        // Where a point comes into the shadow of a body the order of the echoes changes.
+        // The order of the echoes changes where a point comes into the shadow of a body.
         let is_alike = now.points.len() == next.points.len();
         let fastest = self.scene.objects.iter().map(Object::velocity_metres_per_second);
         let fastest = fastest.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(y)));
@@ -238,7 +237,7 @@ impl Motion<'_> {
         let beat = self.radar.beat_turns_per_metre(1.0) * per_sample;
         let step = echo.turns_at(1) - echo.turns_at(0) + carrier;
         let lanes = LANES as f64;
-        // How much more the phase turns from one sample, lane or vector to the next.
+        // Growth of the phase's step from one sample, lane or vector to the next.
         let [bend, leap_over_lane, leap_over_vector] =
             [1.0, lanes, lanes * lanes].map(|times| Complex64::cis(TAU * 2.0 * beat * times));
         for (block, samples) in samples.chunks_mut(RESTART_SAMPLES).enumerate() {

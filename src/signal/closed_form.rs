@@ -27,8 +27,8 @@ const MIN_SAMPLES: usize = 8;
 /// Bins around the peak where the kernels' centres lie.
 const PEAK_BINS: f64 = 1.5;
 
-/// Bins on either side of a reflector's range in which its profile exceeds a quarter of `tolerance` times its peak: what is left out adds
-/// up over reflectors, and all in step.
+/// Bins on either side of a reflector's range in which its profile exceeds a quarter of `tolerance` times its peak: cells that are left out add up
+/// over reflectors, and all in step.
 pub fn reach(tolerance: f64) -> usize {
     (PI / 4.0 * tolerance.max(1e-18)).cbrt().recip().ceil() as usize + 1
 }
@@ -46,12 +46,12 @@ pub struct ClosedForm<T> {
     reach: usize,
     /// `exp(2 pi j n / samples)`.
     turns: Vec<Complex<T>>,
-    /// `pi / (samples - 1)`: from the middle kernel to its neighbours.
+    /// `pi / (samples - 1)`: distance from the middle kernel to its neighbours.
     edge: f64,
 }
 
 impl<T: Real> ClosedForm<T> {
-    /// Prepares for `radar`; what is left out stays below `tolerance` times a reflector's peak. `None` where it does not apply ([`applies`]).
+    /// Prepares for `radar`; cells that are left out stay below `tolerance` times a reflector's peak. `None` where it does not apply ([`applies`]).
     pub fn new(radar: &Radar, tolerance: f64) -> Option<Self> {
         let samples = radar.samples;
         let turn = |n: usize| {

@@ -1,6 +1,6 @@
 //! Equation 3.3 word for word in f64: the phase in radians, unreduced, as the thesis' program evaluates it.
 //!
-//! Phases reach 6e4 rad, so every sample has a rounding error of about 1e-11 of its amplitude: the floor of a map normalised by its minimum,
+//! Phases reach 6e4 rad, so every sample has a rounding error of about 1e-11 of its amplitude. This is the floor of a map normalised by its minimum,
 //! and so of the thesis' tables.
 
 use super::path::thesis_path;

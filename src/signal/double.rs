@@ -22,7 +22,7 @@ impl Double<f64> {
 }
 
 impl<const W: usize> Double<Lanes<f64, W>> {
-    /// The mean of two, exactly `a` where both are `a`.
+    /// The mean of two numbers, exactly `a` where both are `a`.
     #[inline(always)]
     pub fn mean(a: Self, b: Self) -> Self {
         let total = sum(a.hi, b.hi);

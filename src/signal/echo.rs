@@ -34,7 +34,7 @@ struct Series {
 /// Echo of one reflector at several elements, with the norm of its samples, which are computed on request.
 #[derive(Debug, Clone)]
 pub struct ArrayEcho {
-    /// Whose echo it is; its reflectivity is 1.
+    /// The reflector; its reflectivity is 1.
     pub reflector: Reflector,
     series: Vec<Series>,
     samples: usize,
@@ -49,7 +49,7 @@ impl ArrayEcho {
         ArrayEcho::heard_by(radar, &pairs, range_metres, cos_theta)
     }
 
-    /// The same as `pairs` hear it.
+    /// The echo of a unit reflector at (`range_metres`, `cos_theta`), as `pairs` hear it.
     pub fn heard_by(radar: &Radar, pairs: &[Pair], range_metres: f64, cos_theta: f64) -> Self {
         let cos = cos_theta.clamp(-1.0, 1.0);
         let reflector = Reflector {
@@ -73,7 +73,7 @@ impl ArrayEcho {
         ArrayEcho { reflector, series, samples: radar.samples, norm: (power * radar.samples as f64).sqrt() }
     }
 
-    /// The echo where only those elements hear it that `hears` says; one entry an element.
+    /// The echo at those elements alone for which `hears` is true; `hears` has one entry an element.
     pub fn where_heard(mut self, hears: &[bool]) -> Self {
         for (series, _) in self.series.iter_mut().zip(hears).filter(|(_, hears)| !**hears) {
             series.start = Complex64::default();

@@ -27,7 +27,7 @@ pub enum Floor {
     /// The rounding noise that the thesis' f64 evaluation leaves: the floor of its tables.
     #[default]
     Thesis,
-    /// None: the formula as exactly as f64 holds it.
+    /// No noise: the formula as exactly as f64 holds it.
     Exact,
     /// Thermal noise at this signal-to-noise ratio, measured per sample over the whole array.
     Snr(Decibels),
@@ -45,7 +45,7 @@ pub const SNR_DECIBELS: std::ops::RangeInclusive<f64> = -100.0..=300.0;
 pub const LEVEL_DECIBEL_MILLIWATTS: std::ops::RangeInclusive<f64> = -300.0..=200.0;
 
 impl Floor {
-    /// Variance of its noise where that has a level independent of the scene.
+    /// Variance of the floor's noise where its level does not depend on the scene.
     pub fn level_variance(self, radar: &Radar) -> Option<f64> {
         match self {
             Floor::Level(level) if radar.budget.is_none() => Some(level.watts()),
@@ -55,7 +55,7 @@ impl Floor {
         }
     }
 
-    /// Whether its noise has a level independent of the scene.
+    /// Whether the level of the floor's noise does not depend on the scene.
     pub fn has_level(self) -> bool {
         matches!(self, Floor::Level(_) | Floor::Thermal)
     }
@@ -308,7 +308,7 @@ mod tests {
         let reflectors = [Reflector { x_metres: 0.0, y_metres: 12.0, reflectivity: 2.0 }];
         let echo = super::super::exact::beat_signal(&radar, &reflectors).samples[[32, 0]].norm_sqr();
         assert!((echo / power / (received / noise) - 1.0).abs() < 0.02, "{} {}", echo / power, received / noise);
-        // The same as a level in the receiver; and that of the usual budget where there is none.
+        // The same noise as a level in the receiver; and the usual budget's where there is none.
         let level = Floor::Level(DecibelMilliwatts::of_watts(noise)).level_variance(&radar).unwrap();
         assert!((level / Floor::Thermal.level_variance(&radar).unwrap() - 1.0).abs() < 1e-9);
         let [none, usual] = [None, Some(LinkBudget::default())].map(|budget| Radar { budget, ..Radar::default() });

@@ -88,7 +88,7 @@ pub struct Gridding<T: Real> {
     fft: LaneFft<T>,
 }
 
-/// Room for [`block_signal`] to work in.
+/// Working memory of [`block_signal`].
 #[derive(Debug, Clone)]
 pub struct GriddedScratch<T, const W: usize> {
     grid: Vec<ComplexLanes<T, W>>,
@@ -96,7 +96,7 @@ pub struct GriddedScratch<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> GriddedScratch<T, W> {
-    /// For chirps of `samples` samples.
+    /// Working memory for chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
         GriddedScratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples] }

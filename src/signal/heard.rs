@@ -1,4 +1,4 @@
-//! Echoes at a block of elements: points, whose paths are computed on the way, and paths computed before.
+//! Echoes at a block of elements: points, whose paths are computed where they are needed, and paths computed before.
 
 use super::path::{PairBlocks, Path};
 use super::phase::{EchoLanes, EchoModel};

@@ -31,7 +31,7 @@ pub(super) fn simulate_echoes(
     signal
 }
 
-/// Samples are for any use and kept in f64: no error may show however they are normalised, over a loud floor none above 1e-12.
+/// Samples are for any use and kept in f64. Their errors must not show under any normalisation; over a loud floor none may exceed 1e-12.
 pub(super) fn tolerance(floor: Floor) -> f64 {
     match floor {
         Floor::Exact => BEST_TOLERANCE,

@@ -26,7 +26,7 @@ pub struct PairBlocks<const W: usize> {
 }
 
 impl<const W: usize> PairBlocks<W> {
-    /// The pairs that `pair` tells for lanes 0, 1 and so on.
+    /// The pairs that `pair` returns for lanes 0, 1 and so on.
     pub fn new(pair: impl Fn(usize) -> Pair) -> Self {
         let pairs: [Pair; W] = std::array::from_fn(pair);
         PairBlocks {
@@ -235,7 +235,7 @@ mod tests {
         Reflector { x_metres, y_metres, reflectivity: 0.7 }
     }
 
-    /// Elements that leave half of the power 30 degrees off broadside.
+    /// A radar of elements that leave half of the power 30 degrees off broadside.
     fn narrow() -> Radar {
         let budget = LinkBudget { half_power_width_degrees: Some(60.0), ..LinkBudget::default() };
         Radar { budget: Some(budget), ..Radar::default() }

@@ -40,7 +40,7 @@ fn most_in_f32(algorithm: Algorithm) -> usize {
     match algorithm {
         // One long sum.
         Algorithm::ClosedForm => 60,
-        // What the sum rounds off is kept.
+        // The rounding errors of the sum are kept.
         Algorithm::Gridded => usize::MAX,
         // Sums of eight.
         Algorithm::Direct | Algorithm::Exact | Algorithm::Split => 1024,
@@ -61,7 +61,7 @@ impl Plan {
         }
     }
 
-    /// This plan for range profiles of `count` reflectors without a floor: the closed form where few cells exceed the tolerance.
+    /// The plan for range profiles of `count` reflectors without a floor: the closed form where few cells exceed the tolerance.
     pub fn on_few_rows(self, radar: &Radar, count: usize) -> Plan {
         let cells = count.saturating_mul(2 * closed_form::reach(self.tolerance));
         let holds = self.precision == Precision::F64 || count <= most_in_f32(Algorithm::ClosedForm);
@@ -72,13 +72,13 @@ impl Plan {
         }
     }
 
-    /// This plan with another algorithm.
+    /// The plan with another algorithm.
     pub fn with_algorithm(self, algorithm: Algorithm) -> Plan {
         Plan { algorithm, ..self }
     }
 }
 
-/// What is to be added up.
+/// The size of a sum over reflectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sum {
     /// The algorithm.
@@ -89,7 +89,8 @@ pub struct Sum {
     pub amplitude: f64,
 }
 
-/// Why f32 must not be used for `sum`, if so: it can't hold the squares of very large or very small amplitudes, nor very long sums.
+/// The reason for which f32 must not be used for `sum`, if there is one: it can't hold the squares of very large or very small amplitudes, nor very
+/// long sums.
 pub fn refusal(sum: &Sum) -> Option<&'static str> {
     if !holds(sum.amplitude) {
         Some("f64 although f32 was asked for: f32 can't hold such amplitudes")

@@ -9,27 +9,27 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// None of `bins` bins.
+    /// An empty set of `bins` bins.
     pub fn none(bins: usize) -> Self {
         Rows { bins: vec![false; bins] }
     }
 
-    /// All of `bins` bins.
+    /// The set of all `bins` bins.
     pub fn all(bins: usize) -> Self {
         Rows { bins: vec![true; bins] }
     }
 
-    /// Whether it has `bin`.
+    /// Whether the set has `bin`.
     pub fn contains(&self, bin: usize) -> bool {
         self.bins.get(bin).copied().unwrap_or(false)
     }
 
-    /// How many it has.
+    /// Number of its bins.
     pub fn count(&self) -> usize {
         self.bins.iter().filter(|b| **b).count()
     }
 
-    /// Whether it has none.
+    /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
         !self.bins.contains(&true)
     }
@@ -48,7 +48,7 @@ impl Rows {
         self.bins[..end.saturating_sub(len)].fill(true);
     }
 
-    /// Adds all that `other` has.
+    /// Adds the bins of `other`.
     pub fn extend(&mut self, other: &Rows) {
         self.bins.iter_mut().zip(&other.bins).for_each(|(a, b)| *a |= *b);
     }

@@ -36,7 +36,7 @@ pub(super) fn samples_of(
     task: &Task,
 ) -> Array2<Complex64> {
     let lanes = if plan.precision == Precision::F32 { LANES_F32 } else { LANES_F64 };
-    // Whole blocks: what an element's neighbours in a vector are may turn its last bits.
+    // Whole blocks are computed: an element's neighbours in a vector may change its last bits.
     let begin = elements.start / lanes * lanes;
     let blocks = begin..elements.end.next_multiple_of(lanes).min(radar.elements);
     let mut samples = match plan.precision {
@@ -128,7 +128,7 @@ mod tests {
         }
     }
 
-    /// Sums of any length keep f32's promise, also where all roundings agree because all reflectors coincide.
+    /// Sums of any length stay within f32's tolerance, also where all roundings agree because all reflectors coincide.
     #[test]
     fn thousands_of_reflectors_keep_the_promise_in_single_precision() {
         let radar = Radar { elements: 32, end_elements: 4, ..Radar::default() };

@@ -12,7 +12,7 @@ pub struct BeatSignal {
 }
 
 impl BeatSignal {
-    /// Silence: what an empty scene returns.
+    /// Silence: the signal of an empty scene.
     pub fn silence(radar: &Radar) -> Self {
         BeatSignal { samples: Array2::zeros((radar.elements, radar.samples)) }
     }
@@ -48,7 +48,7 @@ pub struct LayoutSamples {
     pub samples: Array2<Complex64>,
 }
 
-/// Beat signal of the two ends alone: all that a reconstruction may look at.
+/// Beat signal of the two ends alone: the samples that a reconstruction may use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TwoEnds {
     /// First end, `[end_elements, samples]`.

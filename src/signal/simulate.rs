@@ -1,4 +1,4 @@
-//! From a scene to samples over a floor.
+//! Samples of a scene over a floor.
 
 use super::built::simulate_built_for;
 use super::floor::{self, Floor};

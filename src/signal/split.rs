@@ -28,11 +28,11 @@ pub const fn rows_of(samples: usize) -> usize {
 pub struct Factors<T, const W: usize> {
     /// Amplitude and phase of every 32nd sample; somewhat more of them than the chirp needs.
     pub rows: Vec<ComplexLanes<T, W>>,
-    /// Phase from there to each of the next 32.
+    /// Phase from such a sample to each of the next 32.
     pub columns: [ComplexLanes<T, W>; STRIDE],
 }
 
-/// Phasors of one reflector, with rows of one's own where its gain is in them.
+/// Phasors of one reflector, with rows of their own where the reflector's gain is in them.
 #[derive(Debug, Clone, Copy)]
 pub struct Product<'a, T, const W: usize> {
     /// As [`Factors::rows`].
@@ -48,14 +48,14 @@ impl<T: Real, const W: usize> Factors<T, W> {
         Product { rows: &self.rows, columns: &self.columns }
     }
 
-    /// Room for the phasors of chirps of `samples` samples.
+    /// Memory for the phasors of chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
         Factors { rows: vec![zero; rows_of(samples)], columns: [zero; STRIDE] }
     }
 }
 
-/// Room for [`block_signal`] to work in.
+/// Working memory of [`block_signal`].
 #[derive(Debug, Clone)]
 pub struct SplitScratch<T, const W: usize> {
     factors: Vec<Factors<T, W>>,
@@ -63,7 +63,7 @@ pub struct SplitScratch<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> SplitScratch<T, W> {
-    /// For chirps of `samples` samples.
+    /// Working memory for chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let factors = vec![Factors::new(samples); CHUNK];
         let padded = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];

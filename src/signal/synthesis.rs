@@ -40,13 +40,13 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
         let bins = radar.samples;
         BlockProfiles {
             bins,
-            // In parallel: most of the time goes to pages that are touched for the first time.
+            // Allocated in parallel: most of the time goes to pages that are touched for the first time.
             cells: rayon::iter::repeat_n(ComplexLanes::zero(), bins * radar.elements.div_ceil(W)).collect(),
             touched: Rows::none(bins),
         }
     }
 
-    /// Makes it silent again.
+    /// Makes the profiles silent again.
     pub fn clear(&mut self) {
         let bins = self.bins;
         let runs = std::mem::replace(&mut self.touched, Rows::none(bins)).runs();
@@ -207,7 +207,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         }
     }
 
-    /// The same at the true element positions of `array`.
+    /// The synthesis at the true element positions of `array`.
     pub fn at(self, array: &BuiltArray) -> Self {
         Synthesis { array: array.clone(), ..self }
     }
@@ -216,7 +216,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         move |lane| self.array.pair(&self.radar, first_element + lane)
     }
 
-    /// What was prepared.
+    /// The plan of the synthesis.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
@@ -235,8 +235,8 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         }
     }
 
-    /// Samples of a run of neighbouring elements, `[elements, samples]`. Blocks that are left when `task` is cancelled are left out:
-    /// who cancels it must not use the samples.
+    /// Samples of a run of neighbouring elements, `[elements, samples]`. Blocks that are left when `task` is cancelled are left out: the samples must
+    /// not be used then.
     pub fn samples<'a>(
         &self,
         sources: impl Into<Sources<'a>>,
@@ -259,8 +259,8 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         out
     }
 
-    /// Windowed range profiles of every element; replaces what `out` held. Blocks that are left when `task` is cancelled are left out: who
-    /// cancels it must not use the profiles.
+    /// Windowed range profiles of every element, written over `out`. Blocks that are left when `task` is cancelled are left out: the profiles must
+    /// not be used then.
     pub fn range_profiles<'a>(&self, sources: impl Into<Sources<'a>>, out: &mut BlockProfiles<T, W>, task: &Task) {
         self.range_profiles_beside(sources, 0.0, out, task);
     }

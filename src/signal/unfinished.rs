@@ -1,9 +1,9 @@
-//! Why a simulation gave nothing.
+//! Errors of a simulation: a fault of the scene, or a cancellation.
 
 use crate::scene::SceneError;
 use crate::task::Cancelled;
 
-/// Why there are no samples.
+/// A reason for which there are no samples.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // Names and messages say it.
 pub enum Unfinished {
@@ -14,7 +14,7 @@ pub enum Unfinished {
 }
 
 impl Unfinished {
-    /// What is wrong with the scene, for work on a task without another owner.
+    /// The fault of the scene, for work on a task without another owner.
     pub(crate) fn of_scene(self) -> SceneError {
         match self {
             Unfinished::Scene(error) => error,

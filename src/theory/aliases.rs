@@ -59,7 +59,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(12))]
 
-        /// What is said to share a cell does, within half a cell of one end's map, where ranges don't migrate.
+        /// Reflectors that are said to share a cell do, within half a cell of one end's map, where ranges don't migrate.
         #[test]
         fn partners_share_the_cell((radar, reflector) in any_place_of_any_radar()) {
             let end = Aperture::End(End::First);

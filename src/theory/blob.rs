@@ -136,7 +136,7 @@ fn bins_heard(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> (f64,
     elements.map(bin).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
 }
 
-/// Where `f` is largest between `low` and `high`, by golden sections.
+/// Place of the maximum of `f` between `low` and `high`, by golden sections.
 fn maximum(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..14 {
         let (a, b) = (low + GOLDEN_SECTION * (high - low), high - GOLDEN_SECTION * (high - low));
@@ -197,7 +197,7 @@ pub(super) mod tests {
         angle_transform(radar, &profiles, aperture).cells.mapv(Complex64::norm)
     }
 
-    /// The same map with [`PARTS`] cells where it has one, from the simulated samples alone.
+    /// Magnitudes of the simulated map with [`PARTS`] cells for each of its cells, from the simulated samples alone.
     fn simulated_finely(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Array2<f64> {
         let signal = exact::beat_signal(radar, &[*reflector]).samples;
         let channels: Vec<usize> = elements(radar, aperture).collect();
@@ -222,7 +222,7 @@ pub(super) mod tests {
         column: Vec<f64>,
     }
 
-    /// Measures it on the simulated samples alone.
+    /// The row and the column through a place, from the simulated samples alone.
     fn simulated_through(radar: &Radar, reflector: &Reflector, aperture: Aperture, at: MapPlace) -> Cross {
         let signal = exact::beat_signal(radar, &[*reflector]).samples;
         let turned = |weights: Vec<f64>, turns: f64| -> Vec<Complex64> {
@@ -259,13 +259,14 @@ pub(super) mod tests {
             self.cells.len() as i64 / 2
         }
 
-        /// Cells to where it falls below `level` on the `side` of the lower (-1) or higher (1) cells.
+        /// Cells to the first magnitude below `level` on the `side` of the lower (-1) or higher (1) cells.
         fn reach(&self, side: i64, level: f64) -> f64 {
             let beyond = (1..self.half()).find(|i| self.at(side * i) < level);
             beyond.map_or(self.half() as f64, |i| i as f64 - 0.5) / FINE_PARTS as f64
         }
 
-        /// Holds half-power widths to it, to half a cell. Where it runs level within two percent of half power, any place of that run will do.
+        /// Compares predicted half-power widths with the measured ones, to half a cell. Where the row runs level within two percent of half power,
+        /// any place of that run will do.
         fn hold_widths(&self, predicted: [f64; 2]) -> Result<(), TestCaseError> {
             let level = self.at(0) * std::f64::consts::FRAC_1_SQRT_2;
             for (side, predicted) in [-1, 1].into_iter().zip(predicted) {
@@ -275,7 +276,7 @@ pub(super) mod tests {
             Ok(())
         }
 
-        /// Holds a side lobe to it, to half a cell and half a decibel.
+        /// Compares a side lobe with the measured one, to half a cell and half a decibel.
         fn hold_side_lobe(&self, side: i64, lobe: SideLobe) -> Result<(), TestCaseError> {
             let at = |i: i64| self.at(side * i);
             let valley = (1..self.half()).find(|i| at(i + 1) > at(*i));
@@ -289,7 +290,7 @@ pub(super) mod tests {
         }
     }
 
-    /// Holds the predicted blob to the simulated map, all within half a cell.
+    /// Compares the predicted blob with the simulated map, all within half a cell.
     fn hold(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Result<(), TestCaseError> {
         let map = simulated_finely(radar, reflector, aperture);
         let blob = Blob::of(radar, reflector, aperture).expect("it has an echo");

@@ -38,7 +38,7 @@ impl ChirpShape {
         ChirpShape { start_hz, bandwidth_hz, duration_seconds, samples }
     }
 
-    /// How fast the frequency rises, hertz a second.
+    /// Slope of the frequency, hertz a second.
     pub fn slope_hz_per_second(&self) -> f64 {
         self.bandwidth_hz / self.duration_seconds
     }

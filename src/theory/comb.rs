@@ -55,7 +55,8 @@ mod tests {
     use crate::radar::Layout;
     use proptest::prelude::*;
 
-    /// The next teeth on either side are where the echoes of both ends correlate most: within half a column, for any radar.
+    /// Asserts that the next teeth on either side are the directions in which the echoes of both ends correlate most: within half a column, for any
+    /// radar.
     fn hold(radar: &Radar, place: Polar) -> Result<(), TestCaseError> {
         let column = radar.fold_period_cos() / radar.elements as f64;
         let spacing = tooth_spacing_cos(radar, place);

@@ -21,14 +21,14 @@ pub struct Consequences {
     /// Columns from a blob to its first grating lobe: the angle transform repeats after one turn from element to element, which is the
     /// width of the map at any spacing.
     pub grating_columns: f64,
-    /// The same in cos(theta): below 2 some directions have a grating lobe among the others (M. I. Skolnik, "Introduction to Radar
-    /// Systems", on arrays).
+    /// `grating_columns` in cos(theta): below 2 some directions have a grating lobe among the others (M. I. Skolnik, "Introduction to Radar Systems",
+    /// on arrays).
     pub grating_cos: f64,
     /// Columns between cos(theta) = -1 and 1: fewer than the map has where elements stand close together.
     pub visible_columns: f64,
     /// Distance beyond which waves are plane over the whole array, in metres ([`Radar::far_field_metres`]).
     pub full_far_field_metres: f64,
-    /// The same for one end, its elements taken for antennas that send and hear ([`Radar::plane_beyond_metres`]).
+    /// `full_far_field_metres` for one end, its elements taken for antennas that send and hear ([`Radar::plane_beyond_metres`]).
     pub end_far_field_metres: f64,
     /// Largest change of range across the whole array, in bins: beyond one, a blob off broadside migrates through range bins. With a common
     /// transmitter it would be half.

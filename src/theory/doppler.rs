@@ -3,7 +3,7 @@
 use crate::radar::Radar;
 use crate::scene::{Object, Scene};
 
-/// Where a range-Doppler map has the middle of an object.
+/// Place of an object's middle in a range-Doppler map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DopplerBlob {
     /// Its radial velocity, metres a second.
@@ -16,7 +16,7 @@ pub struct DopplerBlob {
 }
 
 impl DopplerBlob {
-    /// That of `object`, as the middle of the array hears it in the middle of the frame.
+    /// The place of `object`, as the middle of the array hears it in the middle of the frame.
     pub fn of(radar: &Radar, object: &Object) -> DopplerBlob {
         let frame = (radar.chirps as f64 - 1.0) * radar.chirp_interval_seconds + radar.chirp_seconds;
         let mut then = object.clone();
@@ -32,7 +32,7 @@ impl DopplerBlob {
         }
     }
 
-    /// Whether the map shows another velocity than it has.
+    /// Whether the map shows another velocity than the object's.
     pub fn is_folded(&self) -> bool {
         (self.velocity_metres_per_second - self.apparent_velocity_metres_per_second).abs()
             > 1e-9 * self.velocity_metres_per_second.abs()

@@ -9,7 +9,7 @@ pub struct Ellipse {
     pub major_metres: f64,
     /// Half the shorter axis, metres.
     pub minor_metres: f64,
-    /// From the x axis to the longer axis, in (-pi/2, pi/2].
+    /// Angle from the x axis to the longer axis, in (-pi/2, pi/2].
     pub angle_radians: f64,
 }
 

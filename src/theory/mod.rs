@@ -5,15 +5,15 @@
 //! | [`squint`] | the offset of a blob's column from the true direction |
 //! | [`pattern`] | beam width and highest side lobe of a window |
 //! | [`response`] | the map of one reflector at any fraction of a bin and column, in closed form |
-//! | [`blob`] | its peak, half-power widths and first side lobes |
-//! | [`streak`] | how far a near reflector is drawn out over columns and bins |
+//! | [`blob`] | a blob's peak, half-power widths and first side lobes |
+//! | [`streak`] | the extent of a near reflector's blob over columns and bins |
 //! | [`comb`] | the grating lobes (teeth) of both ends used coherently |
 //! | [`aliases`] | ranges that wrap and directions that fold onto the same cell |
 //! | [`chirp`] | a chirp and its echoes as frequencies against time |
-//! | [`doppler`] | where a range-Doppler map shows an object |
-//! | [`ellipse`] | the area that no unbiased estimator's error can stay below |
-//! | [`overlay`] | all of it for one reflector, drawn over a map |
-//! | [`phasors`] | what every element contributes to one cell, in the complex plane |
+//! | [`doppler`] | the place of an object in a range-Doppler map |
+//! | [`ellipse`] | the area of the least error of any unbiased estimator |
+//! | [`overlay`] | all predictions for one reflector, drawn over a map |
+//! | [`phasors`] | the contribution of each element to one cell, in the complex plane |
 //! | [`consequences`] | quantities of a radar without a scene |
 //!
 //! Only [`phasors`] uses samples. Tests compare every prediction with a simulated map.

@@ -14,13 +14,13 @@ const WRAPPED_RANGES: f64 = 3.0;
 /// Predictions for one reflector, drawn over the map of one aperture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overlay {
-    /// Where the reflector stands as the middle of the aperture sees it; its range is the true one, not wrapped.
+    /// Place of the reflector seen from the middle of the aperture; its range is the true one, not wrapped.
     pub place: Polar,
     /// Peak, half-power widths and first side lobes.
     pub blob: Blob,
-    /// How far the near field draws it out, [`STREAK`] down.
+    /// Extent of the blob by the near field, [`STREAK`] down.
     pub streak: Streak,
-    /// Where the next teeth of the two ends' comb stand.
+    /// Places of the next teeth of the two ends' comb.
     pub teeth: Vec<MapPlace>,
     /// cos(theta) of the other directions that share its column.
     pub fold_partners: Vec<f64>,

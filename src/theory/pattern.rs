@@ -16,7 +16,7 @@ pub struct WindowPattern {
 }
 
 impl WindowPattern {
-    /// The pattern of `window` over `len` points, or of what [`WindowFunction::for_points`] has in its place.
+    /// The pattern of `window` over `len` points, as [`WindowFunction::for_points`] has it for so few.
     pub fn new(window: WindowFunction, len: usize) -> Self {
         WindowPattern { cosines: window.for_points(len).cosines(), len: len.max(1) }
     }

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 pub struct Phasors {
     /// The first element of the aperture.
     pub first_element: usize,
-    /// One an element, in the order of the elements.
+    /// The contribution of each element, in the order of the elements.
     pub contributions: Vec<Complex64>,
 }
 
@@ -58,7 +58,7 @@ impl Phasors {
         std::iter::once(Complex64::default()).chain(sums).collect()
     }
 
-    /// The sum of all: the cell.
+    /// The sum of all contributions: the cell.
     pub fn sum(&self) -> Complex64 {
         self.contributions.iter().sum()
     }
@@ -109,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Part of the length of all contributions that the sum is, at a cell of the map of one point.
+    /// Length of the sum over the sum of the contributions' lengths, at a cell of the map of one point.
     fn straightness(radar: &Radar, point: (f64, f64), cell: [usize; 2]) -> [f64; 2] {
         let signal = simulate(radar, &Scene::of_points([point]), Floor::Exact, 0).unwrap();
         let phasors = Phasors::of(radar, signal.samples.view(), Aperture::Full, cell, true);

@@ -59,7 +59,7 @@ impl Response {
         ResponseRow { columns: self.columns, parts: self.elements.iter().map(part).collect() }
     }
 
-    /// Magnitude at `bin` and `column`: what [`crate::maps::angle_transform`] has in the cell, where both are whole.
+    /// Magnitude at `bin` and `column`: the cell of [`crate::maps::angle_transform`], where both are whole.
     pub fn magnitude(&self, bin: f64, column: f64) -> f64 {
         self.row(bin).magnitude(column)
     }

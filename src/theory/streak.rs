@@ -21,7 +21,7 @@ pub struct Streak {
     pub path: Vec<MapPlace>,
     /// From the peak to nearer and to farther ranges, the bins over which cells joined to it stay above the level.
     pub bins: [usize; 2],
-    /// From the peak to lower and to higher columns, likewise.
+    /// From the peak to lower and to higher columns, the columns over which such cells stay above the level.
     pub columns: [usize; 2],
 }
 

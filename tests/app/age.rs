@@ -1,4 +1,4 @@
-//! What is drawn is of the scene on screen, or is marked as old.
+//! The pictures on screen are of the scene on screen, or are marked as old.
 
 use crate::session::Session;
 use apertura::app::{Command, EditCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand};
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A method that is slower than what may be drawn as fresh.
+/// A method that takes longer than an old picture may be drawn as fresh.
 struct Slow;
 
 impl Reconstructor for Slow {
@@ -55,7 +55,7 @@ const PANELS: [Panel; 18] = [
     Panel::Found,
 ];
 
-/// What a user may do at random, with anything shown and any number of times.
+/// A user's command, at random, with anything shown and any number of times.
 fn action() -> impl Strategy<Value = Command> {
     let window = prop_oneof![Just(WindowFunction::Hann), Just(WindowFunction::Hamming)];
     let floor = prop_oneof![Just(Floor::Thesis), Just(Floor::Exact)];
@@ -77,7 +77,7 @@ fn action() -> impl Strategy<Value = Command> {
     ]
 }
 
-/// Longer than what is old may be drawn as fresh, and a few frames.
+/// Longer than an old picture may be drawn as fresh, and a few frames.
 const GRACE: Duration = Duration::from_millis(600);
 
 proptest! {
@@ -112,7 +112,7 @@ proptest! {
     }
 }
 
-/// Where the output is closed, places that were found are still marked in the scene.
+/// Places that were found are still marked in the scene where the output is closed.
 #[test]
 fn found_places_follow_the_scene_while_the_output_is_closed() {
     let mut s = Session::with_methods(vec![Arc::new(apertura::reconstruct::Omp::default())]);

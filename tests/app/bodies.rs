@@ -1,4 +1,4 @@
-//! Walls, boxes, posts and polygons in the window: added, changed while the maps follow, and told.
+//! Walls, boxes, posts and polygons in the window: added, changed while the maps follow, and listed.
 
 use crate::session::{Session, step_until};
 use apertura::app::{EditCommand, NewObject};

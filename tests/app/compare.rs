@@ -1,4 +1,4 @@
-//! Two methods on one scene: flipped, read off cell by cell, and what became of every object.
+//! Two methods on one scene: flipped, read off cell by cell, and the verdicts on every object.
 
 use crate::session::{Session, step_until};
 use apertura::app::{Compare, DocumentCommand, Layout, MapKind, Panel, ViewCommand, WindowCommand};
@@ -24,7 +24,7 @@ fn trial(s: &Session) -> Trial {
     Trial::new(s.state().radar(), s.state().editor().scene(), Floor::Thesis, Normalisation::MinMax).unwrap()
 }
 
-/// What a label says.
+/// The text of a label.
 fn text_of(node: &Node<'_>) -> String {
     let node = node.accesskit_node();
     node.label().or(node.value()).unwrap_or_default()
@@ -55,7 +55,7 @@ fn the_second_outputs_figures_are_those_of_the_command_line() {
     assert_eq!(s.state().second_metrics(), s.state().metrics(), "the same method twice");
 }
 
-/// Counts how often it came to an end; takes its time while told to.
+/// A method of a set duration, which counts the maps that it finished.
 struct Slow {
     finished: Arc<AtomicU32>,
     milliseconds: Arc<AtomicU32>,
@@ -100,7 +100,7 @@ fn the_second_method_works_only_while_the_panel_is_open() {
     assert_eq!(finished.load(Ordering::SeqCst), before, "the panel is out of sight");
 }
 
-/// Works with nothing.
+/// A method that refuses every radar.
 struct Refuses;
 
 impl Reconstructor for Refuses {

@@ -1,4 +1,4 @@
-//! The document: what undo, saving, a kill and a restart do to it.
+//! The document under undo, saving, a kill and a restart.
 
 use crate::session::{Session, harness, step_until};
 use apertura::app::{DocumentCommand, EditCommand, NewObject, RadarCommand, WindowCommand};

@@ -35,7 +35,7 @@ fn name(row: &Row) -> String {
     format!("set {}, scene {}, {}", row.set, row.index, row.method)
 }
 
-/// The rows in sight, from top to bottom, as they are called.
+/// Names of the rows in sight, from top to bottom.
 fn listed(s: &Session) -> Vec<String> {
     let mut rows: Vec<(f32, String)> = s
         .state()
@@ -180,7 +180,7 @@ fn rows_outlive_a_restart() {
 #[test]
 fn what_a_search_finds_is_one_undo_step() {
     let mut s = tried();
-    // Where the error is least, there is most to make worse.
+    // The row of the least error has the most to make worse.
     let rows = s.state().rows().iter().enumerate();
     let best = rows.min_by(|a, b| a.1.squared_error.total_cmp(&b.1.squared_error)).unwrap().0;
     s.ask(WindowCommand::OpenPanel(Panel::Failures));

@@ -33,7 +33,7 @@ fn on_screen(s: &Session) -> Figures {
     Figures { squared_error: m.squared_error, detection: m.detection, false_alarm: m.false_alarm }
 }
 
-/// What `apertura evaluate --scenes` finds for one scene file.
+/// The figures of `apertura evaluate --scenes` for one scene file.
 fn on_the_command_line(scene: &Path) -> Figures {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("scenes")).unwrap();
@@ -95,7 +95,7 @@ fn the_noise_belongs_to_the_scene() {
     assert_eq!((s.state().editor().scene().noise_seed, on_screen(&s)), (0, before));
 }
 
-/// Counts how often it is asked.
+/// A method that counts its calls.
 struct Counted(Arc<AtomicU32>);
 
 impl Reconstructor for Counted {

@@ -8,8 +8,7 @@ use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::BTreeMap;
 
-/// Whether a person does something with it. A button that tells where an object's handle is stands for what the arrow keys and the
-/// inspector do.
+/// Whether a person uses this element. A button on an object's handle stands for the arrow keys and the inspector.
 fn is_control(role: Role, name: &str) -> bool {
     let control = matches!(
         role,
@@ -117,7 +116,7 @@ fn keys_do_not_reach_the_scene_behind_a_menu() {
     assert!(std::sync::Arc::ptr_eq(s.state().editor().scene(), &scene), "nothing was added or deleted");
 }
 
-/// Types into the field for x of what is selected, and ends the entry with Enter.
+/// Types into the field for x of the selected object, and ends the entry with Enter.
 fn enter_x(s: &mut Session, text: &str) {
     s.app.get_by_role_and_label(Role::SpinButton, "x").focus();
     s.settle();

@@ -15,7 +15,7 @@ use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The point that is to be seen on the left.
+/// The point that must be seen on the left.
 const POINT: [f64; 2] = [-8.0, 12.0];
 
 const KINDS: [MapKind; 6] =
@@ -85,7 +85,7 @@ fn picture(s: &mut Session, kind: MapKind) -> Arc<ColorImage> {
     Arc::new(copied.expect("a picture on the clipboard").clone())
 }
 
-/// Where a picture is brightest, as parts of its width from the left and of its height from the top: the mean of equally bright pixels.
+/// Place of the brightest pixels of a picture, as parts of its width from the left and of its height from the top: the mean of equally bright ones.
 fn brightest(image: &ColorImage) -> [f64; 2] {
     let [width, height] = image.size;
     let level = |i: usize| image.pixels[i].g();
@@ -97,7 +97,7 @@ fn brightest(image: &ColorImage) -> [f64; 2] {
     [mean(&|i| i % width, width), mean(&|i| i / width, height)]
 }
 
-/// Where on screen the target is brightest.
+/// Place on screen of the target's brightest cell.
 fn blob(s: &mut Session) -> Pos2 {
     let [across, down] = brightest(&picture(s, MapKind::Target));
     let rect = s.app.get_by_label("Target map").rect();

@@ -1,4 +1,4 @@
-//! Drives the whole app without a display: pointer, keys, files; asserts on state and on what was computed and what was not.
+//! Drives the whole app without a display: pointer, keys, files; asserts on state and on the work that was done and not done.
 
 mod age;
 mod bodies;

@@ -1,4 +1,4 @@
-//! For screen readers, and at twice the size.
+//! Names for screen readers, and the window at twice the size.
 
 use crate::session::Session;
 use apertura::app::{Command, DocumentCommand, EditCommand, MapKind, Panel, RadarCommand, WindowCommand};
@@ -7,7 +7,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 
-/// What a person works with, and what has to be told in words.
+/// Whether an element of this role is used or has to be read out, so that it needs a name.
 fn has_to_be_named(role: Role) -> bool {
     matches!(
         role,
@@ -128,7 +128,7 @@ fn nothing_is_cut_off_at_twice_the_size() {
     assert!(cut.is_empty(), "{cut:?}");
 }
 
-/// Texts that reach beyond the left or the right end of what may be drawn to: no scrolling brings them into sight.
+/// Texts that reach beyond the left or the right end of the drawable area: no scrolling brings them into sight.
 fn wider_than_their_place(s: &Session) -> Vec<String> {
     use eframe::egui::{Rect, Shape};
     fn gather(clip: Rect, shape: &Shape, found: &mut Vec<String>) {

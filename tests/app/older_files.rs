@@ -1,5 +1,5 @@
-//! What a window of version 0.1.0 kept is there in this one: an unsaved scene, and rows. The files stand in `tests/data/program-0.1.0` and
-//! must never be rewritten.
+//! An unsaved scene and rows from a window of version 0.1.0 are there in this one. The files stand in `tests/data/program-0.1.0` and must never be
+//! rewritten.
 
 use crate::session::{Session, harness};
 use apertura::app::{Command, FailureChoice, Panel, RowsCommand, WindowCommand};

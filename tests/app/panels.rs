@@ -1,4 +1,4 @@
-//! What is shown, what is computed for it and what is not.
+//! Panels that are shown, and the work that is done for them and for no others.
 
 use crate::session::Session;
 use apertura::app::{

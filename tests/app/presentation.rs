@@ -1,4 +1,4 @@
-//! What is shown to many people, or taken to their slides.
+//! The presentation, and pictures for slides.
 
 use crate::session::{Session, step_until};
 use apertura::app::{ExportCommand, MapKind, Panel, WindowCommand};
@@ -71,7 +71,7 @@ fn a_map_is_copied_upright_a_pixel_a_cell() {
     let image = image.expect("a picture on the clipboard").clone();
     let radar = s.state().radar().clone();
     assert_eq!(image.size, [radar.elements, radar.samples]);
-    // The brightest row is that of a reflector, counted from below.
+    // The brightest row is the reflector's, counted from below.
     let brightness =
         |row: usize| image.pixels[row * radar.elements..][..radar.elements].iter().map(|p| u64::from(p.g())).max();
     let brightest = (0..radar.samples).max_by_key(|row| brightness(*row)).unwrap();

@@ -206,7 +206,7 @@ fn disturbances_are_edits_of_the_scene() {
     let saved = Document::read(&path).unwrap();
     assert_eq!(saved.scene(), s.state().editor().scene());
     assert!(saved.scene().disturbances.elements.elements[3].dead);
-    // Fewer elements keep what is wrong with those that stay.
+    // Fewer elements keep the errors of those that stay.
     let radar = Radar { elements: 64, ..s.state().radar().clone() };
     s.ask(RadarCommand::Set(Box::new(radar)));
     assert_eq!(s.state().editor().scene().disturbances.elements.elements.len(), 64);

@@ -1,4 +1,4 @@
-//! Editing, files and what survives a crash.
+//! Editing, files, and documents after a crash.
 
 use crate::session::{Session, harness};
 use apertura::app::{DocumentCommand, EditCommand, NewObject};

@@ -38,7 +38,7 @@ impl Session {
         self.app.state()
     }
 
-    /// Steps until the workers have nothing to do and what they made has been taken in.
+    /// Steps until the workers are idle and their results were taken in.
     pub fn settle(&mut self) {
         let deadline = Instant::now() + Duration::from_secs(60);
         let mut quiet = 0;
@@ -50,7 +50,7 @@ impl Session {
         }
     }
 
-    /// The window opened anew in its folder, on a file of it or on what it was left with.
+    /// The window opened anew in its folder, on one of its files or on the autosave.
     pub fn reopened(self, scene: Option<&str>, methods: Vec<Arc<dyn Reconstructor>>) -> Session {
         let Session { app, folder } = self;
         drop(app);
@@ -60,7 +60,7 @@ impl Session {
         session
     }
 
-    /// Every text of the last frame, those that no screen reader is told included.
+    /// Every text of the last frame, those without a screen reader's node included.
     pub fn painted(&self) -> Vec<String> {
         fn gather(shape: &Shape, found: &mut Vec<String>) {
             match shape {
@@ -79,7 +79,7 @@ impl Session {
         self.settle();
     }
 
-    /// Asks for what goes on beside the window, and waits for its end, which may come within the frame it began in.
+    /// Sends a command that starts work beside the window, and waits for its end, which may come within the same frame.
     pub fn ask_and_wait(&mut self, command: impl Into<Command>) {
         self.app.state_mut().ask(command);
         self.app.step();
@@ -118,7 +118,7 @@ pub fn harness(folder: &Path, scene: Option<&str>, methods: Vec<Arc<dyn Reconstr
     harness_of(folder, scene, methods, [1440.0, 900.0])
 }
 
-/// The same in a window of another size.
+/// A window of another size.
 pub fn harness_of(
     folder: &Path,
     scene: Option<&str>,

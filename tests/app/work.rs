@@ -105,7 +105,7 @@ fn a_training_log_is_followed() {
     step_until(&mut s, "it is told", |s| s.app.query_by_label_contains("line 2").is_some());
 }
 
-/// Panics until told not to.
+/// A method that panics until it is told not to.
 struct Fragile(Arc<AtomicBool>);
 
 impl Reconstructor for Fragile {
@@ -130,7 +130,7 @@ fn a_method_that_panics_is_a_message() {
     assert!(s.state().pictures().contains(&MapKind::Output), "and so does the method");
 }
 
-/// Works only where the carrier counts one way, like a network.
+/// A method that works only where the carrier counts one way, like a network.
 struct Trained;
 
 impl Reconstructor for Trained {
@@ -160,7 +160,7 @@ fn a_method_that_refuses_leaves_no_old_output() {
     assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
 }
 
-/// Takes its time, and counts how often it came to an end.
+/// A method that takes 1.2 s, and counts the maps that it finished.
 struct Slow(Arc<AtomicU32>);
 
 impl Reconstructor for Slow {
@@ -307,7 +307,7 @@ fn an_export_of_a_layout_is_what_apertura_maps_writes() {
     assert!(keys.contains("heard") && keys.contains("layout"), "{keys:?}");
 }
 
-/// The window and `apertura maps` with `arguments` write the same archive; its keys.
+/// Asserts that the window and `apertura maps` with `arguments` write the same archive; returns its keys.
 fn exports_agree(mut s: Session, arguments: &[&str]) -> BTreeSet<String> {
     let [by_window, by_command] = ["window.npz", "command.npz"].map(|name| s.folder.path().join(name));
     s.ask(ExportCommand::MapsTo(by_window.clone()));

@@ -1,4 +1,4 @@
-//! Raw captures on the command line: told, imported, and opened as they are.
+//! Raw captures on the command line: described, imported, and opened as they are.
 
 use super::cli::{apertura, folder};
 use apertura::files::npz::Npz;

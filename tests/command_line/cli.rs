@@ -110,7 +110,7 @@ fn maps_have_the_layout_of_the_authors_program() {
         assert_eq!(found.reals::<Ix1>(key).unwrap().len(), count, "{key}");
     }
     assert!(!found.has("output"), "no method was asked for");
-    // What was written is a scene again.
+    // The written archive is a scene again.
     apertura(&folder).args(["maps", "maps.npz", "-o", "again.npz"]).assert().success();
     let again = Npz::open(&folder.path().join("again.npz")).unwrap().reals::<Ix3>("polar_full").unwrap();
     assert_eq!(again, full);

@@ -1,4 +1,4 @@
-//! `apertura evaluate --rows` where the file is there already: a run goes on, and rows of something else stay.
+//! `apertura evaluate --rows` where the file is there already: a run goes on, and a file of other content stays.
 
 use super::merge::older;
 use super::rows::{apertura, figures, folder, rows, without_times};

@@ -1,4 +1,4 @@
-//! `apertura evaluate --shard` and `--merge`: rows of several runs are put together, or it is said why not.
+//! `apertura evaluate --shard` and `--merge`: rows of several runs are put together, or refused with a reason.
 
 use super::rows::{apertura, folder, json, without_times};
 use predicates::prelude::PredicateBooleanExt;
@@ -6,7 +6,7 @@ use predicates::str::contains;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Rows as they were before they said what made them: the first columns alone.
+/// Rows of an older program, without their conditions: the first columns alone.
 pub fn older(folder: &TempDir, name: &str, to: &str) {
     let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
     let old = |line: &str| line.split(',').take(21).collect::<Vec<_>>().join(",") + "\n";

@@ -1,4 +1,4 @@
-//! What the program says to arguments and files that it can't use: what was found, what is allowed, and what to do.
+//! Messages on arguments and files that the program can't use: the value found, the values allowed, and a remedy.
 
 use super::cli::{apertura, folder};
 use predicates::prelude::PredicateBooleanExt;

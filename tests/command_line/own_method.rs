@@ -16,7 +16,7 @@ fn apertura(folder: &Path) -> Command {
     command
 }
 
-/// What the script answers: a map that rises with range.
+/// The script's answer: a map that rises with range.
 fn answer() -> Array2<f32> {
     Array2::from_shape_fn((512, 1024), |(bin, _)| bin as f32 / 512.0)
 }

@@ -1,4 +1,4 @@
-//! Recordings on the command line: maps, pictures, reconstructions, and what is refused.
+//! Recordings on the command line: maps, pictures, reconstructions, and refusals.
 
 use super::cli::{apertura, folder};
 use apertura::files::npz::{Npz, write_npz};
@@ -81,7 +81,7 @@ fn a_recording_that_cannot_be_read_is_told() {
     assert!(!folder.path().join("m.npz").exists());
 }
 
-/// What it is called, its TOML, and where two points stand (x and y, metres).
+/// The name of a radar, its TOML, and the places of two points (x and y, metres).
 type SimulatedRadar = (&'static str, &'static str, [(f64, f64); 2]);
 
 /// Radars that the thesis never had: the name, what its TOML says, and two places in metres that each of them tells apart.

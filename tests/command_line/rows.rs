@@ -1,4 +1,4 @@
-//! `apertura evaluate --rows` and `--scenes`: what rows say, what is printed of them, and a row's scene by hand.
+//! `apertura evaluate --rows` and `--scenes`: the rows, the tables printed of them, and a row's scene by hand.
 
 use super::cli;
 pub use super::cli::folder;
@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// The one whose figures are reproduced by hand.
+/// The method whose figures are reproduced by hand.
 const METHOD: &str = if cfg!(feature = "network") { "live" } else { "matched-filter-incoherent" };
 
 pub fn apertura(folder: &TempDir, arguments: &str) -> Command {
@@ -38,7 +38,7 @@ fn same(a: &Value, b: f64) -> bool {
     a.as_f64().is_some_and(|a| (a - b).abs() <= 4e-16 * b.abs())
 }
 
-/// Rows without what differs from run to run: their times, and which shard found them.
+/// Rows without the columns that differ from run to run: their times, and the shard that found them.
 pub fn figures(rows: Vec<Row>) -> Vec<Row> {
     rows.into_iter().map(|r| Row { milliseconds: 0.0, shard: None, ..r }).collect()
 }
@@ -150,7 +150,7 @@ fn doubt_finds_failures_as_often_as_the_rows_say() {
     );
 }
 
-/// The SE of what `reconstruct` wrote against what `maps` wrote.
+/// The SE of the map of `reconstruct` against the map of `maps`.
 pub fn error_by_hand(folder: &Path) -> f64 {
     let open = |name: &str| Npz::open(&folder.join(name)).unwrap();
     let decades = open("maps.npz").reals::<Ix3>("polar_full").unwrap().index_axis_move(Axis(0), 0);

@@ -14,7 +14,7 @@ use apertura::signal::Floor;
 use assert_cmd::Command;
 use ndarray::{Ix2, Ix3};
 
-/// An engine in which much has happened: other scenes, other floors, drags.
+/// An engine after other scenes, other floors and drags.
 fn with_a_past(scene: &Scene) -> Engine {
     let mut engine = Engine::new(Radar::default());
     let wanted = MapRequest::default();

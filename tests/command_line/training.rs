@@ -45,7 +45,7 @@ fn a_run_goes_on_by_its_own_recipe() {
     run("train").failure().stderr(contains("<RECIPE"));
 }
 
-/// What a training program says; `None` where there is no Python.
+/// The output of a training program; `None` where there is no Python.
 fn python(program: &str, arguments: &[&str]) -> Option<Output> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("training").join(program);
     match Command::new("python3").arg(path).args(arguments).env("PYTHONDONTWRITEBYTECODE", "1").output() {

@@ -1,6 +1,6 @@
-//! How trust is built: the judge (double-double) is checked against known phasors in its own file and against the plain formula
-//! here; the exact path is held to the judge; the transforms are held to a sum written out; and the plain f64 formula is shown to
-//! leave the rounding floor on which the thesis' tables stand.
+//! Accuracy, step by step: the judge (double-double) is checked against known phasors in its own file and against the plain formula here; the exact
+//! path is held to the judge; the transforms are held to a sum written out; and the plain f64 formula is shown to leave the rounding floor on which
+//! the thesis' tables stand.
 
 use apertura::evaluate::Estimate;
 use apertura::maps::{Aperture, LogMap, angle_transform, range_transform};

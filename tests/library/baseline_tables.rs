@@ -1,6 +1,6 @@
 //! The thesis' baseline column, reproduced on fewer scenes than `apertura evaluate --method baseline --count 100`.
 //!
-//! Bounds are relative to what is printed, not to our own standard errors: these grow where a result is wrong. Each is broken by a wrong
+//! Bounds are relative to the printed values, not to our own standard errors: these grow where a result is wrong. Each bound is broken by a wrong
 //! reading of the thesis, which the controls try.
 
 use apertura::evaluate::campaign::Campaign;
@@ -12,7 +12,7 @@ use apertura::scene::generate::Kind;
 use apertura::signal::Floor;
 use apertura::task::Task;
 
-/// How far a mean may lie from the printed one: SE as a part of it, P_D and P_FA in percentage points.
+/// Largest difference of a mean from the printed one: SE as a part of it, P_D and P_FA in percentage points.
 #[derive(Debug, Clone, Copy)]
 struct Allowed {
     squared_error: f64,

@@ -1,4 +1,4 @@
-//! Raw captures, written by the physics of a stretch receiver: each opened as it is, its echo stands where it was put.
+//! Raw captures, written by the physics of a stretch receiver: each is opened as it is, and its echo stands at the true place.
 
 use apertura::reconstruct::found::reconstruct_and_find;
 use apertura::reconstruct::{NoisePrior, Request};
@@ -35,7 +35,7 @@ impl Chirps {
 const RISING: Chirps = Chirps { start: 77.0, slope: 60.0, samples: 128, rate: 4000.0 };
 const FALLING: Chirps = Chirps { start: 81.0, slope: -60.0, samples: 128, rate: 4000.0 };
 
-/// Where an echo stands and how fast it goes away, metres and metres a second.
+/// Place and speed of an echo, metres and metres a second; the speed is positive where it goes away.
 #[derive(Clone, Copy)]
 struct Echo {
     x: f64,

@@ -1,4 +1,4 @@
-//! Which way is up: where a reflector appears, what mirrors, what folds, and what strange scenes give.
+//! Signs and sides: the place of a reflector in the maps, mirrored and folded directions, and maps of strange scenes.
 
 use apertura::evaluate::Metrics;
 use apertura::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap};
@@ -12,13 +12,13 @@ fn maps_of(radar: &Radar, scene: &Scene) -> LogMaps {
     LogMaps::of_signal(radar, &simulate(radar, scene, Floor::Exact, 0).unwrap())
 }
 
-/// [range bin, column] of the largest cell.
+/// `[range bin, column]` of the largest cell.
 fn peak(map: &LogMap) -> [usize; 2] {
     let (index, _) = map.decades().indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
     [index.0, index.1]
 }
 
-/// How far two columns are apart around the circle of columns.
+/// Distance of two columns around the circle of columns.
 fn columns_apart(radar: &Radar, a: f64, b: f64) -> f64 {
     let n = radar.elements as f64;
     let d = (a - b).rem_euclid(n);

@@ -1,4 +1,4 @@
-//! What an interferer does to the maps.
+//! Effects of an interferer on the maps.
 
 use apertura::maps::LogMaps;
 use apertura::radar::Radar;
@@ -23,7 +23,7 @@ fn an_interferer_is_heard_where_its_settings_say() {
     assert!((heard(128) - 1.0).abs() < 0.01 && (heard(110) - 1.0).abs() < 0.01);
     assert!(heard(70) < 0.01 && heard(190) < 0.01, "{} {}", heard(70), heard(190));
     let map = LogMaps::of_signal(&radar(), &signal).full;
-    // At every range alike, in one direction: cos(theta) = 0.6.
+    // The interferer stands at every range alike, in one direction: cos(theta) = 0.6.
     for bin in [20, 60, 110] {
         let row = map.decades().row(bin);
         let strongest = row.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;

@@ -1,4 +1,4 @@
-//! Lists of echoes on small arrays: what any method lists first is where the echo is.
+//! Lists of echoes on small arrays: the first echo that any method lists is the true one.
 
 use apertura::methods;
 use apertura::radar::{Convention, Decibels, Radar};
@@ -19,7 +19,7 @@ fn every_list_of_echoes_begins_with_the_true_one() {
     let (mut wrong, mut listed) = (Vec::new(), 0);
     for elements in [8, 12, 16, 86] {
         let radar = radar(elements);
-        // Half of what the eye tells apart, or a tenth where that is finer.
+        // Half of a beam of the array in cos(theta), at least 0.03.
         let within = (1.0 / elements as f64).max(0.03);
         for cosine in [0.1, -0.43] {
             let range = 4.0f64;
@@ -67,7 +67,7 @@ fn two_to_five_elements_are_answered_or_refused() {
                 }
             }
         }
-        // Those that take both ends as one aperture; baseline and powers need two elements of an end.
+        // Methods that take both ends as one aperture answer; baseline and powers need two elements of an end.
         assert_eq!(answers, if elements == 2 { 3 } else { 5 }, "{elements} elements");
     }
 }

@@ -11,7 +11,7 @@ use apertura::scene::presets::{self, Preset};
 use apertura::signal::Floor;
 use std::collections::BTreeSet;
 
-/// What a method does wrong.
+/// A kind of failure of a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Missed,

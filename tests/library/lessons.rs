@@ -70,7 +70,7 @@ fn the_floor_teaches_the_right_processing_gain() {
     let end = gain(&shown.first, &hiss.first);
     assert!((end - 33.95).abs() < 0.2, "{end}");
     taught("the-floor", "34 dB");
-    // A plane wave without windows, and what the windows cost in noise bandwidth.
+    // A plane wave without windows, and the windows' cost in noise bandwidth.
     let samples = (radar.elements * radar.samples) as f64;
     taught("the-floor", &format!("gain {:.0} dB", db(samples)));
     let cost = |n: usize| {

@@ -50,7 +50,7 @@ fn a_glint_falls_with_the_range_as_its_lesson_says() {
     };
     let fall = 20.0 * (glint(10.0) / glint(20.0)).log10();
     taught("where-a-wall-shines", &format!("1 / R^1.5: {fall:.0} dB"));
-    // As the strip that the lesson asks for has it.
+    // The fall of a strip of the height that the lesson asks for.
     let rail = fall_of_a_glint(0.05);
     assert!((fall - rail).abs() < 0.02, "{fall}, {rail}");
     let zone = (physical().wavelength_metres() * 10.0 / 2.0).sqrt();

@@ -1,4 +1,4 @@
-//! What the lesson on detectors teaches, computed again.
+//! The claims of the lesson on detectors, computed again.
 
 use crate::taught::{lesson, taught};
 use apertura::maps::cfar::Cfar;
@@ -10,7 +10,7 @@ fn detected(step: usize, cfar: Option<&str>) -> (Mask, RangeAngleMap) {
     detected_in_noise(step, cfar, 0)
 }
 
-/// The same, in the noise of another seed.
+/// [`detected`] in the noise of another seed.
 fn detected_in_noise(step: usize, cfar: Option<&str>, seed: u64) -> (Mask, RangeAngleMap) {
     let step = &lesson("a-threshold-that-follows-the-noise").steps[step - 1];
     let cfar = cfar.map_or_else(|| step.view.cfar.unwrap(), |text| text.parse().unwrap());
@@ -20,7 +20,7 @@ fn detected_in_noise(step: usize, cfar: Option<&str>, seed: u64) -> (Mask, Range
     (cfar.detect_lambda(&lambda, full.scale(step.view.normalisation)).unwrap(), lambda)
 }
 
-/// Where a step's map has a point.
+/// Range bin and column of a point in a step's map.
 fn cell_of(step: usize, point: usize) -> (usize, usize) {
     let step = &lesson("a-threshold-that-follows-the-noise").steps[step - 1];
     let [x, y] = step.scene().objects[point].centre_metres();

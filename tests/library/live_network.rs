@@ -103,7 +103,7 @@ fn a_radar_they_were_not_trained_for_is_an_error() {
     let two_way = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
     for name in ["live", "thesis", "thesis-1", "unet"] {
         let method = methods::by_name(name).unwrap();
-        // Of the convention `live` knows both, but not this spacing in it.
+        // `live` knows both conventions, but not this spacing in the physical one.
         let convention =
             if name == "live" { "2.0260 of the filled spacing" } else { "the physical convention (two-way carrier)" };
         for (other, differs) in [(&smaller, "512 elements"), (&two_way, convention)] {

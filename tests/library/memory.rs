@@ -1,4 +1,4 @@
-//! What a radar asks for stays below what `Radar::memory_bytes` counts, by any method.
+//! The memory of every method stays below `Radar::memory_bytes`.
 //!
 //! Each measurement has a process of its own: this test program again, asked for the test called `child`.
 
@@ -12,10 +12,10 @@ use apertura::scene::Scene;
 use apertura::signal::{Floor, simulate};
 use std::process::Command;
 
-/// What the child is asked to do: `WORK ELEMENTS SAMPLES END`.
+/// Variable with the child's work: `WORK ELEMENTS SAMPLES END`.
 const CHILD_VARIABLE: &str = "APERTURA_TEST_MEMORY";
 
-/// What the program and its threads hold beside the maps, bytes.
+/// Memory of the program and its threads beside the maps, bytes.
 const OVERHEAD: u64 = 32 << 20;
 
 #[test]
@@ -62,7 +62,7 @@ fn child() {
     }
 }
 
-/// Bytes that `work` for `radar` held at most; `None` where the system tells no peaks.
+/// Most bytes that `work` for `radar` held; `None` where the system reports no peaks.
 fn held(work: &str, radar: &Radar) -> Option<u64> {
     let mut child = Command::new(std::env::current_exe().unwrap());
     child.args(["--exact", "memory::child", "--ignored", "--nocapture"]);
@@ -73,7 +73,7 @@ fn held(work: &str, radar: &Radar) -> Option<u64> {
     said.lines().find_map(|l| l.strip_prefix("held ")?.parse().ok())
 }
 
-/// Holds `work` to what is counted, and to `least` bytes: a measurement that sees no memory proves nothing.
+/// Compares the memory of `work` with its bound, and with `least` bytes: a measurement that sees no memory proves nothing.
 fn check(work: &str, radar: &Radar, least: u64) {
     let Some(held) = held(work, radar) else {
         assert_ne!(std::env::consts::OS, "linux", "{work}: the peak was not told");

@@ -1,5 +1,5 @@
-//! What every reconstruction method promises, of any kind: shape, range, determinism, independence of gain, an answer
-//! to degenerate samples, and an end when asked to stop. New methods are held to it by being in the list.
+//! Properties of every reconstruction method, of any kind: shape, range, determinism, independence of gain, an answer to degenerate samples, and an
+//! end when asked to stop. New methods are held to them by being in the list.
 
 use apertura::evaluate::detection_rates;
 use apertura::maps::{LogMaps, Normalisation};
@@ -74,7 +74,7 @@ fn the_scale_of_the_samples_does_not_change_the_answer() {
     for method in methods::all() {
         let name = method.name();
         let plain = run(&*method, &ends, "two points");
-        // The U-Net is there to show how the thesis' first attempt collapsed to nothing.
+        // The U-Net is there to show the collapse of the thesis' first attempt.
         assert!(name == "unet" || plain.lambda.lambda.iter().any(|v| *v > 0.9), "{name} sees nothing");
         assert_eq!(plain, run(&*method, &ends, "two points again"), "{name} does not repeat");
         // Powers of two keep every bit of the samples, so that the rounding floor beneath them stays the same too.
@@ -108,7 +108,7 @@ fn a_single_sample_has_an_answer() {
     // An end that heard nothing at all is refused.
     single.last[[3, 100]] = Complex64::new(0.0, 1e-9);
     for method in methods::all() {
-        // Such a sample is alike at all ranges: its map is undefined.
+        // A single sample is alike at all ranges: its map is undefined.
         run(&*method, &single, "a single sample");
     }
 }
@@ -146,7 +146,7 @@ fn a_crowded_scene_is_told_from_its_surroundings_in_time() {
     let signal = simulate(&radar(), &crowded, Floor::Thesis, 1).unwrap();
     let target = LogMaps::of_signal(&radar(), &signal).full.normalise(Normalisation::MinMax);
     let ends = signal.two_ends(&radar());
-    // The U-Net is there to show how the thesis' first attempt collapsed to nothing.
+    // The U-Net is there to show the collapse of the thesis' first attempt.
     for method in methods::all().into_iter().filter(|method| method.name() != "unet") {
         let answer = run(&*method, &ends, "a crowded scene");
         let (detection, false_alarm) = detection_rates(&target, &answer.lambda, method.eta_of(&answer));

@@ -1,4 +1,4 @@
-//! What methods say of samples that hold noise alone, or an echo at the edge of what a radar sees.
+//! Answers of methods to samples that hold noise alone, or an echo at the edge of the radar's map.
 
 use apertura::evaluate::sets::NOISE_LEVEL;
 use apertura::evaluate::trial::Trial;
@@ -10,7 +10,7 @@ use apertura::scene::Scene;
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::signal::Floor;
 
-/// A trial of `scene`, and what a method is told of it.
+/// A trial of `scene`, and the request for a method.
 fn trial(scene: &Scene, floor: Floor, normalisation: Normalisation) -> (Trial, Request) {
     let request = Request { noise: floor.into(), normalisation, ..Request::default() };
     (Trial::new(&Radar::default(), scene, floor, normalisation).unwrap(), request)

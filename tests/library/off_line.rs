@@ -1,4 +1,4 @@
-//! Transmitters and receivers on a bumper that is bent: samples held to sums of their own, focused maps, methods, and mirrored captures.
+//! Transmitters and receivers on a bent bumper: samples compared with sums of their own, focused maps, methods, and mirrored captures.
 
 use super::pairs::with_gaps;
 use apertura::engine::{Engine, MapRequest};
@@ -25,7 +25,7 @@ pub fn straight(transmitters: usize, receivers: usize) -> Radar {
     usual.of_pairs(transmitters, receivers).unwrap()
 }
 
-/// The same on a bumper whose ends stand back by `back_metres`: each antenna stands on one parabola.
+/// The radar on a bumper whose ends stand back by `back_metres`: each antenna stands on one parabola.
 fn bent(radar: &Radar, back_metres: f64) -> Radar {
     let antennas = radar.antennas.clone().unwrap();
     let [low, high] = antennas.span_metres();
@@ -179,7 +179,7 @@ fn the_engine_shows_the_focused_map() {
     assert_ne!(plain.lambda.lambda, expected);
 }
 
-/// How far the strongest of what each method finds lies from the point, in metres of range and in cos(theta).
+/// Distance of the strongest echo that each method finds from the point, in metres of range and in cos(theta).
 fn off_by(radar: &Radar, (x, y): (f64, f64)) -> Vec<(&'static str, [f64; 2])> {
     let signal = simulate(radar, &Scene::of_points([(x, y)]), Floor::Snr(Decibels(25.0)), 0).unwrap();
     let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
@@ -204,7 +204,7 @@ fn methods_that_know_pairs_place_a_point_before_a_bent_array() {
     }
 }
 
-/// What is imported of a capture of pairs, by this text after its places.
+/// The recording of a capture of pairs, whose text has `more` after its places.
 fn imported(
     cube: &Array3<Complex64>,
     radar: &Radar,
@@ -233,7 +233,7 @@ fn a_capture_whose_axis_runs_the_other_way_is_turned_round() {
         sample(&radar, [[t[i], 0.0], [r[j], 0.0]], &points, n)
     });
     let right = imported(&cube, &radar, [&t, &r], "");
-    // Who wrote this counted x to the other side.
+    // The author of this text counted x to the other side.
     let [left_t, left_r] = [&t, &r].map(|places| places.iter().map(|x| -x).collect::<Vec<_>>());
     let wrong = imported(&cube, &radar, [&left_t, &left_r], "");
     let turned = imported(&cube, &radar, [&left_t, &left_r], "reverse_elements = true\n");

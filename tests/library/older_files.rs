@@ -1,6 +1,5 @@
-//! Files of version 0.1.0 are read, with all that they say. They stand in `tests/data/program-0.1.0` and must never be rewritten. The program
-//! wrote them, but for `recording.*`, which is a user's, and `shared-view.txt`, `settings.ron` and `autosave.toml`, which are laid out as it
-//! wrote them.
+//! Files of version 0.1.0 are read, with all their contents. They stand in `tests/data/program-0.1.0` and must never be rewritten. The program wrote
+//! them, but for `recording.*`, which is a user's, and `shared-view.txt`, `settings.ron` and `autosave.toml`, which have the layout of its own files.
 
 use apertura::evaluate::campaign::Campaign;
 use apertura::evaluate::echoes::EchoCounts;

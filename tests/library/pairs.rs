@@ -1,4 +1,4 @@
-//! Transmitters apart from receivers, held to sums of their own: samples, maps, bounds, recordings, methods.
+//! Transmitters apart from receivers, compared with sums of their own: samples, maps, bounds, recordings, methods.
 
 use super::off_line::{largest_difference, sample, straight as small};
 use apertura::bounds::cramer_rao;
@@ -104,7 +104,7 @@ fn far_away_pairs_are_the_elements_halfway_between_them() {
         let scene = Scene::of_points([(0.6 * range, 0.8 * range)]);
         let signal = |radar: &Radar| simulate(radar, &scene, Floor::Exact, 0).unwrap();
         let off = largest_difference(&signal(&radar), &signal(&monostatic(&radar)));
-        // What the ranges differ by turns the phase; amplitudes differ by the square of apart over range.
+        // The difference in range turns the phase; amplitudes differ by the square of apart over range.
         let bound = TAU * radar.turns_per_metre(radar.samples as f64) * apart * apart / (8.0 * range);
         assert!(off < 1.01 * bound && off > 1e-2 * bound, "{range} m: {off:e}, bound {bound:e}");
     }
@@ -174,7 +174,7 @@ fn a_capture_of_pairs_has_its_rows_in_the_order_of_elements() {
 const KNOW_PAIRS: [&str; 9] =
     ["baseline", "matched-filter", "matched-filter-incoherent", "fista", "omp", "iaa", "sbl", "nomp", "hybrid"];
 
-/// What `method` finds.
+/// Echoes that `method` finds.
 fn found(method: &str, recording: &Recording) -> Vec<Detection> {
     let method = methods::by_name(method).unwrap_or_else(|e| panic!("{e}"));
     let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };

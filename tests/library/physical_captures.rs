@@ -22,13 +22,13 @@ const TRANSMITTERS: usize = 4;
 const PLACES: [(f64, f64); 3] = [(6.0, -0.4), (9.0, 0.1), (12.0, 0.7)];
 /// Largest error of a direction that iaa finds in a monostatic capture, degrees.
 const DEGREES: f64 = 0.1;
-/// The same where transmitter and receiver of an element stand apart. No reading knows that the path to a pair `a` apart is longer by
-/// `a² sin²θ / 4R`; it differs from pair to pair, and at 6 m it turns the two ends against each other.
+/// `DEGREES` where transmitter and receiver of an element stand apart. No reading knows that the path to a pair `a` apart is longer by `a² sin²θ /
+/// 4R`; it differs from pair to pair, and at 6 m it turns the two ends against each other.
 const DEGREES_OF_PAIRS: f64 = 0.6;
 /// Largest error of the map's peak between two columns, columns.
 const COLUMNS: f64 = 0.25;
 
-/// How a capture was made.
+/// Sign, ramp and carrier of a capture.
 #[derive(Debug, Clone, Copy)]
 struct Made {
     /// 1 or -1: all phases.
@@ -47,7 +47,7 @@ const UPWARDS: [Made; 4] = [
 const DOWNWARDS: Made = Made { sign: 1.0, sweep: -1.0, in_middle: true };
 
 impl Made {
-    /// What an antenna pair at `transmitter` and `receiver`, metres along the array, hears in sample `n`.
+    /// Sample `n` of an antenna pair at `transmitter` and `receiver`, metres along the array.
     fn sample(self, transmitter: f64, receiver: f64, n: usize) -> Complex64 {
         let hz = FIRST_HZ + self.sweep * BANDWIDTH_HZ * n as f64 / SAMPLES as f64;
         let echo = |(range, cos): (f64, f64)| {

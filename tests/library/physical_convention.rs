@@ -1,4 +1,4 @@
-//! The physical convention, held to formulas of its own: phases, blobs, and places within the Cramer-Rao bound.
+//! The physical convention, compared with formulas of its own: phases, blobs, and places within the Cramer-Rao bound.
 
 use apertura::bounds::cramer_rao;
 use apertura::files::npz::write_npz;
@@ -35,12 +35,12 @@ fn radar() -> Radar {
     usual.in_convention(Convention::Physical)
 }
 
-/// Where element `n` stands, metres: a quarter of the wavelength in the middle of the chirp from the next.
+/// Place of element `n`, metres: a quarter of the wavelength in the middle of the chirp from the next.
 fn element_x(n: usize) -> f64 {
     (n as f64 - (ELEMENTS as f64 - 1.0) / 2.0) * C / (FIRST_HZ + BANDWIDTH_HZ / 2.0) / 4.0
 }
 
-/// What an antenna at `antenna` hears of a point of reflectivity 1 in sample `n`, for each watt.
+/// Sample `n` at an antenna at `antenna` of a point of reflectivity 1, for each watt.
 fn sample(antenna: f64, [x, y]: [f64; 2], n: usize) -> Complex64 {
     let hz = FIRST_HZ + BANDWIDTH_HZ * n as f64 / SAMPLES as f64;
     let range = (x - antenna).hypot(y);
@@ -127,7 +127,7 @@ fn points_of_physical_captures_are_placed_within_the_bound() {
         let found = method.reconstruct(radar, &recording.two_ends(), &request).unwrap().detections(radar);
         let reflector = Reflector { x_metres: point[0], y_metres: point[1], reflectivity: reflectivity(point) };
         let bound = cramer_rao(radar, &Layout::two_ends(radar), &[reflector], sigma * sigma).unwrap()[0];
-        // A point that is taken for two is no place of it; how often that happens is held below.
+        // A point that is taken for two has no single place. The count of such points is bounded below.
         let [first] = &found[..] else { continue };
         let range_off = (first.range_metres - range) / bound.range_metres;
         let cos_off = (first.cos_theta - cos) / bound.cos_theta;
@@ -137,7 +137,7 @@ fn points_of_physical_captures_are_placed_within_the_bound() {
         placed += 1;
     }
     println!("{placed} of {captures} were taken for one point");
-    // One in five is taken for two: the search adds points to noise.
+    // One in five points is taken for two: the search adds points to noise.
     assert!(f64::from(placed) >= 0.75 * f64::from(captures), "{placed} of {captures} were taken for one point");
     // Of 32 draws a root mean square is known to 13 %.
     for (what, squares) in [("range", ranges), ("cos(theta)", cosines)] {

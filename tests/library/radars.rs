@@ -1,4 +1,4 @@
-//! Every method on every valid radar: a map with its echoes where they must be, or at once a reason why not.
+//! Every method on every valid radar: a map with its echoes in their places, or at once a refusal with its reason.
 
 use apertura::maps::{LogMaps, Normalisation};
 use apertura::methods;
@@ -9,7 +9,7 @@ use apertura::signal::{Floor, simulate};
 use proptest::prelude::*;
 use std::time::{Duration, Instant};
 
-/// Methods that know one radar.
+/// Methods that are trained for one radar.
 const NETWORKS: [&str; 4] = ["live", "thesis", "thesis-1", "unet"];
 
 /// Longest that any method may take for one of these maps, even on a busy machine in an unoptimised build.
@@ -65,8 +65,8 @@ fn a_reflector_is_where_the_whole_array_sees_it_or_is_refused() {
                 }
                 Err(error) => panic!("{name} on {what}: {error}"),
             };
-            // The U-Net is there to show how it collapsed, and nothing promises that networks serve radars they don't know.
-            // The baseline is one end's own map, which sees a near reflector elsewhere than the array's middle does.
+            // The U-Net is there to show its collapse, and networks need not serve radars that they are not trained for. The baseline is one end's
+            // own map, which sees a near reflector elsewhere than the array's middle does.
             if NETWORKS.contains(&name) || name == "baseline" {
                 continue;
             }
@@ -139,7 +139,7 @@ proptest! {
     }
 }
 
-/// What `method` finds of points at these ranges (metres) and cosines, over 40 dB.
+/// Echoes that `method` finds of points at these ranges (metres) and cosines, over 40 dB.
 fn found(method: &str, radar: &Radar, places: &[(f64, f64)]) -> Result<Vec<Detection>, ReconstructError> {
     let scene = Scene::of_points(places.iter().map(|(range, cos)| (range * cos, range * (1.0 - cos * cos).sqrt())));
     let floor = Floor::Snr(Decibels(40.0));

@@ -6,10 +6,10 @@ use apertura::radar::Radar;
 use apertura::scene::{Object, presets};
 use apertura::signal::{Floor, simulate};
 
-/// A dip of this much of Lambda parts two blobs.
+/// Least dip of Lambda between two blobs that count as two.
 const PARTS: f32 = 0.05;
 
-/// How many blobs post and wall are in either input and in the target, with the post on its ring at an angle from straight ahead.
+/// Number of blobs of post and wall in either input and in the target, with the post on its ring at an angle from straight ahead.
 fn blobs_at(degrees: f64) -> [usize; 3] {
     let radar = Radar::default();
     let mut scene = presets::default_scene().scene;

@@ -1,4 +1,4 @@
-//! Lessons, and what their texts must say.
+//! Lessons, and the numbers that their texts must have.
 
 use apertura::lesson::{Lesson, shipped};
 use apertura::radar::{Convention, Radar};
@@ -18,7 +18,7 @@ pub fn taught(id: &str, number: &str) {
     assert!(text(id).contains(number), "{id} does not say \"{number}\"");
 }
 
-/// The radar of most lessons: what table 3.1 says, in the physical convention.
+/// The radar of most lessons: table 3.1 in the physical convention.
 pub fn physical() -> Radar {
     Radar::default().in_convention(Convention::Physical)
 }

@@ -28,7 +28,7 @@ impl Physical {
         }
     }
 
-    /// What its element `number` hears of a point in sample `n` of `samples`, with a mixer by which phases fall with the range.
+    /// Sample `n` of `samples` at element `number` of a point, with a mixer by which phases fall with the range.
     fn sample(&self, radar: &Radar, point: &Reflector, number: usize, n: usize) -> Complex64 {
         let antenna = (number as f64 - (radar.elements as f64 - 1.0) / 2.0) * self.spacing_metres;
         let (dx, y) = (TwoFloat::new_sub(point.x_metres, antenna), point.y_metres);

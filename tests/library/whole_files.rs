@@ -18,12 +18,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Where the child works.
+/// Variable with the child's folder.
 const FOLDER: &str = "APERTURA_TEST_FOLDER";
-/// How often each child is killed.
+/// Number of times that each child is killed.
 const KILLS: u64 = 12;
 
-/// A scene that says how many points it has: whole, or found out.
+/// A scene whose name is its number of points, so that a part of it is found out.
 fn numbered(number: usize) -> SceneFile {
     let scene = Scene::of_points((0..number).map(|i| (i as f64, 5.0)));
     SceneFile { scene: Scene { name: number.to_string(), ..scene }, ..SceneFile::default() }
@@ -177,7 +177,7 @@ fn a_kill_while_exporting_leaves_a_whole_archive() {
     }
 }
 
-/// Saves a scene that does not fit, and says what came of it.
+/// Saves a scene that does not fit, and prints the outcome.
 #[test]
 #[ignore = "the child of the test below"]
 fn child_saves_too_much() {
@@ -188,7 +188,7 @@ fn child_saves_too_much() {
     }
 }
 
-/// Runs that child where no file can grow beyond 8 blocks, as on a full disk; what it said.
+/// Runs that child where no file can grow beyond 8 blocks, as on a full disk; returns its output.
 #[cfg(unix)]
 fn save_too_much(folder: &Path) -> String {
     let program = child("child_saves_too_much", folder);

@@ -1,4 +1,4 @@
-// What the tests of the page share: a browser, pages that are open, and what a person does in them.
+// Tools of the page's tests: a browser, open pages, and a person's actions in them.
 import { deflateSync } from "node:zlib";
 import { chromium } from "playwright-core";
 

@@ -13,7 +13,7 @@ after(() => browser.close());
 const SCENE = "[[object]]\nkind = \"point\"\nx_metres = 3.0\ny_metres = 12.0\n";
 const settled = (page) => page.waitForTimeout(4000);
 
-// What the page would copy as a link.
+// The link that the page would copy.
 async function copied(page) {
   await run(page, "Copy link");
   await page.waitForTimeout(1000);

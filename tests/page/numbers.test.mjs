@@ -63,7 +63,7 @@ function figures(output, target) {
 
 // Without thermal noise the darkest cells are rounding errors of 1e-16 of the peak. They depend on the last bit of a cosine, of which wasm
 // and the system have their own, and Lambda is scaled by the darkest. So both outputs are judged by one target: the native program's.
-// What a search or an iteration finds among rounding errors depends on them, too: over the street by iaa and the thesis' floor the native
+// The results of a search or an iteration among rounding errors depend on them, too: over the street by iaa and the thesis' floor the native
 // program has SE 3999 and P_D 0.825 with portable instructions, 5201 and 0.837 with AVX2. Bounds are then those of the second row.
 const STRICT = { relativeError: 1e-3, detection: 1e-3 };
 const AMONG_ROUNDING_ERRORS = { deviation: 5e-3, detection: 2e-2 };

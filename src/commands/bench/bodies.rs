@@ -1,4 +1,4 @@
-//! `apertura bench --bodies`: how long scenes of bodies take and how that grows with their number.
+//! `apertura bench --bodies`: times of scenes of bodies, and their growth with the number of bodies.
 
 use crate::benchmark::bodies::{self, BodyCase, BodyRow, BodyTimes};
 use crate::benchmark::front::MapConvention;

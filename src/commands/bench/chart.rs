@@ -32,8 +32,8 @@ fn sizes(counts: &[usize]) -> String {
     }
 }
 
-/// Where `row` is drawn: a choice of the planner's at the dot of the algorithm that it chose, where that took part too, as the two were timed
-/// one after the other and differ by chance.
+/// The row at whose dot `row` is drawn. A choice of the planner's stands at the dot of the algorithm that it chose, where that took part too: the two
+/// were timed one after the other and differ by chance.
 fn dot_of<'a>(row: &'a FrontRow, rows: &[&'a FrontRow]) -> &'a FrontRow {
     if row.algorithm != Entrant::Planned {
         return row;

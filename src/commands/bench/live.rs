@@ -1,4 +1,4 @@
-//! `apertura bench --live`: the live network's forward pass, with and without what it leaves out, beside the features before it.
+//! `apertura bench --live`: times of the live network's forward pass, sparse and dense, and of the features before it.
 
 use crate::commands::{CommandError, print, print_json};
 use crate::network;
@@ -17,9 +17,9 @@ struct Pass {
     threads: usize,
     scenes: u32,
     features_milliseconds: f64,
-    /// The network as it ships: what doesn't show in a scene's map is left out.
+    /// Time of the network as it ships: cells without effect on a scene's map are left out.
     forward_milliseconds: f64,
-    /// The network with nothing left out: as much work as anything else that runs it does.
+    /// Time of the network with no cells left out: as much work as in any other runtime.
     dense_forward_milliseconds: f64,
 }
 

@@ -1,4 +1,4 @@
-//! `apertura bench --methods`: run time against squared error of every reconstruction method; how long crowds take those that search.
+//! `apertura bench --methods`: run time against squared error of every reconstruction method, and times of the searches on crowds.
 
 use crate::commands::CommandError;
 use crate::commands::figure::{DrawingResult, Plot, save, save_numbers, tick};
@@ -149,7 +149,7 @@ fn crowds_of(
         let trial = Trial::new(&radar, &scene, Floor::Thesis, request.normalisation).map_err(CommandError::failed)?;
         for (method, (times, errors)) in methods.iter().zip(times.iter_mut().zip(&mut errors)) {
             if number == 0 {
-                // Warmed up, as the methods above were.
+                // The method is warmed up here, as the methods above were.
                 trial.ask(&**method, &request).map_err(CommandError::failed)?;
             }
             let answer = trial.ask(&**method, &request).map_err(CommandError::failed)?;

@@ -15,11 +15,11 @@ use std::process::Command;
 use std::time::Instant;
 
 const JUDGED_ELEMENTS: [usize; 4] = [0, 341, 682, 1023];
-/// The tasks, by the name that the script knows, with how the maps are drawn and the error that a sample may have.
+/// The tasks: the name for the script, the convention of the maps, and the largest error of a sample.
 const TASKS: [(&str, MapConvention, f64); 2] =
     [("thesis", MapConvention::THESIS, 1e-12), ("fixed", MapConvention::FIXED_RANGE, 1e-6)];
 
-/// Both tasks by all tools.
+/// The times of both tasks by all tools.
 #[derive(Debug, Serialize)]
 pub struct Equal {
     tasks: Vec<EqualTask>,
@@ -74,7 +74,7 @@ pub fn measure(script: &Path, counts: &[usize], repeats: usize) -> Result<Equal,
     Ok(Equal { tasks })
 }
 
-/// Runs the script; says why, where it can't.
+/// Runs the script; the error is the reason where it can't run.
 fn run(script: &Path, task: &str, folder: &Path, counts: &[usize]) -> Result<Printed, String> {
     let counts = counts.iter().map(usize::to_string);
     let output = Command::new("python3").arg(script).arg(task).arg(folder).args(counts).output();
@@ -125,7 +125,7 @@ impl Reference {
             let wanted = MapRequest {
                 floor: convention.floor,
                 normalisation: convention.normalisation,
-                // Another seed is other noise, made inside the time.
+                // Another seed makes other noise, within the measured time.
                 seed: repeat as u64,
                 ends: false,
                 ..MapRequest::default()

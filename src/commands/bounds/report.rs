@@ -1,4 +1,4 @@
-//! What `apertura bounds` says.
+//! The report of `apertura bounds`.
 
 use crate::bounds::{Lobes, PositionBound};
 use crate::commands::{CommandError, print};
@@ -30,17 +30,17 @@ pub struct BoundRow {
     pub snr_db: f64,
     pub alone: Option<Bound>,
     pub beside_another: Option<Bound>,
-    /// Alone, with one unknown complex gain for either half of the layout, where that was asked for.
+    /// The bound of the reflector alone, with one unknown complex gain for either half of the layout, where that was asked for.
     pub gain_per_end: Option<Bound>,
 }
 
-/// Standard deviations that no unbiased estimate can stay below.
+/// Least standard deviations of any unbiased estimate.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Bound {
     pub range_millimetres: f64,
     pub columns: f64,
     pub position_millimetres: f64,
-    /// Of the reflector's amplitude.
+    /// Of the reflector's amplitude, decibels.
     pub amplitude_db: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Whether the doubt of a method is as large as its errors, and finds its failures.
+//! Figures on a method's doubt: its ratio to the errors, and the failures that it finds.
 
 use super::percent::percent_of;
 use crate::evaluate::Estimate;
@@ -14,15 +14,15 @@ pub struct DoubtReport {
     rows: usize,
     failures: usize,
     least_squared_error: f64,
-    /// `None` where every row is a failure, or none.
+    /// Area under the ROC curve; `None` where every row is a failure, or none.
     area: Option<f64>,
-    /// `None` for fewer than two failures or two other rows.
+    /// Standard error of the area; `None` for fewer than two failures or two other rows.
     standard_error: Option<f64>,
 }
 
 impl DoubtReport {
-    /// Of the rows of `method`; `None` where they say no doubt or are too few. `limit` is the least squared error of a failure; the worst tenth
-    /// of these rows are failures without it.
+    /// The figures of the rows of `method`; `None` where they have no doubt or are too few. `limit` is the least squared error of a failure; without
+    /// it the worst tenth of these rows are failures.
     pub fn of(method: &str, rows: &[&Row], limit: Option<f64>) -> Option<DoubtReport> {
         let own = rows.iter().copied().filter(|row| row.method == method);
         let DoubtArea { rows, failures, least_squared_error, area } = DoubtArea::of(own, limit)?;

@@ -1,4 +1,4 @@
-//! Detection by echo, for scenes with bodies: what P_D, which counts cells near the strongest, doesn't see.
+//! Detection by echo, for scenes with bodies: P_D counts cells near the strongest echo only.
 
 use crate::evaluate::echoes::{CLASSES, EchoTally};
 use serde::Serialize;
@@ -6,11 +6,11 @@ use std::fmt::Write;
 
 #[derive(Debug, Serialize)]
 pub struct EchoReport {
-    /// Where each class begins, dB below the scene's strongest echo; the last one has no end.
+    /// Level at which each class begins, dB below the scene's strongest echo; the last class has no end.
     below_db: [usize; CLASSES],
     there: [usize; CLASSES],
     found: [usize; CLASSES],
-    /// Part of all that are there; `None` where none is.
+    /// Part of all echoes that were found; `None` without echoes.
     detection: Option<f64>,
 }
 
@@ -25,7 +25,7 @@ impl EchoReport {
     }
 }
 
-/// Adds what each method found to a set's table; nothing for no method. `width` is that of the names.
+/// Adds the echoes that each method found to a set's table; no effect without methods. `width` is that of the names.
 pub fn write(methods: &[(&str, &EchoReport)], width: usize, text: &mut String) {
     let Some((_, first)) = methods.first() else { return };
     let title = "echoes found, by dB below the";

@@ -182,7 +182,7 @@ impl Args {
             ..Campaign::default()
         };
         let radar = match sets {
-            // Its scenes say which radar sees them.
+            // The folder's scenes name their own radars.
             [folder @ SceneSet::Folder(_)] => {
                 folder.case(&campaign.radar, &campaign.generator(), 0).map_err(CommandError::failed)?.radar
             }
@@ -287,7 +287,7 @@ impl Args {
     }
 }
 
-/// The methods that make maps of what the campaign's layout hears; the others are named.
+/// The methods that take samples of the campaign's layout; standard error names the others.
 fn hearing<'a>(
     campaign: &Campaign,
     methods: &'a [Arc<dyn Reconstructor>],

@@ -1,11 +1,11 @@
-//! How far an evaluation is: a bar on a terminal, now and then a line elsewhere.
+//! The progress of an evaluation: a bar on a terminal, now and then a line elsewhere.
 
 use crate::evaluate::rows::Row;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-/// Counts maps and tells of them on standard error.
+/// The count of finished maps, shown on standard error.
 pub struct MapProgress {
     bar: ProgressBar,
     every: Option<Duration>,
@@ -16,7 +16,7 @@ pub struct MapProgress {
 }
 
 impl MapProgress {
-    /// Of a run that makes `total` maps; off a terminal a line every so often.
+    /// The progress of a run of `total` maps; off a terminal a line after each `every`.
     pub fn new(total: u64, every: Duration) -> Self {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} maps, {eta} left");
         let bar = ProgressBar::new(total).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));

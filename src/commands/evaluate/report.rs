@@ -15,7 +15,7 @@ use crate::scene::generate::{Kind, Reading};
 use serde::{Serialize, Serializer};
 use std::fmt::Write;
 
-/// What the command found; its JSON is documented in the command's help.
+/// The report of an evaluation; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
 pub struct EvaluationReport {
     count: usize,
@@ -56,7 +56,7 @@ struct MethodReport {
     weights: Option<String>,
     optimiser: String,
     eta: f32,
-    /// Whether every answer was judged at `eta`; it is the mean of theirs otherwise.
+    /// Whether every answer was judged at `eta`; otherwise `eta` is the mean of the answers' own.
     one_eta: bool,
     scenes: usize,
     squared_error: Estimate,
@@ -69,12 +69,12 @@ struct MethodReport {
     echoes: Option<EchoReport>,
     /// `None` where the rows say no doubt, and where they are too few.
     doubt: Option<DoubtReport>,
-    /// Part of the cells that are off by at most their doubt; `None` where the rows say none.
+    /// Part of the cells whose error is at most their doubt; `None` without doubt.
     within_doubt: Option<Estimate>,
     /// `None` where no detector of constant false-alarm rate was tried.
     cfar: Option<CfarReport>,
     median_milliseconds: f64,
-    /// Part of the scenes on which no other method is much better; `None` beside no other.
+    /// Part of the scenes on which no other method is much better; `None` for a single method.
     near_best: Option<f64>,
 }
 
@@ -98,7 +98,7 @@ impl CfarReport {
 
 #[derive(Debug, Serialize)]
 struct AtPrinted {
-    /// Says that this is not the thesis' P_D, which is at one threshold.
+    /// A note that the figure is not the thesis' P_D, which is at one threshold.
     threshold: &'static str,
     false_alarm: f64,
     detection: f64,
@@ -106,7 +106,7 @@ struct AtPrinted {
     median: f64,
 }
 
-/// What stands for the description of scenes that are files.
+/// Description of scenes that are read from files.
 const OF_A_FOLDER: &str = "scenes of a folder";
 
 const LABEL: usize = 26;
@@ -133,8 +133,8 @@ fn of_methods(rows: &[&Row], limit: Option<f64>) -> Vec<DoubtReport> {
 }
 
 impl EvaluationReport {
-    /// The tables of `rows`, of whose whole run `missing` lacks. `limit` is the least squared error of a failure that doubt is to find; failures
-    /// are the worst tenth without it.
+    /// The tables of `rows`; `missing` are the scenes that lack in the whole run. `limit` is the least squared error of a failure for the figures on
+    /// doubt; without it the worst tenth are failures.
     pub fn of(rows: &[Row], missing: Vec<Lack>, limit: Option<f64>) -> EvaluationReport {
         let all: Vec<&Row> = rows.iter().collect();
         let sets: Vec<SetReport> = names(&all, |row| &row.set)

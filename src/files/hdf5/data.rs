@@ -13,7 +13,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
         match &object.place {
             Some(Storage::Here(bytes)) if bytes.len() >= all => Ok(bytes[..all].to_vec()),
             Some(Storage::Whole(Some(address))) => self.at(*address, all as u64),
-            // What was never written is zero.
+            // Numbers that were never written are zero.
             Some(Storage::Whole(None) | Storage::Chunks { tree: None, .. }) => Ok(vec![0; all]),
             Some(Storage::Chunks { tree: Some(tree), shape }) => {
                 let count = shape.iter().try_fold(1usize, |n, len| n.checked_mul(*len));
@@ -38,7 +38,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
         if object.filters.contains(&ChunkFilter::Unread) {
             return Err(Hdf5Error::Unread("an array compressed by another filter than deflate"));
         }
-        // Before each chunk its size, a mask of filters left out, and where it begins along each axis and within a number.
+        // The key of a chunk: its size, a mask of filters left out, and its offset along each axis and within a number.
         let key_bytes = 8 + 8 * (shape.len() + 1);
         let mut chunks = Vec::new();
         self.walk(tree, 1, key_bytes, &mut |key, address| chunks.push((key.to_vec(), address)))?;
@@ -67,7 +67,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
     }
 }
 
-/// What deflate left: no more than a chunk and the sums that filters before number `n` have put behind it.
+/// The inflated bytes of a chunk: at most those of a `whole` chunk and of the sums that filters before number `n` have put behind it.
 fn inflated(bytes: &[u8], n: usize, whole: usize) -> Result<Vec<u8>, Hdf5Error> {
     let mut out = Vec::new();
     ZlibDecoder::new(bytes)
@@ -86,7 +86,7 @@ fn unshuffled(bytes: &[u8], size: usize) -> Vec<u8> {
     out
 }
 
-/// Puts the rows of a chunk in their places; what lies beyond the array is left out.
+/// Puts the rows of a chunk in their places; cells beyond the array are left out.
 fn place(out: &mut [u8], of: &[usize], bytes: &[u8], chunk: &[usize], begins: &[usize], size: usize) {
     let Some((last, outer)) = chunk.split_last() else { return };
     let begin = begins[outer.len()];

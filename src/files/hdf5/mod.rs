@@ -1,10 +1,10 @@
 //! Arrays of numbers in HDF5 files ("HDF5 File Format Specification", version 3.0), as h5py writes them and MATLAB (`.mat` 7.3): integers,
 //! floating-point and complex numbers, in one piece or in chunks, compressed by deflate, in groups.
 //!
-//! What newer writers may use instead (version 4 of chunks, dense groups, other filters) is told by name. A file is read by seeking, and no
+//! Features of newer writers (version 4 of chunks, dense groups, other filters) are refused by name. A file is read by seeking, and no
 //! memory is asked for before the size was compared with the file's or with the bound.
 //!
-//! `source` reads bytes, `object` headers of objects, `data` numbers, each of a kind of `number`.
+//! `source` reads bytes, `object` headers of objects, `data` numbers; `number` has the types of numbers.
 
 mod data;
 mod number;
@@ -24,9 +24,9 @@ use source::{Hdf5Bytes, HeaderBytes};
 use std::io::{Read, Seek};
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
-/// Where a superblock may stand: at the beginning, or behind a block of the writer's own.
+/// Possible places of a superblock: at the beginning, or behind a block of the writer's own.
 const PLACES: [u64; 6] = [0, 512, 1024, 2048, 4096, 8192];
-/// How deep groups are looked into.
+/// Depth to which groups are read.
 const MOST_DEPTH: usize = 8;
 
 /// Numbers of an array, in the order of its axes.
@@ -115,7 +115,7 @@ impl<R: Read + Seek> Hdf5<R> {
             let mut object = self.source.object(address)?;
             let named = |child: &str| if name.is_empty() { child.to_owned() } else { format!("{name}.{child}") };
             if depth < MOST_DEPTH {
-                // MATLAB keeps what cells hold in a group of its own.
+                // MATLAB keeps the contents of cells in a group of its own.
                 let children = std::mem::take(&mut object.children);
                 let told = children.into_iter().filter(|(child, _)| child != "#refs#" && child != "#subsystem#");
                 waiting.extend(told.map(|(child, address)| (named(&child), address, depth + 1)));
@@ -129,7 +129,7 @@ impl<R: Read + Seek> Hdf5<R> {
     }
 }
 
-/// Reads the superblock at `place`: where addresses count from and how long they are. The address of the root group.
+/// Reads the superblock at `place`: the base of addresses, and the sizes of addresses and lengths. Returns the address of the root group.
 fn superblock<R: Read + Seek>(source: &mut Hdf5Bytes<R>, place: u64) -> Result<u64, Hdf5Error> {
     let block = source.read(place, 128.min(source.bytes - place))?;
     let mut part = HeaderBytes::new(&block[8..]);

@@ -1,4 +1,4 @@
-//! What the numbers of an array are.
+//! Types of an array's numbers.
 
 /// One number as it stands in the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,7 +11,7 @@ pub(super) struct NumberKind {
 }
 
 impl NumberKind {
-    /// Its value; `bytes` are as many as it has.
+    /// The number in `bytes`, of as many bytes as the type has.
     pub fn value(&self, bytes: &[u8]) -> f64 {
         let word = match self.is_big {
             false => bytes.iter().rev().fold(0u64, |n, b| n << 8 | u64::from(*b)),
@@ -42,11 +42,11 @@ pub fn half_value(word: u16) -> f64 {
     }
 }
 
-/// What a number of an array is.
+/// The type of an array's numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Member {
     One(NumberKind),
-    /// A compound of two: real and imaginary part, where they stand in it.
+    /// A compound of two: the offsets and types of real and imaginary part.
     Two {
         bytes: usize,
         parts: [(usize, NumberKind); 2],

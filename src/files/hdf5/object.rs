@@ -13,7 +13,7 @@ const MOST_PARTS: usize = 256;
 /// Most axes of an array.
 const MOST_AXES: usize = 32;
 
-/// What was done to the bytes of a chunk.
+/// A filter that a chunk's bytes passed through.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ChunkFilter {
     Deflate,
@@ -24,16 +24,16 @@ pub(super) enum ChunkFilter {
     Unread,
 }
 
-/// Where an array's numbers are.
+/// Storage of an array's numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Storage {
-    /// In its header.
+    /// In the array's header.
     Here(Vec<u8>),
     /// In one piece; `None` where nothing was written.
     Whole(Option<u64>),
     /// In chunks of this shape, which a tree lists.
     Chunks { tree: Option<u64>, shape: Vec<usize> },
-    /// In a way that is not read.
+    /// In a way that is not read, by its name.
     Unread(&'static str),
 }
 
@@ -41,7 +41,7 @@ pub(super) enum Storage {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Hdf5Object {
     pub shape: Vec<usize>,
-    /// What its numbers are; nothing where they are something else.
+    /// Type of the numbers; `None` for a type that is not read.
     pub number: Option<Member>,
     pub place: Option<Storage>,
     pub filters: Vec<ChunkFilter>,
@@ -107,7 +107,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
     ) -> Result<(), Hdf5Error> {
         match kind {
             0x01 => object.shape = self.shape(message)?,
-            // A kind that several arrays share stands elsewhere.
+            // A type that several arrays share stands elsewhere.
             0x03 if flags & 2 == 0 => object.number = number(&mut message)?,
             0x02 => {
                 message.skip(1)?;
@@ -139,7 +139,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
         (0..axes).map(|_| Ok(message.number(self.length_bytes)? as usize)).collect()
     }
 
-    /// An address, unless it stands for none.
+    /// An address; `None` for the value that means none.
     fn address(&self, message: &mut HeaderBytes<'_>) -> Result<Option<u64>, Hdf5Error> {
         let bits = 8 * self.offset_bytes as u32;
         let none = u64::MAX >> (64 - bits);
@@ -215,7 +215,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
         Ok(leaves)
     }
 
-    /// Hands on the key before each leaf of a tree, and the leaf.
+    /// Calls `leaf` with the key before each leaf of a tree, and the leaf.
     pub(super) fn walk(
         &mut self,
         tree: u64,
@@ -244,7 +244,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
     }
 }
 
-/// The kind of an array's numbers, where they are numbers.
+/// The type of an array's numbers; `None` where they are not numbers.
 fn number(message: &mut HeaderBytes<'_>) -> Result<Option<Member>, Hdf5Error> {
     let (version, class, bits, bytes) = kind_head(message)?;
     if class != 6 {
@@ -281,7 +281,7 @@ fn kind_head(message: &mut HeaderBytes<'_>) -> Result<(u8, u8, u64, usize), Hdf5
     Ok((head >> 4, head & 15, bits, message.word()?))
 }
 
-/// One number, its own properties left behind.
+/// The type of one number. Its further properties are skipped.
 fn kind(class: u8, bits: u64, bytes: usize, message: &mut HeaderBytes<'_>) -> Result<Option<NumberKind>, Hdf5Error> {
     let (is_float, properties) = match class {
         0 => (false, 4),

@@ -1,8 +1,8 @@
-//! The bytes of a file and of its headers, each read held against the file's size.
+//! The bytes of a file and of its headers. Each read is checked against the file's size.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// Why an array could not be read.
+/// An error of reading an array.
 #[derive(Debug, thiserror::Error)]
 pub enum Hdf5Error {
     /// The system could not read.
@@ -37,13 +37,13 @@ pub enum Hdf5Error {
     },
 }
 
-/// The file, and how long its addresses and lengths are.
+/// The file, and the sizes of its addresses and lengths.
 #[derive(Debug)]
 pub struct Hdf5Bytes<R> {
     file: R,
     /// Bytes of the file.
     pub bytes: u64,
-    /// Where addresses count from.
+    /// Byte from which addresses count.
     pub base: u64,
     /// Bytes of an address.
     pub offset_bytes: usize,
@@ -52,7 +52,7 @@ pub struct Hdf5Bytes<R> {
 }
 
 impl<R: Read + Seek> Hdf5Bytes<R> {
-    /// Of a whole file, with the usual lengths.
+    /// The bytes of a whole file, with the usual sizes of addresses and lengths.
     ///
     /// # Errors
     /// [`Hdf5Error::Io`].
@@ -77,7 +77,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
         self.read(address.checked_add(self.base).ok_or(Hdf5Error::Damaged("it points beyond its end"))?, count)
     }
 
-    /// At most so many bytes at an address: fewer where the file ends.
+    /// At most `most` bytes at an address: fewer where the file ends.
     pub fn up_to(&mut self, address: u64, most: u64) -> Result<Vec<u8>, Hdf5Error> {
         let there = self.bytes.saturating_sub(address.saturating_add(self.base));
         self.at(address, most.min(there))

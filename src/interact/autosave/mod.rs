@@ -32,18 +32,18 @@ type Answer = Result<(), String>;
 /// The copies of one window.
 pub struct Autosave {
     store: AutosaveStore,
-    /// Where files are written on a thread of their own.
+    /// Sender of copies to the thread that writes their files.
     jobs: Option<Sender<StartPlan>>,
     answers: (Sender<Answer>, Receiver<Answer>),
     pending: usize,
     thread: Option<JoinHandle<()>>,
     last: Option<(StartPlan, Instant)>,
-    /// Held while the window lives; the system lets go of it however the process ends. Last, so that the thread ends before.
+    /// Held while the window lives; the system releases it however the process ends. It is the last field, so that the thread ends before.
     _lock: Option<fs::Lock>,
 }
 
 impl Autosave {
-    /// Takes the first slot in `folder` that no other window holds: one with copies that a dead window left comes first.
+    /// Takes the first slot in `folder` that no other window holds. A slot with copies of a dead window comes first.
     ///
     /// Where the file system has no locks, the first slot is shared.
     /// # Errors
@@ -61,13 +61,13 @@ impl Autosave {
         Ok(Autosave { store, jobs, answers, pending: 0, thread, last: None, _lock: lock })
     }
 
-    /// Reads what a dead window left in this slot. A file that can't be read is set aside, not deleted.
+    /// Reads the copies of a dead window in this slot. A file that can't be read is set aside, not deleted.
     pub fn restore(&self) -> Restored {
         self.store.restore()
     }
 
-    /// Keeps copies of what is unsaved in `editor`, and deletes those of what is not any more; at most every 250 ms, except where
-    /// another document came on screen. Returns how long until the next copy may be made, if this one had to wait.
+    /// Keeps copies of the unsaved documents of `editor`, and deletes the copies of saved ones; at most every 250 ms, except where another document
+    /// came on screen. Returns the time until the next copy may be made, if this one had to wait.
     ///
     /// To be called after every change, and never during a drag.
     pub fn keep(&mut self, editor: &Editor) -> Option<Duration> {
@@ -87,7 +87,7 @@ impl Autosave {
 
     /// Keeps copies at once and waits until they are on disk: the window is closing.
     /// # Errors
-    /// Which file could not be written, and why.
+    /// Name of a file that could not be written, and the reason.
     pub fn keep_now(&mut self, editor: &Editor) -> Result<(), String> {
         self.ask(StartPlan::of(editor));
         let mut result = Ok(());
@@ -98,12 +98,12 @@ impl Autosave {
         result
     }
 
-    /// Whether `editor` is on disk as it is, as far as it is unsaved.
+    /// Whether the unsaved documents of `editor` are on disk as they are.
     pub fn holds(&self, editor: &Editor) -> bool {
         !self.is_busy() && self.last.as_ref().is_some_and(|(last, _)| last.is_same(&StartPlan::of(editor)))
     }
 
-    /// What went wrong since the last call.
+    /// Errors since the last call.
     pub fn poll(&mut self) -> Vec<String> {
         let mut problems = Vec::new();
         while let Ok(answer) = self.answers.1.try_recv() {
@@ -132,7 +132,7 @@ impl Drop for Autosave {
     fn drop(&mut self) {
         self.jobs = None;
         if let Some(thread) = self.thread.take() {
-            // A panic of it was told by the files it did not write.
+            // A panic of the thread was reported for each file that it did not write.
             let _panicked = thread.join();
         }
     }

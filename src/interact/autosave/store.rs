@@ -1,4 +1,4 @@
-//! The files of one slot: which there are, and how they become what a plan says.
+//! The files of one slot: reading them, and writing the documents of a plan.
 
 use crate::files::read_bounded;
 use crate::interact::Editor;
@@ -16,14 +16,14 @@ const TABLE: &str = "document";
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Kept {
-    /// Its own file. A path that is not Unicode is not kept: the document comes back untitled.
+    /// Path of the document's own file. A path that is not Unicode is not kept: the document comes back untitled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     path: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     recording: Option<String>,
 }
 
-/// What the files are to hold: the document on screen where it is unsaved, and unsaved ones before it.
+/// The documents that the files are to hold: the one on screen where it is unsaved, and unsaved ones before it.
 #[derive(Debug, Clone)]
 pub(super) struct StartPlan {
     on_screen: Option<Document>,
@@ -60,7 +60,7 @@ struct Behind {
     document: Document,
 }
 
-/// The files of one slot. Copies of this value speak of the same files.
+/// The files of one slot. Clones share them.
 #[derive(Debug, Clone)]
 pub(super) struct AutosaveStore {
     folder: PathBuf,
@@ -120,7 +120,7 @@ impl AutosaveStore {
         restored
     }
 
-    /// Makes the files what `plan` says: writes first, deletes then, so that at no moment a document is in no file.
+    /// Writes the documents of `plan` and then deletes other files, so that at no moment a document is in no file.
     pub(super) fn carry_out(&mut self, plan: &StartPlan) -> Result<(), String> {
         if plan.documents().next().is_some() {
             fs::create_dir_all(&self.folder).map_err(|e| format!("{}: {e}", self.folder.display()))?;

@@ -21,7 +21,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// What the next window finds.
+/// The documents that the next window restores.
 fn found(folder: &Path) -> Restored {
     Autosave::claim(folder).unwrap().restore()
 }

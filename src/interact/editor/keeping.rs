@@ -1,4 +1,4 @@
-//! Documents that come and go: opening, saving, and what is kept of those that another takes the place of.
+//! Opening, saving and replacing documents, and the unsaved ones that were replaced.
 
 use super::Editor;
 use crate::interact::Selection;
@@ -6,24 +6,23 @@ use crate::interact::document::{self, Document, Restored};
 use crate::scene::file::{FileLoss, SceneFileError, SceneFormat};
 use std::path::Path;
 
-/// Unsaved documents that are kept after another took their place; the oldest make room.
+/// Most unsaved documents that are kept after another took their place; the oldest make room.
 const MAX_LEFT: usize = 64;
 
-/// What became of a document that was written to a file.
+/// The outcome of writing a document to a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Saved {
     /// The file holds all of it and is its own from now on.
     Whole,
-    /// The file holds a copy without these; the document stays where it was, as unsaved as it was.
+    /// The file holds a copy without the named losses; the document keeps its path, as unsaved as it was.
     Copy(Vec<FileLoss>),
 }
 
 impl Editor {
-    /// What a window starts with: the document `asked` for by name, else the one that was on screen and unsaved when the last window
+    /// The editor of a new window. Its document is the one `asked` for by name, else the one that was on screen and unsaved when the last window
     /// died, else `otherwise`.
     ///
-    /// Where both of the first are there, the unsaved one lies one undo step behind. Nothing that was restored is lost: it stays in
-    /// [`Editor::left`].
+    /// Where both of the first are there, the unsaved one lies one undo step behind. Nothing that was restored is lost: it stays in [`Editor::left`].
     pub fn start(restored: Restored, asked: Option<Document>, otherwise: Document) -> Self {
         let Restored { on_screen, left, .. } = restored;
         let mut editor = match (on_screen, asked) {
@@ -40,35 +39,34 @@ impl Editor {
         editor
     }
 
-    /// Unsaved documents that another took the place of, the latest last.
+    /// Unsaved documents that another replaced on screen, the latest last.
     pub fn left(&self) -> &[Document] {
         &self.left
     }
 
-    /// What writing the document to `path` would lose; empty where it loses nothing.
+    /// The losses of writing the document to `path`; empty for none.
     /// # Errors
     /// [`SceneFileError::Extension`] for a name that says no format.
     pub fn losses(&self, path: &Path) -> Result<Vec<FileLoss>, SceneFileError> {
         Ok(self.document.losses(SceneFormat::of_path(path)?))
     }
 
-    /// Whether `path` is the document's own file and holds something else by now than what was read from it or written to it here: another
-    /// window or another program was there.
+    /// Whether `path` is the document's own file and has another content than was last read or written here: another window or program wrote it.
     pub fn would_replace_anothers(&self, path: &Path) -> bool {
         self.document.path() == Some(&*document::whole_path(path)) && self.document.is_outdated()
     }
 
-    /// Writes the document to `path`, which is its own file from then on; where the format can't hold all of it, a copy only. What is
-    /// laid over a recording is a scene of its own: the recording stays as it is.
+    /// Writes the document to `path`, which is its own file from then on; where the format can't hold all of it, a copy only. A scene over a
+    /// recording is written alone: the recording stays as it is.
     ///
-    /// Not a step of the history: undo changes the document, not where it is kept.
+    /// Not a step of the history: undo changes the document, not its path.
     /// # Errors
     /// [`SceneFileError`]; the file is then as it was, and the document too.
     pub fn save(&mut self, path: &Path) -> Result<Saved, SceneFileError> {
         let losses = self.losses(path)?;
         self.document.write(&document::whole_path(path))?;
         if !losses.is_empty() {
-            // Documents of that path must learn that it holds something else now.
+            // Documents of that path are told that it holds another content now.
             self.note_kept(&Document::read(path)?, &document::whole_path(path));
             return Ok(Saved::Copy(losses));
         }
@@ -95,8 +93,7 @@ impl Editor {
         }
     }
 
-    /// Puts the same recording's other frame in the place of this one: what is selected stays, and frames that follow one another are one step
-    /// of undo.
+    /// Replaces this frame by another of the same recording: the selection stays, and frames that follow one another are one step of undo.
     pub fn open_frame(&mut self, document: Document) {
         self.cancel_drag();
         let before = self.snapshot();
@@ -111,12 +108,12 @@ impl Editor {
         found.map(|document| self.open("recover", document)).is_some()
     }
 
-    /// Gives up the document `id` of [`Editor::left`]: its last state is kept nowhere but in the history.
+    /// Drops the document `id` from [`Editor::left`]: only the history holds its last state then.
     pub fn discard(&mut self, id: u64) {
         self.left.retain(|d| d.id() != id);
     }
 
-    /// Makes `document` the current one, and remembers the one before if it was unsaved and is another.
+    /// Makes `document` the current one, and keeps the one before in [`Editor::left`] if it was unsaved and is another.
     pub(super) fn replace(&mut self, document: Document) {
         let before = std::mem::replace(&mut self.document, document);
         let now = self.document.id();

@@ -15,7 +15,7 @@ use crate::scene::file::SceneFile;
 use crate::scene::{Object, Scene, SceneError};
 use std::sync::Arc;
 
-/// How far pasted and duplicated objects land from their originals, metres.
+/// Distance of pasted and duplicated objects from their originals, metres.
 const COPY_OFFSET_METRES: f64 = 1.0;
 
 #[derive(Debug, Clone)]
@@ -27,9 +27,8 @@ struct Drag {
 
 /// A document being edited. Its scene is shared: as long as nothing changes, [`Editor::scene`] returns the same [`Arc`].
 ///
-/// Undo brings back documents, so that undoing "open" gives back the one before with its radar, its path and what of it is on disk.
-/// An unsaved document that another takes the place of is not lost either: it stands in [`Editor::left`] until it is saved,
-/// discarded, or on screen again.
+/// Undo brings back documents, so that undoing "open" gives back the one before with its radar, its path and its saved content. An unsaved document
+/// that another replaced is not lost either: it stands in [`Editor::left`] until it is saved, discarded, or on screen again.
 #[derive(Debug, Clone, Default)]
 pub struct Editor {
     document: Document,
@@ -65,12 +64,12 @@ impl Editor {
         self.document.radar()
     }
 
-    /// What is selected.
+    /// The selected objects.
     pub fn selection(&self) -> &Selection {
         &self.selection
     }
 
-    /// What can be undone and redone.
+    /// The steps that can be undone and redone.
     pub fn history(&self) -> &History {
         &self.history
     }
@@ -126,7 +125,7 @@ impl Editor {
         let before = self.snapshot();
         let built = &self.scene().disturbances.elements;
         if radar.elements != self.radar().elements && !built.elements.is_empty() {
-            // Elements keep what is wrong with them, counted from the first.
+            // Elements keep their errors, counted from the first.
             let fitted = built.fitted(radar.elements);
             self.document.scene_mut().disturbances.elements = fitted;
         }
@@ -203,7 +202,7 @@ impl Editor {
         });
     }
 
-    /// Selects objects, and ends the current undo step: what is done to others is another.
+    /// Selects objects, and ends the current undo step: edits of others are another step.
     pub fn select(&mut self, indices: impl IntoIterator<Item = usize>, mode: SelectionMode) {
         self.seal();
         self.selection.pick(indices, mode);
@@ -231,7 +230,7 @@ impl Editor {
         grip::bounds(self.scene())
     }
 
-    /// Starts dragging what was hit; an object that is not selected becomes the selection first.
+    /// Starts dragging a hit part; an object that is not selected becomes the selection first.
     pub fn begin_drag(&mut self, hit: Hit, pointer: Place) {
         let offset = Place::new(hit.place.x_metres - pointer.x_metres, hit.place.y_metres - pointer.y_metres);
         let before = self.snapshot();
@@ -248,16 +247,16 @@ impl Editor {
         }
     }
 
-    /// What is being dragged.
+    /// The part of an object that is being dragged.
     pub fn dragged(&self) -> Option<Hit> {
         self.drag.as_ref().map(|d| d.hit)
     }
 
-    /// Moves what is dragged to the pointer. All selected objects move along with a body. Returns whether something changed.
+    /// Moves the dragged part to the pointer. All selected objects move along with a body. Returns whether anything changed.
     pub fn drag_to(&mut self, pointer: Place, snap: Snap) -> bool {
         let Some(drag) = &self.drag else { return false };
         let target = Place::new(pointer.x_metres + drag.offset.x_metres, pointer.y_metres + drag.offset.y_metres);
-        // A direction doesn't come to rest where places do.
+        // Directions don't snap to the grid of places.
         let target = if drag.hit.grip == Grip::Turn { target } else { snap.apply(self.radar(), target) };
         let start = drag.before.document.scene();
         let Some(grabbed) = start.objects.get(drag.hit.object) else { return false };
@@ -300,7 +299,7 @@ impl Editor {
         self.history.undo(now).map(|before| self.restore(before)).is_some()
     }
 
-    /// Redoes what was undone last; false where there is nothing.
+    /// Redoes the step that was undone last; false where there is none.
     pub fn redo(&mut self) -> bool {
         self.cancel_drag();
         let now = self.snapshot();

@@ -40,7 +40,7 @@ pub enum Statistic {
 }
 
 impl Statistic {
-    /// Both.
+    /// Both estimates.
     pub const ALL: [Statistic; 2] = [Statistic::CellAveraging, Statistic::OrderedStatistics];
 
     /// Name in sentences.
@@ -51,7 +51,7 @@ impl Statistic {
         }
     }
 
-    /// Name of a detector that uses it, in captions.
+    /// Name of a detector with this estimate, in captions.
     pub fn short_name(self) -> &'static str {
         match self {
             Statistic::CellAveraging => "CA-CFAR",
@@ -80,7 +80,7 @@ impl Default for Cfar {
     }
 }
 
-/// Why a detector can't work.
+/// A reason for which a detector can't work.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum CfarError {
@@ -106,7 +106,7 @@ pub enum CfarError {
 pub struct Level {
     /// Number of training cells.
     pub training: usize,
-    /// The noise that they measure.
+    /// The noise by the training cells.
     pub noise: f64,
     /// The noise times the factor: the cell is a detection above it.
     pub threshold: f64,
@@ -129,9 +129,9 @@ pub fn relative_power(map: &RangeAngleMap, scale: LambdaScale) -> Array2<f64> {
 }
 
 impl Cfar {
-    /// Whether it can work on some map.
+    /// Checks the detector's rate and cells.
     /// # Errors
-    /// [`CfarError`] says what is wrong and what was expected.
+    /// [`CfarError`] names the fault and the values allowed.
     pub fn check(&self) -> Result<(), CfarError> {
         if !(self.false_alarm > 0.0 && self.false_alarm < 1.0) {
             return Err(CfarError::Rate(self.false_alarm));
@@ -147,9 +147,9 @@ impl Cfar {
         Ok(())
     }
 
-    /// Whether it can work on a map of `[range bins, columns]`.
+    /// Checks that the detector can work on a map of `[range bins, columns]`.
     /// # Errors
-    /// [`CfarError`] says what is wrong and what was expected.
+    /// [`CfarError`] names the fault and the values allowed.
     pub fn check_map(&self, [bins, columns]: [usize; 2]) -> Result<(), CfarError> {
         self.check()?;
         let span = 2 * (self.guard[1] + self.training[1]) + 1;
@@ -204,7 +204,7 @@ impl Cfar {
 
     /// The verdict on the cell `[bin, column]` alone.
     /// # Errors
-    /// [`Cfar::check_map`].
+    /// As [`Cfar::check_map`].
     /// # Panics
     /// Where the map has no such cell.
     pub fn level(

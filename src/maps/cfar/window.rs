@@ -58,7 +58,7 @@ impl Window {
         Array2::from_shape_fn((bins, columns + 2 * self.reach[1]), |(row, i)| power[[row, (first + i) % columns]])
     }
 
-    /// Where a cell exceeds the sum of its training cells times a factor of its range bin.
+    /// Whether each cell exceeds the sum of its training cells times a factor of its range bin.
     pub fn above_sum(&self, power: ArrayView2<'_, f64>, factor: impl Fn(usize) -> f64 + Sync) -> Array2<bool> {
         let (bins, columns) = power.dim();
         let wrapped = self.wrapped(power);
@@ -85,8 +85,8 @@ impl Window {
         })
     }
 
-    /// Where a cell exceeds the training cell of a rank, from 1, times a factor, both of its range bin: where at least `rank` training cells
-    /// lie below the cell over the factor.
+    /// Whether each cell exceeds the training cell of a rank, from 1, times a factor, both of its range bin: where at least `rank` training cells lie
+    /// below the cell over the factor.
     pub fn above_rank(&self, power: ArrayView2<'_, f64>, of: impl Fn(usize) -> (usize, f64) + Sync) -> Array2<bool> {
         let (bins, columns) = power.dim();
         let wrapped = self.wrapped(power);

@@ -4,7 +4,7 @@ use super::super::log_map::{LOG_GUARD, guard};
 use crate::signal::simd::{ComplexLanes, Lanes, Real};
 use num_complex::Complex;
 
-/// The scale at which magnitudes are squared in f32 without overflow, and what it adds to the decades.
+/// The scale at which magnitudes are squared in f32 without overflow, and its share of the decades.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LogScale {
     factor: f64,

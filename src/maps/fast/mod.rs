@@ -57,7 +57,7 @@ impl FastLogMap {
         }
     }
 
-    /// How the decades become Lambda.
+    /// The scale from this map's decades to Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
         // Cells that differ by the rounding of their logarithms alone are flat.
         let is_flat = self.max - self.min < ROUNDING_DECADES;
@@ -66,7 +66,7 @@ impl FastLogMap {
     }
 }
 
-/// The floor's noise: range profiles of unit noise, and by how much each element's are multiplied.
+/// The floor's noise: range profiles of unit noise, and the factor of each element's.
 #[derive(Debug, Clone, Copy)]
 pub struct MapNoise<'a, T, const W: usize> {
     /// Profiles of noise of unit variance.
@@ -82,7 +82,7 @@ pub struct MapSources<'a, T, const W: usize> {
     pub profiles: &'a [&'a BlockProfiles<T, W>],
     /// The floor, if any.
     pub noise: Option<MapNoise<'a, T, W>>,
-    /// No cell of a map is larger than this; it only sets the scale at which magnitudes are squared.
+    /// Upper bound of the magnitude of a map's cells; it only sets the scale at which magnitudes are squared.
     pub bound: f64,
 }
 
@@ -315,7 +315,7 @@ mod tests {
         for (bin, row) in map.cells.outer_iter().enumerate() {
             let expected = if bin > 15 { 7.0 } else { -20.0 };
             let sounds = bin <= 15 && touched.contains(bin);
-            // A row that is touched may yet hold nothing.
+            // A touched row may yet be empty.
             assert!(row.iter().all(|v| if sounds { *v >= -20.0 && *v < 7.0 } else { *v == expected }), "row {bin}");
         }
         assert!(map.cells.iter().any(|v| *v > -20.0 && *v < 7.0));

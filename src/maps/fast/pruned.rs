@@ -17,7 +17,7 @@ pub(super) struct Pruned<T: Real, const W: usize> {
     twiddles: Vec<Vec<ComplexLanes<T, W>>>,
     small: LaneFft<T>,
     points: usize,
-    /// Where the lengths do not fit: window and plain transform.
+    /// Window and plain transform, where the lengths do not fit.
     plain: Option<(Vec<T>, Arc<dyn Fft<T>>)>,
 }
 

@@ -6,7 +6,7 @@ pub(super) const MAX_ELEMENTS: usize = 65536;
 pub(super) const MAX_OFF_LINE_PART: f64 = 0.01;
 pub(super) const MAX_Y_METRES: f64 = 1.0;
 
-/// Why transmitters and receivers form no uniform array.
+/// A reason for which transmitters and receivers form no uniform array.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum AntennasError {

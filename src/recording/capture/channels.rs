@@ -1,4 +1,4 @@
-//! What a `.cfg` says of channels: transmitters that send together, factors of channels, and the bias of ranges.
+//! Corrections of channels from a `.cfg`: transmitters that send together are told apart, channels multiplied, ranges corrected by their bias.
 
 use super::plan::Plan;
 use crate::radar::SPEED_OF_LIGHT;
@@ -7,14 +7,14 @@ use ndarray::{Array3, ArrayView3, Axis};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// What is done to the channels of a loop.
+/// Corrections of the channels of a loop.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Channels {
     /// The two chirps of a loop are S1 + S2 and S1 - S2.
     both: bool,
     /// Factor of each chirp's receivers, `[chirps][receivers]`; empty where none is said.
     factors: Vec<Vec<Complex64>>,
-    /// Chirps of a loop that several transmitters send, not told apart.
+    /// Number of chirps of a loop that several transmitters send and that can't be told apart.
     together: usize,
     unfitting: Option<(usize, usize)>,
 }
@@ -39,7 +39,7 @@ impl Channels {
         Channels { both, factors, together, unfitting }
     }
 
-    /// What was done, and what could not be, a sentence each.
+    /// Notes on the corrections made and on those that could not be made, a sentence each.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.both {

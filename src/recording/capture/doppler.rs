@@ -16,17 +16,18 @@ use std::f64::consts::TAU;
 
 /// Cosines at which the spectrum over the array is looked at.
 const COSINES: usize = 129;
-/// How much sharper the spectrum must be for another whole number of turns to be taken than none.
+/// Least sharpness of the spectrum at another whole number of turns over its sharpness at none, for the other number to be taken.
 const SHARPER: f64 = 1.15;
-/// A cell counts for itself from so much above the middle of its bin's cells on, as a ratio of powers.
+/// Least power of a cell that counts for itself, over that of the middle one of its bin's cells.
 const STANDS_OUT: f64 = 10.0;
-/// A cell beside the strongest stands no farther below it, as a ratio of powers: side lobes of the window over the loops do; and so many cells away.
+/// Least power of a cell beside the strongest, over the strongest's: side lobes of the window over the loops lie below; and least distance from it,
+/// cells.
 const BELOW_STRONGEST: f64 = 0.003;
 const APART_CELLS: f64 = 3.0;
-/// A cell of an echo that moves by a part of this of a loop's turn is told.
+/// Least turns over all loops for which an echo is said to move.
 const MOVES: f64 = 0.5;
 
-/// Samples of these Doppler cells, `[chirps, receivers, samples]`, and a sentence that says how they were chosen. `turns` are those of the chosen chirps'
+/// Samples of the strongest Doppler cells, `[chirps, receivers, samples]`, and the sentence on their choice. `turns` are those of the chosen chirps'
 /// pairs across the array at a cosine of 1.
 pub(super) fn strongest(
     frame: &Frame,
@@ -99,7 +100,7 @@ fn transformed(frame: &Frame) -> Array3<Complex64> {
     out
 }
 
-/// From bins to samples.
+/// Transforms range profiles back to samples.
 fn transform_back(rows: &mut Array3<Complex64>) {
     let samples = rows.dim().2;
     let fft = Simd::chosen().forward_fft::<f64>(samples);
@@ -213,7 +214,7 @@ fn turns_at(powers: &[f64], top: usize) -> f64 {
     turns - turns.round()
 }
 
-/// Where the parabola through three logarithms has its top, -0.5 to 0.5 of a cell from the middle one.
+/// Top of the parabola through three logarithms, -0.5 to 0.5 of a cell from the middle one.
 fn vertex(powers: [f64; 3]) -> f64 {
     let [a, b, c] = powers.map(|p| p.max(f64::MIN_POSITIVE).ln());
     let bend = a - 2.0 * b + c;

@@ -1,18 +1,18 @@
-//! Why a capture could not be read.
+//! Errors of reading a capture.
 
 use crate::recording::numbers::MAX_NUMBERS;
 use std::io;
 
-/// Why a capture could not be read.
+/// An error of reading a capture.
 #[derive(Debug, thiserror::Error)]
 pub enum CaptureError {
     /// The system could not read.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// No radar has so many lanes.
+    /// The number of lanes is none that a radar has.
     #[error("recording.capture.lanes is {0}; expected 2 or 4")]
     Lanes(usize),
-    /// The order of real and imaginary parts is not said once.
+    /// The order of real and imaginary parts is given twice or not at all.
     #[error("recording.capture.{0}; expected one of lanes and parts")]
     Parts(&'static str),
     /// Samples of all receivers don't fill the lanes.
@@ -30,17 +30,17 @@ pub enum CaptureError {
     Count {
         /// The key.
         key: &'static str,
-        /// What it says, or that it is missing.
+        /// The value found, or that the key is missing.
         found: String,
-        /// What would do.
+        /// The values allowed.
         expected: &'static str,
     },
-    /// The chirps were not said, or are none of the loop's.
+    /// The chirps are missing, or are none of the loop's.
     #[error(
         "recording.capture.chirps is {found}; expected some of 0 to {last}, each once: the chirps of a loop that form the line of elements, in order"
     )]
     Chirps {
-        /// What was said.
+        /// The value found.
         found: String,
         /// Last chirp of the loop.
         last: usize,

@@ -16,12 +16,12 @@ use std::io::{Read, Seek};
 pub(in crate::recording) struct Frame {
     /// `[loops, chirps, receivers, samples]`: complex, real ones as analytic signals of half as many samples.
     pub samples: Array4<Complex64>,
-    /// What is doubtful about them.
+    /// Zeros of lost packets, saturation, constant part, and other faults of the samples.
     pub quality: Quality,
 }
 
 impl Frame {
-    /// Reads the loops of the plan; what the capture says is taken out is out.
+    /// Reads the loops of the plan, and takes out the parts that `capture` leaves out.
     pub fn read<R: Read + Seek>(stream: &mut Stream<R>, capture: &Capture, plan: &Plan) -> Result<Frame, CaptureError> {
         let Plan { samples, receivers, chirps, loops, layout, .. } = *plan;
         let size = layout.chirp_bytes(samples, receivers);
@@ -50,7 +50,7 @@ impl Frame {
         Ok(Frame { samples: all, quality })
     }
 
-    /// How many loops it has.
+    /// Number of loops.
     pub fn loops(&self) -> usize {
         self.samples.dim().0
     }
@@ -65,7 +65,8 @@ impl Frame {
         mean
     }
 
-    /// What each loop counts, all together 1; those with zeros of lost packets count nothing where others are left.
+    /// Weight of each loop in a mean, `[loops]`, of sum 1: by a Hann window where `tapered`. Loops with zeros of lost packets weigh 0 where others
+    /// are left.
     pub fn weights(&self, tapered: bool) -> Vec<f64> {
         let loops = self.loops();
         let chirps = self.samples.dim().1;

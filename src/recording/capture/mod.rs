@@ -1,12 +1,12 @@
-//! Raw captures: 16-bit samples as a capture card writes them, one layout or another ([`layout`](super::layout)).
+//! Raw captures: 16-bit samples as a capture card writes them, in one of several layouts ([`layout`](super::layout)).
 //!
 //! The layout of TI's card (DCA1000) is that of "Mmwave Radar Device ADC Raw Data Capture" (SWRA581).
 //!
-//! | file | what it does |
+//! | file | content |
 //! |---|---|
-//! | `table` | what the TOML says of a capture |
-//! | `plan` | what stands where in the file |
-//! | `frame` | reads a frame, `[loops, chirps, receivers, samples]` |
+//! | `table` | the table `[recording.capture]` of the TOML |
+//! | `plan` | counts, sizes and byte offsets of the file |
+//! | `frame` | a frame, `[loops, chirps, receivers, samples]` |
 //! | `quality` | zeros of lost packets, saturation, constant parts, real samples |
 //! | `doppler` | the Doppler cells of each range bin that hold echoes, chirps in time division compensated |
 //! | `channels` | transmitters that send together, phases and range bias that a `.cfg` says |
@@ -36,7 +36,7 @@ use num_complex::Complex64;
 use quality::Quality;
 use std::io::{Read, Seek};
 
-/// What the samples of a capture mean.
+/// The radar and the array of a capture's samples.
 pub(super) struct Meaning<'a> {
     /// The `.cfg`, where there is one.
     pub profile: Option<&'a RadarProfile>,
@@ -46,8 +46,8 @@ pub(super) struct Meaning<'a> {
     pub beat_rises: bool,
 }
 
-/// Of the loops of an array, `[loops, transmitters, receivers, samples]`, in each range bin the strongest Doppler cell, with the chosen
-/// transmitters turned back by its velocity; and what was done, in a sentence. `turns` are as in [`Meaning`].
+/// The strongest Doppler cell in each range bin of the loops of an array, `[loops, transmitters, receivers, samples]`, with the chosen transmitters
+/// turned back by its velocity; and the sentence on it. `turns` are as in [`Meaning`].
 pub(super) fn strongest_of(
     samples: Array4<Complex64>,
     chosen: &[usize],
@@ -59,7 +59,7 @@ pub(super) fn strongest_of(
 }
 
 impl Capture {
-    /// Reads what is looked at: `[chirps, receivers, samples]`, and sentences on what is doubtful. No other frame is read.
+    /// Reads the chosen loops of the frame as `[chirps, receivers, samples]`, with sentences on doubts. No other frame is read.
     ///
     /// # Errors
     /// [`CaptureError`] where the layout, the `.cfg` and the file don't fit each other.

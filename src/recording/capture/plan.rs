@@ -1,4 +1,4 @@
-//! What stands where in a capture: counts, sizes, and how many frames there are.
+//! Counts, sizes and byte offsets of a capture, and its number of whole frames.
 
 use super::error::CaptureError;
 use super::table::Capture;
@@ -9,7 +9,7 @@ use crate::recording::profile::RadarProfile;
 
 /// Most samples of a frame that are held at once: a frame of more is read up to there.
 const MOST_FRAME_NUMBERS: usize = 1 << 23;
-/// Most of each count that a text may say.
+/// Largest count that a text may give.
 const MOST_COUNT: usize = 1 << 16;
 
 /// Counts and sizes of a capture.
@@ -23,13 +23,13 @@ pub(in crate::recording) struct Plan {
     pub chirps: usize,
     /// Loops that are read.
     pub loops: usize,
-    /// Byte at which they begin.
+    /// Byte at which the loops begin.
     pub start: u64,
     /// Whole frames of the file.
     pub frames: u64,
     /// Loops of a frame.
     pub all_loops: usize,
-    /// Sentences on what the file lacks.
+    /// Sentences on loops and frames that the file lacks.
     pub notes: Vec<String>,
 }
 
@@ -70,7 +70,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Which loops are read of the frame asked for.
+    /// Chooses the loops that are read of the frame asked for.
     fn take_frame(&mut self, capture: &Capture, bytes: u64, sizes: [u64; 3]) -> Result<(), CaptureError> {
         let [loop_bytes, frame_bytes, before] = sizes;
         let there = bytes.saturating_sub(before) / loop_bytes.max(1);
@@ -126,7 +126,7 @@ impl Plan {
         }
     }
 
-    /// The receivers that form it.
+    /// The receivers that form the line of elements.
     pub fn taken(&self, taken: &[usize]) -> Result<Vec<usize>, CaptureError> {
         if is_choice(taken, self.receivers - 1) {
             return Ok(taken.to_vec());

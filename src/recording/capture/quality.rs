@@ -1,21 +1,21 @@
-//! What is doubtful about a frame: zeros of lost packets, saturation, constant parts, real samples stored as complex.
+//! Doubts about a frame: zeros of lost packets, saturation, constant parts, real samples stored as complex.
 
 use super::plan::Plan;
 use crate::recording::layout::{Layout, Parts};
 use ndarray::{Array4, Axis};
 use num_complex::Complex64;
 
-/// So many zero bytes in a row are no samples.
+/// Number of zero bytes in a row that are taken for a lost packet.
 const ZERO_RUN: usize = 128;
-/// Part of the numbers at the ends of their type from which saturation is told.
+/// Least part of the numbers at the ends of their type that is called saturation.
 const SATURATED: f64 = 1e-4;
-/// A constant part is told from so many decibels over the rest on.
+/// Power of a constant part over the rest above which it is noted, decibels.
 const CONSTANT_DB: f64 = 0.0;
 
-/// What was seen of a frame.
+/// Faults that were counted in the samples of a frame.
 #[derive(Debug, Clone)]
 pub(in crate::recording) struct Quality {
-    /// Which chirps have runs of zeros.
+    /// Whether each chirp has runs of zeros.
     zeros: Vec<bool>,
     numbers: u64,
     at_ends: u64,
@@ -44,7 +44,7 @@ impl Quality {
         self.complex = layout.parts != Parts::Real;
     }
 
-    /// Looks at all samples, before anything is taken out.
+    /// Looks at all samples, before any part is taken out.
     pub fn look_at_samples(&mut self, all: &Array4<Complex64>) {
         self.imaginary = all.iter().any(|v| v.im != 0.0);
         let (mut constant, mut rest) = (0.0, 0.0);
@@ -64,7 +64,7 @@ impl Quality {
         self.zeros.get(n).copied().unwrap_or(false)
     }
 
-    /// Whether a constant part outweighs all else.
+    /// Whether the constant part has more power than the rest.
     pub fn tells_constant(&self) -> bool {
         self.constant_db > CONSTANT_DB
     }
@@ -74,7 +74,7 @@ impl Quality {
         self.complex && !self.imaginary
     }
 
-    /// What is doubtful, a sentence each.
+    /// Doubts about the frame, a sentence each.
     pub fn sentences(&self, plan: &Plan, is_out: bool) -> Vec<String> {
         let mut all = Vec::new();
         let spoilt: Vec<usize> = (0..self.zeros.len()).filter(|n| self.zeros[*n]).collect();

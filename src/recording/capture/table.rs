@@ -4,21 +4,21 @@ use crate::recording::axes::Chirp;
 use crate::recording::layout::{Parts, ReceiverOrder, Words};
 use serde::Deserialize;
 
-/// How a capture is laid out, and which part of it is looked at.
+/// The layout of a capture, and the frame, loops, chirps and receivers that are taken of it.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Capture {
-    /// Name of the `.cfg`, beside the TOML; without one the counts are said here.
+    /// Name of the `.cfg`, beside the TOML; without one the counts stand in this table.
     pub config: Option<String>,
-    /// Which sub-frame of an advanced frame, from 0.
+    /// Number of the sub-frame of an advanced frame, from 0.
     pub sub_frame: Option<usize>,
-    /// Files that go on from the first, in order.
+    /// Names of the files that continue the first, in order.
     #[serde(default)]
     pub more_files: Vec<String>,
     /// Files of the other chips of a cascade, in the order of their receivers; each holds four receivers sample by sample, in pairs.
     #[serde(default)]
     pub chips: Vec<String>,
-    /// 16 bits to a number.
+    /// Encoding of numbers in 16 bits.
     #[serde(default)]
     pub words: Words,
     /// Order of real and imaginary parts.
@@ -28,7 +28,7 @@ pub struct Capture {
     /// Imaginary parts come first.
     #[serde(default)]
     pub q_first: bool,
-    /// How the receivers follow one another.
+    /// Order of the receivers in a chirp.
     pub receivers: ReceiverOrder,
     /// Bytes before each chirp that are no samples.
     #[serde(default)]
@@ -41,31 +41,31 @@ pub struct Capture {
     pub loop_chirps: Option<usize>,
     /// Without a `.cfg`: loops of a frame, 1 where nothing is said.
     pub loops: Option<usize>,
-    /// Which chirps of a loop form the line of elements, in this order; all where there is only one.
+    /// Chirps of a loop that form the line of elements, in this order; all where there is only one.
     pub chirps: Option<Vec<usize>>,
-    /// Which receivers form it, by place among those that are on; all where nothing is said.
+    /// Receivers that form the line of elements, by place among those that are on; all where nothing is said.
     pub receivers_taken: Option<Vec<usize>>,
-    /// Which frame, from 0.
+    /// Number of the frame, from 0.
     #[serde(default)]
     pub frame: usize,
-    /// Which loop of the frame, or how all of them are joined.
+    /// Number of the loop in the frame, or the way to join all loops.
     #[serde(default, rename = "loop")]
     pub turn: Chirp,
     /// The mean of each chirp's samples: leakage and offset.
     #[serde(default)]
     pub constant: Part,
-    /// The mean of all loops: what stands still.
+    /// The mean of all loops: echoes that stand still.
     #[serde(default)]
     pub static_clutter: Part,
 }
 
-/// Whether a part of the samples stays.
+/// The treatment of a part of the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Part {
-    /// It stays.
+    /// The part stays in the samples.
     #[default]
     Keep,
-    /// It is taken out.
+    /// The part is subtracted from the samples.
     Out,
 }

@@ -1,19 +1,19 @@
-//! Where a stream of samples breaks: at the beginnings of rows, which linear prediction from the samples before does not foretell.
+//! Breaks of a stream of samples: the beginnings of rows, which linear prediction from the samples before does not foretell.
 
 use super::evidence::OF_LEVEL;
 use super::spectrum::ROUNDING;
 use num_complex::Complex64;
 
-/// Numbers before it that each is predicted from.
+/// Number of numbers before each that it is predicted from.
 const ORDER: usize = 12;
-/// A shorter length divides a longer one where so much more of its other beginnings does not follow.
+/// Least ratio of the residuals at a shorter row's other beginnings to those elsewhere for which the shorter length is the right one.
 const DIVIDES: f64 = 1.4;
-/// So much leaves it open.
+/// Least such ratio for which the shorter length may be the right one.
 const ALMOST_DIVIDES: f64 = 1.1;
-/// So little more at its other beginnings leaves a length a part of a longer one.
+/// Largest such ratio for which the longer length is the right one.
 const WHOLE: f64 = 1.15;
 
-/// Where numbers don't follow from those before: sums of squares of what linear prediction leaves, from the first number on.
+/// Residuals of linear prediction along the numbers: sums of their squares from the first number on.
 pub(super) struct Breaks {
     sums: Vec<f64>,
     /// Numbers behind a break that are predicted across it.
@@ -21,7 +21,7 @@ pub(super) struct Breaks {
 }
 
 impl Breaks {
-    /// Of prediction from the [`ORDER`] numbers before, `stride` apart, by least squares.
+    /// Residuals of prediction from the [`ORDER`] numbers before, `stride` apart, by least squares.
     pub fn of(numbers: &[Complex64], stride: usize) -> Breaks {
         let mean = numbers.iter().sum::<Complex64>() / numbers.len().max(1) as f64;
         let centred: Vec<Complex64> = numbers.iter().map(|v| v - mean).collect();
@@ -52,7 +52,7 @@ impl Breaks {
         self.sums.len() - 1
     }
 
-    /// Sum of the beginnings of rows of `length` that count, and how many numbers they are.
+    /// Sum of the residuals at the beginnings of rows of `length` for which `counts` holds, and the number of residuals.
     fn first(&self, length: usize, counts: impl Fn(usize) -> bool) -> (f64, f64) {
         let edge = self.edge.min(length / 4);
         let rows = (1..self.numbers() / length).filter(|row| counts(*row)).map(|row| row * length);
@@ -72,7 +72,8 @@ impl Breaks {
         -OF_LEVEL * (part * variance(first, part) + (1.0 - part) * variance(all - first, 1.0 - part))
     }
 
-    /// How much less the beginnings of rows of this length follow than all else, of those that don't begin rows of a longer one.
+    /// Ratio of the residuals at the beginnings of rows of `length`, those that begin no row of `longer` numbers, to the residuals elsewhere in the
+    /// rows.
     fn broken_within(&self, length: usize, longer: usize) -> f64 {
         if self.numbers() < 3 * length {
             return 0.0;
@@ -81,7 +82,7 @@ impl Breaks {
         let (edges, in_edges) = self.first(length, |_| true);
         let all = self.sums[self.numbers() / length * length] - self.sums[length];
         let elsewhere = (self.numbers() / length * length - length) as f64 - in_edges;
-        // Rounding alone leaves as much.
+        // Rounding alone leaves residuals of this size.
         first / count.max(1.0) / ((all - edges) / elsewhere.max(1.0) + 0.2)
     }
 
@@ -99,8 +100,8 @@ impl Breaks {
         within.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, l)| l)
     }
 
-    /// The length of rows of which `longest` is several: where an echo goes on almost unbroken from receiver to receiver, most of what does
-    /// not follow stands at the beginnings of loops.
+    /// The length of rows of which `longest` is several. Where an echo goes on almost unbroken from receiver to receiver, most large residuals stand
+    /// at the beginnings of loops.
     pub fn divided(&self, longest: usize, lengths: &[usize]) -> usize {
         let mut length = longest;
         loop {

@@ -1,5 +1,5 @@
-//! Samples and receivers of a file that no text describes: the length of rows at whose beginnings samples don't follow from those before,
-//! how often the spectrum of a row repeats, and after how many rows they are the same again.
+//! Samples and receivers of a file that no text describes, from the lengths of rows at whose beginnings samples don't follow from those before, from
+//! the repeats of a row's spectrum, and from the number of rows after which rows are the same again.
 
 use super::breaks::Breaks;
 use super::marks::{HEADER_BYTES, Marks};
@@ -19,69 +19,69 @@ const SAMPLES: [usize; 50] = [
 ];
 /// Receivers that may stand sample by sample, the most first.
 const INTERLEAVED: [usize; 5] = [16, 8, 4, 3, 2];
-/// Rows of receivers sample by sample repeat their spectrum so much alike, as a correlation of logarithms.
+/// Least correlation of a row's logarithmic spectrum with itself turned, for receivers sample by sample.
 const COMB: f64 = 0.6;
-/// The line of an echo is one where its logarithm over the middle of the spectrum is such a part of the strongest line's; and how far that
-/// stands over the middle at least, nepers of power.
+/// Least logarithm of a line over the middle of the spectrum, as a part of the strongest line's: in general, for strong lines and for clipped ones;
+/// and least height of the strongest line over the middle, nepers of power.
 const LINE: f64 = 0.3;
 const STRONG_LINE: f64 = 0.6;
 const CLIPPED_LINE: f64 = 0.75;
 const STANDS_OUT: f64 = 3.0;
 /// Receivers that radars usually have.
 const USUAL_RECEIVERS: usize = 4;
-/// So many times more words at the ends of their type than next to them are saturated.
+/// Ratio of words at the ends of their type to words next to them above which a file is saturated.
 const SATURATED: usize = 8;
 /// Samples by which parts and the length of rows are judged.
 const JUDGED_NUMBERS: usize = 1 << 16;
 /// Lengths of rows by which the parts are judged.
 const LEVEL_LENGTHS: [usize; 3] = [64, 128, 256];
-/// Numbers between those that each is predicted from: receivers may stand sample by sample.
+/// Distances of the numbers that each is predicted from: receivers may stand sample by sample.
 const STRIDES: [usize; 4] = [1, 3, 4, 16];
 /// Longest row that is tried, in samples of all interleaved receivers together.
 const LONGEST_ROW: usize = 16384;
-/// A spectrum of an order of parts that lies no more than this above the lowest, nepers in all of [`LEVEL_LENGTHS`], leaves it likely.
+/// Largest level of a likely order of parts above the lowest level, nepers in all of [`LEVEL_LENGTHS`].
 const PLAUSIBLE: f64 = 0.5;
-/// Log-odds below the best length from which another is none to look at.
+/// Log-odds below the best length from which a length is not looked at.
 const LIKELY_LENGTH: f64 = 30.0;
-/// So much more gain of another length makes the one that a `.cfg` says doubtful: of 120 right ones none had more than 40.
+/// Gain of another length over that of the `.cfg`'s above which the `.cfg` is doubted: of 120 right lengths none had more than 40.
 const DOUBTED: f64 = 50.0;
-/// Log-odds of a length of which the file holds no whole number, and of a usual one.
+/// Log-odds of a length that doesn't fill the file, and of a usual length.
 const UNFILLED: f64 = -3.0;
 const USUAL_LENGTH: f64 = 2.0;
 /// Log-odds of the period that is almost as likely, and of fewer receivers with more transmitters in turn for as many rows.
 const LESS_STEADY: f64 = -2.0;
 const LESS_USUAL: f64 = -3.0;
-/// The same of a shorter row, or of fewer receivers sample by sample.
+/// Log-odds of a shorter row, or of fewer receivers sample by sample.
 const LESS_BROKEN: f64 = -2.0;
 const MOST_TRANSMITTERS: usize = 3;
 /// Most loops that are taken for a frame where nothing says how many there are.
 const MOST_LOOPS: usize = 64;
 
-/// What is told where no text says counts.
+/// Note where no text says counts.
 pub(super) const NOTE: &str = "No .cfg says samples and receivers: they are those that make the sharpest spectrum and repeat, which is right \
     for four captures of five. Carrier, slope and rate are not known: a bin of range is shown as one metre, and directions \
     are those of elements half a wavelength apart.";
 
-/// What is told beside it where rows don't repeat.
+/// Note where rows don't repeat.
 const GUESSED_NOTE: &str =
     "No rows of samples are the same again: how many receivers and chirps of a loop there are is a guess.";
 
-/// What is told beside it where all rows are the same.
+/// Note where all rows are the same.
 const ALIKE_NOTE: &str = "All rows of samples are alike, as of one receiver, or of echoes straight ahead of several: how many receivers and \
     chirps of a loop there are is a guess.";
 
-/// What is told beside it where the search is not to be trusted.
+/// Note where saturation makes the search unsure.
 pub(super) const CLIPPED_NOTE: &str = "Many samples stand at the ends of their type, so echoes have harmonics that look like receivers and rows: \
     samples and receivers may be others.";
 
-/// Counts that are likely.
+/// Likely counts.
 pub(super) struct LikelyCounts {
     /// The order of parts that they are counts of; `None` where any may be.
     pub parts: Option<Parts>,
     pub counts: Counts,
-    /// Why receivers and chirps are a guess, where they are.
+    /// Note on the reason where receivers and chirps are a guess.
     pub guessed: Option<&'static str>,
-    /// Log-odds of the rows that repeat, and of how usual the receivers are.
+    /// Log-odds of the rows that repeat, and of the number of receivers.
     pub odds: [f64; 2],
 }
 
@@ -166,8 +166,8 @@ fn cuts(layout: Layout, numbers: &[Complex64], bytes: u64, marked: Option<usize>
     cuts
 }
 
-/// Log-odds of a length before its numbers are looked at: rows fill the file, which the odd part of a length does by chance but once in
-/// itself; and some lengths are usual.
+/// Log-odds of a length before its numbers are looked at: some lengths are usual, and the right one fills the file. A length with an odd part fills
+/// it by chance once in that part.
 fn prior(layout: &Layout, length: usize, bytes: u64) -> f64 {
     let odd = (length >> length.trailing_zeros()) as f64;
     let fills = if bytes.is_multiple_of((length * layout.parts.bytes()) as u64) { odd.ln() } else { UNFILLED };
@@ -182,8 +182,8 @@ fn row_level(numbers: &[Complex64], length: usize, is_real: bool) -> f64 {
     if is_real { spectrum.of_real().level } else { spectrum.level }
 }
 
-/// How low the spectra of rows of a few lengths lie, all together; real numbers in rows of twice as many, which hold as much. `None` where
-/// they are too few.
+/// Sum of the levels of the spectra of rows of a few lengths. Rows of real numbers are twice as long and hold as much. `None` where there are too few
+/// numbers.
 fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
     let mut sum = 0.0;
     for length in LEVEL_LENGTHS {
@@ -196,7 +196,7 @@ fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
     (numbers.len() >= 4 * LEVEL_LENGTHS[0]).then_some(sum)
 }
 
-/// How many receivers stand sample by sample in rows of this length: their spectrum repeats as often.
+/// Number of receivers that stand sample by sample in rows of this length: the spectrum repeats as often.
 fn interleaved(numbers: &[Complex64], length: usize) -> usize {
     let power = Spectrum::of(&rows(numbers, length, 1), 1).power;
     let logs: Vec<f64> = power.iter().map(|p| p.ln()).collect();
@@ -206,7 +206,7 @@ fn interleaved(numbers: &[Complex64], length: usize) -> usize {
         length.is_multiple_of(*receivers)
             && shift >= SAMPLES[0]
             && match is_clipped {
-                // Harmonics of a clipped echo stand at even distances too, but none as high as it.
+                // Harmonics of a clipped echo stand at even distances too, but none as high as the echo.
                 true => peaks_repeat(&logs, shift, CLIPPED_LINE),
                 false => repeats_alike(&logs, shift) > COMB || peaks_repeat(&logs, shift, LINE),
             }
@@ -276,10 +276,10 @@ fn samples_of<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>, most
     Ok(bytes)
 }
 
-/// The words that change least from one to the next of the same kind: wrong ones jump.
+/// The words that change least from one to the next of the same kind: those of a wrong encoding jump.
 fn likely_words(bytes: &[u8]) -> Words {
     let words = || bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
-    // Saturated samples would be the smallest with bit 15 flipped; those next to them tell them from small ones.
+    // With bit 15 flipped, saturated samples would be the smallest; the samples next to them tell them from small ones.
     let count = |of: [u16; 2]| words().filter(|w| of.contains(w)).count();
     let is_saturated = count([0x7fff, 0x8000]) > SATURATED * count([0x7ffe, 0x8001]).max(1);
     let power = |of: Words| {
@@ -302,8 +302,8 @@ fn likely_words(bytes: &[u8]) -> Words {
     }
 }
 
-/// What is doubtful of counts that a `.cfg` says, where the samples of `bytes`, whole chirps of a file of so many bytes, begin anew at other
-/// distances or its rows repeat after others.
+/// A doubt about the counts of a `.cfg`, where the samples of `bytes` begin anew at other distances or their rows repeat after another number.
+/// `bytes` are whole chirps of a file of `of_file` bytes.
 pub(super) fn doubted(layout: &Layout, counts: Counts, bytes: &[u8], of_file: u64) -> Option<String> {
     let stride = if layout.receivers == ReceiverOrder::Interleaved { counts.receivers } else { 1 };
     let said = counts.samples * stride;

@@ -1,4 +1,4 @@
-//! Bytes of a capture to samples of its receivers.
+//! Samples of receivers from the bytes of a capture.
 
 use super::parts::{Parts, ReceiverOrder};
 use super::shape::Layout;
@@ -6,15 +6,15 @@ use ndarray::Array2;
 use num_complex::Complex64;
 
 impl Layout {
-    /// The samples of one chirp, `[receivers, samples]`: real ones where the parts are real. `bytes` begin behind the header; what they
-    /// lack is zero.
+    /// The samples of one chirp, `[receivers, samples]`: real ones where the parts are real. `bytes` begin behind the header; missing bytes are
+    /// zeros.
     pub(crate) fn decode(&self, bytes: &[u8], samples: usize, receivers: usize) -> Array2<Complex64> {
         let numbers = numbers(self, bytes, samples * receivers);
         rows(self.receivers, &numbers, samples, receivers)
     }
 }
 
-/// The first `count` samples of `bytes` in the file's order; what is missing is zero.
+/// The first `count` samples of `bytes` in the file's order; missing ones are zeros.
 pub(super) fn numbers(layout: &Layout, bytes: &[u8], count: usize) -> Vec<Complex64> {
     let word = |at: usize| {
         let bytes = bytes.get(2 * at..2 * at + 2).map_or([0; 2], |b| [b[0], b[1]]);

@@ -1,20 +1,20 @@
 //! Evidence for a layout: log-odds of several kinds, which add up.
 //!
-//! The level of a spectrum is the one that decides most: twice the negative logarithm of the likelihood of Gaussian samples with this
+//! The level of a spectrum decides most: twice the negative logarithm of the likelihood of Gaussian samples with this
 //! spectrum is the mean of its logarithm (Whittle, 1953), and every layout holds the same bytes.
 
 use super::spectrum::Spectrum;
 use super::{Counts, Layout, Parts, ReceiverOrder, Words};
 use crate::recording::RadarProfile;
 
-/// Which kind of evidence it is.
+/// A kind of evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// Echoes stand in few bins over a low floor, without images.
     Sharp,
     /// Receivers see the same echoes.
     Receivers,
-    /// Rows are the same again after as many as a loop has.
+    /// Rows are the same again after a loop.
     Rows,
     /// Whole frames fill the file.
     Counts,
@@ -22,9 +22,9 @@ pub enum Kind {
     Half,
     /// Echoes have images, as of real samples.
     Images,
-    /// What the `.cfg` says of the data.
+    /// Orders of samples that the `.cfg` says.
     Config,
-    /// How usual a layout is.
+    /// Frequency of the layout among captures.
     Usual,
 }
 
@@ -35,7 +35,7 @@ pub struct Evidence {
     pub kind: Kind,
     /// Natural logarithm of the odds that it gives the layout.
     pub log_odds: f64,
-    /// What was found.
+    /// The finding, as a part of a sentence.
     pub sentence: String,
 }
 
@@ -43,23 +43,23 @@ pub struct Evidence {
 pub(super) const OF_LEVEL: f64 = 300.0;
 /// Log-odds of receivers whose profiles are alike.
 const OF_ALIKE: f64 = 10.0;
-/// Log-odds of each echo that stands in the near half, the power in both halves as much as one of them; and most of it all: echoes of a far
-/// scene stand in the far half together.
+/// Log-odds of each echo in the near half, with the power in both halves worth one echo; and most of them all: echoes of a far scene stand in the far
+/// half together.
 const OF_HALF: f64 = 0.7;
 const MOST_OF_HALF: f64 = 8.0;
-/// The same where no `.cfg` says the order: five echoes at random places stand in one half too often to be sure by.
+/// `OF_HALF` where no `.cfg` gives the order: five echoes at random places stand in one half too often to be sure.
 const OF_HALF_ALONE: f64 = 0.35;
 /// Log-odds against complex samples of an echo that has an image, and most such echoes that count.
 const OF_IMAGE: f64 = 15.0;
 const MOST_IMAGES: usize = 6;
-/// Log-odds of what the `.cfg` says: of I and Q, of the receivers' order, and of real samples.
+/// Log-odds of the `.cfg`: for the order of I and Q, for the receivers' order, and for real samples.
 const OF_ORDER: f64 = 5.0;
 const OF_RECEIVERS: f64 = 8.0;
 const OF_REAL: f64 = 40.0;
 /// Log-odds against receivers one after another on four lanes, of which each carries a receiver: at broadside both orders have one spectrum.
 const OF_LANES: f64 = 20.0;
 
-/// What is known of a file beside its samples.
+/// The `.cfg` and the size of a capture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Known<'a> {
     pub profile: Option<&'a RadarProfile>,
@@ -160,16 +160,16 @@ fn config(layout: &Layout, profile: &RadarProfile) -> Evidence {
     Evidence { kind: Kind::Config, log_odds, sentence }
 }
 
-/// What a `.cfg` says of the order of samples, and what a layout has.
+/// A property of the order of samples, in words: by the `.cfg`, and by a layout.
 pub(in crate::recording) struct Said {
-    /// As the `.cfg` has it.
+    /// The `.cfg`'s.
     pub said: &'static str,
-    /// As the layout has it.
+    /// The layout's.
     pub is: &'static str,
     log_odds: f64,
 }
 
-/// What the `.cfg` says of data in this layout.
+/// The orders that the `.cfg` says, beside those of `layout`.
 pub(in crate::recording) fn said(layout: &Layout, profile: &RadarProfile) -> Vec<Said> {
     let real = (Some(profile.real), layout.parts == Parts::Real, OF_REAL, ["complex samples", "real samples"]);
     let order = (profile.q_first, layout.q_first, OF_ORDER, ["I first", "Q first"]);
@@ -183,7 +183,7 @@ pub(in crate::recording) fn said(layout: &Layout, profile: &RadarProfile) -> Vec
     [real, order, receivers].into_iter().enumerate().filter(|(n, _)| is_told(n)).filter_map(|(_, s)| of(s)).collect()
 }
 
-/// Log-odds of how usual a layout is.
+/// Log-odds of a layout by its frequency among captures.
 pub(super) fn usual(layout: &Layout) -> f64 {
     let words = match layout.words {
         Words::Int16 => 0.0,

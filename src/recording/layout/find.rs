@@ -1,4 +1,4 @@
-//! The candidates, and the best of them.
+//! The candidate layouts, and the choice of the best.
 
 use super::counts::{self, LikelyCounts};
 use super::evidence::{Evidence, Kind, Known, evidence};
@@ -15,19 +15,19 @@ use std::io::{self, Read, Seek};
 const CHIRPS: usize = 16;
 /// Most bytes that a candidate is judged by.
 const MOST_BYTES: usize = 1 << 20;
-/// A run of so many zero bytes is no sample of a radar: its chirp is left out.
+/// Number of zero bytes in a row that no radar sends: their chirp is left out.
 const ZERO_RUN: usize = 128;
-/// A spectrum whose level lies no farther below a flat one has no echo, decibels; fewer profiles scatter more.
+/// Largest level below a flat spectrum that counts as without an echo, decibels; fewer profiles scatter more.
 const FLAT_DB: f64 = 0.35;
 
-/// A layout with what speaks for it.
+/// A layout with the evidence for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
     /// The layout.
     pub layout: Layout,
     /// Samples, receivers, chirps and loops.
     pub counts: Counts,
-    /// What speaks for it, and against it.
+    /// Evidence for and against the layout.
     pub evidence: Vec<Evidence>,
     /// Mean power of each range bin, in the square of the file's unit.
     pub power: Vec<f64>,
@@ -47,7 +47,7 @@ impl Candidate {
     }
 }
 
-/// What was found of a file.
+/// The layouts that were found for a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
     /// The candidates, the best first; there is one at least.
@@ -58,7 +58,7 @@ pub struct Found {
     pub hides_counts: bool,
 }
 
-/// Why a file has no layout.
+/// A reason for which no layout was found.
 #[derive(Debug, thiserror::Error)]
 pub enum LayoutError {
     /// The system could not read.
@@ -71,7 +71,7 @@ pub enum LayoutError {
         bytes: u64,
         /// Bytes of a chirp.
         expected: u64,
-        /// Who says so.
+        /// A clause with the source of the count, or nothing.
         whose: &'static str,
     },
     /// The bytes make no echo in any layout.
@@ -80,7 +80,7 @@ pub enum LayoutError {
          16-bit samples, with the .cfg that set the radar up beside them where there is one"
     )]
     NoEcho {
-        /// How many layouts were tried.
+        /// Number of layouts that were tried.
         tried: usize,
     },
     /// Every sample that was looked at is zero.
@@ -88,7 +88,7 @@ pub enum LayoutError {
     Zeros,
 }
 
-/// Finds the layout of a capture: `profile` says what is known of it.
+/// Finds the layout of a capture, with the help of the `.cfg` in `profile`.
 ///
 /// # Errors
 /// [`LayoutError`] where the file is too short, or no layout makes echoes of it.
@@ -149,7 +149,7 @@ fn judge<R: Read + Seek>(
 ) -> Result<(), LayoutError> {
     let packets = stream.has_packets();
     let mut none = None;
-    // Log-odds of the likeliest counts, which others are beside.
+    // Log-odds of the likeliest counts. Other counts are judged beside them.
     let mut likeliest = 0.0;
     for way in ways {
         match (Job { counts: way.counts, only: way.parts, header_bytes, packets, known }).candidates(stream) {
@@ -157,7 +157,7 @@ fn judge<R: Read + Seek>(
                 likeliest = of_way[0].log_odds();
                 candidates.extend(of_way);
             }
-            // Spectra of as many numbers in other rows don't tell: how the rows repeat and break does.
+            // Spectra of as many numbers in other rows don't tell layouts apart: the repeats and the breaks of the rows do.
             Ok(of_way) => candidates.extend(of_way.into_iter().take(1).map(|mut other| {
                 let [rows, usual] = way.odds;
                 let log_odds = likeliest + rows - other.log_odds();

@@ -1,21 +1,21 @@
-//! Headers before chirps, found by the bytes that each begins with.
+//! Headers before chirps, found by their first bytes.
 
 use super::stream::Stream;
 use std::io::{self, Read, Seek};
 
-/// What the header of a chirp begins with: 0x0CDA0ADC twice, high half word first.
+/// First bytes of a chirp's header: 0x0CDA0ADC twice, high half word first.
 pub(super) const MAGIC: [u8; 8] = [0xdc, 0x0a, 0xda, 0x0c, 0xdc, 0x0a, 0xda, 0x0c];
 
 /// Bytes of such a header.
 pub const HEADER_BYTES: usize = 64;
 
-/// How far headers are looked for, bytes.
+/// Length of the beginning of a file in which headers are looked for, bytes.
 const LOOKED_THROUGH: u64 = 1 << 20;
 
 /// Headers that were found before chirps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Marks {
-    /// How many.
+    /// Number of headers.
     pub found: usize,
     /// Bytes from one to the next; 0 where there is one.
     pub apart: usize,

@@ -1,6 +1,6 @@
-//! How the bytes of a raw capture stand for samples, and which of many ways is the right one, by evidence.
+//! Layouts: samples from the bytes of a raw capture, and the choice of the right layout by evidence.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
 //! | `words` | 16 bits to a number |
 //! | `parts` | orders of real and imaginary parts, and of receivers |
@@ -8,13 +8,13 @@
 //! | `decode` | bytes to samples of receivers |
 //! | [`stream`] | bytes by seeking, without the headers of packets |
 //! | `marks` | headers of chirps and of packets |
-//! | `spectrum` | what a layout makes of the bytes: range profiles |
+//! | `spectrum` | range profiles of the samples of a layout |
 //! | `evidence` | log-odds of a layout, of several kinds |
 //! | `find` | the candidates and the best of them |
 //! | `breaks` | where samples don't follow from those before |
 //! | `counts` | samples and receivers where no text says them |
-//! | `period` | after how many rows they are the same again |
-//! | `verdict` | why, in sentences |
+//! | `period` | the number of rows after which rows are the same again |
+//! | `verdict` | the reasons of the choice, in sentences |
 
 mod breaks;
 mod counts;

@@ -1,8 +1,8 @@
-//! Real and imaginary parts of samples, and whose samples they are.
+//! Orders of real and imaginary parts, and of receivers.
 
 use serde::Deserialize;
 
-/// In which order real and imaginary parts stand.
+/// Order of real and imaginary parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Parts {
@@ -20,7 +20,7 @@ impl Parts {
     /// All of them.
     pub const ALL: [Parts; 4] = [Parts::Pairs, Parts::TwoLanes, Parts::FourLanes, Parts::Real];
 
-    /// How many parts of one kind stand together.
+    /// Number of real or imaginary parts that stand together.
     pub fn group(self) -> usize {
         match self {
             Parts::Pairs | Parts::Real => 1,
@@ -58,7 +58,7 @@ impl Parts {
     }
 }
 
-/// How the receivers of a chirp follow one another.
+/// Order of the receivers in a chirp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ReceiverOrder {

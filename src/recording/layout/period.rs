@@ -1,31 +1,30 @@
-//! After how many rows of samples they are the same again: those of a loop.
+//! The number of rows of samples after which rows are the same again: the rows of a loop.
 
 use crate::recording::analytic::all_analytic;
 use ndarray::{Array2, s};
 use num_complex::Complex64;
 
-/// Rows after which rows may repeat: receivers of one, two or three transmitters in turn; and chirps after which those of receivers sample by
-/// sample may.
+/// Periods that are tried, in rows: receivers of one, two or three transmitters in turn; and in chirps for receivers that stand sample by sample.
 const PERIODS: [usize; 9] = [1, 2, 3, 4, 6, 8, 9, 12, 16];
 const CHIRPS: [usize; 7] = [1, 2, 3, 4, 6, 9, 12];
 /// Rows that are compared.
 const MOST_ROWS: usize = 512;
-/// Rows are the same again where they turn so much alike, as a part of those that do most, and are so much alike, as a part of the most alike; and at
-/// least so much. Of 335 captures made at random the period was right in 295, by the likeness alone in 244.
+/// Least steadiness of a period, as a part of the steadiest's; least likeness, as a part of the most alike's; and least likeness of any. Of 335
+/// captures made at random the period was right in 295, by the likeness alone in 244.
 const STEADY: f64 = 0.999;
 const REPEATS: f64 = 0.5;
 const LEAST_ALIKE: f64 = 0.3;
-/// Another period is likely too where rows at no multiple of the one found turn no more than so many times less alike, and are alike by so
-/// much at least; or where those at a multiple turn so many times more alike. Of 209 periods of captures made at random these doubt 15 right ones and all
-/// 12 wrong ones.
+/// Another period is likely too in two cases. Rows at no multiple of the found period are unsteady by at most the first factor more, and more alike
+/// than the second number; or rows at a multiple are unsteady by the third factor less. Of 209 periods of captures made at random these doubt 15
+/// right ones and all 12 wrong ones.
 const LESS_STEADY_TIMES: f64 = 60.0;
 const MIN_ALIKE_RATIO: f64 = 0.1;
 const STEADIER_TIMES: f64 = 5.0;
 
-/// After how many rows they are the same again.
+/// The period of a file's rows.
 pub(super) struct Period {
     pub rows: usize,
-    /// Another count that is almost as likely.
+    /// Another period that is almost as likely.
     pub next: Option<usize>,
 }
 
@@ -42,7 +41,7 @@ pub(super) fn period(rows: &Array2<Complex64>, mixed: usize, is_real: bool) -> O
         row.mapv_inplace(|v| v - mean);
     }
     let power: Vec<f64> = centred.outer_iter().map(|row| row.iter().map(Complex64::norm_sqr).sum()).collect();
-    // How alike they are, and how much of that turns alike.
+    // Likeness of all rows `lag` apart.
     let alike = |lag: usize| {
         let (mut sum, mut moduli, mut all) = (Complex64::default(), 0.0, f64::MIN_POSITIVE);
         for (a, b) in (0..centred.nrows() - lag).map(|n| (n, n + lag)) {
@@ -65,15 +64,16 @@ pub(super) fn period(rows: &Array2<Complex64>, mixed: usize, is_real: bool) -> O
     Some(Period { rows: found.rows, next: other_period(found, &all) })
 }
 
-/// How much rows so far apart are alike, and how much of that turns alike.
+/// Likeness of rows that stand `rows` apart: the part of their power that correlates, `alike`, and the part of the correlation that has one phase,
+/// `steady`.
 struct Likeness {
     rows: usize,
     alike: f64,
     steady: f64,
 }
 
-/// The period that is almost as likely as the one found: where rows at no multiple of it turn hardly less alike, what both have in common;
-/// where those at a multiple turn more alike, that.
+/// The period that is almost as likely as the one found. Where rows at no multiple of it turn hardly less alike, it is the common divisor of both;
+/// where rows at a multiple turn more alike, it is that multiple.
 fn other_period(found: &Likeness, all: &[Likeness]) -> Option<usize> {
     let unsteady = |lag: &&Likeness| 1.0 - lag.steady;
     let least = |a: &&Likeness, b: &&Likeness| unsteady(a).total_cmp(&unsteady(b));

@@ -1,12 +1,12 @@
-//! A layout: how bytes stand for samples; and how many of each there are.
+//! Layouts and counts of a capture.
 
 use super::parts::{Parts, ReceiverOrder};
 use super::words::Words;
 
-/// How the bytes of a chirp stand for samples of its receivers.
+/// The layout of a chirp's bytes as samples of its receivers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Layout {
-    /// 16 bits to a number.
+    /// Encoding of numbers in 16 bits.
     pub words: Words,
     /// Order of real and imaginary parts.
     pub parts: Parts,
@@ -20,7 +20,7 @@ pub struct Layout {
     pub packets: bool,
 }
 
-/// How many of each a capture holds.
+/// Counts of samples, receivers, chirps and loops of a capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Counts {
     /// Samples of a chirp, as the converter takes them.

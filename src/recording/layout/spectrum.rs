@@ -1,4 +1,4 @@
-//! What a layout makes of the bytes: range profiles of many chirps and receivers, and figures on them.
+//! Spectra of a layout: range profiles of many chirps and receivers, and figures on them.
 
 use crate::maps::windowed_range_transform;
 use crate::radar::{Radar, WindowFunction};
@@ -8,12 +8,11 @@ use num_complex::Complex64;
 /// Power that rounding to whole numbers leaves in a bin: a twelfth for each part.
 pub(super) const ROUNDING: f64 = 1.0 / 6.0;
 
-/// An echo has so many times the power of the middle of all bins (15 dB), and stands no farther below the strongest, decibels.
+/// Least power of an echo over the middle of all bins (15 dB), and most decibels below the strongest echo.
 const ABOVE_MEDIAN: f64 = 31.6;
 const BELOW_PEAK_DB: f64 = 40.0;
 
-/// An image stands at most so far from its echo, decibels, and an echo that may have one so far below the strongest: those of unequal
-/// converters stand farther below.
+/// Most decibels of an image below its echo, and of an echo with an image below the strongest echo: images of unequal converters lie farther below.
 const IMAGE_DB: f64 = 20.0;
 /// Least coherence of an echo with its image.
 const COHERENT: f64 = 0.5;
@@ -31,16 +30,16 @@ pub(in crate::recording) struct Spectrum {
     pub alike: f64,
     /// Power of the near half of the bins less that of the far half, over both: -1 to 1.
     pub near: f64,
-    /// How many echoes stand out in the near half of the bins, and in the far half.
+    /// Number of echoes that stand out in the near half of the bins, and in the far half.
     pub echoes: [usize; 2],
-    /// How many echoes of the near half have an image as far into the far half: those of real samples do.
+    /// Number of echoes of the near half with an image as far into the far half: those of real samples have one.
     pub images: usize,
-    /// How many profiles it is the mean of.
+    /// Number of profiles in the mean.
     pub rows: usize,
 }
 
 impl Spectrum {
-    /// Of rows of `receivers` in turn, `[chirps * receivers, samples]`. The mean of each row is taken out.
+    /// Spectrum of rows of `receivers` in turn, `[chirps * receivers, samples]`. The mean of each row is taken out.
     pub fn of(rows: &Array2<Complex64>, receivers: usize) -> Spectrum {
         let (count, samples) = rows.dim();
         let mut centred = rows.clone();
@@ -86,7 +85,7 @@ impl Spectrum {
         Spectrum { power, near: -self.near, echoes: [far, near], ..self.clone() }
     }
 
-    /// Of real samples: the half of it that tells, at twice the power, as complex samples of the same words would have it.
+    /// The spectrum of real samples: its near half at twice the power, as complex samples of the same words would have it.
     pub fn of_real(self) -> Spectrum {
         let bins = self.power.len();
         let power: Vec<f64> = self.power[..bins.div_ceil(2)].iter().map(|p| 2.0 * p).collect();
@@ -94,7 +93,7 @@ impl Spectrum {
         Spectrum { near: 0.0, level, rows: self.rows, ..Spectrum::of_power(power, self.alike, 0) }
     }
 
-    /// How far the mean level lies below that of a flat spectrum of the same power, decibels.
+    /// Mean level below that of a flat spectrum of the same power, decibels.
     pub fn flatness_db(&self) -> f64 {
         let mean = self.power.iter().sum::<f64>() / self.power.len().max(1) as f64;
         10.0 * (mean.ln() - self.level) / std::f64::consts::LN_10
@@ -113,8 +112,8 @@ fn echoes(power: &[f64]) -> [usize; 2] {
     [0..bins / 2, bins / 2..bins].map(|mut half| half.by_ref().filter(is_peak).count())
 }
 
-/// Echoes of the near half, away from a constant part, that stand as far into the far half, but not to the last digit: those are real samples
-/// that are stored as complex ones.
+/// Number of echoes of the near half, away from the constant part, with an image as far into the far half that is not equal to the last digit: equal
+/// images are those of real samples stored as complex ones.
 fn images(power: &[f64], is_coherent: impl Fn(usize) -> bool) -> usize {
     let bins = power.len();
     let Some((peak, median)) = peak_and_median(power) else { return 0 };
@@ -129,8 +128,8 @@ fn images(power: &[f64], is_coherent: impl Fn(usize) -> bool) -> usize {
     (NEAR_CONSTANT..(bins / 2).saturating_sub(1)).filter(is_image).count()
 }
 
-/// How alike a bin's values are to the conjugates of those as far into the far half, up to one factor, over all profiles: 1 for an image. The
-/// phases of two echoes turn each by its own direction and speed.
+/// Correlation of a bin's values with the conjugates of those as far into the far half, over all profiles: 1 for an image. The phases of two echoes
+/// turn each by its own direction and speed.
 fn coherence(profiles: ArrayView2<'_, Complex64>, bin: usize) -> f64 {
     let [near, far] = [bin, profiles.ncols() - bin].map(|n| profiles.column(n));
     let power = |of: &ArrayView1<'_, Complex64>| of.iter().map(|v| v.norm_sqr()).sum::<f64>();

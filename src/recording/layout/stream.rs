@@ -1,4 +1,4 @@
-//! The bytes of a capture by seeking: where it holds network packets, without their headers, and with zeros for those that are lost.
+//! The bytes of a capture, read by seeking. Headers of network packets are left out, and lost packets are zeros.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -26,9 +26,9 @@ pub struct Stream<R> {
 struct Packets {
     /// The count of the first packet.
     begins: u64,
-    /// How many stand in the file.
+    /// Number of packets in the file.
     count: u64,
-    /// Bytes of data that they were, the lost ones counted.
+    /// Bytes of data in all packets of the capture, lost ones included.
     bytes: u64,
 }
 
@@ -36,7 +36,7 @@ impl<R: Read + Seek> Stream<R> {
     /// The bytes of `file`; it holds packets where its beginning says so.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the read or the seek.
     pub fn new(mut file: R) -> io::Result<Self> {
         let file_bytes = file.seek(SeekFrom::End(0))?;
         let mut stream = Stream { file, file_bytes, packets: None };
@@ -47,7 +47,7 @@ impl<R: Read + Seek> Stream<R> {
     /// The bytes of `file`, packets or not.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the seek.
     pub fn plain(mut file: R) -> io::Result<Self> {
         let file_bytes = file.seek(SeekFrom::End(0))?;
         Ok(Stream { file, file_bytes, packets: None })
@@ -68,10 +68,10 @@ impl<R: Read + Seek> Stream<R> {
         self.packets.map_or(0, |p| p.bytes.div_ceil(DATA_BYTES).saturating_sub(p.count))
     }
 
-    /// Reads `buffer.len()` bytes from `offset` on. Lost packets, and what lies behind the end, are zeros.
+    /// Reads `buffer.len()` bytes from `offset` on. Lost packets and bytes behind the end are zeros.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the read or the seek.
     pub fn read_at(&mut self, offset: u64, buffer: &mut [u8]) -> io::Result<()> {
         buffer.fill(0);
         match self.packets {
@@ -89,7 +89,7 @@ impl<R: Read + Seek> Stream<R> {
         Ok(())
     }
 
-    /// Number and count of bytes before of packet `index` of the file.
+    /// Number of packet `index` of the file, and its count of bytes before.
     fn header(&mut self, index: u64) -> io::Result<Option<(u64, u64)>> {
         if (index * PACKET_BYTES).saturating_add(HEADER_BYTES) >= self.file_bytes {
             return Ok(None);
@@ -123,7 +123,7 @@ impl<R: Read + Seek> Stream<R> {
         // The last packet may be cut or hold less.
         let in_last = (self.file_bytes - (count - 1) * PACKET_BYTES).saturating_sub(HEADER_BYTES);
         let bytes = last.1 - begins + in_last;
-        // What claims to be far longer than the file is no capture with a few losses.
+        // A count of bytes far beyond the file's size is no capture with a few losses.
         Ok((bytes <= self.file_bytes.saturating_mul(4)).then_some(Packets { begins, count, bytes }))
     }
 

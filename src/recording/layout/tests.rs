@@ -20,7 +20,7 @@ fn chirps() -> Vec<Vec<Complex64>> {
     seen(300.0)
 }
 
-/// The same with this amplitude of the second echo.
+/// Eight chirps of three receivers, with this amplitude of the second echo.
 fn seen(second: f64) -> Vec<Vec<Complex64>> {
     let mut state = 7u32;
     let mut noise = move || {

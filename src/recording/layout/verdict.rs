@@ -1,14 +1,14 @@
-//! Why a layout was chosen, in sentences.
+//! The sentences on the choice of a layout and its reasons.
 
 use super::evidence::OF_LEVEL;
 use super::{Candidate, Counts, Found, Kind, Parts, ReceiverOrder};
 
-/// How sure the choice of a layout is.
+/// Certainty of the choice of a layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Certainty {
-    /// Nothing else comes near.
+    /// No other layout comes near.
     Sure,
-    /// It is likely, but the next might be right.
+    /// The layout is likely, but the next might be right.
     Likely,
     /// The two best are as good as each other.
     Open,
@@ -19,7 +19,7 @@ const SURE: f64 = 5.0;
 const LIKELY: f64 = 1.0;
 
 impl Certainty {
-    /// By how much the best has more log-odds than the next.
+    /// The certainty of a choice by its margin: its log-odds above those of the next; `None` where there is no next.
     pub fn of(margin: Option<f64>) -> Certainty {
         match margin {
             Some(margin) if margin < LIKELY => Certainty::Open,
@@ -35,7 +35,7 @@ impl Found {
         &self.candidates[0]
     }
 
-    /// By how much the best has more log-odds than the next; none where there is no other.
+    /// Log-odds of the best above those of the next; `None` where there is no next.
     pub fn margin(&self) -> Option<f64> {
         Some(self.best().log_odds() - self.candidates.get(1)?.log_odds())
     }
@@ -48,7 +48,7 @@ impl Found {
         next.into_iter().chain(other.filter(|other| Some(*other) != next)).collect()
     }
 
-    /// How sure the choice is: never sure where the samples hide their counts.
+    /// Certainty of the choice: at most likely where the samples hide their counts.
     pub fn certainty(&self) -> Certainty {
         match Certainty::of(self.margin()) {
             Certainty::Sure if self.hides_counts => Certainty::Likely,
@@ -64,7 +64,7 @@ impl Found {
         kinds.max_by(|a, b| more(*a).total_cmp(&more(*b))).unwrap_or(Kind::Usual)
     }
 
-    /// What was found and why, a sentence each.
+    /// The layout and the evidence for it, a sentence each.
     pub fn sentences(&self) -> Vec<String> {
         let best = self.best();
         let mut all = vec![format!("{}.", capital(&best.described()))];
@@ -76,7 +76,7 @@ impl Found {
         all
     }
 
-    /// What decided, and how sure it is.
+    /// The sentence on the deciding evidence and the certainty.
     fn decision(&self) -> String {
         let Some(next) = self.candidates.get(1) else { return "No other layout fits.".to_owned() };
         let decided = match self.decided_by() {

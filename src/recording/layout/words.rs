@@ -1,15 +1,15 @@
-//! 16 bits of a capture to a number.
+//! Encodings of a capture's numbers in 16 bits.
 
 use serde::Deserialize;
 
-/// How 16 bits stand for a number.
+/// The encoding of a number in 16 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Deserialize)]
 pub enum Words {
     /// Two's complement, the low byte first.
     #[default]
     #[serde(rename = "int16")]
     Int16,
-    /// The same with bit 15 flipped.
+    /// Two's complement with bit 15 flipped, the low byte first.
     #[serde(rename = "offset-binary")]
     OffsetBinary,
     /// Two's complement, the high byte first.
@@ -49,7 +49,7 @@ impl Words {
         }
     }
 
-    /// What it is in a sentence.
+    /// The encoding in a sentence's words.
     pub fn described(self) -> &'static str {
         match self {
             Words::Int16 => "16-bit integers, low byte first",

@@ -1,23 +1,23 @@
-//! The commands of a `.cfg` that matter. A command that stands twice holds as it stands last, as on the radar's command line.
+//! The commands of a `.cfg` that are read. The last of several equal commands holds, as on the radar's command line.
 
 use super::error::{MOST_CHIRPS, ProfileError};
 use super::lines::{Line, lines};
 use std::collections::BTreeMap;
 
-/// What one chirp is.
+/// A chirp of a `chirpCfg`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ChirpLine {
     /// Number of its profile.
     pub profile: usize,
     /// Its transmitters, as bits.
     pub transmitters: u32,
-    /// Line that says so.
+    /// Line of the file that defines the chirp.
     pub line: usize,
-    /// What is not 0 of its changes of frequency, slope and start.
+    /// The name of its first change of frequency, slope or start that is not 0.
     pub differs: Option<&'static str>,
 }
 
-/// The commands that matter, as they stand in the file.
+/// The commands that are read, as they stand in the file.
 #[derive(Default)]
 pub(super) struct Commands<'a> {
     pub profiles: BTreeMap<usize, Line<'a>>,

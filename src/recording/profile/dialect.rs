@@ -1,4 +1,4 @@
-//! Texts that set up other radars, or the same by another program: told by name.
+//! Texts for other radars or programs, refused by name.
 
 use super::error::ProfileError;
 

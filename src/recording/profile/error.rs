@@ -1,14 +1,14 @@
-//! Why a `.cfg` could not be read, and the most that one may ask for.
+//! Errors of a `.cfg`, and the largest counts that one may ask for.
 
-/// Why a `.cfg` could not be read.
+/// An error of reading a `.cfg`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ProfileError {
     /// A line can't be understood.
     #[error("line {line}: {message}")]
     Line {
-        /// Which line, from 1.
+        /// Number of the line, from 1.
         line: usize,
-        /// What is wrong and what was expected.
+        /// The fault and the expected value.
         message: String,
     },
     /// A command is missing.
@@ -22,13 +22,13 @@ pub enum ProfileError {
     Dialect {
         /// Its name.
         name: &'static str,
-        /// What would help.
+        /// A remedy.
         helps: &'static str,
     },
     /// There is no such sub-frame.
     #[error("has {found} sub-frames; expected recording.capture.sub_frame = 0 to {}", found - 1)]
     NoSubFrame {
-        /// How many there are.
+        /// Number of sub-frames in the text.
         found: usize,
     },
 }

@@ -10,11 +10,11 @@ pub(super) struct Frame {
     /// Numbers of the first and the last chirp.
     pub first: usize,
     pub last: usize,
-    /// How often they repeat.
+    /// Number of times that the chirps repeat in a frame.
     pub loops: usize,
-    /// How many frames are sent; 0 where they go on until stopped.
+    /// Number of frames that are sent; 0 where they go on until stopped.
     pub frames: usize,
-    /// The line that says so.
+    /// Line of the file that defines the frame.
     pub line: usize,
 }
 

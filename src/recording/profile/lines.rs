@@ -5,13 +5,13 @@ use super::error::ProfileError;
 /// Numbers of one command, and where it stands.
 #[derive(Debug, Clone)]
 pub(super) struct Line<'a> {
-    /// Which line of the text, from 1.
+    /// Number of the line in the text, from 1.
     pub number: usize,
     /// Its name.
     pub command: &'a str,
-    /// The numbers behind it, up to the first word that is none.
+    /// The numbers behind the command, up to the first word that is no number.
     pub values: Vec<f64>,
-    /// The word that is none.
+    /// The first word that is no number.
     bad: Option<&'a str>,
 }
 

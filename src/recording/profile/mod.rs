@@ -1,6 +1,6 @@
 //! The `.cfg` that sets a TI radar up over its command line ("mmWave SDK User Guide", configuration file format).
 //!
-//! `lines` finds the commands, `commands` keeps those that matter, `frames` says what repeats, `dialect` names other texts.
+//! `lines` finds the commands, `commands` keeps those that are read, `frames` reads the frames, `dialect` names other texts.
 
 mod commands;
 mod dialect;
@@ -18,7 +18,7 @@ use frames::{Frame, frames};
 use lines::Line;
 use num_complex::Complex64;
 
-/// What a `.cfg` says of the radar and of the data it sends.
+/// The radar and the data format that a `.cfg` sets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RadarProfile {
     /// Frequency at the start of the ramp, hertz.
@@ -53,17 +53,17 @@ pub struct RadarProfile {
     pub headers: bool,
     /// Whether the two chirps of a loop are sent by both transmitters, S1 + S2 and then S1 - S2 (`bpmCfg`).
     pub both_transmitters: bool,
-    /// What ranges are too long by, metres (`compRangeBiasAndRxChanPhase`).
+    /// Bias of the ranges, metres: measured ranges are too long by it (`compRangeBiasAndRxChanPhase`).
     pub range_bias_metres: f64,
-    /// What channels are multiplied with, transmitter by transmitter; empty where nothing is said.
+    /// Factors of the channels, transmitter by transmitter; empty where nothing is said.
     pub channel_factors: Vec<Complex64>,
     /// Places of the virtual elements in half wavelengths, across and up (`antGeometry0`, `antGeometry1`); empty where nothing is said.
     pub element_places: [Vec<f64>; 2],
-    /// Samples of all receivers and chirps that stand before these in every frame: sub-frames, as numbers of samples.
+    /// Samples of all receivers and chirps of the sub-frames that come first in every frame.
     pub numbers_before: usize,
     /// Samples of a whole frame, all sub-frames.
     pub frame_numbers: usize,
-    /// Sentences on what of the text was chosen among several.
+    /// Sentences on choices between several values of the text.
     pub notes: Vec<String>,
 }
 
@@ -73,7 +73,7 @@ const CHIRP_HEADER_BYTES: usize = 64;
 /// Receivers of a chip.
 pub(super) const CHIP_RECEIVERS: usize = 4;
 
-/// A bias of more metres is none.
+/// Largest bias that is believed, metres.
 const MOST_BIAS_METRES: f64 = 1000.0;
 
 impl RadarProfile {
@@ -94,7 +94,7 @@ impl RadarProfile {
         Some(bytes).filter(|bytes| (1..=1 << 30).contains(bytes))
     }
 
-    /// The same for one sub-frame of an advanced frame, from 0; the first where none is said.
+    /// [`RadarProfile::parse`] for one sub-frame of an advanced frame, from 0; the first where none is said.
     ///
     /// # Errors
     /// As [`RadarProfile::parse`].
@@ -142,7 +142,7 @@ impl RadarProfile {
         }
     }
 
-    /// The same of so many chips of a cascade that were all set up alike; a text that names more receivers than a chip has names them all.
+    /// The profile of so many chips of a cascade that were all set up alike. A text that names more receivers than a chip has names them all.
     pub fn on_chips(mut self, chips: usize) -> RadarProfile {
         if chips > 1 && self.receivers <= CHIP_RECEIVERS {
             self.receivers *= chips;
@@ -153,7 +153,7 @@ impl RadarProfile {
         self
     }
 
-    /// What other commands say of the data.
+    /// Takes the commands on the data format and on corrections.
     fn said_of_data(&mut self, commands: &Commands<'_>) -> Result<(), ProfileError> {
         if let Some(adc) = &commands.adc {
             adc.count(0, "the number of bits", 2)?;
@@ -251,8 +251,8 @@ impl<'a> Part<'a> {
         let first = line(chirps[0].profile).ok_or(ProfileError::Missing("profileCfg"))?;
         for chirp in &chirps[1..] {
             let other = line(chirp.profile).ok_or(ProfileError::Missing("profileCfg"))?;
-            // The number itself differs; powers and gains (4 and 5, 11 on) may.
-            // No number equals NaN, not even itself; it is told where it is read.
+            // The profile's own number differs; powers, phases, the transmitter's start and gains (5, 6, 8, 11 on) may.
+            // Bits are compared, since NaN equals nothing. NaN is refused where it is read.
             let same = |i: usize| other.values.get(i).map(|v| v.to_bits()) == first.values.get(i).map(|v| v.to_bits());
             if ![1, 2, 3, 4, 7, 9, 10].into_iter().all(same) {
                 let message = "the chirps of a frame follow profiles that differ; expected one profile for all of them";

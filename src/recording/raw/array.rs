@@ -1,4 +1,4 @@
-//! Arrays without a text: what their axes count by evidence, and the TOML that says so.
+//! Arrays without a text: the kinds of their axes by evidence, and the TOML that names them.
 
 use super::axes::{Reading, readings};
 use super::boards::Board;
@@ -14,10 +14,10 @@ use crate::scene::npz::X_KEY;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Readings that are offered.
+/// Most readings that are offered.
 const OFFERED: usize = 4;
 
-/// How files of arrays end.
+/// Endings of the names of array files.
 pub(super) const ENDINGS: [&str; 5] = ["npy", "npz", "mat", "h5", "hdf5"];
 
 /// Finds out what the array in `data` holds.
@@ -106,7 +106,7 @@ fn largest(data: &Path) -> Result<(Option<String>, Numbers), Fault> {
     Ok((Some(key), numbers))
 }
 
-/// Arrays of an `.npz` that is a scene, or what the program itself wrote.
+/// Keys of an `.npz` that is a scene, or that the program itself wrote.
 const OTHERS: [&str; 7] =
     [X_KEY, "format_version", "heard", "net_output", "polar_full", "polar_partial_mag_phase", "sub0"];
 
@@ -116,7 +116,7 @@ pub(super) fn has_samples(path: &Path) -> bool {
     all.iter().all(|(key, _)| !OTHERS.contains(&key.as_str())) && all.iter().any(|(_, shape)| shape.len() > 1)
 }
 
-/// How many transmitters send in turn along the axis of chirps: those of the `.cfg`, where no axis counts them.
+/// Number of transmitters that send in turn along the axis of chirps: those of the `.cfg`, where no axis counts them.
 fn in_turn(reading: &Reading, shape: &[usize], profile: Option<&RadarProfile>) -> Option<usize> {
     let profile = profile?;
     let (transmitters, chirps) = (profile.chirp_transmitters.len(), reading.len(AxisKind::Chirp, shape));

@@ -1,4 +1,4 @@
-//! What the axes of an array count, by evidence: lengths, what is the same along an axis, sharp spectra, usual orders, and the `.cfg`.
+//! The quantities that the axes of an array count, by evidence: lengths, sameness along an axis, sharp spectra, usual orders, and the `.cfg`.
 
 use crate::recording::AxisKind::{self, Chirp, Element, Frame, Iq, Receiver, Sample, Transmitter};
 use crate::recording::layout::Spectrum;
@@ -22,7 +22,7 @@ const MOST_SHARP_DB: f64 = 12.0;
 /// Log-odds of an axis of two real numbers that they are real and imaginary part.
 const OF_PARTS: f64 = 5.0;
 
-/// Kinds that the axes of an array may count together, by how many axes there are.
+/// Kinds of axes that an array may have, by the number of axes.
 const TOGETHER: [&[AxisKind]; 6] = [
     &[Element, Sample],
     &[Chirp, Element, Sample],
@@ -35,13 +35,13 @@ const TOGETHER: [&[AxisKind]; 6] = [
 /// One way to name the axes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Reading {
-    /// What each axis counts.
+    /// The quantity that each axis counts.
     pub kinds: Vec<AxisKind>,
     /// Natural logarithm of its odds.
     pub log_odds: f64,
     /// Mean power of each range bin.
     pub power: Vec<f64>,
-    /// What speaks for it, a sentence each.
+    /// Evidence for these names, a sentence each.
     pub reasons: Vec<String>,
 }
 
@@ -55,13 +55,13 @@ impl Reading {
         self.kinds.iter().zip(shape).map(axis).collect::<Vec<_>>().join(" × ")
     }
 
-    /// How long the axis of this kind is; 1 where there is none.
+    /// Length of the axis of this kind; 1 where there is none.
     pub fn len(&self, kind: AxisKind, shape: &[usize]) -> usize {
         self.kinds.iter().position(|k| *k == kind).map_or(1, |place| shape[place])
     }
 }
 
-/// What an axis shows of itself.
+/// Figures of one axis, from the numbers alone.
 struct Look {
     /// Part of the power that is the same along it, 0 to 1.
     same: f64,
@@ -182,7 +182,7 @@ fn order(kinds: &[AxisKind]) -> f64 {
     last + first + several + 0.5 * (before(Chirp, Element) + before(Chirp, Receiver) + before(Transmitter, Receiver))
 }
 
-/// Whether the `.cfg` says this count; nothing where it says none.
+/// Whether the `.cfg` gives this count; `None` where it gives none.
 fn said(kind: AxisKind, len: usize, profile: &RadarProfile, has_transmitters: bool) -> Option<bool> {
     let transmitters = profile.chirp_transmitters.len();
     Some(match kind {

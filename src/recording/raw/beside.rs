@@ -9,7 +9,7 @@ const MOST_FILES: usize = 10_000;
 /// Most files that a capture goes on in.
 const MOST_PARTS: usize = 64;
 
-/// The capture itself: `path`, or where that is a `.cfg`, what lies beside it.
+/// The capture: `path`, or where that is a `.cfg`, the data file beside it.
 pub(super) fn data_of(path: &Path) -> Result<PathBuf, RecordingError> {
     if !ends(path, "cfg") {
         return Ok(path.to_owned());
@@ -44,7 +44,7 @@ fn ends(path: &Path, end: &str) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end))
 }
 
-/// What the files of a cascade's chips are called by, in the order of TI's capture program.
+/// Words in the file names of a cascade's chips, in the order of TI's capture program.
 const CHIPS: [&str; 4] = ["master", "slave1", "slave2", "slave3"];
 
 /// The files of the chips of a cascade in their order, and names of those that are not there, where the capture is one chip's.

@@ -1,11 +1,11 @@
-//! Boards by name: where their antennas stand, in half wavelengths of the carrier.
+//! Boards by name, with the places of their antennas in half wavelengths of the carrier.
 
 /// Antennas of a board: across, and up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Board {
     /// Its name.
     pub name: &'static str,
-    /// The maker's guide that says so.
+    /// The maker's guide with these places.
     pub guide: &'static str,
     /// Places of the transmitters in the order of their bits: across and up.
     pub transmitters: &'static [[f64; 2]],
@@ -69,8 +69,7 @@ const CASCADE: Board = Board {
     receivers: &[0.0, 1.0, 2.0, 3.0, 11.0, 12.0, 13.0, 14.0, 46.0, 47.0, 48.0, 49.0, 50.0, 51.0, 52.0, 53.0],
 };
 
-/// The cascade as its four chips count their receivers: master, slave1, slave2, slave3, as TI's programs for its captures have
-/// them.
+/// The cascade in the order in which its four chips count their receivers: master, slave1, slave2, slave3, as in captures of TI's programs.
 pub(super) const BY_CHIP: Board = Board {
     receivers: &[11.0, 12.0, 13.0, 14.0, 50.0, 51.0, 52.0, 53.0, 46.0, 47.0, 48.0, 49.0, 0.0, 1.0, 2.0, 3.0],
     ..CASCADE
@@ -81,7 +80,7 @@ pub fn by_name(name: &str) -> Option<&'static Board> {
     ALL.iter().find(|board| board.name.eq_ignore_ascii_case(name))
 }
 
-/// The board that transmitters with these bits make likely.
+/// The usual board with transmitters of these bits.
 pub(super) fn likely(bits: &[usize]) -> &'static Board {
     let highest = bits.iter().max().copied().unwrap_or(0);
     match highest {

@@ -1,4 +1,4 @@
-//! What the first frame of a capture tells beside its layout.
+//! The first frame of a capture: figures on it that its layout doesn't tell.
 
 use super::boards::{self, Board};
 use crate::recording::capture::{Capture, Frame, Plan};
@@ -11,24 +11,24 @@ use std::io::{Read, Seek};
 
 /// Directions in which a beam is looked for: half of the beam of 54 half wavelengths apart.
 const DIRECTIONS: i32 = 128;
-/// The receivers of a cascade stand from left to right in the file where one beam of them holds such a part of all power, and so many times
-/// more than where they stand by chips: chips that are not calibrated make no such beam in any order.
+/// Least part of all power in one beam of the receivers from left to right for which they stand so in the file, and least ratio to the beam by chips:
+/// chips that are not calibrated make no such beam in any order.
 const WHOLE_BEAM: f64 = 0.9;
 const MORE_BEAM: f64 = 1.03;
 
-/// What the first frame tells.
+/// Figures on the first frame.
 #[derive(Default)]
 pub(super) struct FirstFrame {
-    /// How far the constant part stands above all else, decibels, where it does.
+    /// Power of the constant part over that of the rest, decibels, where it stands out.
     pub constant_db: Option<f64>,
-    /// How many whole frames there are.
+    /// Number of whole frames in the file.
     pub frames: u64,
     /// The first chirp, `[receivers, samples]`.
     chirp: Array2<Complex64>,
 }
 
 impl FirstFrame {
-    /// Reads it as `capture` says; what can't be read tells nothing.
+    /// Reads the frame as `capture` says. Without a readable frame all figures are empty.
     pub fn read<R: Read + Seek>(
         stream: &mut Stream<R>,
         capture: &Capture,
@@ -51,7 +51,7 @@ impl FirstFrame {
         if beam > WHOLE_BEAM && beam > MORE_BEAM * self.beam(by_chip) { from_left } else { by_chip }
     }
 
-    /// Part of the power, without what is constant, that the strongest beam of receivers that stand as on the board holds.
+    /// Part of the power, without the constant part, in the strongest beam of receivers that stand as on the board.
     fn beam(&self, board: &Board) -> f64 {
         let mean = |row: ArrayView1<'_, Complex64>| row.sum() / row.len().max(1) as f64;
         let centred: Vec<_> = self.chirp.outer_iter().map(|row| row.mapv(|v| v - mean(row))).collect();

@@ -1,9 +1,9 @@
-//! What was found of a file, and how sure it is.
+//! The ways to read a file, and the certainty of their choice.
 
 use crate::recording::layout::{Certainty, Found};
 use crate::recording::{Origin, Recording, RecordingError};
 
-/// What was found of a file, and the texts that describe it.
+/// The ways to read a file, and the texts that describe it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
     /// The file, and the ways to read it.
@@ -13,12 +13,12 @@ pub struct Imported {
 }
 
 impl Imported {
-    /// How sure the choice is.
+    /// Certainty of the choice.
     pub fn certainty(&self) -> Certainty {
         self.found.as_ref().map_or_else(|| Certainty::of(self.margin()), Found::certainty)
     }
 
-    /// By how much the best has more log-odds than the next; none where there is no other.
+    /// Log-odds of the best above those of the next; `None` where there is no next.
     pub fn margin(&self) -> Option<f64> {
         let offers = &self.origin.offers;
         Some(offers.first()?.log_odds - offers.get(1)?.log_odds)

@@ -11,16 +11,16 @@ pub(super) const USUAL_CARRIER_HZ: f64 = 77e9;
 /// A line of elements.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Line {
-    /// Chirps of a loop whose transmitters form it.
+    /// Chirps of a loop whose transmitters form the line.
     pub chirps: Vec<usize>,
-    /// Receivers that form it, where not all do.
+    /// Receivers that form the line, where not all do.
     pub receivers: Option<Vec<usize>>,
-    /// Places along it, metres.
+    /// Places along the line, metres.
     pub transmitter_x_metres: Vec<f64>,
     pub receiver_x_metres: Vec<f64>,
-    /// The board whose antennas they are, where one was taken.
+    /// The board with these antennas, where one was taken.
     pub board: Option<&'static str>,
-    /// What was taken for granted or left out.
+    /// Assumptions, and antennas that were left out, a sentence each.
     pub doubts: Vec<String>,
 }
 
@@ -32,7 +32,7 @@ struct Sender {
     up: f64,
 }
 
-/// Elements half a wavelength apart, where nothing says where they stand.
+/// Elements half a wavelength apart, where their places are not known.
 pub(super) fn uniform(counts: Counts, carrier_hz: f64) -> Line {
     let Counts { receivers, chirps, .. } = counts;
     let apart = match chirps {
@@ -110,7 +110,7 @@ fn metres(
     }
 }
 
-/// Who sends each chirp of a loop: where several send at once and nothing tells them apart, their middle.
+/// The sender of each chirp of a loop. Several transmitters that send at once and can't be told apart are taken for one in their middle.
 fn senders(profile: &RadarProfile, board: &Board) -> Vec<Sender> {
     let place = |bit: usize| board.transmitters.get(bit).copied().unwrap_or([4.0 * bit as f64, 0.0]);
     let bits = |mask: u32| (0..32usize).filter(move |bit| mask >> bit & 1 == 1);
@@ -164,7 +164,7 @@ fn of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f
     if !names_chip && across.len() != bits.len() * receivers {
         return None;
     }
-    // One line alone says that all stand at one height.
+    // One line alone means that all elements stand at one height.
     let level = vec![0.0; across.len()];
     let up = if up.is_empty() { &level } else { up };
     if up.len() < across.len() {

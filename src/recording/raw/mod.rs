@@ -1,17 +1,17 @@
-//! Raw captures and arrays as they are: the layout found by evidence, the antennas of a board, and the TOML that says so.
+//! Raw captures and arrays without a text: the layout found by evidence, the antennas of a board, and the TOML with both.
 //!
 //! A capture that is opened goes the way of every recording: the text that describes it is made, and read.
 //!
-//! | file | what it does |
+//! | file | content |
 //! |---|---|
 //! | [`boards`] | places of antennas by a board's name |
 //! | `line` | the antennas of a `.cfg` that form one line |
 //! | `beside` | the `.cfg` beside a capture, and the files that go on from it |
-//! | `first_frame` | what the first frame tells: a constant part, the order of a cascade's chips |
+//! | `first_frame` | figures on the first frame: a constant part, the order of a cascade's chips |
 //! | `text` | the TOML |
 //! | `array` | arrays without a text |
-//! | `axes` | what the axes of an array count, by evidence |
-//! | `imported` | what was found |
+//! | `axes` | the quantities that the axes of an array count, by evidence |
+//! | `imported` | the ways to read a file |
 
 mod array;
 mod axes;
@@ -39,17 +39,17 @@ use first_frame::FirstFrame;
 use std::io::{self, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-/// Layouts that are offered.
+/// Most layouts that are offered.
 const OFFERED: usize = 4;
 
-/// Whether `path` names a raw capture, an array without a text, or the `.cfg` of one, by how it ends. An `.npz` is one only by what it
-/// holds: [`is_raw_at`].
+/// Whether `path` names a raw capture, an array without a text, or the `.cfg` of one, by its ending. An `.npz` is one only by its arrays:
+/// [`is_raw_at`].
 pub fn is_raw(path: &Path) -> bool {
     let ends = |end: &&str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end));
     ["bin", "dat", "raw", "cfg"].iter().any(ends) || array::ENDINGS.iter().filter(|end| **end != "npz").any(ends)
 }
 
-/// The same, and whether an `.npz` holds samples: an array of two axes or more, and no reflectors of a scene.
+/// [`is_raw`], and whether an `.npz` holds samples: an array of two axes or more, and no reflectors of a scene.
 pub fn is_raw_at(path: &Path) -> bool {
     let is_npz = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz"));
     is_raw(path) || is_npz && array::has_samples(path)
@@ -80,10 +80,10 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
     capture_of(data, config, profile.as_ref(), board)
 }
 
-/// Finds out how the bytes of one frame stand for samples, as a capture card sends them; `config` is the `.cfg` that set the radar up.
+/// Finds the layout of one frame's bytes, as a capture card sends them; `config` is the `.cfg` that set the radar up.
 ///
 /// # Errors
-/// [`RecordingError`] names the `.cfg` or what is wrong with the bytes.
+/// [`RecordingError`] names the `.cfg`, or the fault of the bytes.
 pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) -> Result<Imported, RecordingError> {
     let profile = read_config(config)?;
     let data = frame_path(config);
@@ -96,15 +96,15 @@ pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) ->
     )
 }
 
-/// Where the data of such a frame would stand; there is no such file.
+/// Path that the data of a frame in memory would have; there is no such file.
 pub fn frame_path(config: &Path) -> PathBuf {
     config.with_file_name("frame.bin")
 }
 
-/// Bytes of a frame as the `.cfg` at `path` says them.
+/// Bytes of a frame by the `.cfg` at `path`.
 ///
 /// # Errors
-/// [`RecordingError`] names the file and what is wrong with it.
+/// [`RecordingError`] names the file and the fault.
 pub fn frame_bytes(path: &Path) -> Result<usize, RecordingError> {
     let profile = read_config(path)?;
     profile.frame_bytes().ok_or_else(|| {
@@ -131,7 +131,7 @@ fn capture_of(
 /// The files of a capture.
 struct Files {
     data: PathBuf,
-    /// Files that go on from the first.
+    /// Files that continue the first.
     more: Vec<PathBuf>,
     /// Files of the other chips of a cascade.
     chips: Vec<PathBuf>,
@@ -139,7 +139,7 @@ struct Files {
 }
 
 impl Files {
-    /// All of them as one.
+    /// Opens all files as one.
     fn open(&self) -> io::Result<Box<dyn Source>> {
         let open = |path: &PathBuf| Ok::<_, io::Error>(Box::new(BufReader::new(open_file(path)?)) as Box<dyn Source>);
         let paths = || std::iter::once(&self.data).chain(&self.more).chain(&self.chips);
@@ -151,7 +151,7 @@ impl Files {
         })
     }
 
-    /// What is told of them.
+    /// A note on files that are read as one, or on chips whose files are missing.
     fn told(&self) -> Option<String> {
         let (_, lacking) = beside::chips(&self.data);
         if !self.chips.is_empty() {
@@ -227,7 +227,7 @@ pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
     read().map_err(|fault| fault.of(path))
 }
 
-/// What is doubtful of the layout.
+/// Doubts about the layout, a sentence each.
 fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     let mut doubts = found.notes.clone();
     let rivals: Vec<String> = found.rivals().into_iter().map(Candidate::described).collect();
@@ -252,7 +252,7 @@ fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     doubts
 }
 
-/// What the `.cfg` said, a sentence each.
+/// The radar and the counts of the `.cfg`, a sentence each.
 fn said(profile: &RadarProfile) -> Vec<String> {
     let RadarProfile { samples, receivers, loops, frames, .. } = *profile;
     let frames = if frames == 0 { "frames until stopped".to_owned() } else { format!("{frames} frames") };

@@ -9,7 +9,7 @@ use crate::recording::profile::RadarProfile;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// What is told of a capture.
+/// The files, the radar and the notes of a capture, for its text.
 pub(super) struct About<'a> {
     pub data: &'a Path,
     pub config: Option<&'a Path>,
@@ -44,7 +44,7 @@ pub(super) struct Array<'a> {
     pub shape: &'a [usize],
     /// Its name in the file.
     pub key: Option<&'a str>,
-    /// How many transmitters send in turn along the axis of chirps.
+    /// Number of transmitters that send in turn along the axis of chirps.
     pub in_turn: Option<usize>,
 }
 
@@ -89,7 +89,7 @@ pub(super) fn of_array(array: &Array<'_>, about: &About<'_>) -> String {
     out
 }
 
-/// Which way phases turn, and where on the chirp the carrier lies.
+/// Writes the direction in which phases turn, and the place of the carrier on the chirp.
 fn signs(out: &mut String, profile: Option<&RadarProfile>, says_carrier: bool) {
     let falls = profile.is_some_and(|p| !p.rises());
     put(out, "beat_sign", if falls { "\"-\"" } else { "\"+\"" });
@@ -101,7 +101,7 @@ fn signs(out: &mut String, profile: Option<&RadarProfile>, says_carrier: bool) {
     }
 }
 
-/// The table `[radar]`; `said` are carrier, bandwidth and seconds of the samples where the `.cfg` is not named in the text.
+/// Writes the table `[radar]`; `said` are carrier, bandwidth and seconds of the samples where the `.cfg` is not named in the text.
 fn radar(out: &mut String, said: Option<[f64; 3]>, samples: usize, about: &About<'_>) {
     out.push_str("\n[radar]\nconvention = \"physical\"\n");
     if let Some([carrier, bandwidth, seconds]) = said {
@@ -175,7 +175,7 @@ fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
-/// How the text beside `data` names `path`: by its name where both stand in one folder.
+/// Name of `path` in the text beside `data`: its file name where both stand in one folder.
 fn beside(path: &Path, data: &Path) -> String {
     let whole = |path: &Path| crate::platform::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let (path_whole, data_whole) = (whole(path), whole(data));

@@ -1,4 +1,4 @@
-//! What bodies hide.
+//! Echoes of bodies that others hide.
 
 use super::*;
 use crate::scene::{Block, Point, Post, Wall};

@@ -1,4 +1,4 @@
-//! What must hold of echoes of any scene: reciprocity, continuity, closed forms, energy.
+//! Laws of the echoes of any scene: reciprocity, continuity, closed forms, energy.
 
 use super::super::face::Face;
 use super::*;

@@ -1,4 +1,4 @@
-//! The formulas against vectors, quadrature and series, and what must hold of them for any scene.
+//! The formulas against vectors, quadrature and series, and laws that hold for any scene.
 
 mod hiding;
 mod laws;
@@ -25,7 +25,7 @@ fn worst(found: &[Complex64], expected: &[Complex64]) -> f64 {
     found.iter().zip(expected).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / peak
 }
 
-/// What a pair of antennas hears of objects that hide each other.
+/// Echoes at a pair of antennas of objects that hide each other.
 fn heard(radar: &Radar, objects: &[Object], antennas: &AntennaPlaces) -> Vec<PathEcho> {
     let scene = Scene { objects: objects.to_vec(), ..Scene::default() };
     let mut out = Vec::new();

@@ -1,4 +1,4 @@
-//! What the echoes are held against: quadrature of physical optics over a face, and the exact series of a cylinder.
+//! References for the echoes: quadrature of physical optics over a face, and the exact series of a cylinder.
 
 use super::super::transition::EIGHTH_TURN;
 use super::super::{AntennaPlaces, REFERENCE_LENGTH_METRES};

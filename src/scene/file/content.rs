@@ -18,7 +18,7 @@ pub struct SceneFile {
     pub radar: Radar,
 }
 
-/// Why a scene file could not be read or written.
+/// An error of reading or writing a scene file.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum SceneFileError {
@@ -43,14 +43,14 @@ pub enum SceneFileError {
 /// The two kinds of scene file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SceneFormat {
-    /// Everything, readable.
+    /// The whole scene, readable.
     Toml,
     /// Positions only, as the thesis author's program reads and writes them.
     Npz,
 }
 
 impl SceneFormat {
-    /// The format that a file's name asks for.
+    /// The format by the ending of a file's name.
     /// # Errors
     /// [`SceneFileError::Extension`] for any ending but `.toml` and `.npz`.
     pub fn of_path(path: &Path) -> Result<SceneFormat, SceneFileError> {
@@ -63,7 +63,7 @@ impl SceneFormat {
     }
 }
 
-/// What is wrong with a scene's text, and where. Objects are counted from 1, as lines are.
+/// A fault in a scene's text, with its line and column. Objects are counted from 1, as lines are.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}, column {column}: {message}")]
 pub struct SceneTextError {
@@ -71,7 +71,7 @@ pub struct SceneTextError {
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// What is wrong and what was expected.
+    /// The fault and the expected value.
     pub message: String,
 }
 

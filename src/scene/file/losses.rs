@@ -1,11 +1,11 @@
-//! What a file format cannot store: reported before a scene is written.
+//! Losses of a file format: properties of a scene that it can't store, reported before the scene is written.
 
 use super::content::{SceneFile, SceneFormat};
 use crate::radar::Radar;
 use crate::scene::{Object, Scene};
 use std::fmt;
 
-/// Something of a scene that a file would not give back.
+/// A property of a scene that a file would not give back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)] // Names of fields say what is in them.
 pub enum FileLoss {
@@ -30,7 +30,7 @@ pub enum FileLoss {
         /// Objects that move.
         objects: usize,
     },
-    /// That bodies hide nothing: reopened, there are no bodies.
+    /// Bodies that hide nothing: reopened, there are no bodies.
     Shadows,
     /// Bodies: reopened, they are points where the array's middle sees them echo, which hide nothing.
     Bodies {
@@ -81,7 +81,7 @@ impl fmt::Display for FileLoss {
 }
 
 impl SceneFormat {
-    /// What a file of this format would not give back of `file`; empty where it gives back everything.
+    /// The parts of `file` that a file of this format loses; empty for none.
     pub fn losses(self, file: &SceneFile) -> Vec<FileLoss> {
         let SceneFile { scene, radar } = file;
         let Scene { name, notes, noise_seed, shadows, disturbances, objects } = scene;

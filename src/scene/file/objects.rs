@@ -63,7 +63,7 @@ fn object(entry: Spanned<DeValue<'_>>) -> Result<Object, (Option<Range<usize>>, 
 /// Largest radar cross section that is read, and the smallest below 0, dBsm: reflectivities of 1e100.
 const MAX_DBSM: f64 = 2000.0;
 
-/// Takes `cross_section_dbsm` off the table of an object of this kind: another way to say its reflectivity.
+/// Takes `cross_section_dbsm` off the table of an object of this kind and returns it as reflectivity.
 fn cross_section(table: &mut DeTable<'_>, kind: &str) -> Result<Option<f64>, (Option<Range<usize>>, String)> {
     const KEY: &str = "cross_section_dbsm";
     let Some(value) = table.remove(KEY) else { return Ok(None) };

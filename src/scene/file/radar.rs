@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 /// The table [radar] of a TOML text, whose missing keys are table 3.1's, and where a recording's text tells it the range of its snapshot in metres.
 /// # Errors
-/// What is wrong and in which line, and what was expected.
+/// The fault, its line, and the expected value.
 pub fn radar_of(text: &str) -> Result<(Radar, Option<f64>), String> {
     #[derive(Deserialize)]
     struct Head {

@@ -14,7 +14,7 @@ use toml::de::{DeTable, DeValue, ValueDeserializer};
 /// The latest format of scenes that this program knows.
 pub(super) const FORMAT: i64 = 2;
 
-/// Most values and tables that a text may ask for, told by the marks that come with each: the largest scene needs some three million.
+/// Most values and tables of a text, counted by the punctuation marks that come with each: the largest scene needs some three million.
 const MAX_MARKS: usize = 4_000_000;
 
 /// Reads a scene from text and checks that it can be simulated.
@@ -41,7 +41,7 @@ fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Sce
     Ok((file, other))
 }
 
-/// Reads what [`to_toml_beside`](super::to_toml_beside) wrote; the second is `None` where the text has no `key`.
+/// Reads a text of [`to_toml_beside`](super::to_toml_beside); the second is `None` where the text has no `key`.
 ///
 /// The scene need not be one that can be simulated: a user may have left a point on an element of the array.
 /// # Errors
@@ -69,8 +69,8 @@ fn table(text: &str) -> Result<Spanned<DeTable<'_>>, SceneTextError> {
 }
 
 fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(SceneFile, Option<T>), SceneTextError> {
-    /// All but the objects, which need a closer look; the field is there for the message about an unknown one. So is that of the
-    /// recording that a scene is laid over, which is the app's.
+    /// All keys but the objects, which are read one by one. The field of objects stands here for the message about an unknown key. So does the field
+    /// of the recording under a scene, which belongs to the app.
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct Head {
@@ -143,7 +143,7 @@ fn check_format(text: &str, document: &DeTable<'_>) -> Result<(), SceneTextError
     Err(SceneTextError::at(text, format.span().start, message))
 }
 
-/// Where object `index` stands in a text that was read before. Looked up when something is wrong with it only.
+/// Places of object `index` and of its fields in a text that was read before. They are looked up for errors only.
 fn object_spans(text: &str, index: usize) -> Spans {
     let document = table(text).ok();
     let entries = document.as_ref().and_then(|d| d.get_ref().get("object")).and_then(|e| e.get_ref().as_array());

@@ -6,9 +6,9 @@ use crate::radar::{Convention, Radar};
 use crate::scene::{Disturbances, Object, Scene};
 use serde::Serialize;
 
-/// The scene as text; only what differs from table 3.1 is said of the radar.
+/// The scene as text, with those keys of the radar that differ from table 3.1.
 /// # Errors
-/// When a number is one that TOML can't hold (an integer above 2^63).
+/// An error for a number that TOML can't hold (an integer above 2^63).
 pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
     #[derive(Serialize)]
     struct Document<'a> {
@@ -36,7 +36,7 @@ pub fn to_toml(file: &SceneFile) -> Result<String, toml::ser::Error> {
     toml::to_string_pretty(&Document { format, name, notes, noise_seed, shadows, radar, disturbances, object: objects })
 }
 
-/// What differs from table 3.1. The physical convention is said by its name where the spacing is its own.
+/// The keys that differ from table 3.1. The physical convention is written by its name where the spacing is its own.
 fn radar_table(radar: &Radar) -> Result<toml::Table, toml::ser::Error> {
     let usual = toml::Table::try_from(Radar::default())?;
     let mut table = toml::Table::try_from(radar)?;
@@ -48,7 +48,7 @@ fn radar_table(radar: &Radar) -> Result<toml::Table, toml::ser::Error> {
         table.insert("convention".to_owned(), convention.name().into());
     }
     if !radar.is_monostatic() {
-        // The antennas say these.
+        // The number of elements follows from the antennas.
         table.remove("elements");
         table.remove("element_spacing_metres");
     }

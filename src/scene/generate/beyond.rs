@@ -46,7 +46,7 @@ impl Beyond {
         }
     }
 
-    /// What such a scene holds, in a few words.
+    /// The objects of such a scene, in a few words.
     pub fn description(self) -> &'static str {
         match self {
             Beyond::Walls => "walls at any step, jittered, bent and broken",

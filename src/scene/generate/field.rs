@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 const NEAREST_METRES: f64 = 2.0;
 const MAX_RANGE_PART: f64 = 0.95;
 const AXIS_MARGIN_DEGREES: f64 = 5.0;
-/// Points that two rows have at least.
+/// Least number of points in two rows.
 const MIN_FENCE_POINTS: usize = 40;
 
 #[derive(Debug, Clone, Copy)]

@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 /// A kind of random scene.
 ///
-/// The named kinds beside the thesis' three sets cover what those leave out. Where nothing else is said, a place lies anywhere in
+/// The named kinds beside the thesis' three sets cover other scenes. Where nothing else is said, a place lies anywhere in
 /// the field: at a range between 2 m and 95 % of the maximum range, uniform in range and in angle, 5 degrees or more off the
 /// array's axis, with reflectivity 1. A decibel of reflectivity is one of echo power: 20 dB are a factor of 10 in sigma.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -50,9 +50,9 @@ pub enum Kind {
     /// Points along curves, in clouds and scattered, and bodies, of every count, step and strength. It is for training and validation: no menu
     /// lists it, and it makes no test scenes.
     World,
-    /// Scenes that nothing is trained on or chosen by. No menu lists them, and they are for tests alone.
+    /// Scenes that no training and no choice has seen. No menu lists them, and they are for tests alone.
     Beyond(Beyond),
-    /// Nothing: over thermal noise of a level of its own the samples are noise alone.
+    /// No object: over thermal noise of a level of its own the samples are noise alone.
     Noise,
     /// Experiment 1: this many points (1 to 4).
     Points(u8),
@@ -74,17 +74,17 @@ impl Kind {
     /// The kinds of bodies: they shine where they face the array, and hide what stands behind them.
     pub const THINGS: [Kind; 5] = [Kind::Bodies, Kind::Street, Kind::Rails, Kind::Occlusion, Kind::Rough];
 
-    /// Every kind that has a name of its own: the test sets, what lies beyond them, irregular points, bodies, and noise alone.
+    /// Every kind that has a name of its own: the test sets, varied and irregular points, bodies, and noise alone.
     pub fn all() -> impl Iterator<Item = Kind> {
         Kind::with_echoes().chain(Kind::IRREGULAR).chain(Kind::THINGS).chain([Kind::Noise])
     }
 
-    /// Names of [`Kind::all`], separated by commas: what help and messages list.
+    /// Names of [`Kind::all`], separated by commas, for help and messages.
     pub fn names() -> String {
         Kind::all().map(|kind| kind.to_string()).collect::<Vec<_>>().join(", ")
     }
 
-    /// The test sets and what lies beyond them: scenes of points with something to detect.
+    /// The test sets and the varied kinds: scenes of points with echoes to detect.
     pub fn with_echoes() -> impl Iterator<Item = Kind> {
         Kind::TEST_SETS.into_iter().chain(Kind::VARIED)
     }
@@ -107,7 +107,7 @@ impl Kind {
         Kind::TEST_SETS.iter().position(|&k| k == self).map(|i| i + 1)
     }
 
-    /// Maximum range of a radar before which its objects find room, metres.
+    /// Least maximum range of a radar before which the kind's objects have room, metres.
     pub fn needed_range_metres(self) -> f64 {
         match self {
             Kind::Street => 20.0,
@@ -120,7 +120,7 @@ impl Kind {
         }
     }
 
-    /// What such a scene holds, in a few words.
+    /// The objects of such a scene, in a few words.
     pub fn description(self) -> &'static str {
         match self {
             Kind::Set1 => "one point",
@@ -148,7 +148,7 @@ impl Kind {
         }
     }
 
-    /// What its scene of a seed and a number is called: "Test set 3, seed 0, scene 7".
+    /// Name of the scene of a seed and a number: "Test set 3, seed 0, scene 7".
     pub fn scene_name(self, seed: u64, number: u32) -> String {
         let kind = match self.test_set() {
             Some(set) => format!("Test set {set}"),
@@ -224,7 +224,7 @@ impl fmt::Display for Kind {
 impl FromStr for Kind {
     type Err = String;
 
-    /// Reads what [`Display`](fmt::Display) writes, but for [`Kind::World`]: what reads names by this makes test scenes.
+    /// Reads the names of [`Display`](fmt::Display), but for [`Kind::World`]: callers make test scenes.
     fn from_str(s: &str) -> Result<Self, String> {
         let wanted = s.trim();
         if wanted == WORLD {

@@ -90,7 +90,7 @@ pub(super) struct Track {
     start: GroundPlace,
     heading_degrees: f64,
     degrees_per_metre: f64,
-    /// After how many metres it turns, and by how much.
+    /// Distance after which the curve bends, metres, and the angle of the bend, degrees.
     bend: Option<[f64; 2]>,
 }
 

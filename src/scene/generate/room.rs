@@ -16,7 +16,7 @@ pub struct NoRoom {
 }
 
 impl Kind {
-    /// Whether the objects of its scenes find room before `radar`.
+    /// Checks that the objects of the kind's scenes have room before `radar`.
     /// # Errors
     /// [`NoRoom`] names the kind and both ranges.
     pub fn check_room(self, radar: &Radar) -> Result<(), NoRoom> {

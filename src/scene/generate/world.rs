@@ -22,7 +22,7 @@ const STEP_METRES: Range<f64> = 0.2..1.0;
 const NEAREST_METRES: f64 = 0.3;
 /// Smallest distance of points from the array.
 const CLEAR_METRES: f64 = 0.08;
-/// Farthest place, and farthest point of a curve or a cloud, as parts of the maximum range: what lies beyond wraps around.
+/// Farthest place, and farthest point of a curve or a cloud, as parts of the maximum range: farther points wrap around.
 const FARTHEST_PLACE: f64 = 0.95;
 const FARTHEST_POINT: f64 = 1.25;
 const TRIES: usize = 20;
@@ -134,7 +134,7 @@ impl World {
                 1 => [radius * turn.cos(), radius * turn.sin()],
                 2 => [turn.cos(), turn.sin()],
                 3 => [even(rng), even(rng)],
-                // The four sides, each as often as it is long.
+                // A point on one of the four sides, each as often as it is long.
                 _ if rng.random::<f64>() * (long + wide) < long => [even(rng), if rng.random() { 1.0 } else { -1.0 }],
                 _ => [if rng.random() { 1.0 } else { -1.0 }, even(rng)],
             }

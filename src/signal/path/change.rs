@@ -42,11 +42,11 @@ impl PathChange {
         PathChange { range_metres: (there[0] + back[0]) / 2.0, amplitude: there[1] + back[1] }
     }
 
-    /// The same between elements of a pattern.
+    /// The change between elements of a pattern.
     pub fn through(self, pattern: Option<Pattern>, pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
         let Some(pattern) = pattern else { return self };
         let square = x_metres * x_metres + y_metres * y_metres;
-        // The logarithm of how far the point is ahead of each antenna, and of each leg: the cosine off broadside is their quotient.
+        // Change of the logarithm of the point's distance ahead of each antenna; the cosine off broadside is its quotient by the leg.
         let of_log_y = |antenna_y: f64| {
             let of_y = match by {
                 By::Range => y_metres / square.sqrt(),

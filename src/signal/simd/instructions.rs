@@ -1,4 +1,4 @@
-//! Which instructions kernels run with: the best that the processor has, or those that were asked for.
+//! Choice of the instructions that kernels run with: the best of the processor, or those that were asked for.
 
 use rustfft::{Fft, FftNum, FftPlanner, FftPlannerScalar};
 use std::fmt;
@@ -15,7 +15,7 @@ pub const SIMD_VARIABLE: &str = "APERTURA_SIMD";
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Simd {
-    /// What every machine of the target has; no fused multiply-add.
+    /// The instructions of every machine of the target; no fused multiply-add.
     Portable,
     /// AVX2 and FMA.
     Avx2,
@@ -23,7 +23,7 @@ pub enum Simd {
     Avx512,
 }
 
-/// Why the instruction set that [`SIMD_VARIABLE`] names can't be used.
+/// A reason for which the instruction set that [`SIMD_VARIABLE`] names can't be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // Names and messages say it.
 pub enum SimdError {
@@ -149,7 +149,7 @@ impl Simd {
 
     /// A forward transform of `len` points by rustfft, with none but these instructions (rustfft itself has nothing beyond AVX2).
     pub fn forward_fft<T: FftNum>(self, len: usize) -> Arc<dyn Fft<T>> {
-        // Where portable is all there is, rustfft may know instructions that are not told apart here.
+        // On targets whose only set is portable, rustfft may use instructions that are not told apart here.
         if self == Simd::Portable && Simd::best() != Simd::Portable {
             FftPlannerScalar::new().plan_fft_forward(len)
         } else {
@@ -160,8 +160,8 @@ impl Simd {
 
 /// Work that is compiled for several instruction sets.
 ///
-/// What it calls must be `#[inline(always)]`, and its loops plain ones: a closure handed to `map`, `for_each` or `array::from_fn` may be compiled
-/// apart, without the instructions, where every fused multiply-add is a call.
+/// Functions that it calls must be `#[inline(always)]`, and its loops plain ones: a closure handed to `map`, `for_each` or `array::from_fn` may be
+/// compiled apart, without the instructions, where every fused multiply-add is a call.
 pub trait Kernel {
     /// The result.
     type Output;

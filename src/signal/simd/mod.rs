@@ -24,7 +24,7 @@ pub trait Real: FftNum + Copy + Default + PartialOrd + Sub<Output = Self> + Add<
     const NAME: &'static str;
     /// Rounds to this precision.
     fn of(v: f64) -> Self;
-    /// As f64.
+    /// The number as f64.
     fn wide(self) -> f64;
     /// `self * b + c`, rounded once.
     fn fused(self, b: Self, c: Self) -> Self;

@@ -1,4 +1,4 @@
-//! What a hand may do to the window, at random.
+//! Random actions of a hand on the window.
 
 use super::{FILES, Monkey};
 use apertura::app::{
@@ -29,7 +29,7 @@ impl Monkey {
         vec2(self.rng.random_range(-120.0..120.0), self.rng.random_range(-120.0..120.0))
     }
 
-    /// One thing that a hand may do.
+    /// One random action.
     pub fn act(&mut self) {
         match self.rng.random_range(0..14) {
             0 | 1 => self.drag(),

@@ -27,7 +27,7 @@ const MANY_OBJECTS: usize = 300;
 /// Unsaved scenes beyond which it gives the oldest up, long before the window would.
 const MANY_UNSAVED: usize = 32;
 
-/// Where the monkey's own files lie, each of a small radar.
+/// Names of the monkey's own files, each of a small radar.
 const FILES: [&str; 4] = ["a.toml", "b.toml", "scene.toml", "points.npz"];
 
 struct Monkey {
@@ -64,7 +64,7 @@ impl Monkey {
         self.witness.look(self.s.state());
     }
 
-    /// Answers what would lead out of the monkey's folder, starts programs, or grows without bound.
+    /// Answers dialogs that would lead out of the monkey's folder, start programs, or grow without bound.
     fn stay_at_home(&mut self) {
         let app = &mut self.s.app;
         if app.query_by_label_contains("can't hold all of this scene").is_some() {
@@ -93,7 +93,7 @@ impl Monkey {
         }
     }
 
-    /// What must hold at any time, but takes too long to ask after each step.
+    /// Checks that take too long for every step: memory, failure messages, whole files.
     fn inspect(&mut self, memory_at_first: u64) {
         let held = resident_bytes().unwrap_or(0);
         assert!(held < memory_at_first + MOST_MORE_BYTES, "{held} bytes are held after {} steps", self.steps);
@@ -104,7 +104,7 @@ impl Monkey {
         witness::files_are_whole(self.s.folder.path(), self.s.state());
     }
 
-    /// Kills the window and starts another: what is on disk at this moment is all that it finds.
+    /// Kills the window and starts another, which finds the files on disk at this moment alone.
     fn kill(&mut self) {
         self.kills += 1;
         if self.rng.random_bool(0.5) {
@@ -151,7 +151,7 @@ fn copy_at_one_moment(from: &Path, to: &Path) {
         for (path, ..) in &before {
             let target = to.join(path.strip_prefix(from).unwrap());
             std::fs::create_dir_all(target.parent().unwrap()).unwrap();
-            // It may be gone by now; then the listing has changed.
+            // The file may be gone by now; then the listing has changed.
             let _gone = std::fs::copy(path, target);
         }
         if listing(from) == before {

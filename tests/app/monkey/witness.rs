@@ -1,4 +1,4 @@
-//! What was unsaved, and what must still be there after a kill.
+//! The unsaved documents, and those that must still be there after a kill.
 
 use super::FILES;
 use apertura::app::App;
@@ -44,7 +44,7 @@ fn unsaved(app: &App) -> Moment {
 }
 
 impl Witness {
-    /// Takes note of the window after a step.
+    /// Records the window's unsaved documents after a step.
     pub fn look(&mut self, app: &App) {
         let now = unsaved(app);
         if app.is_kept() {
@@ -56,8 +56,8 @@ impl Witness {
         }
     }
 
-    /// Whether a window that was started after a kill has all that was unsaved at one of the moments; what is missing of the latest
-    /// otherwise.
+    /// Checks that a window that was started after a kill has all documents that were unsaved at one of the moments. The error names those missing of
+    /// the latest moment.
     pub fn compare(&self, app: &App) -> Result<(), String> {
         let editor = app.editor();
         let back = |kept: &Kept| editor.left().iter().chain([editor.document()]).any(|d| kept.is(d));
@@ -70,7 +70,7 @@ impl Witness {
     }
 }
 
-/// Every file is a whole scene, and that of the document on screen holds what is on screen, if it is said to be saved.
+/// Asserts that every file is a whole scene, and that a saved document's file holds the scene on screen.
 pub fn files_are_whole(folder: &Path, app: &App) {
     for name in FILES {
         Document::read(&folder.join(name)).unwrap_or_else(|error| panic!("{error}"));

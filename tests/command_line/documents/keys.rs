@@ -7,10 +7,10 @@ use apertura::app::{Entry, listed, listed_on_a_page};
 const OF_THE_WINDOW: [&str; 6] =
     ["README.md", "assets/guide.md", "docs/window.md", "docs/first-minutes.md", "docs/failures.md", "docs/words.md"];
 
-/// How the sentence begins that lists keys which are no program's in a page.
+/// Beginning of the sentence with the keys that a browser keeps from the program.
 const OF_THE_BROWSER: &str = "the browser keeps";
 
-/// How pages write a command's key.
+/// A command's key, as pages write it.
 fn written(entry: &Entry) -> Option<String> {
     let key = entry.key?;
     let (m, name) = (key.modifiers, key.logical_key.name());
@@ -39,7 +39,7 @@ fn keys(sentence: &str, is_of_the_window: bool) -> Vec<String> {
     found
 }
 
-/// Whether the sentence speaks of what the command does: a word of its name or tooltip begins like one of the sentence.
+/// Whether the sentence is about the command: a word of its name or tooltip begins like one of the sentence.
 fn speaks_of(sentence: &str, entry: &Entry) -> bool {
     let about = format!("{} {}", entry.name, entry.tooltip).to_lowercase();
     let words = about.split(|c: char| !c.is_alphanumeric()).filter(|w| w.chars().count() >= 4);

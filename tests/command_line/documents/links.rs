@@ -2,7 +2,7 @@
 
 use super::pages::root;
 
-/// As GitHub names the anchor of a heading.
+/// The anchor of a heading, as GitHub names it.
 fn anchor(heading: &str) -> String {
     let kept = heading.trim_start_matches('#').trim().to_lowercase();
     kept.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c)).map(|c| if c == ' ' { '-' } else { c }).collect()

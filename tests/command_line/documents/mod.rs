@@ -26,14 +26,14 @@ const PLACEHOLDERS: [&str; 3] = ["M", "NAME", "METHOD"];
 /// Subcommands that take seconds: those of every page are run, not only README's.
 const QUICK: [&str; 7] = ["maps", "methods", "reconstruct", "budget", "scenes", "lesson", "range-doppler"];
 
-/// Whether this is the name of a subcommand and of one of its options, which a sentence speaks of.
+/// Whether this is the name of a subcommand and of one of its options, as in a sentence about the option.
 fn names_an_option(command: &clap::Command, arguments: &[String]) -> bool {
     let [subcommand, option] = arguments else { return false };
     let mut has = command.find_subcommand(subcommand).into_iter().flat_map(|c| c.get_arguments());
     has.any(|argument| argument.get_long().is_some_and(|long| option.strip_prefix("--") == Some(long)))
 }
 
-/// What is wrong with these arguments, if anything is.
+/// The parser's error on these arguments, if there is one.
 fn fault(arguments: &[String]) -> Option<String> {
     let command = apertura::commands::command();
     let words = std::iter::once("apertura".to_owned()).chain(shell::filled(arguments));
@@ -113,7 +113,7 @@ fn every_script_that_pages_run_is_there() {
     }
 }
 
-/// A folder like that of a clone after a build: scenes, recordings and lessons are there, and what is written stays in it.
+/// A folder like that of a clone after a build: with scenes, recordings and lessons. Files are written into it.
 #[cfg(unix)]
 fn clone() -> TempDir {
     let folder = folder();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 /// A page.
 pub struct Page {
-    /// Its file, from the project's folder on.
+    /// Path of its file, from the project's folder on.
     pub name: String,
     /// Blocks of code: the language, and the lines.
     pub blocks: Vec<(String, String)>,

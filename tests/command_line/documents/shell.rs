@@ -33,7 +33,8 @@ pub fn commands(line: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// With a number in place of each that a shell fills in: a variable, `{}` of parallel, and `I/N`; and with the backend that every build has.
+/// The arguments with a number in place of each that a shell fills in (a variable, `{}` of parallel, and `I/N`), and with the backend that every
+/// build has.
 pub fn filled(arguments: &[String]) -> Vec<String> {
     let is_backend = |at: usize| at > 0 && arguments[at - 1] == "--backend";
     arguments
@@ -53,7 +54,7 @@ pub fn filled(arguments: &[String]) -> Vec<String> {
         .collect()
 }
 
-/// Quick: one scene in place of many, of one set, one draw, and the smallest measurement of `bench`.
+/// The arguments made quick: one scene in place of many, of one set, one draw, and the smallest measurement of `bench`.
 pub fn shortened(arguments: &[String]) -> Vec<String> {
     let mut quick = arguments.to_vec();
     for at in 1..quick.len() {

@@ -1,4 +1,4 @@
-//! An allocator that counts: what a thread holds, and the most it held.
+//! An allocator that counts the bytes that a thread holds, and their peak.
 //!
 //! Readers work on the thread that calls them, so that other tests beside them don't matter.
 
@@ -8,11 +8,11 @@ use std::cell::Cell;
 thread_local! {
     static HELD_BYTES: Cell<isize> = const { Cell::new(0) };
     static PEAK_BYTES: Cell<isize> = const { Cell::new(0) };
-    /// What the thread is at, told where it asks for more than can be had.
+    /// Name and number of the case that the thread is at, printed where it asks for too much memory.
     static PEAK_PLACE: Cell<(&'static str, u64)> = const { Cell::new(("", 0)) };
 }
 
-/// Requests larger than this are told before the system refuses them and the process ends.
+/// Requests above this size are reported before the system refuses them and the process ends.
 const ABSURD_BYTES: usize = 1 << 32;
 
 pub struct Counting;
@@ -53,7 +53,7 @@ unsafe impl GlobalAlloc for Counting {
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         tell_absurd(size);
-        // Both may be there at once.
+        // The old and the new block may be there at once.
         add(size as isize);
         add(-(layout.size() as isize));
         unsafe { System.realloc(pointer, layout, size) }

@@ -15,10 +15,10 @@ use std::time::{Duration, Instant};
 /// Longest that any input may take.
 const MAX_READ_TIME: Duration = Duration::from_secs(1);
 
-/// Reads `bytes` and says what is wrong with how it went.
+/// Reads `bytes`; the error says how the reader failed.
 fn trial(reader: &Reader, scratch: &Path, number: u64, bytes: &[u8]) -> Result<(bool, usize), String> {
     let mut fastest = Duration::MAX;
-    // A machine that is busy elsewhere is no hang.
+    // A machine that is busy with other work is no hang, so the time is taken several times.
     for _ in 0..3 {
         let start = Instant::now();
         let read = || catch_unwind(AssertUnwindSafe(|| (reader.read)(scratch, bytes)));
@@ -36,7 +36,7 @@ fn trial(reader: &Reader, scratch: &Path, number: u64, bytes: &[u8]) -> Result<(
     Err(format!("took {fastest:?}"))
 }
 
-/// Tries `count` damaged files on every reader, or on the one called `only`; an input that goes wrong is kept for a look.
+/// Tries `count` damaged files on every reader, or on the one called `only`; a failing input is kept.
 fn try_all(count: u64, only: Option<&str>) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let readers: Vec<Reader> = readers::all().into_iter().filter(|r| only.is_none_or(|name| r.name == name)).collect();

@@ -29,7 +29,7 @@ const TOKENS: [&[u8]; 22] = [
     b"\xff\xff\xff\xff",
 ];
 
-/// Most bytes of a damaged file: growth is not what is tested.
+/// Most bytes of a damaged file: growth is not tested.
 const MAX_LENGTH: usize = 1 << 17;
 
 /// Input `number` made of `files`: one of them, damaged in 1 to 8 places.

@@ -1,4 +1,4 @@
-//! Everything that reads a file from outside, with valid files to start from.
+//! All readers of files from outside, with valid files to start from.
 
 use apertura::evaluate::campaign::Campaign;
 use apertura::evaluate::rows::{Row, read_rows, write_rows};
@@ -20,9 +20,9 @@ pub struct Reader {
     pub files: Vec<Vec<u8>>,
     /// Reads the bytes, through a file in the folder where there is no other way.
     pub read: fn(&Path, &[u8]) -> Result<(), String>,
-    /// Most bytes that may be held while a file of so many bytes is read.
+    /// Most bytes that may be held while a file of this length is read.
     pub bound: fn(usize) -> usize,
-    /// One of so many inputs is tried: the reader does more than read.
+    /// Every `slow`-th input is tried: the reader does more than read.
     pub slow: u64,
 }
 
@@ -57,7 +57,7 @@ fn scenes() -> Reader {
         read: |_, bytes| {
             let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
             let file = file::from_toml(text).map_err(|e| e.to_string())?;
-            // What was accepted can be written and read again.
+            // An accepted text can be written and read again.
             let again = file::to_toml(&file).map_err(|e| e.to_string())?;
             assert_eq!(file::from_toml(&again), Ok(file));
             Ok(())
@@ -109,7 +109,7 @@ fn shared() -> Reader {
             let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
             SharedScene::from_text(text).map(|_| ()).map_err(|e| e.to_string())
         },
-        // What a text may unpack to.
+        // Most bytes that a text may unpack to.
         bound: |length| (12 << 20) + 1024 * length,
         slow: 1,
     }
@@ -335,7 +335,7 @@ mod networks {
         }
     }
 
-    /// Up to a method that could be used.
+    /// Networks, read up to a method that could be used.
     fn whole_networks() -> Reader {
         Reader {
             name: "weights",

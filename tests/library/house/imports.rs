@@ -1,4 +1,4 @@
-//! Which file imports which, and which room which.
+//! Imports of files and of rooms.
 
 use super::source::Source;
 use std::collections::{BTreeMap, BTreeSet};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// A module's path, without `crate`; empty for the root.
 type Module = Vec<String>;
 
-/// Names are followed through so many others; `use a::a` would lead round for ever.
+/// Most names that a path is followed through; `use a::a` would lead round for ever.
 const MAX_IMPORT_DEPTH: usize = 8;
 
 /// One file of `src`.
@@ -73,7 +73,7 @@ impl House {
         }
         rooms.remove("lib");
         rooms.remove("main");
-        // Programs of their own, as `main` is that of the desktop: the page, and what writes man pages.
+        // The page, and the program that writes man pages, are programs of their own, as `main` is that of the desktop.
         rooms.remove("page");
         rooms.remove("manual");
         rooms.remove("console");
@@ -112,7 +112,7 @@ impl House {
         self.modules.get(&at).cloned()
     }
 
-    /// Where a path starts: the module, and what is left of the path.
+    /// Start of a path: its module, and the rest of the path.
     fn start<'a>(&self, module: &[String], path: &'a [String], depth: usize) -> Option<(Module, &'a [String])> {
         let (first, mut rest) = path.split_first().filter(|_| depth <= MAX_IMPORT_DEPTH)?;
         let mut at = module.to_vec();

@@ -1,6 +1,6 @@
-//! Holds the house to its plan: ARCHITECTURE.md's table of rooms, no import circle, no long function, names that tell their thing.
+//! Checks of the source against its plan: ARCHITECTURE.md's table of rooms, no import circle, no long function, names with a noun.
 //!
-//! `cargo test --test library house -- --nocapture` prints the rooms and what each imports.
+//! `cargo test --test library house -- --nocapture` prints the rooms and their imports.
 
 mod imports;
 mod names;
@@ -18,7 +18,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// ARCHITECTURE.md's rooms in order, and what each may use.
+/// ARCHITECTURE.md's rooms in order, and the rooms that each may use.
 fn table() -> Vec<(String, BTreeSet<String>)> {
     let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let mut rooms: Vec<(String, BTreeSet<String>)> = Vec::new();
@@ -39,7 +39,7 @@ fn table() -> Vec<(String, BTreeSet<String>)> {
     rooms
 }
 
-/// Crates that few rooms import, and which; ARCHITECTURE.md lists the same.
+/// Crates that few rooms import, and those rooms; ARCHITECTURE.md lists the same.
 const CRATES: [(&str, &[&str]); 3] =
     [("rustfft", &["maps", "signal", "reconstruct", "benchmark"]), ("burn", &["network"]), ("rfd", &["platform"])];
 

@@ -1,4 +1,4 @@
-//! Names that tell their thing: constants with a noun, one public type a name, short test names, no vague pronoun in a comment.
+//! Names: constants with a noun, one public type a name, short test names, no vague pronoun in a comment.
 
 use super::imports::rust_files;
 use super::root;

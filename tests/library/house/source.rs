@@ -1,4 +1,4 @@
-//! What one Rust file imports, which paths its code names, and how long its functions are.
+//! Imports of one Rust file, the paths that its code names, and the lengths of its functions.
 
 use proc_macro2::Span;
 use syn::punctuated::Punctuated;
@@ -12,9 +12,9 @@ pub type Path = Vec<String>;
 /// An imported name.
 #[derive(Debug, PartialEq)]
 pub struct Use {
-    /// Where it comes from.
+    /// Path of the name's origin.
     pub path: Path,
-    /// The name it is known by here; "*" for a glob.
+    /// The name in this file; "*" for a glob.
     pub name: String,
     /// Whether other files may import it from here.
     pub public: bool,
@@ -53,7 +53,7 @@ impl Source {
         self.functions.push((signature.ident.to_string(), lines));
     }
 
-    /// Walks a tree of imports.
+    /// Adds the imports of a `use` tree.
     fn add_uses(&mut self, tree: &UseTree, before: &[String], public: bool) {
         let joined = |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect::<Path>();
         let whole = |name: &syn::Ident| if name == "self" { before.to_vec() } else { joined(name) };
@@ -122,7 +122,7 @@ impl<'ast> Visit<'ast> for Source {
         visit::visit_path(self, path);
     }
 
-    /// What stands in a macro's brackets counts where it reads as expressions, as that of `assert!` does.
+    /// The paths in a macro's brackets count where they read as expressions, as those of `assert!` do.
     fn visit_macro(&mut self, call: &'ast syn::Macro) {
         visit::visit_macro(self, call);
         if let Ok(arguments) = call.parse_body_with(Punctuated::<Expr, Token![,]>::parse_terminated) {
