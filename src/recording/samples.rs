@@ -238,15 +238,21 @@ fn read_arrays(table: &Table, radar: &Radar, open: Open<'_>) -> Result<(Array2<C
     Ok((rows, notes))
 }
 
-/// The strongest Doppler cell of each range bin, `[elements, samples]`, and the sentence on it.
+/// The strongest Doppler cell of each range bin, `[elements, samples]`, and sentences on it.
 fn joined(
     table: &Table,
     radar: &Radar,
     numbers: Numbers,
     kinds: &[AxisKind],
-) -> Result<(Array2<Complex64>, Option<String>), Fault> {
+) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+    let chirps = kinds.iter().position(|kind| *kind == AxisKind::Chirp).map_or(1, |place| numbers.shape()[place]);
     let loops = loops(numbers, kinds)?;
-    let (_, transmitters, _, _) = loops.dim();
+    let (taken, transmitters, _, _) = loops.dim();
+    let left_out = (taken < chirps).then(|| {
+        format!(
+            "The first {taken} of {chirps} chirps are joined; the others are left out, since the frame is too large."
+        )
+    });
     let all: Vec<usize> = (0..transmitters).collect();
     let chosen = table.transmitters_taken.as_deref().unwrap_or(&all);
     if chosen.iter().any(|t| *t >= transmitters) {
@@ -254,7 +260,8 @@ fn joined(
     }
     let (rows, note) = strongest_of(loops, chosen, &turns(radar));
     let kinds = [AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Sample];
-    Ok((arrange(Numbers::Complex(rows.into_dyn()), &kinds, None)?, note))
+    let notes: Vec<String> = note.into_iter().chain(left_out).collect();
+    Ok((arrange(Numbers::Complex(rows.into_dyn()), &kinds, None)?, notes))
 }
 
 /// The rows of the transmitters and receivers that form the line, of those that the array counts.
