@@ -51,8 +51,6 @@ purposes! {
     ExportPicture: "Export a picture", "Picture" ["png", "svg"], "apertura.png";
     /// Where the maps are to be written.
     ExportMaps: "Export the maps", "NumPy arrays" ["npz"], "maps.npz";
-    /// Where the figures are to be written.
-    ExportMetrics: "Export the metrics", "Table" ["csv"], "metrics.csv";
     /// Rows of an evaluation to show.
     OpenRows: "Open rows of an evaluation", "Table" ["csv"], "";
     /// Where the rows are to be saved.
