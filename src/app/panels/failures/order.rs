@@ -1,6 +1,7 @@
 //! Which rows are shown, and in which order: worked out when something changed, not in every frame.
 
 use crate::app::jobs::RowTable;
+use crate::app::shared::Shared;
 use crate::evaluate::filter::Filter;
 use crate::evaluate::rows::{Column, sorted_by};
 use crate::platform::Instant;
@@ -34,8 +35,6 @@ pub struct Wanted<'a> {
     pub table: &'a RowTable,
     /// Which of them; all where `None`.
     pub filter: Option<&'a Filter>,
-    /// Rises when the filter changes.
-    pub filter_stamp: u64,
     /// In which order.
     pub sort: Option<Sort>,
     /// Those in a box of a chart, if one was drawn.
@@ -43,23 +42,21 @@ pub struct Wanted<'a> {
 }
 
 /// Rows in a box.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Boxed {
     /// The table that they stand in.
     pub generation: u64,
     /// Their indices.
-    pub rows: HashSet<usize>,
-    /// Rises with every box.
-    pub stamp: u64,
+    pub rows: Shared<HashSet<usize>>,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Key {
     version: u64,
     generation: u64,
-    filter: u64,
+    filter: Option<Filter>,
     sort: Option<Sort>,
-    boxed: Option<u64>,
+    boxed: Option<Boxed>,
 }
 
 /// The order, as it was worked out last.
@@ -90,14 +87,14 @@ impl Order {
 
     /// Works it out again if something changed. Returns when to come again, if rows that have just come wait for it.
     pub fn update(&mut self, wanted: &Wanted<'_>) -> Option<Duration> {
-        let Wanted { table, filter, filter_stamp, sort, boxed } = *wanted;
+        let Wanted { table, filter, sort, boxed } = *wanted;
         let boxed = boxed.filter(|boxed| boxed.generation == table.generation());
         let key = Key {
             version: table.version(),
             generation: table.generation(),
-            filter: filter_stamp,
+            filter: filter.cloned(),
             sort,
-            boxed: boxed.map(|b| b.stamp),
+            boxed: boxed.cloned(),
         };
         if self.of.as_ref() == Some(&key) {
             return None;
@@ -150,7 +147,7 @@ mod tests {
     impl Asked {
         fn wanted(&self) -> Wanted<'_> {
             let sort = Some(Sort { column: Column::Index, descending: true });
-            Wanted { table: &self.table, filter: Some(&self.filter), filter_stamp: 1, sort, boxed: Some(&self.boxed) }
+            Wanted { table: &self.table, filter: Some(&self.filter), sort, boxed: Some(&self.boxed) }
         }
     }
 
@@ -158,7 +155,7 @@ mod tests {
     fn asked() -> (Asked, Order) {
         let table = table(6);
         let filter = Filter::parse("index >= 2", &["live"]).unwrap();
-        let boxed = Boxed { generation: table.generation(), rows: HashSet::from([1, 3, 5]), stamp: 1 };
+        let boxed = Boxed { generation: table.generation(), rows: Shared::new(HashSet::from([1, 3, 5])) };
         let (asked, mut order) = (Asked { table, filter, boxed }, Order::default());
         order.update(&asked.wanted());
         (asked, order)
