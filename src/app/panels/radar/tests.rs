@@ -82,7 +82,7 @@ fn the_table_stays_where_it_is_when_the_preset_goes() {
 }
 
 #[test]
-fn the_constant_that_a_challenge_is_solved_by_is_brought_into_sight() {
+fn the_constant_that_a_challenge_needs_is_brought_into_sight() {
     let mut found = 0;
     for step in shipped::ALL.iter().filter_map(|file| file.load().unwrap().steps.last().cloned()) {
         if control_of(&step).is_none_or(|(panel, _)| panel != Panel::Radar) {
