@@ -75,6 +75,13 @@ pub struct SharedView {
     /// The step of a lesson that comes with the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesson: Option<LessonPlace>,
+    /// Time at which moving objects are looked at, seconds.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub time_seconds: f64,
+}
+
+fn is_zero(seconds: &f64) -> bool {
+    *seconds == 0.0
 }
 
 /// Part of a map, as fractions of its width and height from the lower left.
@@ -215,6 +222,7 @@ impl SharedView {
             marks: view.show_reflectors,
             theory: view.show_theory,
             lesson,
+            time_seconds: 0.0,
         }
     }
 
@@ -242,6 +250,9 @@ impl SharedView {
             if let Some(eta) = eta.filter(|eta| !(0.0..=1.0).contains(eta)) {
                 return wrong(field, format!("is {eta}; expected 0 to 1"));
             }
+        }
+        if !(self.time_seconds.is_finite() && self.time_seconds >= 0.0) {
+            return wrong("time_seconds", format!("is {}; expected 0 or more", self.time_seconds));
         }
         for (field, part) in [("range_angle_part", self.range_angle_part), ("cartesian_part", self.cartesian_part)] {
             let VisiblePart { left, bottom, right, top } = part;
@@ -280,6 +291,7 @@ mod tests {
             marks: true,
             theory: false,
             lesson: Some(LessonPlace { id: "near-field".to_owned(), step: 3 }),
+            time_seconds: 1.5,
         }
     }
 

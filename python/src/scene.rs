@@ -6,15 +6,14 @@ use crate::maps::Maps;
 use crate::objects;
 use crate::radar::Radar;
 use crate::work::{self, Progress};
-use apertura::evaluate::TARGET_ETA;
 use apertura::maps::Normalisation;
-use apertura::picture::ColourMap;
 use apertura::scene::file::{SceneFile, from_toml, load, save, to_toml};
 use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::scene::presets::{ALL, Preset};
 use apertura::scene::{self, Disturbances};
 use apertura::share::{SharedScene, SharedView, VisiblePart};
 use apertura::signal::{Floor, Unfinished, simulate_for};
+use apertura::view::View;
 use numpy::PyArray2;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -232,22 +231,9 @@ impl Scene {
     #[pyo3(signature = (*, floor="thesis", normalisation="min-max", method="live"))]
     fn to_text(&self, floor: &str, normalisation: &str, method: &str) -> PyResult<String> {
         apertura::methods::by_name(method).map_err(value)?;
-        let view = SharedView {
-            floor: named(floor)?,
-            normalisation: named(normalisation)?,
-            colours: ColourMap::default(),
-            cartesian: false,
-            range_angle_part: VisiblePart::default(),
-            cartesian_part: VisiblePart::default(),
-            target_eta: TARGET_ETA,
-            cfar: None,
-            eta: None,
-            method: method.to_owned(),
-            layout: None,
-            marks: false,
-            theory: false,
-            lesson: None,
-        };
+        let (floor, normalisation, method) = (named(floor)?, named(normalisation)?, method.to_owned());
+        let view = View { floor, normalisation, method, ..View::default() };
+        let view = SharedView::of(&view, [VisiblePart::default(); 2], None);
         SharedScene { file: self.0.clone(), view }.to_text().map_err(value)
     }
 

@@ -297,6 +297,10 @@ fn start(state: &mut State, jobs: &Jobs, asked: Option<PathBuf>) {
 
 impl eframe::App for App {
     fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        // No tooltip of what has come under the pointer, until it moves.
+        if std::mem::take(&mut self.zoom.turned) {
+            input.events.insert(0, egui::Event::PointerGone);
+        }
         if self.later.sort(input) {
             ctx.request_repaint();
         }

@@ -227,11 +227,6 @@ impl App {
             || jobs.run_time.progress().is_some()
     }
 
-    /// The evaluation's rows of the test sets, as CSV.
-    pub fn evaluation_csv(&self) -> String {
-        super::jobs::evaluation_to_csv(&super::jobs::evaluated(self.rows()))
-    }
-
     /// The rows of the panel Evaluate.
     pub fn rows(&self) -> &[Row] {
         self.jobs.failures.table().rows()

@@ -55,6 +55,17 @@ fn maps_follow_time_but_the_document_stays() {
 }
 
 #[test]
+fn a_shared_text_opens_at_the_time_on_screen() {
+    let mut s = moving();
+    s.ask(ViewCommand::SetTime(0.5));
+    let text = s.state().shared_text().unwrap();
+    s.ask(ViewCommand::SetTime(0.0));
+    s.ask(EditCommand::PasteText(text));
+    assert_eq!(s.state().time_seconds(), 0.5);
+    assert_eq!(s.state().scene_at_time().objects[0].centre_metres(), [0.0, 25.0]);
+}
+
+#[test]
 fn time_goes_on_while_motion_is_played() {
     let mut s = moving();
     s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));

@@ -6,8 +6,8 @@ use eframe::egui;
 /// Height that a presentation is laid out for, points. A higher window scales it up.
 const PRESENTATION_HEIGHT: f32 = 600.0;
 
-/// Least and largest scale of a presentation.
-const PRESENTATION_ZOOMS: [f32; 2] = [1.25, 2.5];
+/// How much larger everything is in a presentation at least and at most.
+const PRESENTATION_ZOOMS: [f32; 2] = [1.0, 2.5];
 
 /// Scale of a presentation on a window of `height` points, measured at normal scale.
 fn presentation_zoom(height: f32) -> f32 {
@@ -24,6 +24,8 @@ pub struct Zoom {
     before_presenting: Option<f32>,
     /// Scale before the lesson that is shown.
     before_lesson: Option<f32>,
+    /// Whether the screen has just been filled or left: what lies under a pointer that rests is no longer what it was moved to.
+    pub turned: bool,
 }
 
 impl Zoom {
@@ -37,7 +39,7 @@ impl Zoom {
         let full_screen = state.is_presenting();
         if full_screen != self.is_full_screen {
             ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(full_screen));
-            self.is_full_screen = full_screen;
+            (self.is_full_screen, self.turned) = (full_screen, true);
         }
         self.follow_presentation(ctx, full_screen);
         self.follow_lesson(ctx, state.lesson.is_some());
@@ -82,7 +84,7 @@ mod tests {
 
     #[test]
     fn a_presentation_grows_with_the_screen() {
-        let zooms = [640.0, 900.0, 1440.0, 4320.0].map(presentation_zoom);
-        assert_eq!(zooms, [1.25, 1.5, 2.4, 2.5]);
+        let zooms = [400.0, 900.0, 1440.0, 4320.0].map(presentation_zoom);
+        assert_eq!(zooms, [1.0, 1.5, 2.4, 2.5]);
     }
 }

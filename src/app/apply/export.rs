@@ -2,7 +2,7 @@
 
 use super::effect::Effect;
 use super::{map_picture, shared};
-use crate::app::jobs::{Jobs, evaluated, evaluation_to_csv, tell};
+use crate::app::jobs::{Jobs, tell};
 use crate::app::state::{ExportCommand, State};
 
 /// Does an export; the effect is text or a picture for the clipboard.
@@ -11,12 +11,8 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: ExportCommand) -> Opti
         ExportCommand::CopyMap(kind) => return map_picture::copy(state, jobs, kind).map(Effect::CopyImage),
         ExportCommand::CopyShared => return shared::text(state).map(Effect::Copy),
         ExportCommand::CopyLink => return shared::link(state).map(Effect::Copy),
-        ExportCommand::CopyEvaluation => {
-            return Some(Effect::Copy(evaluation_to_csv(&evaluated(jobs.failures.table().rows()))));
-        }
         ExportCommand::PictureTo(path) => jobs.exports.picture(state, path),
         ExportCommand::MapsTo(path) => jobs.exports.maps(state, path),
-        ExportCommand::MetricsTo(path) => jobs.exports.metrics(state, &jobs.pipeline, path),
     };
     tell(state, said);
     None

@@ -64,6 +64,7 @@ fn share(state: &State) -> SharedScene {
     let lesson = lesson.map(|run| LessonPlace { id: run.id.clone(), step: run.step + 1 });
     let parts = [by_column(state.radar(), part(state.map_views.range_angle)), part(state.map_views.cartesian)];
     let view = SharedView::of(&View { method, ..state.settings.view.clone() }, parts, lesson);
+    let view = SharedView { time_seconds: state.timeline.seconds(), ..view };
     SharedScene { file: state.editor.document().to_file(), view }
 }
 
@@ -114,6 +115,7 @@ fn look(state: &mut State, view: SharedView) {
     let seen = |part: VisiblePart| MapView { low: pos2(part.left, part.bottom), high: pos2(part.right, part.top) };
     state.map_views.range_angle = seen(by_column(state.radar(), view.range_angle_part));
     state.map_views.cartesian = seen(view.cartesian_part);
+    state.timeline.set(state.editor.scene(), view.time_seconds);
     view.show_in(&mut state.settings);
 }
 

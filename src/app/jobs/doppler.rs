@@ -4,14 +4,15 @@ use super::derived::{Failure, Query};
 use super::memo::Memo;
 use super::source::Source;
 use crate::app::state::State;
-use crate::app::widgets::textures::colour_table;
+use crate::app::widgets::textures::picture;
 use crate::maps::doppler::{RangeDopplerMap, range_doppler_for};
-use crate::maps::{LogMap, Normalisation, RangeAngleMap};
+use crate::maps::{LogMap, Normalisation};
 use crate::picture::ColourMap;
 use crate::radar::Radar;
 use crate::recording::FrameLoops;
 use crate::task::Task;
 use eframe::egui::ColorImage;
+use ndarray::s;
 use std::sync::Arc;
 
 /// A query of the range-Doppler map and its picture.
@@ -62,7 +63,8 @@ impl Query for DopplerQuery {
         let of = (source.clone(), *static_clutter_out);
         let made = kept.try_of(of, |(source, is_out)| source_map(source, *is_out, task))?;
         let DopplerMade { radar, knows_interval, decades } = made.clone();
-        let image = picture(&decades.normalise(*normalisation), *colours);
+        let map = decades.normalise(*normalisation);
+        let image = picture(map.lambda.slice(s![..;-1, ..]), *colours);
         Ok(DopplerResult { radar, knows_interval, decades, image })
     }
 }
@@ -88,11 +90,4 @@ fn source_map(source: &Source, static_clutter_out: bool, task: &Task) -> Result<
     let (scene, floor) = source.simulated()?;
     let map = range_doppler_for(task, &source.radar, scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
     Ok(DopplerMade { radar: source.radar.clone(), knows_interval: true, decades: map.log_magnitude() })
-}
-
-fn picture(map: &RangeAngleMap, colours: ColourMap) -> Arc<ColorImage> {
-    let table = colour_table(colours);
-    let cells = map.lambda.slice(ndarray::s![..;-1, ..]);
-    let pixels = cells.iter().map(|v| table[(v.clamp(0.0, 1.0) * 255.0) as usize]).collect();
-    Arc::new(ColorImage::new([cells.ncols(), cells.nrows()], pixels))
 }

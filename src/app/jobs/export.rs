@@ -1,10 +1,9 @@
-//! Exports of pictures, arrays and figures, written on threads of their own.
+//! Exports of pictures, arrays and rows, written on threads of their own.
 
 use super::background::Background;
 use super::failures::{RowTable, write_rows_to};
-use super::pipeline::Pipeline;
 use super::recorded::seen_by;
-use crate::app::state::{MethodSlot, Purpose, State};
+use crate::app::state::{Purpose, State};
 use crate::files::write_bytes;
 use crate::maps::archive::{write_maps, write_recorded_maps};
 use crate::picture::{PictureFormat, compose, compose_recording, maps_of};
@@ -104,15 +103,6 @@ impl Exports {
         })
     }
 
-    /// Writes the figures of the scene on screen as CSV. Returns the message for the user.
-    ///
-    /// # Errors
-    /// The missing part, or the reason why it could not be begun.
-    pub fn metrics(&self, state: &State, pipeline: &Pipeline, path: PathBuf) -> Result<String, String> {
-        let text = metrics_csv(state, pipeline)?;
-        self.begin(path, move |path| write_bytes(path, text.as_bytes()).map(|()| None).map_err(|e| e.to_string()))
-    }
-
     /// Writes the rows of the panel Evaluate as CSV. Returns the message for the user.
     ///
     /// # Errors
@@ -164,34 +154,6 @@ fn write_recording(
     let heard = request.heard.as_deref();
     write_recorded_maps(path, &recording.radar, &ends, full.as_ref(), heard, output).map_err(|e| e.to_string())?;
     Ok(found.err().map(|why| format!("without the output: {why}")))
-}
-
-fn metrics_csv(state: &State, pipeline: &Pipeline) -> Result<String, String> {
-    let result = pipeline.maps.result().ok_or("There are no maps yet; try again in a moment.")?;
-    let (scores, output) = pipeline
-        .scores_in(MethodSlot::First)
-        .zip(pipeline.output())
-        .ok_or("There are no figures: show an output panel and place a reflector first.")?;
-    if pipeline.output_is_outdated() || !pipeline.maps.is_settled() {
-        return Err("The output is still being made; try again when it is there.".to_owned());
-    }
-    let m = scores.metrics;
-    let detection = m.detection.map_or_else(String::new, |d| d.to_string());
-    Ok(format!(
-        "scene,reflectors,method,floor,normalisation,eta,squared_error,detection,false_alarm,target_blobs,output_blobs,milliseconds\n\
-         \"{}\",{},{},{},{},{},{},{detection},{},{},{},{:.3}\n",
-        state.editor.scene().name.replace('"', "'"),
-        result.request.source.scene.reflector_count(),
-        output.method,
-        state.settings.floor,
-        state.settings.normalisation,
-        pipeline.eta(state, MethodSlot::First),
-        m.squared_error,
-        m.false_alarm,
-        scores.target_blobs,
-        scores.output_blobs,
-        output.took.as_secs_f64() * 1e3,
-    ))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::background::Background;
 use crate::app::shared::Shared;
 use crate::app::state::{LessonCommand, LessonRun, State};
-use crate::app::widgets::textures::colour_table;
+use crate::app::widgets::textures::picture;
 use crate::lesson::{Guess, Judgement, Lesson, MapName, Measured, Stage, Step};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
@@ -51,19 +51,15 @@ fn challenge(step: &Step, request: &Request) -> Option<Challenged> {
     let hidden = challenge
         .hidden_scene()
         .and_then(|scene| Stage::new(&step.radar, &scene, &step.view, challenge.needs_hidden_output()).ok());
-    let picture = hidden.as_ref().and_then(|stage| Some(picture(&stage.radar, stage.map(MapName::Target).ok()?)));
+    let picture = hidden.as_ref().and_then(|stage| Some(shrunk(&stage.radar, stage.map(MapName::Target).ok()?)));
     let stage = Stage::new(&request.radar, &request.scene, &step.view, challenge.needs_output());
     let measured = stage.map_err(|e| e.to_string()).and_then(|stage| challenge.measure(&stage, hidden.as_ref()));
     Some((measured, picture))
 }
 
-/// A picture of every second cell, the farthest row on top.
-fn picture(radar: &Radar, map: &RangeAngleMap) -> Arc<ColorImage> {
-    let table = colour_table(ColourMap::default());
-    let drawn = radar.left_to_right(&map.lambda);
-    let cells = drawn.slice(ndarray::s![..;-2, ..;2]);
-    let pixels = cells.iter().map(|v| table[(v.clamp(0.0, 1.0) * 255.0) as usize]).collect();
-    Arc::new(ColorImage::new([cells.ncols(), cells.nrows()], pixels))
+/// Every second cell, the farthest row on top.
+fn shrunk(radar: &Radar, map: &RangeAngleMap) -> Arc<ColorImage> {
+    picture(radar.left_to_right(&map.lambda).slice(ndarray::s![..;-2, ..;2]), ColourMap::default())
 }
 
 /// The worker of judgements, its last request, the hidden scene's picture, and lesson files being read.
@@ -174,7 +170,7 @@ mod tests {
             // Every second column is painted.
             let column = radar.column_of_cos(-0.5) as usize;
             lambda.slice_mut(ndarray::s![.., column..column + 2]).fill(1.0);
-            let image = picture(&radar, &RangeAngleMap { lambda });
+            let image = shrunk(&radar, &RangeAngleMap { lambda });
             let bright = (0..64).max_by_key(|x| image.pixels[*x].g()).unwrap();
             assert!((14..19).contains(&bright), "{convention:?}: column {bright} of 64");
         }

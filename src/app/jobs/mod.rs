@@ -9,7 +9,6 @@ mod derived;
 mod detected;
 mod dialogs;
 mod doppler;
-mod evaluation;
 mod export;
 mod failures;
 mod frame_log;
@@ -46,7 +45,6 @@ pub use chirp::{ChirpQuery, ChirpResult};
 pub use derived::{Derived, Failure, Polled, Query};
 pub use dialogs::{Dialogs, Question};
 pub use doppler::{DopplerQuery, DopplerResult};
-pub use evaluation::{EvaluationRow, evaluated, to_csv as evaluation_to_csv};
 pub use export::Exports;
 #[cfg(test)]
 pub use failures::some_row;

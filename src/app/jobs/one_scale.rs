@@ -1,5 +1,6 @@
 //! Maps of one frame on a common scale, so that a weaker map is darker.
 
+use super::memo::Memo;
 use crate::app::shared::Shared;
 use crate::app::state::MapKind;
 use crate::engine::{EngineFrame, ReadyMap};
@@ -9,18 +10,18 @@ use std::collections::BTreeMap;
 /// A map on a scale shared with others.
 #[derive(Clone)]
 pub struct Rescaled {
-    /// The map on its own scale.
-    of: Shared<RangeAngleMap>,
-    own: LambdaScale,
     /// The map on the common scale.
     pub map: Shared<RangeAngleMap>,
     /// The common scale.
     pub scale: LambdaScale,
 }
 
+/// A map, its own scale and the common one.
+type Rescaling = (Shared<RangeAngleMap>, LambdaScale, LambdaScale);
+
 /// The last maps on a common scale.
 #[derive(Default)]
-pub struct OneScale(BTreeMap<MapKind, Rescaled>);
+pub struct OneScale(BTreeMap<MapKind, Memo<Rescaling, Rescaled>>);
 
 impl OneScale {
     /// The inputs, the target and the outputs on a common scale. It ends at the highest peak of inputs and target and spans as many decibels as the widest of
@@ -38,12 +39,14 @@ impl OneScale {
         let of_methods = [MapKind::Output, MapKind::Second].into_iter().zip(outputs);
         let of_methods = of_methods.filter_map(|(kind, map)| Some((kind, (map?.clone(), scale?))));
         let common = common([&frame.first, &frame.last, &frame.full].into_iter().flatten().map(|map| map.scale));
-        let kept = std::mem::take(&mut self.0);
-        self.0 = of_frame
-            .chain(of_methods)
-            .map(|(kind, (map, own))| (kind, rescaled(kept.get(&kind), map, own, common)))
-            .collect();
-        self.0.clone()
+        let mut kept = std::mem::take(&mut self.0);
+        let all = of_frame.chain(of_methods).map(|(kind, (map, own))| {
+            let mut memo = kept.remove(&kind).unwrap_or_default();
+            let made = memo.of((map, own, common), rescaled).clone();
+            self.0.insert(kind, memo);
+            (kind, made)
+        });
+        all.collect()
     }
 }
 
@@ -54,13 +57,10 @@ fn common(scales: impl Iterator<Item = LambdaScale> + Clone) -> LambdaScale {
     LambdaScale { peak, floor: peak - span }
 }
 
-fn rescaled(kept: Option<&Rescaled>, of: Shared<RangeAngleMap>, own: LambdaScale, scale: LambdaScale) -> Rescaled {
-    if let Some(kept) = kept.filter(|kept| kept.of == of && (kept.own, kept.scale) == (own, scale)) {
-        return kept.clone();
-    }
+fn rescaled((map, own, scale): &Rescaling) -> Rescaled {
     let decades = |lambda: f32| own.floor + f64::from(lambda) * (own.peak - own.floor);
-    let lambda = of.lambda.mapv(|lambda| scale.lambda(decades(lambda)) as f32);
-    Rescaled { map: Shared::new(RangeAngleMap { lambda }), of, own, scale }
+    let lambda = map.lambda.mapv(|lambda| scale.lambda(decades(lambda)) as f32);
+    Rescaled { map: Shared::new(RangeAngleMap { lambda }), scale: *scale }
 }
 
 #[cfg(test)]
@@ -73,9 +73,8 @@ mod tests {
         let [strong, weak] = [2.0, 1.0].map(|peak| LambdaScale { peak, floor: peak - 4.0 });
         let scale = common([weak, strong].into_iter());
         let map = Shared::new(RangeAngleMap { lambda: array![[1.0f32, 0.5, 0.0]] });
-        let [of_strong, of_weak] = [strong, weak].map(|own| rescaled(None, map.clone(), own, scale));
+        let [of_strong, of_weak] = [strong, weak].map(|own| rescaled(&(map.clone(), own, scale)));
         assert_eq!(of_strong.map.lambda, map.lambda, "the strongest stays as it is");
         assert_eq!(of_weak.map.lambda, array![[0.75f32, 0.25, 0.0]], "20 dB of 80 dB");
-        assert_eq!(rescaled(Some(&of_weak), map, weak, scale).map, of_weak.map, "made once");
     }
 }

@@ -14,17 +14,22 @@ use crate::app::widgets::theme::Inks;
 use crate::radar::{Carrier, Radar};
 use crate::scene::Scene;
 use crate::theory::chirp::{BeatTone, ChirpShape, delay_seconds, heard};
-use eframe::egui::{self, Color32, CursorIcon, FontId, Rect, Sense, Stroke, Ui, vec2};
+use eframe::egui::text::LayoutJob;
+use eframe::egui::{self, CursorIcon, FontId, Rect, Sense, Stroke, Ui, vec2};
 use egui_plot::{LineStyle, PlotPoints, Points};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Part of the chirp's duration as which the delay from the maximum range is drawn, where the delay is shorter.
 const DRAWN_DELAY: f64 = 0.25;
 
-/// Most echoes that are drawn.
-const ECHOES: usize = 60;
+/// Most echoes that are drawn, unless there are more objects.
+const MAX_ECHOES: usize = 60;
 
-/// Places of the dashed beats of the first objects, as parts of the time in which both chirp and echo are present.
-const LABEL_PLACES: [f64; 2] = [0.2, 0.65];
+/// Most lines of the objects' beats; the pointer shows all.
+const MAX_LINES_OF_BEATS: usize = 3;
+
+/// Where the beats of the first objects are drawn, as parts of the time in which they are heard while the chirp is sent.
+const BEAT_PLACES: [f64; 2] = [0.2, 0.65];
 
 /// Radius of a handle, points.
 const HANDLE: f32 = 5.0;
@@ -91,14 +96,14 @@ fn contents(ui: &mut Ui, input: &Input<'_>, height: f32, asked: &mut Vec<Command
     let top = ui.cursor().top();
     let chirp = ChirpShape::of(input.radar);
     let element = input.settings.element.min(input.radar.elements - 1);
-    let mut echoes = match input.is_recorded {
+    let echoes = match input.is_recorded {
         true => Vec::new(),
         false => heard(input.radar, input.scene, element),
     };
-    echoes.truncate(ECHOES);
     choices::show(ui, input.radar, element, asked);
     let stretch = stretch(input.radar, &chirp);
     legend(ui, input, stretch);
+    tell_beats(ui, input.scene, &chirp, &echoes);
     if input.radar.carrier == Carrier::OneWay {
         let half_gigahertz = input.radar.carrier_hz / 2e9;
         ui.weak(format!("Drawn rising; the thesis' formula falls from {half_gigahertz} GHz: the same beats."));
@@ -106,7 +111,7 @@ fn contents(ui: &mut Ui, input: &Input<'_>, height: f32, asked: &mut Vec<Command
     let left = (height - 1.0 - (ui.cursor().top() - top)).max(LEAST_CHARTS_HEIGHT);
     let (_, area) = ui.allocate_space(vec2(ui.available_width(), left));
     let [frequencies, beat, spectrum] = parts(area);
-    let shown = Shown { input, chirp, echoes: &echoes, stretch };
+    let shown = Shown { input, chirp, echoes: &thinned(echoes), stretch };
     shown.frequencies(ui, frequencies, asked);
     match input.result {
         None => _ = ui.put(beat, egui::Label::new(egui::RichText::new("computing…").weak())),
@@ -155,6 +160,45 @@ fn legend(ui: &mut Ui, input: &Input<'_>, stretch: f64) {
     legend::row(ui, &entries);
 }
 
+/// The beats of all objects in megahertz, nearest first.
+fn tell_beats(ui: &mut Ui, scene: &Scene, chirp: &ChirpShape, echoes: &[BeatTone]) {
+    let mut beats: Vec<(usize, [f64; 2])> = Vec::new();
+    for echo in echoes {
+        let beat = chirp.beat_hz(echo.range_metres) / 1e6;
+        match beats.iter_mut().find(|(object, _)| *object == echo.object) {
+            Some((_, [_, high])) => *high = beat,
+            None => beats.push((echo.object, [beat, beat])),
+        }
+    }
+    let told = beats.iter().map(|(object, [low, high])| {
+        let name = scene.objects[*object].called(*object);
+        if high - low < 0.005 { format!("{name} {low:.2}") } else { format!("{name} {low:.2} to {high:.2}") }
+    });
+    if !beats.is_empty() {
+        let text = format!("Beats in MHz: {}", told.collect::<Vec<_>>().join(" · "));
+        let (font, ink) = (FontId::proportional(12.0), Inks::of(ui.visuals()).ends[0]);
+        let mut lines = LayoutJob::simple(text, font, ink, f32::INFINITY);
+        lines.wrap.max_rows = MAX_LINES_OF_BEATS;
+        ui.label(lines);
+    }
+}
+
+/// So many echoes that each can be seen: of every object about as many, spread over its ranges.
+fn thinned(echoes: Vec<BeatTone>) -> Vec<BeatTone> {
+    let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
+    echoes.iter().for_each(|echo| *counts.entry(echo.object).or_default() += 1);
+    let of_each = (MAX_ECHOES / counts.len().max(1)).max(1);
+    let mut before: BTreeMap<usize, usize> = BTreeMap::new();
+    let is_drawn = |echo: &BeatTone| {
+        let before = before.entry(echo.object).or_default();
+        *before += 1;
+        (*before - 1).is_multiple_of(counts[&echo.object].div_ceil(of_each))
+    };
+    let mut echoes = echoes;
+    echoes.retain(is_drawn);
+    echoes
+}
+
 /// Data of all three charts.
 struct Shown<'a> {
     input: &'a Input<'a>,
@@ -174,21 +218,15 @@ impl Shown<'_> {
         let x = Axis::new(-0.05 * microseconds, 1.25 * microseconds, "time, µs");
         let mut chart = Chart::new("Frequency against time", x, Axis::new(-0.08 * giga, 1.12 * giga, title));
         let stroke = Stroke::new(1.2, inks.ends[0].gamma_multiply(0.9));
-        let mut beats: Vec<(usize, [f64; 2])> = Vec::new();
+        let mut objects = BTreeSet::new();
         for echo in self.echoes {
             let late = 1e6 * self.stretch * delay_seconds(echo.range_metres);
             chart.line([[late, 0.0], [late + microseconds, giga]], stroke, LineStyle::Solid);
-            let beat = self.chirp.beat_hz(echo.range_metres) / 1e6;
-            match beats.iter_mut().find(|(object, _)| *object == echo.object) {
-                Some((_, [low, high])) => (*low, *high) = (low.min(beat), high.max(beat)),
-                None => {
-                    if let Some(part) = LABEL_PLACES.get(beats.len()) {
-                        let time = late + part * (microseconds - late).max(0.0);
-                        let [sent, returned] = [time, time - late].map(|t| giga * t / microseconds);
-                        chart.line([[time, returned], [time, sent]], stroke, LineStyle::Dashed { length: 2.5 });
-                    }
-                    beats.push((echo.object, [beat, beat]));
-                }
+            let place = BEAT_PLACES.get(objects.len());
+            if let Some(part) = place.filter(|_| objects.insert(echo.object)) {
+                let time = late + part * (microseconds - late).max(0.0);
+                let [sent, returned] = [time, time - late].map(|t| giga * t / microseconds);
+                chart.line([[time, returned], [time, sent]], stroke, LineStyle::Dashed { length: 2.5 });
             }
         }
         if let Some(interferer) = self.input.scene.disturbances.interferer.filter(|_| !self.input.is_recorded) {
@@ -203,25 +241,7 @@ impl Shown<'_> {
         }
         chart.line([[0.0, 0.0], [microseconds, giga]], Stroke::new(2.2, inks.selected), LineStyle::Solid);
         let drawn = chart.show(ui, area, Sense::hover());
-        self.tell(&drawn, &beats, stroke.color);
         self.handles(ui, &drawn, [microseconds, giga], asked);
-    }
-
-    /// Writes the beat frequencies of each object in megahertz above the lines, for as many objects as have room.
-    fn tell(&self, drawn: &Drawn, beats: &[(usize, [f64; 2])], ink: Color32) {
-        let mut at = drawn.rect.left_top() + vec2(6.0, 3.0);
-        for (object, [low, high]) in beats {
-            let numbers = if high - low < 0.005 { format!("{low:.2}") } else { format!("{low:.2} to {high:.2}") };
-            let text = format!("{} {numbers} MHz", self.input.scene.objects[*object].called(*object));
-            let galley = drawn.painter().layout_no_wrap(text, FontId::proportional(12.0), ink);
-            let corner = at + galley.size();
-            let sent = drawn.x_at(corner) / 1e6 / self.chirp.duration_seconds * self.chirp.bandwidth_hz / 1e9;
-            if drawn.y_at(corner) < sent {
-                break;
-            }
-            drawn.painter().galley(at, galley, ink);
-            at.y = corner.y;
-        }
     }
 
     /// Draws the handles at both ends of the sent chirp: the beginning is dragged up and down for the carrier, the end for bandwidth and duration.
@@ -337,7 +357,7 @@ mod tests {
             }
             // 12 m before the middle element's neighbour: 20.0 turns in 25.6 us.
             let texts = seen::texts(panel.output());
-            assert!(texts.iter().any(|t| t.text == "point 1 0.78 MHz"), "{texts:?}");
+            assert!(texts.iter().any(|t| t.text == "Beats in MHz: point 1 0.78 · point 2 1.32"), "{texts:?}");
             assert!(texts.iter().any(|t| t.text.contains("the thesis' formula falls from 38.5 GHz")), "{texts:?}");
             seen::assert_readable(panel.output());
         }

@@ -1,15 +1,17 @@
 //! The evaluation panel: methods on the test sets of the tables, beside the figures that the thesis prints.
 
 use crate::app::content::{Content, Cx, Nothing};
-use crate::app::jobs::{EvaluationRow, Memo, evaluated};
-use crate::app::state::{Command, ExportCommand, FailureChoice, RowsCommand};
+use crate::app::jobs::Memo;
+use crate::app::state::{Command, FailureChoice, RowsCommand};
 use crate::app::widgets::padded::{scrolled_both, warning};
 use crate::app::widgets::progress::{bar, start_or_cancel};
 use crate::evaluate::eta_text;
-use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed};
+use crate::evaluate::rows::{Column, Row, Text};
+use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};
 use crate::radar::{Radar, counted};
 use crate::scene::generate::Kind;
 use eframe::egui::{Grid, Ui};
+use std::collections::BTreeMap;
 
 /// The printed columns with their headings.
 const PRINTED: [(&str, [Printed; 3]); 3] = [
@@ -29,10 +31,26 @@ pub struct Input<'a> {
     pub radar: &'a Radar,
     /// Completed part of the run, 0 to 1, while methods are tried.
     pub progress: Option<f32>,
-    /// Figures of each method on each test set.
-    pub rows: &'a [EvaluationRow],
+    /// Figures of the rows.
+    pub lines: &'a [Line],
     /// Message of the last run, where it did not succeed.
     pub note: Option<&'a str>,
+}
+
+/// One method on one test set.
+pub struct Line {
+    /// The test set, from 0.
+    set: usize,
+    /// The method's name, its threshold, and the optimisers of its weights.
+    label: String,
+    /// How many scenes.
+    scenes: usize,
+    /// SE, P_D, P_FA, and P_D where every scene's P_FA is held to the printed one of experiment 2.
+    figures: [String; 4],
+    /// P_D and P_FA by a detector of constant false-alarm rate, where one was in use.
+    cfar: Option<[String; 2]>,
+    /// Time of a map.
+    milliseconds: String,
 }
 
 /// Scenes of each set that the button tries.
@@ -42,18 +60,18 @@ pub struct EvaluationPanel;
 
 impl Content for EvaluationPanel {
     type Asks = Nothing;
-    /// The summary of the rows, kept for one version of them.
-    type Remembers = Memo<u64, Vec<EvaluationRow>>;
+    /// Figures of the rows of this version.
+    type Remembers = Memo<u64, Vec<Line>>;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, job) = (&*cx.state, &cx.jobs.failures);
         let table = job.table();
-        let rows = &*cx.memory.of(table.version(), |_| evaluated(table.rows()));
+        let lines = &*cx.memory.of(table.version(), |_| lines(table.rows()));
         let input = Input {
             method: state.method().map(|m| m.name()),
-            radar: if rows.is_empty() { state.radar() } else { &table.conditions().radar },
+            radar: if lines.is_empty() { state.radar() } else { &table.conditions().radar },
             progress: job.progress(),
-            rows,
+            lines,
             note: job.note(),
         };
         show(ui, input)
@@ -66,10 +84,10 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         warning(ui, input.note);
         warning(ui, unlike_the_thesis(input.radar).as_deref());
         ui.separator();
-        if input.rows.is_empty() {
+        if input.lines.is_empty() {
             ui.weak("Tables 4.1 to 4.3 of the thesis for the methods that were tried on sets 1 to 3. Rows tries any method on any number of scenes.");
         }
-        tables(ui, input.rows);
+        tables(ui, input.lines);
     })
 }
 
@@ -97,28 +115,58 @@ fn buttons(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             let choice = FailureChoice { methods, kinds, own: false, count: SCENES_A_SET, seed: 0 };
             asked.push(RowsCommand::Try(choice).into());
         }
-        if !input.rows.is_empty()
-            && ui.button("Copy as CSV").on_hover_text("Copy the tables to the clipboard").clicked()
-        {
-            asked.push(ExportCommand::CopyEvaluation.into());
-        }
         if let Some(part) = input.progress {
             bar(ui, part, 180.0);
         }
     });
 }
 
-fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
-    for set in 1..=3 {
-        if !rows.iter().any(|r| r.set == set) {
+/// Every method on every test set of which there are rows.
+fn lines(rows: &[Row]) -> Vec<Line> {
+    let sets = Kind::TEST_SETS.map(|kind| kind.to_string());
+    let mut found: BTreeMap<(usize, &Text), Vec<&Row>> = BTreeMap::new();
+    for row in rows {
+        if let Some(set) = sets.iter().position(|set| row.set == *set.as_str()) {
+            found.entry((set, &row.method)).or_default().push(row);
+        }
+    }
+    found.into_iter().map(|((set, method), rows)| line(set, method, rows)).collect()
+}
+
+fn line(set: usize, method: &Text, rows: Vec<&Row>) -> Line {
+    let has_cfar = rows.iter().all(|row| row.cfar_false_alarm.is_some());
+    let tally = Tally::of(rows);
+    let rate = |column| match tally.estimate(column) {
+        estimate if estimate.mean.is_finite() => with_error(estimate, 100.0, 2),
+        _ => "–".to_owned(),
+    };
+    let eta = if tally.has_one_eta() { eta_text(tally.eta()) } else { format!("{:.4}, mean", tally.eta()) };
+    let optimiser = Some(tally.optimiser()).filter(|optimiser| !optimiser.is_empty());
+    let optimiser = optimiser.map_or_else(String::new, |optimiser| format!("\n{}", optimiser.replace(", ", ",\n")));
+    let [detection, false_alarm, at_printed] =
+        [Column::Detection, Column::FalseAlarm, Column::DetectionAtPrinted].map(rate);
+    Line {
+        set,
+        label: format!("{method}\nη = {eta}{optimiser}"),
+        scenes: tally.scenes(),
+        figures: [with_error(tally.squared_error(), 1.0, 0), detection, false_alarm, at_printed],
+        cfar: has_cfar.then(|| [Column::CfarDetection, Column::CfarFalseAlarm].map(rate)),
+        milliseconds: format!("{:.1}", tally.median_milliseconds()),
+    }
+}
+
+fn tables(ui: &mut Ui, lines: &[Line]) {
+    for (set, name) in SETS.iter().enumerate() {
+        let lines: Vec<&Line> = lines.iter().filter(|line| line.set == set).collect();
+        if lines.is_empty() {
             continue;
         }
-        ui.strong(format!("Table 4.{set}: {}", SETS[set - 1]));
-        let has_cfar = rows.iter().any(|r| r.set == set && r.cfar.is_some());
+        ui.strong(format!("Table 4.{}: {name}", set + 1));
+        let has_cfar = lines.iter().any(|line| line.cfar.is_some());
         Grid::new(("table", set)).num_columns(if has_cfar { 8 } else { 6 }).striped(true).spacing([8.0, 3.0]).show(
             ui,
             |ui| {
-                let at = format!("P_D % at\nP_FA {:.2} %\n(own η)", 100.0 * PRINTED_EXPERIMENT_2[set - 1].false_alarm);
+                let at = format!("P_D % at\nP_FA {:.2} %\n(own η)", 100.0 * PRINTED_EXPERIMENT_2[set].false_alarm);
                 for title in ["", "SE", "P_D %", "P_FA %"] {
                     ui.weak(title);
                 }
@@ -134,41 +182,28 @@ fn tables(ui: &mut Ui, rows: &[EvaluationRow]) {
                 ui.weak("ms");
                 ui.end_row();
                 for (name, columns) in PRINTED {
-                    let printed = columns[set - 1];
+                    let printed = columns[set];
                     ui.weak(name);
                     ui.monospace(format!("{:.0}", printed.squared_error));
                     ui.monospace(format!("{:.2}", 100.0 * printed.detection));
                     ui.monospace(format!("{:.2}", 100.0 * printed.false_alarm));
                     ui.end_row();
                 }
-                for row in rows.iter().filter(|r| r.set == set) {
-                    let scenes = counted(row.scenes, "scene", "scenes");
-                    ui.strong(label(row))
+                for line in lines {
+                    let scenes = counted(line.scenes, "scene", "scenes");
+                    ui.strong(&line.label)
                         .on_hover_text(format!("{scenes}; mean ± standard error, and the median in brackets"));
-                    ui.monospace(with_error(row.squared_error, 1.0, 0));
-                    ui.monospace(with_error(row.detection, 100.0, 2));
-                    ui.monospace(with_error(row.false_alarm, 100.0, 2));
-                    ui.monospace(row.detection_at_printed.map_or("–".to_owned(), |d| with_error(d, 100.0, 2)));
-                    if has_cfar {
-                        let rate = |i: usize| row.cfar.map_or("–".to_owned(), |rates| with_error(rates[i], 100.0, 2));
-                        ui.monospace(rate(0));
-                        ui.monospace(rate(1));
+                    line.figures.iter().for_each(|figure| _ = ui.monospace(figure));
+                    for i in 0..if has_cfar { 2 } else { 0 } {
+                        ui.monospace(line.cfar.as_ref().map_or("–", |rates| &rates[i]));
                     }
-                    ui.monospace(format!("{:.1}", row.median_milliseconds));
+                    ui.monospace(&line.milliseconds);
                     ui.end_row();
                 }
             },
         );
         ui.add_space(8.0);
     }
-}
-
-/// Text of a method's name, its threshold, and the optimisers of its weights.
-fn label(row: &EvaluationRow) -> String {
-    let eta = if row.one_eta { eta_text(row.eta) } else { format!("{:.4}, mean", row.eta) };
-    let optimiser =
-        if row.optimiser.is_empty() { String::new() } else { format!("\n{}", row.optimiser.replace(", ", ",\n")) };
-    format!("{}\nη = {eta}{optimiser}", row.method)
 }
 
 /// Text of a mean, with its standard error and the median in lines of their own, which keeps the column narrow.
@@ -180,6 +215,7 @@ fn with_error(Estimate { mean, standard_error, median }: Estimate, scale: f64, d
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::jobs::some_row;
     use crate::app::widgets::seen;
     use crate::radar::{Carrier, WindowFunction};
     use egui_kittest::Harness;
@@ -189,7 +225,7 @@ mod tests {
     fn the_method_in_use_is_tried_on_the_test_sets() {
         let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
         let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
-            let input = Input { method: Some("capon"), radar: &radar, progress: None, rows: &[], note: None };
+            let input = Input { method: Some("capon"), radar: &radar, progress: None, lines: &[], note: None };
             asked.extend(show(ui, input));
         };
         let mut evaluation = Harness::builder().with_size([700.0, 300.0]).build_ui_state(draw, Vec::new());
@@ -203,28 +239,35 @@ mod tests {
     #[test]
     fn a_panel_of_the_window_has_room_for_every_column() {
         let estimate = |mean, standard_error| Estimate { mean, standard_error, median: mean };
-        let row = EvaluationRow {
-            set: 3,
-            method: "linear-prediction".into(),
-            optimiser: "AdamW, then Muon".into(),
-            eta: 0.851_234_5,
-            one_eta: true,
+        let rate = |mean, standard_error| with_error(estimate(mean, standard_error), 100.0, 2);
+        let squared_error = with_error(estimate(12_345.6, 1234.5), 1.0, 0);
+        let line = Line {
+            set: 2,
+            label: "linear-prediction\nη = 0.8512345\nAdamW,\nthen Muon".to_owned(),
             scenes: 100,
-            squared_error: estimate(12_345.6, 1234.5),
-            detection: estimate(0.99351, 0.10123),
-            false_alarm: estimate(0.10163, 0.10012),
-            detection_at_printed: Some(estimate(1.0, 0.0)),
+            figures: [squared_error, rate(0.99351, 0.10123), rate(0.10163, 0.10012), rate(1.0, 0.0)],
             cfar: None,
-            median_milliseconds: 1234.5,
+            milliseconds: "1234.5".to_owned(),
         };
         let radar = Radar::default();
         let evaluation = Harness::builder().with_size([460.0, 480.0]).build_ui(move |ui| {
-            let rows = std::slice::from_ref(&row);
-            _ = show(ui, Input { method: None, radar: &radar, progress: None, rows, note: None });
+            let lines = std::slice::from_ref(&line);
+            _ = show(ui, Input { method: None, radar: &radar, progress: None, lines, note: None });
         });
         seen::assert_readable(evaluation.output());
         let texts = seen::texts(evaluation.output());
         assert!(texts.iter().any(|t| t.text == "1234.5"), "the last column: {texts:?}");
+    }
+
+    #[test]
+    fn rows_of_test_sets_become_the_printed_tables() {
+        let other = Row { set: "walls".into(), ..some_row(2, "live") };
+        let rows = [some_row(0, "live"), some_row(1, "live"), some_row(0, "capon"), other];
+        let found = lines(&rows);
+        let told: Vec<(usize, &str, usize)> =
+            found.iter().map(|line| (line.set, line.label.lines().next().unwrap(), line.scenes)).collect();
+        assert_eq!(told, [(0, "capon", 1), (0, "live", 2)]);
+        assert!(found.iter().all(|line| line.cfar.is_none()));
     }
 
     #[test]

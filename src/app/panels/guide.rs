@@ -4,6 +4,7 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{
     Command, DocumentCommand, MapKind, Panel, Projection, RadarCommand, ViewCommand, WindowCommand,
 };
+use crate::app::widgets::inline::inline;
 use crate::app::widgets::padded::padded;
 use crate::maps::Normalisation;
 use crate::radar::{Carrier, Decibels, WindowFunction};
@@ -11,7 +12,6 @@ use crate::scene::presets;
 use crate::signal::Floor;
 use eframe::egui;
 use eframe::egui::{ScrollArea, Ui};
-use egui_commonmark::{CommonMarkCache, CommonMarkViewer};
 
 /// The text: chapters that begin with a heading, in the order of [`CHAPTERS`].
 const TEXT: &str = include_str!("../../../assets/guide.md");
@@ -179,7 +179,6 @@ fn heading(chapter: &str) -> &str {
 /// State of the guide, kept between frames.
 #[derive(Default)]
 pub struct GuideMemory {
-    cache: CommonMarkCache,
     /// Index of the open chapter.
     open: usize,
 }
@@ -205,7 +204,8 @@ pub fn show(ui: &mut Ui, memory: &mut GuideMemory) -> Vec<Command> {
         let area = ScrollArea::vertical().id_salt(("chapter", memory.open)).auto_shrink([false, false]);
         area.show(ui, |ui| {
             ui.set_max_width(ui.available_width().min(620.0));
-            CommonMarkViewer::new().show(ui, &mut memory.cache, chapter);
+            ui.heading(heading(chapter));
+            ui.label(inline(ui, chapter.split_once('\n').map_or("", |(_, text)| text), 1.0));
             ui.horizontal_wrapped(|ui| {
                 for step in *steps {
                     let button = ui.button(step.label);

@@ -160,7 +160,9 @@ fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
     let entry =
         |(_, kind): (&Phasors, Kind)| Entry { sign: Sign::Line, colour: kind.colour(ui), name: kind.name().to_owned() };
     let entries: Vec<Entry> = drawn(result).map(entry).collect();
-    legend::row(ui, &entries);
+    if entries.len() > 1 {
+        legend::row(ui, &entries);
+    }
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
     let unit = whole_length(&result.measured);

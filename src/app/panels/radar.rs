@@ -10,6 +10,7 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
 use crate::app::widgets::labelled::{Quantity, labelled};
 use crate::app::widgets::padded::scrolled_both;
+use crate::lesson::Step;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
 pub use budget::Selected;
@@ -23,6 +24,15 @@ pub struct Input<'a> {
     pub measured: Option<Measured>,
     /// The selected object, where it is a single one and made of points.
     pub selected: Option<Selected>,
+    /// Name of the constant or the group that is to be brought into sight.
+    pub sought: Option<&'static str>,
+}
+
+/// The constant or part that was scrolled into sight.
+#[derive(Default)]
+pub struct RadarMemory {
+    /// Lesson and step whose challenge it was for.
+    step: Option<(String, usize)>,
 }
 
 /// A recording made with the radar.
@@ -52,7 +62,7 @@ pub struct RadarPanel;
 
 impl Content for RadarPanel {
     type Asks = Nothing;
-    type Remembers = ();
+    type Remembers = RadarMemory;
     const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
@@ -65,8 +75,29 @@ impl Content for RadarPanel {
             let (place_metres, reflectivity) = (object.centre_metres(), object.reflectivity());
             Some(Selected { name: of_many, place_metres, reflectivity })
         });
-        show(ui, Input { radar: cx.state.radar(), measured, selected })
+        let run = cx.state.lesson.as_ref().filter(|run| !run.is_predicting());
+        let step = run.map(|run| (run.id.clone(), run.step));
+        let is_new = std::mem::replace(&mut cx.memory.step, step.clone()) != step;
+        let sought = run.filter(|_| is_new).and_then(|run| solved_by(run.current()?));
+        show(ui, Input { radar: cx.state.radar(), measured, selected, sought })
     }
+}
+
+/// The constant or the group by which the challenge of a lesson's step is solved: the first that its solution changes.
+fn solved_by(step: &Step) -> Option<&'static str> {
+    let (before, after) = (&step.radar, step.challenge.as_ref()?.solution.radar.as_ref()?);
+    let changes = [
+        (CARRIER.name, before.carrier_hz != after.carrier_hz),
+        (BANDWIDTH.name, before.bandwidth_hz != after.bandwidth_hz),
+        (SAMPLES.name, before.samples != after.samples),
+        (ELEMENTS.name, before.elements != after.elements),
+        (END_ELEMENTS.name, before.end_elements != after.end_elements),
+        (SPACING_MILLIMETRES.name, before.element_spacing_metres != after.element_spacing_metres),
+        (POWER.name, before.transmit_power_watts != after.transmit_power_watts),
+        (WINDOWS, before.window != after.window),
+        (budget::HEADING, before.budget != after.budget),
+    ];
+    changes.into_iter().find(|(_, is_changed)| *is_changed).map(|(name, _)| name)
 }
 
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
@@ -80,7 +111,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         let follows = Consequences::of(&radar);
         let constants = input.measured.is_none();
         let free = Free { constants, ends: input.measured.is_none_or(|m| m.by_all_elements) };
-        let table = Table::that_fits(ui, NAMES);
+        let table = Table::that_fits(ui, NAMES, input.sought);
         match table.consequence_width {
             Some(_) => {
                 _ = Grid::new("radar").num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
@@ -164,6 +195,8 @@ const POWER: Quantity = Quantity::metres(
 )
 .with(" W", [0.001, 100_000.0], 0.5, 3);
 
+const WINDOWS: &str = "windows";
+
 /// Names of the constants, as they stand in the first column.
 const NAMES: [&str; 14] = [
     CARRIER.name,
@@ -177,7 +210,7 @@ const NAMES: [&str; 14] = [
     antennas::NAME,
     "convention",
     "phase",
-    "windows",
+    WINDOWS,
     "off the line",
     "range migration",
 ];
@@ -301,7 +334,7 @@ fn choices(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences,
         Some(width) => format!("range resolution (-3 dB): {}", metres(width)),
         None => "no range resolution".to_owned(),
     };
-    table.row(ui, ("windows", "Weights of samples and elements in the two transforms"), &text, |ui, label| {
+    table.row(ui, (WINDOWS, "Weights of samples and elements in the two transforms"), &text, |ui, label| {
         // In pairs: all names in one row would push the consequences out of a narrow panel.
         ui.vertical(|ui| {
             for pair in WindowFunction::ALL.chunks(2) {

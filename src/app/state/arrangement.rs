@@ -68,7 +68,7 @@ impl Arrangement {
 
     /// A large lesson with the scene and the maps that lessons ask about, for a projector.
     pub fn of_a_lesson() -> Self {
-        Arrangement::of(task_layouts::lesson("lesson"))
+        Arrangement::of(task_layouts::projected_lesson())
     }
 
     /// An arrangement without panels, in place of one that is being drawn.

@@ -44,8 +44,10 @@ pub fn map_of(step: &Step) -> MapKind {
 /// The panel with the control for a step's challenge, and the index of the object to change there.
 pub fn control_of(step: &Step) -> Option<(Panel, Option<usize>)> {
     let solution = &step.challenge.as_ref()?.solution;
-    if solution.radar.as_ref().is_some_and(|radar| *radar != step.radar) {
-        return Some((Panel::Radar, None));
+    if let Some(radar) = solution.radar.as_ref().filter(|radar| **radar != step.radar) {
+        let Radar { chirps, chirp_interval_seconds, .. } = *radar;
+        let is_of_chirps = *radar == Radar { chirps, chirp_interval_seconds, ..step.radar.clone() };
+        return Some((if is_of_chirps { Panel::RangeDoppler } else { Panel::Radar }, None));
     }
     let objects = step.scene().objects;
     let is_same_but_for_its_place = |(before, after): (&Object, &Object)| {
@@ -96,6 +98,7 @@ mod tests {
     fn a_challenge_brings_the_control_that_its_solution_changes() {
         for (id, panel) in [
             ("range-and-bandwidth", (Panel::Radar, None)),
+            ("range-and-velocity", (Panel::RangeDoppler, None)),
             ("folding-and-wrapping", (Panel::Scene, None)),
             ("smooth-and-rough", (Panel::Inspector, Some(0))),
             ("the-floor", (Panel::Inspector, Some(1))),

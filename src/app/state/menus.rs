@@ -16,7 +16,7 @@ pub const FILE: [&[Command]; 5] = [
         Export(ExportCommand::CopyShared),
         Export(ExportCommand::CopyLink),
     ],
-    &[AskFile(Purpose::ExportPicture), AskFile(Purpose::ExportMaps), AskFile(Purpose::ExportMetrics)],
+    &[AskFile(Purpose::ExportPicture), AskFile(Purpose::ExportMaps)],
     &[Window(WindowCommand::Quit)],
 ];
 

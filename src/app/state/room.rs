@@ -5,8 +5,9 @@ use eframe::egui::Vec2;
 use egui_tiles::{Container, LinearDir, Shares, Tile, TileId, Tiles};
 use serde::{Deserialize, Serialize};
 
-/// Least size that neighbours keep, points.
+/// Neighbours keep at least this much, points; a lesson more, so that its text is still read.
 const LEAST_OF_NEIGHBOURS: f32 = 120.0;
+const LEAST_OF_LESSON: f32 = 230.0;
 
 /// Height of the tabs above a panel, points.
 const TABS: f32 = 24.0;
@@ -27,13 +28,15 @@ pub fn least_size(panel: Panel) -> Vec2 {
     let [width, height] = match panel {
         Panel::Map(MapKind::Input0 | MapKind::Input1 | MapKind::Target | MapKind::Output) => [200.0, 140.0],
         Panel::Scene | Panel::Map(_) => [200.0, 140.0],
-        Panel::Inspector | Panel::Objects | Panel::Timing => [250.0, 160.0],
+        Panel::Inspector => [250.0, 210.0],
+        Panel::Objects | Panel::Timing => [250.0, 160.0],
         Panel::Controls | Panel::Found => [260.0, 220.0],
         Panel::Cuts | Panel::Values | Panel::Roc => [260.0, 180.0],
         Panel::Guide | Panel::Lesson => [300.0, 260.0],
         Panel::Radar | Panel::Elements | Panel::Disturbances => [280.0, 260.0],
         Panel::Several => [420.0, 320.0],
-        Panel::Chirp | Panel::RangeDoppler => [360.0, 350.0],
+        Panel::Phasors => [360.0, 350.0],
+        Panel::Chirp => [360.0, 380.0],
         Panel::Compare | Panel::Failures | Panel::Evaluation | Panel::RunTime => [560.0, 320.0],
         _ => [360.0, 280.0],
     };
@@ -83,6 +86,13 @@ fn aligned(tiles: &Tiles<Panel>, column: TileId) -> Vec<TileId> {
     beside.into_iter().filter(|id| *id != column && tops(*id) == own).collect()
 }
 
+/// Least size that a neighbour keeps, points.
+fn kept_of(tiles: &Tiles<Panel>, neighbour: TileId) -> f32 {
+    let lesson = tiles.find_pane(&Panel::Lesson);
+    let has_lesson = std::iter::successors(lesson, |id| tiles.parent_of(*id)).any(|id| id == neighbour);
+    if has_lesson { LEAST_OF_LESSON } else { LEAST_OF_NEIGHBOURS }
+}
+
 /// Enlarges the panel along one direction, from the innermost container outwards, until it has `need` points.
 fn grow(tiles: &mut Tiles<Panel>, panel: Panel, dir: LinearDir, need: f32) -> Vec<Taken> {
     let mut taken = Vec::new();
@@ -95,7 +105,8 @@ fn grow(tiles: &mut Tiles<Panel>, panel: Panel, dir: LinearDir, need: f32) -> Ve
     while let Some(parent) = tiles.parent_of(child).filter(|_| lacking > 0.5) {
         let (whole, now, rows) = (extent(tiles, parent), extent(tiles, child), in_sight(tiles, parent));
         let leads = matches!(tiles.get(parent), Some(Tile::Container(Container::Linear(l))) if l.dir == dir);
-        let wanted = (now + lacking).min(whole - LEAST_OF_NEIGHBOURS * (rows.len() as f32 - 1.0));
+        let kept: f32 = rows.iter().filter(|id| **id != child).map(|id| kept_of(tiles, *id)).sum();
+        let wanted = (now + lacking).min(whole - kept);
         if let Some(row) = rows.iter().position(|id| *id == child).filter(|_| leads && rows.len() > 1 && wanted > now) {
             lacking -= wanted - now;
             for container in aligned(tiles, parent).into_iter().chain([parent]) {

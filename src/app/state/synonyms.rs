@@ -48,7 +48,6 @@ fn file_words(purpose: Purpose) -> &'static str {
         Purpose::OpenLesson => "teach learn tutorial course",
         Purpose::ExportPicture => "screenshot png svg image save print",
         Purpose::ExportMaps => "numpy npz data arrays save",
-        Purpose::ExportMetrics => "csv numbers figures save",
         _ => "",
     }
 }

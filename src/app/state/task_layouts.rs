@@ -50,7 +50,7 @@ impl Task {
             Task::Explore => explore(),
             Task::Compare => compare(),
             Task::Failures => failures(),
-            Task::Teach => lesson("teach"),
+            Task::Teach => lesson("teach", [0.6, 1.75]),
         }
     }
 }
@@ -114,8 +114,14 @@ fn failures() -> Tree<Panel> {
     Tree::new(egui::Id::unique("failures"), root, tiles)
 }
 
-/// A large lesson, the scene with the controls of challenges, one large map, the other maps that lessons ask about, and the target above its threshold.
-pub fn lesson(name: &'static str) -> Tree<Panel> {
+/// A lesson on the whole screen: its text is read from afar, and has more room.
+pub fn projected_lesson() -> Tree<Panel> {
+    lesson("lesson", [0.68, 1.3])
+}
+
+/// A lesson large, with the scene and the controls of challenges, one map large, the others that lessons ask about, and the target above
+/// its threshold. `part` of the height is the lesson's, and the maps are so many times as wide.
+fn lesson(name: &'static str, [part, times]: [f32; 2]) -> Tree<Panel> {
     let mut tiles = Tiles::default();
     let lesson = tabs(&mut tiles, &[Panel::Lesson]);
     let controls = [Panel::Radar, Panel::Inspector].map(|panel| tiles.insert_pane(panel));
@@ -125,10 +131,10 @@ pub fn lesson(name: &'static str) -> Tree<Panel> {
     let [in0, in1, target] =
         [MapKind::Input0, MapKind::Input1, MapKind::Target].map(|kind| tabs(&mut tiles, &[Panel::Map(kind)]));
     let output = tabs(&mut tiles, &[MapKind::Output, MapKind::TargetAbove].map(Panel::Map));
-    let left = column(&mut tiles, vec![lesson, scene], &[0.6, 0.4]);
+    let left = column(&mut tiles, vec![lesson, scene], &[part, 1.0 - part]);
     let others = row(&mut tiles, vec![in0, in1, output], &[1.0, 1.0, 1.0]);
     let right = column(&mut tiles, vec![target, others], &[1.5, 1.0]);
-    let root = row(&mut tiles, vec![left, right], &[1.0, 1.75]);
+    let root = row(&mut tiles, vec![left, right], &[1.0, times]);
     Tree::new(egui::Id::unique(name), root, tiles)
 }
 

@@ -2,6 +2,7 @@
 
 use crate::picture::ColourMap;
 use eframe::egui::{Color32, ColorImage, Context, TextureHandle, TextureId, TextureOptions};
+use ndarray::ArrayView2;
 use std::sync::Arc;
 
 /// A picture and its texture on the graphics card, once uploaded.
@@ -22,6 +23,13 @@ impl Texture {
             none => none.insert((image.clone(), ctx.load_texture(name, image.clone(), options))).1.id(),
         }
     }
+}
+
+/// Lambda as a picture, `cells[[0, 0]]` at its upper left.
+pub fn picture(cells: ArrayView2<'_, f32>, colours: ColourMap) -> Arc<ColorImage> {
+    let table = colour_table(colours);
+    let pixels = cells.iter().map(|v| table[(v.clamp(0.0, 1.0) * 255.0) as usize]).collect();
+    Arc::new(ColorImage::new([cells.ncols(), cells.nrows()], pixels))
 }
 
 /// The table of a colour map in egui's colours.

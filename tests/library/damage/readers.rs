@@ -85,22 +85,10 @@ fn autosaves() -> Reader {
 
 fn shared() -> Reader {
     use apertura::share::{SharedScene, SharedView, VisiblePart};
-    let view = SharedView {
-        floor: apertura::signal::Floor::Thesis,
-        normalisation: apertura::maps::Normalisation::MinMax,
-        colours: apertura::picture::ColourMap::Grey,
-        cartesian: false,
-        range_angle_part: VisiblePart::default(),
-        cartesian_part: VisiblePart::default(),
-        target_eta: 0.9,
-        cfar: None,
-        eta: None,
-        method: "live".to_owned(),
-        layout: "0-11 20".parse().ok(),
-        marks: false,
-        theory: true,
-        lesson: None,
-    };
+    use apertura::view::View;
+    let method = "live".to_owned();
+    let view = View { method, layout: "0-11 20".parse().ok(), show_theory: true, ..View::default() };
+    let view = SharedView { time_seconds: 1.5, ..SharedView::of(&view, [VisiblePart::default(); 2], None) };
     let write = |file| SharedScene { file, view: view.clone() }.to_text().unwrap().into_bytes();
     Reader {
         name: "shared",

@@ -2,7 +2,8 @@
 
 use super::order::{Boxed, Order};
 use super::points::{Dot, Grouping, Points, Subject};
-use crate::app::jobs::RowTable;
+use crate::app::jobs::{Memo, RowTable};
+use crate::app::shared::Shared;
 use crate::app::widgets::axes::Axis;
 use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::labelled::choice;
@@ -63,23 +64,25 @@ pub struct ChartsMemory {
     y: Column,
     methods: [String; 2],
     grouping: Grouping,
-    made: Option<(u64, (Subject, Grouping), Points)>,
-    mesh: Option<(MeshKey, Arc<Mesh>)>,
+    made: Memo<PointsKey, Points>,
+    mesh: Memo<MeshKey, Arc<Mesh>>,
     start: Option<Pos2>,
-    boxes: u64,
 }
 
 impl Default for ChartsMemory {
     fn default() -> Self {
         let (x, y) = (Column::NearestPairColumns, Column::SquaredError);
         let view = View::default();
-        let (methods, grouping) = Default::default();
-        ChartsMemory { view, x, y, methods, grouping, made: None, mesh: None, start: None, boxes: 0 }
+        let (methods, grouping, made, mesh) = Default::default();
+        ChartsMemory { view, x, y, methods, grouping, made, mesh, start: None }
     }
 }
 
-/// The values on which the mesh of dots depends: stamp of the order, chart area, stamp of the box, colour, grouping.
-type MeshKey = (u64, Rect, Option<u64>, Color32, Grouping);
+/// The values on which the charted points depend: stamp of the order, chart, grouping.
+type PointsKey = (u64, Subject, Grouping);
+
+/// The values on which the mesh of dots depends: points, chart area, box, colour.
+type MeshKey = (PointsKey, Rect, Option<Boxed>, Color32);
 
 /// The row or rows that the user picked in a chart.
 #[derive(Default)]
@@ -147,14 +150,10 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut 
     let Some((subject, titles)) = subject(memory) else { return Answer::default() };
     // The dot of a scene tried by two methods has the colour of the scene's set.
     let grouping = if memory.view == View::Methods { Grouping::Set } else { memory.grouping };
-    let stamp = input.order.stamp();
-    let subject = (subject, grouping);
-    if !memory.made.as_ref().is_some_and(|(made, of, _)| *made == stamp && *of == subject) {
-        let points = Points::of(input.table, input.order.filtered(), &subject.0, grouping);
-        memory.made = Some((stamp, subject.clone(), points));
-        memory.mesh = None;
-    }
-    let Some((_, _, points)) = &memory.made else { return Answer::default() };
+    let key = (input.order.stamp(), subject, grouping);
+    let points = &*memory
+        .made
+        .of(key.clone(), |(_, subject, grouping)| Points::of(input.table, input.order.filtered(), subject, *grouping));
     if let Some(told) = &points.told {
         ui.label(told);
     }
@@ -184,17 +183,15 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut 
     }
     let drawn = chart.show(ui, area, Sense::click_and_drag());
     if points.bars.is_none() {
-        dots(ui, &drawn, points, (stamp, grouping), boxed, &mut memory.mesh);
+        dots(ui, &drawn, points, key, boxed, &mut memory.mesh);
         if let Some(dot) = opened {
             drawn.painter().circle_stroke(drawn.at(dot.at), 5.0, around);
         }
     }
     let answer = Answer {
         open: clicked(&drawn, points),
-        boxed: rubber_box(ui, &drawn, points, &mut memory.start).map(|rows| {
-            memory.boxes += 1;
-            Boxed { generation: input.table.generation(), rows, stamp: memory.boxes }
-        }),
+        boxed: rubber_box(ui, &drawn, points, &mut memory.start)
+            .map(|rows| Boxed { generation: input.table.generation(), rows: Shared::new(rows) }),
     };
     told(&drawn, points, input.table);
     answer
@@ -257,13 +254,12 @@ fn dots(
     ui: &Ui,
     drawn: &Drawn,
     points: &Points,
-    (stamp, grouping): (u64, Grouping),
+    of: PointsKey,
     boxed: Option<&Boxed>,
-    kept: &mut Option<(MeshKey, Arc<Mesh>)>,
+    kept: &mut Memo<MeshKey, Arc<Mesh>>,
 ) {
     let inks = Inks::of(ui.visuals());
-    let key = (stamp, drawn.rect, boxed.map(|b| b.stamp), inks.ends[0], grouping);
-    if !kept.as_ref().is_some_and(|(of, _)| *of == key) {
+    let mesh = kept.of((of, drawn.rect, boxed.cloned(), inks.ends[0]), |_| {
         let mut mesh = Mesh::default();
         let size = Vec2::splat(if points.dots.len() < FEW_DOTS { 5.0 } else { 3.0 });
         for dot in &points.dots {
@@ -272,11 +268,9 @@ fn dots(
             let colour = if chosen { inks.selected } else { colour };
             mesh.add_colored_rect(Rect::from_center_size(drawn.at(dot.at), size), colour);
         }
-        *kept = Some((key, Arc::new(mesh)));
-    }
-    if let Some((_, mesh)) = kept {
-        drawn.painter().add(Shape::mesh(mesh.clone()));
-    }
+        Arc::new(mesh)
+    });
+    drawn.painter().add(Shape::mesh(mesh.clone()));
 }
 
 fn nearest(drawn: &Drawn, points: &Points, at: Pos2) -> Option<Dot> {

@@ -17,7 +17,6 @@ pub struct FilterMemory {
     read: Option<(String, usize)>,
     filter: Option<Filter>,
     error: Option<FilterError>,
-    stamp: u64,
 }
 
 impl FilterMemory {
@@ -29,11 +28,6 @@ impl FilterMemory {
     /// Replaces the expression in the field.
     pub fn set(&mut self, text: String) {
         self.text = text;
-    }
-
-    /// A number that rises when the filter changes.
-    pub fn stamp(&self) -> u64 {
-        self.stamp
     }
 
     /// Parses the expression, unless it was parsed before.
@@ -51,12 +45,7 @@ impl FilterMemory {
         match read {
             // The rows stay as they were while an expression is unfinished.
             Err(error) => self.error = Some(error),
-            Ok(filter) => {
-                self.error = None;
-                if self.filter != filter {
-                    (self.filter, self.stamp) = (filter, self.stamp + 1);
-                }
-            }
+            Ok(filter) => (self.filter, self.error) = (filter, None),
         }
     }
 }
@@ -165,10 +154,10 @@ mod tests {
     fn a_mistake_leaves_the_last_filter() {
         let mut field = field();
         write(&mut field, "objects > 3");
-        let (stamp, filter) = (field.state().stamp(), field.state().filter().cloned());
+        let filter = field.state().filter().cloned();
         assert!(filter.is_some());
         write(&mut field, " & objcts = 2");
-        assert_eq!((field.state().stamp(), field.state().filter()), (stamp, filter.as_ref()));
+        assert_eq!(field.state().filter(), filter.as_ref());
     }
 
     #[test]

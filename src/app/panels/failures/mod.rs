@@ -142,13 +142,8 @@ fn beside_or_below(room: Vec2) -> egui::Panel {
 /// Filters and sorts the rows, if something changed.
 fn update(ui: &Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
     memory.boxed.take_if(|boxed| boxed.generation != input.table.generation());
-    let wanted = Wanted {
-        table: input.table,
-        filter: memory.filter.filter(),
-        filter_stamp: memory.filter.stamp(),
-        sort: memory.sort,
-        boxed: memory.boxed.as_ref(),
-    };
+    let wanted =
+        Wanted { table: input.table, filter: memory.filter.filter(), sort: memory.sort, boxed: memory.boxed.as_ref() };
     if let Some(later) = memory.order.update(&wanted) {
         ui.ctx().request_repaint_after(later);
     }

@@ -1,6 +1,7 @@
 //! Filter and order of the rows, computed when something changed and not in every frame.
 
 use crate::app::jobs::RowTable;
+use crate::app::shared::Shared;
 use crate::evaluate::filter::Filter;
 use crate::evaluate::rows::{Column, sorted_by};
 use crate::platform::Instant;
@@ -34,32 +35,28 @@ pub struct Wanted<'a> {
     pub table: &'a RowTable,
     /// Filter of the rows; `None` for all.
     pub filter: Option<&'a Filter>,
-    /// A number that rises when the filter changes.
-    pub filter_stamp: u64,
     /// Sorting of the rows; `None` for the order in which they came.
     pub sort: Option<Sort>,
     /// The box drawn in a chart, if there is one; rows outside it are not shown.
     pub boxed: Option<&'a Boxed>,
 }
 
-/// Rows in a box that was drawn in a chart.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Rows in a box.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Boxed {
     /// Generation of the table that they belong to.
     pub generation: u64,
-    /// Indices of the rows.
-    pub rows: HashSet<usize>,
-    /// A number that rises with every box.
-    pub stamp: u64,
+    /// Their indices.
+    pub rows: Shared<HashSet<usize>>,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Key {
     version: u64,
     generation: u64,
-    filter: u64,
+    filter: Option<Filter>,
     sort: Option<Sort>,
-    boxed: Option<u64>,
+    boxed: Option<Boxed>,
 }
 
 /// The latest filtered and sorted rows.
@@ -90,14 +87,14 @@ impl Order {
 
     /// Filters and sorts again if something changed. Returns the time until the next call, if new rows wait for it.
     pub fn update(&mut self, wanted: &Wanted<'_>) -> Option<Duration> {
-        let Wanted { table, filter, filter_stamp, sort, boxed } = *wanted;
+        let Wanted { table, filter, sort, boxed } = *wanted;
         let boxed = boxed.filter(|boxed| boxed.generation == table.generation());
         let key = Key {
             version: table.version(),
             generation: table.generation(),
-            filter: filter_stamp,
+            filter: filter.cloned(),
             sort,
-            boxed: boxed.map(|b| b.stamp),
+            boxed: boxed.cloned(),
         };
         if self.of.as_ref() == Some(&key) {
             return None;
@@ -150,7 +147,7 @@ mod tests {
     impl Asked {
         fn wanted(&self) -> Wanted<'_> {
             let sort = Some(Sort { column: Column::Index, descending: true });
-            Wanted { table: &self.table, filter: Some(&self.filter), filter_stamp: 1, sort, boxed: Some(&self.boxed) }
+            Wanted { table: &self.table, filter: Some(&self.filter), sort, boxed: Some(&self.boxed) }
         }
     }
 
@@ -158,7 +155,7 @@ mod tests {
     fn asked() -> (Asked, Order) {
         let table = table(6);
         let filter = Filter::parse("index >= 2", &["live"]).unwrap();
-        let boxed = Boxed { generation: table.generation(), rows: HashSet::from([1, 3, 5]), stamp: 1 };
+        let boxed = Boxed { generation: table.generation(), rows: Shared::new(HashSet::from([1, 3, 5])) };
         let (asked, mut order) = (Asked { table, filter, boxed }, Order::default());
         order.update(&asked.wanted());
         (asked, order)

@@ -8,7 +8,7 @@ use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::theme::Inks;
 use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
 use crate::radar::{LinkBudget, Radar};
-use eframe::egui::{CollapsingHeader, Grid, Label, Sense, Stroke, Ui, vec2};
+use eframe::egui::{Align, CollapsingHeader, Grid, Label, Sense, Stroke, Ui, vec2};
 use egui_plot::{HLine, LineStyle};
 
 /// An object whose SNR is computed by the link budget.
@@ -70,7 +70,9 @@ const CHIRP: Quantity = Quantity::metres(
 
 /// Draws the group of the link budget.
 pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Option<&Selected>) {
-    CollapsingHeader::new(HEADING).id_salt(HEADING).show_unindented(ui, |ui| {
+    let is_sought = table.seeks(HEADING);
+    let group = CollapsingHeader::new(HEADING).id_salt(HEADING).open(is_sought.then_some(true));
+    let shown = group.show_unindented(ui, |ui| {
         let mut has = radar.budget.is_some();
         let tooltip = "Noise and SNR by the radar equation. Reflectivity 1 is a radar cross section of 1 m²: 0 dBsm";
         if ui.checkbox(&mut has, "Use a link budget").on_hover_text(tooltip).changed() {
@@ -94,6 +96,9 @@ pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Optio
         }
         ui.weak(LEFT_OUT);
     });
+    if is_sought {
+        shown.header_response.scroll_to_me(Some(Align::Min));
+    }
 }
 
 fn numbers(ui: &mut Ui, table: Table, radar: &mut Radar, mut budget: LinkBudget) {

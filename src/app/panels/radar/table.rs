@@ -1,7 +1,7 @@
 //! Rows of the radar panel: name, value and consequence of a constant.
 
 use crate::app::widgets::labelled::Quantity;
-use eframe::egui::{Color32, Id, Label, TextStyle, Ui};
+use eframe::egui::{Align, Color32, Id, Label, Response, TextStyle, Ui};
 
 /// Gap between two columns, points.
 pub(super) const GAP: f32 = 12.0;
@@ -19,38 +19,49 @@ pub(super) struct Table {
     pub name_width: f32,
     /// Width of the column of consequences; `None` where it has no room, and each consequence stands below its constant.
     pub consequence_width: Option<f32>,
+    /// Name of the row or the group that is to be brought into sight.
+    sought: Option<&'static str>,
 }
 
 impl Table {
     /// The table whose constants have these names.
-    pub fn that_fits<const N: usize>(ui: &Ui, names: [&str; N]) -> Table {
+    pub fn that_fits<const N: usize>(ui: &Ui, names: [&str; N], sought: Option<&'static str>) -> Table {
         let font = TextStyle::Body.resolve(ui.style());
         let width =
             |name: &str| ui.painter().layout_no_wrap(name.to_owned(), font.clone(), Color32::PLACEHOLDER).size().x;
         let name_width = names.into_iter().map(width).fold(0.0, f32::max);
         let left = ui.available_width() - name_width - VALUE_WIDTH - 2.0 * GAP;
-        Table { name_width, consequence_width: Some(left).filter(|left| *left >= LEAST_CONSEQUENCE_WIDTH) }
+        let consequence_width = Some(left).filter(|left| *left >= LEAST_CONSEQUENCE_WIDTH);
+        Table { name_width, consequence_width, sought }
     }
 
-    /// Draws a row: the name, the widget that `value` draws, and the consequence.
-    pub fn row<T>(
-        self,
-        ui: &mut Ui,
-        (name, tooltip): (&str, &str),
-        consequence: &str,
-        value: impl FnOnce(&mut Ui, Id) -> T,
-    ) -> T {
+    /// Whether a row or a group is to be brought into sight.
+    pub fn seeks(self, name: &str) -> bool {
+        self.sought == Some(name)
+    }
+
+    /// The name of a row.
+    fn name(self, ui: &mut Ui, (name, tooltip): (&str, &str)) -> Response {
+        let label = ui.label(name);
+        if self.seeks(name) {
+            label.scroll_to_me(Some(Align::Center));
+        }
+        label.on_hover_text(tooltip)
+    }
+
+    /// A row: the name, what `value` draws, what follows.
+    pub fn row<T>(self, ui: &mut Ui, name: (&str, &str), consequence: &str, value: impl FnOnce(&mut Ui, Id) -> T) -> T {
         let consequence = Label::new(consequence).wrap();
         let Some(width) = self.consequence_width else {
             let value = ui.horizontal(|ui| {
-                let label = ui.label(name).on_hover_text(tooltip);
+                let label = self.name(ui, name);
                 ui.add_space((self.name_width - label.rect.width()).max(0.0) + GAP);
                 value(ui, label.id)
             });
-            ui.indent(("consequence", name), |ui| ui.add(consequence));
+            ui.indent(("consequence", name.0), |ui| ui.add(consequence));
             return value.inner;
         };
-        let label = ui.label(name).on_hover_text(tooltip);
+        let label = self.name(ui, name);
         let value = value(ui, label.id);
         ui.vertical(|ui| {
             ui.set_max_width(width);

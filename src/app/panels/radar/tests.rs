@@ -1,5 +1,8 @@
 use super::*;
+use crate::app::state::Panel;
+use crate::app::state::lesson_focus::control_of;
 use crate::app::widgets::seen;
+use crate::lesson::shipped;
 use eframe::egui;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -7,7 +10,7 @@ use egui_kittest::kittest::Queryable;
 /// A panel whose commands are executed as in the app.
 fn panel(radar: Radar, measured: Option<Measured>) -> Harness<'static, (Radar, Vec<Command>)> {
     let draw = move |ui: &mut Ui, state: &mut (Radar, Vec<Command>)| {
-        let asked = show(ui, Input { radar: &state.0, measured, selected: None });
+        let asked = show(ui, Input { radar: &state.0, measured, selected: None, sought: None });
         for command in &asked {
             match command {
                 Command::Radar(RadarCommand::Set(radar)) => state.0 = (**radar).clone(),
@@ -32,8 +35,9 @@ fn type_into(panel: &mut Harness<'_, (Radar, Vec<Command>)>, label: &str, text: 
 
 #[test]
 fn every_consequence_is_in_sight_in_a_panel_beside_the_maps() {
-    let draw =
-        |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None, selected: None });
+    let draw = |ui: &mut Ui, (): &mut ()| {
+        _ = show(ui, Input { radar: &Radar::default(), measured: None, selected: None, sought: None })
+    };
     let panel = Harness::builder().with_size([480.0, 700.0]).build_ui_state(draw, ());
     seen::assert_readable(panel.output());
     for label in ["range bin 7.49 cm", "one phase cycle per wavelength of range (the thesis' convention)"] {
@@ -47,8 +51,9 @@ const PANEL_WIDTHS_POINTS: [f32; 2] = [438.0, 342.0];
 #[test]
 fn every_consequence_can_be_read_in_a_small_window() {
     for width in PANEL_WIDTHS_POINTS.into_iter().chain([600.0]) {
-        let draw =
-            |ui: &mut Ui, (): &mut ()| _ = show(ui, Input { radar: &Radar::default(), measured: None, selected: None });
+        let draw = |ui: &mut Ui, (): &mut ()| {
+            _ = show(ui, Input { radar: &Radar::default(), measured: None, selected: None, sought: None })
+        };
         let panel = Harness::builder().with_size([width, 900.0]).build_ui_state(draw, ());
         seen::assert_readable(panel.output());
         for label in ["range bin 7.49 cm", "maximum range", "far field", "first grating lobe", "from side to side"] {
@@ -63,7 +68,9 @@ fn every_consequence_can_be_read_in_a_small_window() {
 fn the_table_stays_where_it_is_when_the_preset_goes() {
     for width in PANEL_WIDTHS_POINTS.into_iter().chain([640.0]) {
         let place = |radar: Radar| {
-            let draw = |ui: &mut Ui, radar: &mut Radar| _ = show(ui, Input { radar, measured: None, selected: None });
+            let draw = |ui: &mut Ui, radar: &mut Radar| {
+                _ = show(ui, Input { radar, measured: None, selected: None, sought: None })
+            };
             let panel = Harness::builder().with_size([width, 900.0]).build_ui_state(draw, radar);
             panel.get_by_role_and_label(egui::accesskit::Role::SpinButton, "bandwidth").rect().top()
         };
@@ -72,6 +79,30 @@ fn the_table_stays_where_it_is_when_the_preset_goes() {
             assert_eq!(place(preset.radar.clone()), own, "{} at {width}", preset.name);
         }
     }
+}
+
+#[test]
+fn the_constant_that_a_challenge_needs_is_brought_into_sight() {
+    let mut found = 0;
+    for step in shipped::ALL.iter().filter_map(|file| file.load().unwrap().steps.last().cloned()) {
+        if control_of(&step).is_none_or(|(panel, _)| panel != Panel::Radar) {
+            continue;
+        }
+        found += 1;
+        let sought = solved_by(&step).unwrap();
+        for width in [280.0, 640.0] {
+            let draw = |ui: &mut Ui, frames: &mut usize| {
+                *frames += 1;
+                let sought = Some(sought).filter(|_| *frames == 1);
+                show(ui, Input { radar: &step.radar, measured: None, selected: None, sought });
+            };
+            let mut panel = Harness::builder().with_size([width, 160.0]).build_ui_state(draw, 0);
+            panel.run();
+            let is_seen = panel.query_all_by_label(sought).any(|n| n.rect().top() > 0.0 && n.rect().bottom() < 160.0);
+            assert!(is_seen, "{sought} at {width}");
+        }
+    }
+    assert!(found >= 5, "{found}");
 }
 
 #[test]
@@ -201,7 +232,7 @@ const BUDGET: &str = "Link budget";
 fn with_budget(size: [f32; 2]) -> Harness<'static, Radar> {
     let draw = |ui: &mut Ui, radar: &mut Radar| {
         let selected = Some(Selected { name: "point 1".to_owned(), place_metres: [0.0, 10.0], reflectivity: 1.0 });
-        for command in show(ui, Input { radar, measured: None, selected }) {
+        for command in show(ui, Input { radar, measured: None, selected, sought: None }) {
             match command {
                 Command::Radar(RadarCommand::Set(changed)) => *radar = *changed,
                 other => panic!("{other:?}"),

@@ -10,14 +10,10 @@ pub enum ExportCommand {
     PictureTo(PathBuf),
     /// Save the maps as NumPy arrays in this file.
     MapsTo(PathBuf),
-    /// Save the figures as CSV in this file.
-    MetricsTo(PathBuf),
     /// Copy the picture of a map to the clipboard.
     CopyMap(MapKind),
     /// Copy scene, radar, view, method and lesson step as one line of text.
     CopyShared,
     /// Copy a link to this page that opens the scene on screen.
     CopyLink,
-    /// Copy the evaluation's rows of the test sets, as CSV.
-    CopyEvaluation,
 }

@@ -50,8 +50,6 @@ purposes! {
     ExportPicture: "Export a picture", "Picture" ["png", "svg"], "apertura.png";
     /// The file to write the maps in.
     ExportMaps: "Export the maps", "NumPy arrays" ["npz"], "maps.npz";
-    /// The file to write the figures in.
-    ExportMetrics: "Export the metrics", "Table" ["csv"], "metrics.csv";
     /// Rows of an evaluation to show.
     OpenRows: "Open rows of an evaluation", "Table" ["csv"], "";
     /// The file to save the rows in.

@@ -132,7 +132,6 @@ impl Purpose {
             Purpose::SaveScene => DocumentCommand::SaveTo(path).into(),
             Purpose::ExportPicture => ExportCommand::PictureTo(path).into(),
             Purpose::ExportMaps => ExportCommand::MapsTo(path).into(),
-            Purpose::ExportMetrics => ExportCommand::MetricsTo(path).into(),
             Purpose::OpenRows => RowsCommand::OpenFile(path).into(),
             Purpose::SaveRows => RowsCommand::SaveTo(path).into(),
             Purpose::OwnScenes => RowsCommand::SetOwnScenes(path).into(),

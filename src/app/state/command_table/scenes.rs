@@ -32,7 +32,6 @@ pub(super) const COMMANDS: &[Entry] = {
         AskFile(Purpose::ExportPicture), "Export picture…",
             "Save the maps of this scene with scene and figures, as PNG or SVG", command(Key::E);
         AskFile(Purpose::ExportMaps), "Export maps…", "Save samples and maps as NumPy arrays (.npz)", None;
-        AskFile(Purpose::ExportMetrics), "Export metrics…", "Save P_D, P_FA and SE of this scene as CSV", None;
         Edit(EditCommand::Undo), "Undo", "Undo the last change of the scene", command(Key::Z);
         Edit(EditCommand::Redo), "Redo", "Redo what was undone", command_shift(Key::Z);
         Edit(EditCommand::Cut), "Cut", "Move the selected objects to the clipboard, as TOML", command(Key::X);
