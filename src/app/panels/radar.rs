@@ -28,7 +28,7 @@ pub struct Input<'a> {
     pub sought: Option<&'static str>,
 }
 
-/// The constant or part that was scrolled into sight.
+/// Record of the challenge whose constant was scrolled into sight.
 #[derive(Default)]
 pub struct RadarMemory {
     /// Lesson and step whose challenge it was for.

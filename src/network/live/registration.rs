@@ -78,17 +78,13 @@ mod tests {
         let row_numbers: Vec<f32> = (0..rows * FINE_COLUMNS).map(|cell| (cell / FINE_COLUMNS) as f32).collect();
         let seen: Vec<f32> = registration.row(&row_numbers, rows - 1).collect();
         let r = (rows - 1) as f64 * bin;
-        for column in FINE_COLUMNS / 2 + 1..FINE_COLUMNS {
+        for (column, row) in seen.iter().enumerate().skip(FINE_COLUMNS / 2 + 1) {
             let u = cosine(column, FINE_COLUMNS);
             let bins = (r * r - 2.0 * r * u * x + x * x).sqrt() / bin;
             // The look-up between the last row and the first blends both.
             if bins > rows as f64 {
-                assert!(
-                    (f64::from(seen[column]) - (bins - rows as f64)).abs() < 1e-2,
-                    "column {column}: {} bins, {}",
-                    bins,
-                    seen[column]
-                );
+                let wrapped = bins - rows as f64;
+                assert!((f64::from(*row) - wrapped).abs() < 1e-2, "column {column}: {wrapped} bins, {row}");
             }
         }
         assert!(seen[FINE_COLUMNS - 1] < 30.0, "end-fire is {} bins off", seen[FINE_COLUMNS - 1]);
