@@ -56,7 +56,8 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
             let beside = (first & !(COLUMNS - 1)) | ((first + 1) & (COLUMNS - 1));
             let [down, right] = tap.part.map(|part| f32::from(part) * (1.0 / WHOLE_PARTS));
             let within = |cell: usize| if cell < plane.len() { cell } else { cell - plane.len() };
-            let line = |below: usize| plane[within(first + below)] * (1.0 - right) + plane[within(beside + below)] * right;
+            let line =
+                |below: usize| plane[within(first + below)] * (1.0 - right) + plane[within(beside + below)] * right;
             line(0) * (1.0 - down) + line(COLUMNS) * down
         })
     }
@@ -82,7 +83,12 @@ mod tests {
             let bins = (r * r - 2.0 * r * u * x + x * x).sqrt() / bin;
             // Between the last row and the first the look-up blends both.
             if bins > rows as f64 {
-                assert!((f64::from(seen[column]) - (bins - rows as f64)).abs() < 1e-2, "column {column}: {} bins, {}", bins, seen[column]);
+                assert!(
+                    (f64::from(seen[column]) - (bins - rows as f64)).abs() < 1e-2,
+                    "column {column}: {} bins, {}",
+                    bins,
+                    seen[column]
+                );
             }
         }
         assert!(seen[FINE_COLUMNS - 1] < 30.0, "end-fire is {} bins off", seen[FINE_COLUMNS - 1]);
