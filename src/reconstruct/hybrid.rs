@@ -3,7 +3,7 @@
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
 use super::family::Family;
-use super::judge::{HIDDEN_DECADES, blended, network_weight, scales_joined};
+use super::judge::{blended, network_weight, scales_joined};
 use super::own_threshold::own_threshold;
 use super::reconstructor::{About, Reconstructor, Weights};
 use super::search::{Found, Settings, find, find_from};
@@ -53,16 +53,15 @@ impl Hybrid {
         let whole = Request { normalisation: shown.whole, ..request.clone() };
         let (mut expected, mut network) =
             (found.expected(radar, &whole), self.network.reconstruct(radar, ends, &whole)?);
-        let mut left = found.left_decades(radar, ends, &expected);
+        let left = found.left_decades(radar, ends, &expected);
         let mut least_etas = [expected.least_eta, network.least_eta.unwrap_or(0.0)];
-        if request.noise.is_white() {
-            left.par_mapv_inplace(|v| v.max(HIDDEN_DECADES));
-            // A dynamic range is no guess.
-            if shown.part == 1.0 {
-                least_etas = scales_joined([&mut expected.map, &mut network.lambda], least_etas);
-            }
+        // A dynamic range is no guess, and cuts off most of what noise hides.
+        let is_hidden = request.noise.is_white() && shown.part == 1.0;
+        if is_hidden {
+            least_etas = scales_joined([&mut expected.map, &mut network.lambda], least_etas);
         }
-        let weight = network_weight(&expected.map, &network.lambda, network.doubt.as_ref(), &left, shown.part);
+        let doubt = network.doubt.as_ref();
+        let weight = network_weight(&expected.map, &network.lambda, doubt, &left, shown.part, is_hidden);
         let mut lambda = blended(expected.map, &network.lambda, &weight);
         let least_eta = shown.cut(&mut lambda, least_etas[0].max(least_etas[1]));
         let eta = own_threshold(&lambda, network.doubt.map(|doubt| shown.doubt(doubt)).as_ref());

@@ -1,9 +1,9 @@
-//! The choice between two maps of one scene, cell by cell: that of a search's objects, or that of a network.
+//! Which of two maps of one scene to believe, cell by cell: that of the objects which a search found, or that of a network.
 //!
-//! The search's map is exact where its objects are right, which the samples show: the drawn objects leave no residual. The network's map is
-//! about right everywhere, with an estimate of its error. So the search's map is taken where the residual is small. Elsewhere the two are
-//! averaged, and the network has the more weight, the more they differ beyond its doubt. White noise hides missing objects, so that the network
-//! counts everywhere over it.
+//! The search's map is exact where its objects are right, and says so: nothing is left of the samples when they are drawn. The network's is
+//! about right everywhere, and says how far off it expects to be. So the search is believed where it leaves nothing. Elsewhere the two are
+//! averaged, and the more they differ beyond the network's doubt, the more the network is believed. White noise hides what the search may lack:
+//! over it nothing left is no proof, so that the network counts everywhere, and alone where the two contradict each other.
 
 use crate::maps::RangeAngleMap;
 use ndarray::{Array1, Array2, ArrayView1, Axis, Zip};
@@ -27,8 +27,8 @@ const AGREED_WEIGHT: f32 = 0.7;
 /// Mean square of the difference, over that of the network's expected error, from which the two disagree, and from which the network has all weight.
 const CONTRADICTION: [f32; 2] = [1.0, 3.0];
 
-/// Least residual over the drawn map that is assumed under white noise, in decades of power: half way between the bounds of [`LEFT_DECADES`].
-pub const HIDDEN_DECADES: f32 = -2.0;
+/// How far a cell over white noise counts as unexplained at least, 0 to 1.
+const HIDDEN_PART: f32 = 0.5;
 
 /// Standard deviations in a doubt, which nine of ten normal errors stay below.
 const DOUBT_DEVIATIONS: f32 = 1.645;
@@ -37,15 +37,16 @@ const DOUBT_DEVIATIONS: f32 = 1.645;
 const MEAN_SIDE_CELLS: [usize; 2] = [2, 8];
 
 /// Weight of `network`'s map in each cell, 0 to 1, over `drawn`, the search's; both are Lambda on one scale, `[range bins, columns]`.
-/// `left_decades` is the search's residual ([`Found::left_decades`](super::search::Found::left_decades)), and nine of ten errors of the network
-/// are below `doubt`. A network without doubt has all weight wherever there is a residual. Cells whose Lambda lies deeper below 1 than
-/// `shown_part` are not shown.
+/// `left_decades` is what the search leaves ([`Found::left_decades`](super::search::Found::left_decades)), and `doubt` what nine of ten
+/// errors of the network stay below. A network without doubt is believed wherever something is left. Cells whose Lambda lies deeper below 1
+/// than `shown_part` are cut off in what is shown. `is_hidden` says whether noise may hide what the search lacks.
 pub fn network_weight(
     drawn: &RangeAngleMap,
     network: &RangeAngleMap,
     doubt: Option<&RangeAngleMap>,
     left_decades: &Array2<f32>,
     shown_part: f32,
+    is_hidden: bool,
 ) -> Array2<f32> {
     let shown = || left_decades.iter().zip(&drawn.lambda).filter(|(_, drawn)| **drawn > 1.0 - shown_part);
     let more_left = shown().filter(|(left, _)| **left > 0.0).count() as f32 / shown().count().max(1) as f32;
@@ -54,13 +55,16 @@ pub fn network_weight(
     square.par_mapv_inplace(|v| v * v);
     let mut weight = mean_around(&square);
     let shift = if shown_part < 1.0 { BRIGHT_SHIFT_DECADES } else { 0.0 };
-    let unexplained = |left: f32| between(LEFT_DECADES, left - shift).max(nowhere);
+    let least = if is_hidden { nowhere.max(HIDDEN_PART) } else { nowhere };
+    let unexplained = |left: f32| between(LEFT_DECADES, left - shift).max(least);
     let agreed = |contradiction: f32| AGREED_WEIGHT + (1.0 - AGREED_WEIGHT) * contradiction;
     match doubt {
         None => Zip::from(&mut weight).and(left_decades).par_for_each(|w, left| *w = unexplained(*left)),
         Some(doubt) => Zip::from(&mut weight).and(left_decades).and(&doubt.lambda).par_for_each(|w, left, doubt| {
             let expected = (doubt / DOUBT_DEVIATIONS).powi(2).max(f32::MIN_POSITIVE);
-            *w = unexplained(*left) * agreed(between(CONTRADICTION, *w / expected));
+            let contradiction = between(CONTRADICTION, *w / expected);
+            let hidden = if is_hidden { contradiction } else { 0.0 };
+            *w = unexplained(*left).max(hidden) * agreed(contradiction);
         }),
     }
     weight
@@ -136,7 +140,7 @@ mod tests {
 
     fn weight(drawn: f32, network: f32, doubt: f32, left: f32) -> f32 {
         let left = Array2::from_elem((40, 60), left);
-        network_weight(&flat(drawn), &flat(network), Some(&flat(doubt)), &left, 1.0)[[20, 30]]
+        network_weight(&flat(drawn), &flat(network), Some(&flat(doubt)), &left, 1.0, false)[[20, 30]]
     }
 
     #[test]
@@ -151,6 +155,14 @@ mod tests {
         assert_eq!(weight(0.2, 0.25, 0.1645, -0.5), AGREED_WEIGHT);
         let halfway = weight(0.2, 0.2 + 0.1 * 2f32.sqrt(), 0.1645, -0.5);
         assert!((halfway - (1.0 + AGREED_WEIGHT) / 2.0).abs() < 1e-3, "{halfway}");
+    }
+
+    #[test]
+    fn over_noise_nothing_left_does_not_outweigh_a_contradiction() {
+        let left = Array2::from_elem((40, 60), -9.0);
+        let over_noise =
+            |network| network_weight(&flat(0.2), &flat(network), Some(&flat(0.1645)), &left, 1.0, true)[[20, 30]];
+        assert_eq!([over_noise(0.25), over_noise(0.4)], [HIDDEN_PART * AGREED_WEIGHT, 1.0]);
     }
 
     #[test]
@@ -169,7 +181,7 @@ mod tests {
         left.row_mut(3).fill(-9.0);
         let mut drawn = flat(0.2);
         drawn.lambda.row_mut(3).fill(0.6);
-        let weight = |part| network_weight(&drawn, &flat(0.9), Some(&flat(0.1)), &left, part)[[3, 5]];
+        let weight = |part| network_weight(&drawn, &flat(0.9), Some(&flat(0.1)), &left, part, false)[[3, 5]];
         assert_eq!(weight(1.0), 1.0);
         assert_eq!(weight(0.5), 0.0, "what is cut off says nothing");
     }
@@ -178,7 +190,7 @@ mod tests {
     fn bright_cells_are_the_searchs_until_as_much_is_left() {
         let of = |left: f32, part| {
             let left = Array2::from_elem((40, 60), left);
-            network_weight(&flat(0.9), &flat(0.95), Some(&flat(0.2)), &left, part)[[20, 30]]
+            network_weight(&flat(0.9), &flat(0.95), Some(&flat(0.2)), &left, part, false)[[20, 30]]
         };
         assert_eq!([of(-0.5, 1.0), of(-0.5, 0.5), of(2.0, 0.5)], [AGREED_WEIGHT, 0.0, AGREED_WEIGHT]);
     }
@@ -186,7 +198,7 @@ mod tests {
     #[test]
     fn a_network_without_doubt_is_believed_where_something_is_left() {
         let left = Array2::from_elem((40, 60), -2.0);
-        let weight = network_weight(&flat(0.2), &flat(0.9), None, &left, 1.0);
+        let weight = network_weight(&flat(0.2), &flat(0.9), None, &left, 1.0, false);
         assert!((weight[[1, 1]] - 0.5).abs() < 1e-6);
         assert!((blended(flat(0.2), &flat(0.9), &weight).lambda[[1, 1]] - 0.55).abs() < 1e-6);
     }
