@@ -61,7 +61,7 @@ fn a_map_is_described_by_its_peaks() {
         s.app.get_by_label(&label).accesskit_node().description().unwrap_or_default()
     };
     let target = described(&s, MapKind::Target);
-    assert!(target.starts_with("What all elements see"), "{target}");
+    assert!(target.starts_with("The map of all elements"), "{target}");
     assert!(target.contains("14.4 m, +3") && target.contains(" m, ±0.0°") && target.contains("eak"), "{target}");
     assert!(described(&s, MapKind::OutputAbove).contains(" hit, "), "{}", described(&s, MapKind::OutputAbove));
     s.ask(Command::Lesson(apertura::app::LessonCommand::Begin(0)));
@@ -74,7 +74,7 @@ fn captions_name_every_map_until_the_first_drag() {
     let mut s = Session::start();
     assert!(!s.state().shows_captions(), "nothing can be kept here");
     s.ask(Command::Window(WindowCommand::ToggleCaptions));
-    for wanted in ["Input 0: the first", "Input 1: the last", "Target: all 128", "Output: what baseline", "Output > η:"]
+    for wanted in ["Input 0: the first", "Input 1: the last", "Target: all 128", "Output: baseline", "Output > η:"]
     {
         assert!(s.painted().iter().any(|t| t.starts_with(wanted)), "{wanted}: {:?}", s.painted());
     }

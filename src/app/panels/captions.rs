@@ -29,15 +29,15 @@ fn text(kind: MapKind, radar: &Radar, layout: Option<&LayoutKind>, method: &str)
     let (all, ends) = (radar.elements, radar.elements.min(first + last));
     match kind {
         MapKind::Input0 if let Some(layout) = layout => format!("Input 0: the elements of {layout}"),
-        MapKind::Output | MapKind::Second if layout.is_some() => format!("Output: {method}'s map from these elements"),
+        MapKind::Output | MapKind::Second if layout.is_some() => format!("Output: {method}, from these elements"),
         MapKind::Input0 => format!("Input 0: the first {first} elements"),
         MapKind::Input1 => format!("Input 1: the last {last} elements"),
         MapKind::Target => format!("Target: all {all} elements"),
-        MapKind::Output | MapKind::Second => format!("Output: {method}'s map from the {ends}"),
-        MapKind::TargetAbove => "Target > η': what a detector finds in the target".to_owned(),
-        MapKind::OutputAbove | MapKind::SecondAbove => "Output > η: what it finds in the output".to_owned(),
+        MapKind::Output | MapKind::Second => format!("Output: {method}, from {ends} elements"),
+        MapKind::TargetAbove => "Target > η': cells detected in the target".to_owned(),
+        MapKind::OutputAbove | MapKind::SecondAbove => "Output > η: cells detected in the output".to_owned(),
         MapKind::Difference | MapKind::SecondDifference => "Difference: output minus target".to_owned(),
-        MapKind::Doubt => format!("Doubt: how far off {method} expects to be"),
+        MapKind::Doubt => format!("Doubt: the error that {method} expects"),
         MapKind::Unexplained => "The part of the recording that reflectors leave unexplained".to_owned(),
     }
 }
@@ -132,7 +132,7 @@ mod tests {
         let of = |kind| text(kind, &Radar::default(), None, "live");
         assert_eq!(of(MapKind::Input0), "Input 0: the first 12 elements");
         assert_eq!(of(MapKind::Target), "Target: all 1024 elements");
-        assert_eq!(of(MapKind::Output), "Output: what live makes of the 24");
+        assert_eq!(of(MapKind::Output), "Output: live, from 24 elements");
     }
 
     #[test]

@@ -106,7 +106,7 @@ mod tests {
     use egui_kittest::kittest::Queryable;
 
     #[test]
-    fn an_output_of_an_earlier_scene_is_told() {
+    fn an_output_that_is_out_of_date_is_told() {
         let mut engine = Engine::new(Radar { elements: 64, samples: 32, ..Radar::default() });
         let frame = engine.update(&Scene::of_points([(0.0, 10.0)]), &MapRequest::default()).unwrap();
         let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
@@ -118,7 +118,7 @@ mod tests {
         let mut timing = Harness::builder().with_size([280.0, 700.0]).build_ui_state(draw, Vec::new());
         timing.run_steps(3);
         seen::assert_readable(timing.output());
-        let _told = timing.get_by_label("of an earlier scene");
+        let _told = timing.get_by_label("out of date");
         let _counted = timing.get_by_label("7 pictures painted since the start");
         assert!(timing.state().is_empty());
     }
