@@ -74,8 +74,7 @@ fn captions_name_every_map_until_the_first_drag() {
     let mut s = Session::start();
     assert!(!s.state().shows_captions(), "nothing can be kept here");
     s.ask(Command::Window(WindowCommand::ToggleCaptions));
-    for wanted in ["Input 0: the first", "Input 1: the last", "Target: all 128", "Output: baseline", "Output > η:"]
-    {
+    for wanted in ["Input 0: the first", "Input 1: the last", "Target: all 128", "Output: baseline", "Output > η:"] {
         assert!(s.painted().iter().any(|t| t.starts_with(wanted)), "{wanted}: {:?}", s.painted());
     }
     assert!(s.painted().iter().any(|t| t.starts_with("Drag a reflector")), "{:?}", s.painted());
