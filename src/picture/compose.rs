@@ -1,13 +1,14 @@
 //! The bytes of a picture from a signal: maps, reconstruction, panels.
 
+use super::error::ComposeError;
 use super::inputs::{HeardByLayout, InputMap};
-use super::{ColourMap, DetectedCells, Panels, PictureError, encode_png, render, render_svg};
+use super::{ColourMap, DetectedCells, Panels, encode_png, render, render_svg};
 use crate::evaluate::TARGET_ETA;
 use crate::evaluate::failure::Footprints;
-use crate::maps::cfar::{Cfar, CfarError, DETECTED};
+use crate::maps::cfar::{Cfar, DETECTED};
 use crate::maps::{LogMaps, Normalisation};
-use crate::radar::{Carrier, LayoutError, LayoutKind, Radar, counted};
-use crate::reconstruct::{ReconstructError, Reconstructor, Request};
+use crate::radar::{Carrier, LayoutKind, Radar, counted};
+use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::Scene;
 use crate::signal::{BeatSignal, Floor};
 use std::path::Path;
@@ -63,24 +64,6 @@ impl Default for Style {
             cfar: None,
         }
     }
-}
-
-/// A reason for which a picture can't be made.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // Names and messages say it.
-pub enum ComposeError {
-    #[error(transparent)]
-    Reconstruct(#[from] ReconstructError),
-    #[error(transparent)]
-    Picture(#[from] PictureError),
-    #[error(transparent)]
-    Detector(#[from] CfarError),
-    #[error("{0}")]
-    Layout(#[from] LayoutError),
-    #[error("the recording has the samples of the two ends alone; {0} needs those of every element")]
-    EndsAlone(String),
-    #[error("the detector needs the power of every cell, which an output has only beside a target")]
-    DetectorAlone,
 }
 
 /// Reconstructs and draws all panels; the bytes of a file.

@@ -1,6 +1,6 @@
 //! Input maps of a picture: those of the two ends, or of a layout.
 
-use super::ComposeError;
+use super::error::ComposeError;
 use crate::maps::focus::layout_map;
 use crate::maps::{LogMap, Normalisation, RangeAngleMap};
 use crate::radar::{BuiltArray, End, LayoutKind, Radar};

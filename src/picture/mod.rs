@@ -16,6 +16,8 @@ mod directions;
 #[cfg(feature = "pictures")]
 mod doppler;
 #[cfg(feature = "pictures")]
+mod error;
+#[cfg(feature = "pictures")]
 mod inputs;
 #[cfg(feature = "pictures")]
 mod lettering;
@@ -39,11 +41,13 @@ pub use finer::{finer, in_place};
 #[cfg(feature = "pictures")]
 pub use canvas::{Drawing, PictureError};
 #[cfg(feature = "pictures")]
-pub use compose::{ComposeError, PictureFormat, Style, compose};
+pub use compose::{PictureFormat, Style, compose};
 #[cfg(feature = "pictures")]
 pub use directions::{Curve, DirectionAxis, Mark};
 #[cfg(feature = "pictures")]
 pub use doppler::compose_range_doppler;
+#[cfg(feature = "pictures")]
+pub use error::ComposeError;
 #[cfg(feature = "pictures")]
 pub use inputs::InputMap;
 #[cfg(feature = "pictures")]

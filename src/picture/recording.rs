@@ -1,8 +1,9 @@
 //! Pictures of recordings: the panels of a scene, or curves over direction where there is one snapshot.
 
 use super::canvas::Drawing;
-use super::compose::{ComposeError, PictureFormat, Style};
+use super::compose::{PictureFormat, Style};
 use super::directions::{Curve, DirectionAxis, Mark};
+use super::error::ComposeError;
 use super::inputs::{HeardByLayout, InputMap};
 use super::{DetectedCells, Panels, encode_png, render, render_svg};
 use crate::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap, Spectrum, channels_map};

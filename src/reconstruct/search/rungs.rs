@@ -14,12 +14,15 @@ const MOST_ROUNDS: usize = 3;
 /// Another round of pairing needs that this part of the energy at most is left by the last.
 const WORTH_ANOTHER: f64 = 0.5;
 
+/// Most atoms of a fit that is worth a second search for what it lacks.
+pub const MOST_AGAIN: usize = 60;
+
 impl Search<'_> {
     /// Points that both ends' tones lead to, kept where they are all there is.
     pub fn climb_tones(&self, state: &mut State) -> Result<(), ReconstructError> {
         state.pairs = self.pairs_of_tones(&state.fit);
         if let Some(pairs) = &state.pairs {
-            let fit = self.paired(state.fit.clone(), pairs)?;
+            let fit = self.paired(state.fit.clone(), pairs, false)?;
             if self.is_explained(&fit) {
                 state.reach(Answer { fit, is_sure: true });
             } else {
@@ -48,7 +51,7 @@ impl Search<'_> {
     /// Points that both ends' tones lead to beside the lines.
     pub fn climb_pairs(&self, state: &mut State) -> Result<(), ReconstructError> {
         let pairs = state.pairs.take().unwrap_or_default();
-        let answer = self.paired_again(state.fit.clone(), pairs)?;
+        let answer = self.paired_again(state.fit.clone(), pairs, state.is_long)?;
         state.reach(answer);
         Ok(())
     }
@@ -93,8 +96,10 @@ impl Search<'_> {
         Ok((fit, pairs))
     }
 
-    /// `fit` and the points that the ends' tones lead to in what it leaves, first those of `pairs`, time and again.
-    fn paired_again(&self, mut fit: Fit, pairs: Pairs) -> Result<Answer, ReconstructError> {
+    /// `fit` and the points that the ends' tones lead to in what it leaves, first those of `pairs`, time and again. Where an echo is long
+    /// and no wall was found, they are left where they are: lines are better found before.
+    fn paired_again(&self, mut fit: Fit, pairs: Pairs, is_long: bool) -> Result<Answer, ReconstructError> {
+        let is_polished = !is_long || !fit.atoms.is_empty();
         let mut pairs = Some(pairs);
         for _ in 0..MOST_ROUNDS {
             if self.is_explained(&fit) {
@@ -102,7 +107,7 @@ impl Search<'_> {
             }
             let before = fit.cost();
             let pairs = pairs.take().unwrap_or_else(|| self.pairs(&fit));
-            fit = self.nearly_there(self.paired(fit, &pairs)?)?;
+            fit = self.nearly_there(self.paired(fit, &pairs, is_polished)?)?;
             tracing::debug!(atoms = fit.atoms.len(), before, cost = fit.cost(), "paired");
             if fit.cost() > WORTH_ANOTHER * before {
                 break;

@@ -35,17 +35,22 @@ pub struct State {
     pub is_sure: bool,
     /// Points whose tones both ends hear in what `fit` leaves; `None` where an end hears too many tones.
     pub pairs: Option<Pairs>,
+    /// Whether an echo of the samples is long in range, as a line's is.
+    pub is_long: bool,
 }
 
 impl State {
     /// The state without any object.
     pub fn start(search: &Search) -> Self {
-        State::of(search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0))
+        let nothing = search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0);
+        let flat = nothing.residual.flat(&search.bench.sensor);
+        let is_long = search.grower().unexplained(&flat, &nothing).is_long();
+        State { is_long, ..State::of(nothing) }
     }
 
     /// The state with the objects of `fit`.
     pub fn of(fit: Fit) -> Self {
-        State { fit, is_sure: false, pairs: None }
+        State { fit, is_sure: false, pairs: None, is_long: false }
     }
 
     /// Sets the state to `answer`.
@@ -153,7 +158,8 @@ impl Search<'_> {
     }
 
     /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
-    pub fn paired(&self, known: Fit, pairs: &Pairs) -> Result<Fit, ReconstructError> {
+    /// They are moved to their best places only if that is asked for.
+    pub fn paired(&self, known: Fit, pairs: &Pairs, polished: bool) -> Result<Fit, ReconstructError> {
         let mut atoms = known.atoms.clone();
         atoms.extend(pairs.points.iter().map(|point| point.atom));
         if atoms.len() == known.atoms.len() {
@@ -178,7 +184,8 @@ impl Search<'_> {
             self.grower().refuse(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
             return Ok(known);
         }
-        self.grower().pruned(fit)
+        let grower = self.grower();
+        if !polished || self.is_explained(&fit) { grower.pruned(fit) } else { grower.pruned(grower.polished(fit, 1)?) }
     }
 
     /// Whether nothing stands out of what `fit` leaves.

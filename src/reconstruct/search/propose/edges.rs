@@ -6,11 +6,11 @@
 use super::phased::{Heard, PhasedBeams, Presence, Row};
 use super::strides::{FIRST, MOST_STEP_METRES, Start, Stride, best_of_each, pitches_metres, summits};
 use super::unexplained::Unexplained;
-use crate::reconstruct::fit::Atom;
+use crate::reconstruct::fit::{Atom, Fit};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use rayon::prelude::*;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Range bins over which echoes must go on, and beyond which it no longer matters.
 const BINS: [u32; 2] = [20, 100];
@@ -23,6 +23,13 @@ const LEAST_EVEN: f64 = 0.02;
 
 /// Most directions of all points that are looked into.
 const MOST_LOOKS: usize = 4;
+
+/// Looks whose directions differ by less than this, radians, and that pass each other within this distance, metres, go into one wall.
+const ONE_LINE_RADIANS: f64 = 0.045;
+const ONE_LINE_METRES: f64 = 1.0;
+
+/// How much echoes behind a point speak against its being an edge, as a part of those ahead of it.
+const BEHIND: f64 = 0.5;
 
 /// Radians by which a wall may deviate from its direction.
 const WITHIN_RADIANS: f64 = 0.01;
@@ -43,40 +50,68 @@ const MOST_EDGES: usize = 24;
 /// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
 const LEAST_FROM_EDGE: usize = 24;
 
-/// Directions that walls mostly have, radians from the array's axis: along it and across it.
-const DIRECTIONS_RADIANS: [f64; 4] = [0.0, FRAC_PI_2, PI, -FRAC_PI_2];
+/// Directions this near to each other, radians, are one.
+const ONE_DIRECTION: f64 = 0.005;
 
 /// Lines from one point alone that may be among what is left, the most promising first.
 pub fn edges(left: &Unexplained) -> Vec<Atom> {
     let points = left.points_within_range(MOST_EDGES);
-    let rows = rows_from_edges(left.beams(), &points, left.task);
+    let rows = rows_from_edges(left.beams(), &points, &directions(left.found), left.task);
     rows.into_iter().map(|row| row.atom).filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
 }
 
-/// Rows that begin at one of `points` (x, y; metres) and lead about along or across the array's axis, best first; one for each point at most.
-fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Stride> {
+/// Rows that begin at one of `points` (x, y; metres) and lead in about one of the directions (radians from the array's axis), best
+/// first; one for each point at most.
+fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], directions_radians: &[f64], task: &Task) -> Vec<Stride> {
     let strongest = beams.strongest();
-    let look = |first: usize, radians: f64| {
-        let presence = |place| beams.presence(&strongest, place);
-        Some(Look { first, radians, score: going_on(presence, beams.bin_metres(), points[first], radians)? })
+    let along = |first: usize, radians: f64| {
+        going_on(|place| beams.presence(&strongest, place), beams.bin_metres(), points[first], radians)
+    };
+    let look = |first: usize, &radians: &f64| {
+        let ahead = along(first, radians)?;
+        let score = ahead - BEHIND * along(first, radians + PI).unwrap_or(0.0);
+        Some(Look { first, radians, score })
     };
     let mut looks: Vec<Look> = (0..points.len())
         .into_par_iter()
-        .flat_map_iter(|first| DIRECTIONS_RADIANS.into_iter().filter_map(move |radians| look(first, radians)))
+        .flat_map_iter(|first| directions_radians.iter().filter_map(move |radians| look(first, radians)))
         .collect();
     looks.sort_by(|a, b| b.score.total_cmp(&a.score));
-    looks.truncate(MOST_LOOKS);
+    let mut kept: Vec<Look> = Vec::with_capacity(MOST_LOOKS);
+    for look in looks {
+        if kept.len() < MOST_LOOKS && !kept.iter().any(|other| are_along_one_line(points, &look, other)) {
+            kept.push(look);
+        }
+    }
     let rows_of = |look: &Look| {
         let fan = Fan::new(beams, points[look.first], look.radians);
         Simd::chosen().run(Scan { beams, fan: &fan })
     };
-    let starts: Vec<Start> = looks
+    let starts: Vec<Start> = kept
         .par_iter()
         .filter(|_| !task.is_cancelled())
         .flat_map_iter(|look| rows_of(look).into_iter().map(|row| Start { first: look.first, row }))
         .collect();
-    tracing::debug!(looks = looks.len(), starts = starts.len(), "edges");
+    tracing::debug!(looks = kept.len(), starts = starts.len(), "edges");
     best_of_each(beams, starts, task)
+}
+
+/// Directions that walls mostly have: along and across the array's axis and the walls that are known.
+fn directions(fit: &Fit) -> Vec<f64> {
+    let of_atom = |atom: &Atom| match atom {
+        Atom::Segment { dx_metres, dy_metres, .. } => Some(dy_metres.atan2(*dx_metres)),
+        Atom::Point { .. } => None,
+    };
+    let mut directions: Vec<f64> = Vec::new();
+    for known in std::iter::once(0.0).chain(fit.atoms.iter().filter_map(of_atom)) {
+        for radians in (0..4).map(|k| (known + f64::from(k) * FRAC_PI_2).rem_euclid(TAU)) {
+            let is_near = |other: &f64| (radians - other + PI).rem_euclid(TAU) - PI;
+            if !directions.iter().any(|other| is_near(other).abs() < ONE_DIRECTION) {
+                directions.push(radians);
+            }
+        }
+    }
+    directions
 }
 
 /// Clarity and length of the echoes from `from` on in a direction; `None` where they soon end.
@@ -103,6 +138,13 @@ struct Look {
     first: usize,
     radians: f64,
     score: f64,
+}
+
+/// Whether two looks go along about one line in one direction: into one wall, from different reflectors of it.
+fn are_along_one_line(points: &[[f64; 2]], a: &Look, b: &Look) -> bool {
+    let (sin, cos) = a.radians.sin_cos();
+    let apart = [0, 1].map(|axis| points[a.first][axis] - points[b.first][axis]);
+    (a.radians - b.radians).cos() > ONE_LINE_RADIANS.cos() && (apart[0] * sin - apart[1] * cos).abs() < ONE_LINE_METRES
 }
 
 /// Rows from one point in about one direction: step by step longer, and turned to both sides.
@@ -190,13 +232,14 @@ mod tests {
         let flat = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
         let last = [wall.x_metres, wall.y_start_metres + 89.0 * wall.spacing_metres];
         let points = [[point.x_metres, point.y_metres], last];
+        let directions = [0.0, 1.0, 2.0, 3.0].map(|k| k * FRAC_PI_2);
         let beams = PhasedBeams::new(&radar, &flat);
-        let rows = rows_from_edges(&beams, &points, &Task::default());
+        let rows = rows_from_edges(&beams, &points, &directions, &Task::default());
         let best = rows.first().expect("a row").atom;
         let [first, second] = [0.0, 1.0].map(|i| best.position_metres(i));
         assert!((first[0] - last[0]).hypot(first[1] - last[1]) < 0.1, "{best:?}");
         assert!((second[1] - first[1] + wall.spacing_metres).abs() < 1e-3 && best.reflector_count() > 40, "{best:?}");
         // Nothing goes on from a point that stands alone.
-        assert!(rows_from_edges(&beams, &points[..1], &Task::default()).is_empty());
+        assert!(rows_from_edges(&beams, &points[..1], &directions, &Task::default()).is_empty());
     }
 }

@@ -1,0 +1,24 @@
+//! The error of a picture that can't be composed.
+
+use super::PictureError;
+use crate::maps::cfar::CfarError;
+use crate::radar::LayoutError;
+use crate::reconstruct::ReconstructError;
+
+/// The reason why a picture could not be composed.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // Names and messages say it.
+pub enum ComposeError {
+    #[error(transparent)]
+    Reconstruct(#[from] ReconstructError),
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    #[error(transparent)]
+    Detector(#[from] CfarError),
+    #[error("{0}")]
+    Layout(#[from] LayoutError),
+    #[error("the recording has the samples of the two ends alone; {0} needs those of every element")]
+    EndsAlone(String),
+    #[error("the detector needs the power of every cell, which an output has only beside a target")]
+    DetectorAlone,
+}
