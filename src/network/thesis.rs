@@ -153,7 +153,7 @@ impl Thesis {
         Ok(network)
     }
 
-    /// The bytes of `file` with our tensor names in place of the author's, if it has the author's.
+    /// The bytes of `file` with this crate's tensor names. The names of the author's PyTorch program are replaced.
     /// # Errors
     /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub(super) fn in_our_names(file: &WeightFile) -> Result<Vec<u8>, WeightsError> {

@@ -4,7 +4,7 @@
 //!
 //! | folder | common approach of its methods |
 //! |---|---|
-//! | `rows` | one end and one range row at a time; both ends' estimates are combined |
+//! | `rows` | each range row of each end by itself; then the estimates of both ends are combined |
 //! | `coherent` | both ends as one aperture, place by place |
 //! | `grid` | both ends together, on the cells of the whole array's polar grid |
 //! | [`search`] | both ends together, off any grid |

@@ -110,7 +110,7 @@ pub(super) fn no_plane_waves(radar: &Radar) -> Option<String> {
     })
 }
 
-/// The reason why columns don't determine directions, where more than [`MOST_FOLDS`] share one.
+/// The refusal of a radar of which more than [`MOST_FOLDS`] directions share a column; `None` for any other radar.
 pub(super) fn too_many_folds(radar: &Radar) -> Option<String> {
     let folds = (2.0 / cos_period(radar)).ceil();
     (folds > MOST_FOLDS as f64).then(|| {

@@ -1,4 +1,4 @@
-//! Channels-last pictures with a margin, so that a kernel reads beyond their edges without checks.
+//! Channels-last pictures with a margin that repeats the opposite edge. A kernel at an edge reads the margin, and needs no bounds check.
 
 use rayon::prelude::*;
 use std::ops::Range;

@@ -10,7 +10,7 @@ use crate::signal::simd::Simd;
 /// Channels of the input: magnitude and phase of both ends.
 pub const CHANNELS: usize = 4;
 
-/// Number of outputs of which a max-pool takes the largest: one of each part of a [`Parted`] picture.
+/// Number of cells in a window of the max-pool: 2 rows by 2 columns, one cell from each part of a [`Parted`] picture.
 const POOLED_OUTPUTS: usize = 4;
 
 #[derive(Debug)]

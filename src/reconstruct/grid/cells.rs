@@ -71,7 +71,7 @@ impl<'a> GridCells<'a> {
         self.reflector(cell).is_some()
     }
 
-    /// The echo of a unit reflector in `cell`, where one can stand there.
+    /// The echo of a unit reflector in `cell`; `None` outside the grid, at the centre of the array and on an element.
     pub fn echo(&self, cell: GridCell) -> Option<ArrayEcho> {
         self.reflector(cell)?;
         self.echo_at(self.range_metres[cell.bin], self.directions[cell.direction].cos_theta)

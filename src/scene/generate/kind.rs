@@ -148,7 +148,7 @@ impl Kind {
         }
     }
 
-    /// Name of the scene of a seed and a number: "Test set 3, seed 0, scene 7".
+    /// Title of a generated scene, for example "Test set 3, seed 0, scene 7".
     pub fn scene_name(self, seed: u64, number: u32) -> String {
         let kind = match self.test_set() {
             Some(set) => format!("Test set {set}"),

@@ -22,8 +22,7 @@ pub fn clear_patch(rect: Rect, places: &[Pos2], lines: &[Vec2]) -> (Rect, usize)
     (1..=lines.len()).rev().flat_map(patches).find(fits).unwrap_or(least)
 }
 
-/// Boxes of `size` in the corners of `rect`, the one farthest from `from` first; clear of the pointer's value at the top and of the button at
-/// the bottom.
+/// Boxes of `size` in the corners of `rect`, the farthest from `from` first. They leave the readout at the top and the button at the bottom free.
 fn corners(rect: Rect, from: Pos2, size: Vec2) -> [Rect; 4] {
     let (left, top) = (from.x > rect.center().x, from.y > rect.center().y);
     [(left, top), (!left, top), (left, !top), (!left, !top)].map(|(left, top)| {
