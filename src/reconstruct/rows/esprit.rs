@@ -25,6 +25,10 @@ pub const ESPRIT: RowMethod = RowMethod {
     render: Render::Peaks,
 };
 
+/// Turns of phase per element within which two waves are one. A covariance that is averaged forward and backward has eigenvalues in pairs `z`,
+/// `1 / conj(z)`, whose phase is the same.
+const SAME_TURNS: f64 = 1e-6;
+
 /// Turns of phase per element of each wave.
 fn directions(row: &RowSnapshot) -> Option<Vec<f64>> {
     let subspaces = subspaces(&smoothed(&row.snapshots, subarray_len(row.own().len())), row)?;
@@ -46,13 +50,26 @@ fn directions(row: &RowSnapshot) -> Option<Vec<f64>> {
     }
     let steps = turned.eigenvalues().ok()?;
     let turns = |step: &Complex64| (-step).arg() / std::f64::consts::TAU;
-    Some(steps.iter().map(turns).collect())
+    let mut turns: Vec<f64> = steps.iter().map(turns).collect();
+    turns.sort_by(f64::total_cmp);
+    turns.dedup_by(|a, b| (*a - *b).abs() < SAME_TURNS);
+    Some(turns)
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::row::with_waves;
     use super::*;
+
+    #[test]
+    fn rows_of_noise_have_a_finite_spectrum() {
+        for seed in 0..20 {
+            let waves: Vec<(f64, f64)> =
+                (0..9).map(|i| (f64::from(i * i + seed).sin() / 2.0, 1.0 + f64::from(i * seed).cos())).collect();
+            let power = with_waves(&waves, |row| row.continued(&directions(row)?)).unwrap();
+            assert!(power.iter().all(|p| p.is_finite()), "{seed}");
+        }
+    }
 
     #[test]
     fn directions_of_two_waves_within_a_beamwidth_are_exact() {
