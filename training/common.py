@@ -112,7 +112,8 @@ def fill(module, tensors, path, counted=True):
     try:
         module.load_state_dict(tensors)
     except (RuntimeError, KeyError) as error:
-        raise SystemExit(f"{path} holds weights of another network: {' '.join(str(error).split())[:300]}") from None
+        first = [line.strip() for line in str(error).splitlines() if line.strip()][:2]
+        raise SystemExit(f"{path} holds weights of another network: {' '.join(first)[:160]}") from None
 
 
 def cooled(args, seconds):
@@ -170,4 +171,7 @@ def export(model_state, path, meta, report, count):
     for name, value in meta.items():
         print(f"{name}: {value}")
     save_file({k: v.contiguous() for k, v in model_state.items()}, path + ".part", metadata=meta)
+    mask = os.umask(0)
+    os.umask(mask)
+    os.chmod(path + ".part", 0o666 & ~mask)  # safetensors makes files that their owner alone can read
     os.replace(path + ".part", path)

@@ -46,6 +46,8 @@ def checked(parser, arguments):
             parser.error(f"--{name} is for one process; leave torchrun away, or --{name}")
     if args.pool and (args.pool < args.batch or args.uses <= 0):
         parser.error(f"--pool {args.pool} --uses {args.uses}: expected at least --batch ({args.batch}) scenes, and uses above 0")
+    if (args.export or getattr(args, "judge", None)) and args.validation < 1:
+        parser.error(f"--validation is {args.validation}; expected 1 or more beside --export or --judge: figures are of validation scenes")
     if args.export and not args.init and not os.path.exists(os.path.join(args.out, "checkpoint.pt")):
         refuse_untrained(args, 0)
     return args

@@ -191,6 +191,7 @@ class Run:
         kept = {"lr": self.rate if self.recorded else args.lr, "capturable": self.recorded}
         self.optimizer = torch.optim.AdamW([*self.model.parameters(), *self.doubt.parameters()], weight_decay=1e-4, betas=(0.9, 0.99), **kept)
         self.step, self.drawn, self.parts, initial = 0, 0, [], None
+        self.seed = args.seed
         #: The radars that the last part trained for.
         self.domain = domain_of(args)
         maps = None
@@ -199,6 +200,7 @@ class Run:
             state = loaded(self.path, team.device, keys, "train_live.py")
             if state.get("size", "{}") != json.dumps(self.size):
                 raise SystemExit(f"{self.path} is of a network of size {state.get('size', '{}')}; --radar and --tiny ask for {json.dumps(self.size)}")
+            self.refuse_another(args, state)
             fill(self.model, state["model"], self.path)
             fill(self.doubt, state["doubt"], self.path)
             for group in state["optimizer"]["param_groups"]:
@@ -209,7 +211,7 @@ class Run:
             self.step, self.drawn, self.parts, maps = state["step"], state["drawn"], json.loads(state["parts"]), state.get("maps")
             self.average.load_state_dict(state["average"])
             if args.export:
-                self.domain = state.get("domain", self.domain)
+                self.domain, self.seed = state.get("domain", self.domain), state.get("seed", self.seed)
         else:
             if args.init:
                 initial = args.init
@@ -222,6 +224,14 @@ class Run:
         #: Maps that the weights saw, in all parts.
         self.maps = provenance.maps_of(self.parts) if maps is None else maps
         self.part = provenance.Part(initial, self.maps, "AdamW")
+
+    def refuse_another(self, args, state):
+        """Ends the program where the folder holds a run for other radars or of another seed; of an export the checkpoint says both."""
+        asked = {"domain": self.domain, "seed": args.seed}
+        for name, value in asked.items():
+            if state.get(name, value) != value and not args.export:
+                option = {"domain": "--radar or --windows ask for the radars", "seed": "--seed is"}[name]
+                raise SystemExit(f"{self.path} is of a run of {name} {state[name]}; {option} {value}. Another folder with --init goes on from its weights")
 
     def records(self):
         return [*self.parts, self.part.now(self.maps)]
@@ -245,7 +255,7 @@ class Run:
     def save(self):
         save(self.path, {"model": self.model.state_dict(), "doubt": self.doubt.state_dict(), "average": self.average.state_dict(),
                          "optimizer": light(self.optimizer.state_dict()),
-                         "step": self.step, "size": json.dumps(self.size), "domain": self.domain, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
+                         "step": self.step, "seed": self.seed, "size": json.dumps(self.size), "domain": self.domain, "drawn": self.drawn, "maps": self.maps, "parts": json.dumps(self.records())})
 
 
 def has_window(names):
@@ -361,7 +371,7 @@ def main(args):
         for tensor in (*run.average.state_dict().values(), *run.doubt.state_dict().values()):
             tensor.copy_(tensor.half())
         report = figures(estimate_with(run.average, team.device), sets)
-        meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(args.seed),
+        meta = {"network": "live", "recipe": "live", "trainer": "training/train_live.py (PyTorch)", "seed": str(run.seed),
                 "steps": str(run.step), "scenes_simulated": str(run.drawn), "domain": run.domain, **provenance.metadata(run.parts)}
         if run.size:
             meta["size"] = json.dumps(run.size)

@@ -11,6 +11,9 @@ to column under the two-way carrier: `map[:, radar.rising_columns]` has left on 
 ValueError, one of a file OSError. Rust works without the interpreter's lock; Ctrl-C stops it. `python/README.md` says more.
 """
 
+import importlib
+from types import ModuleType
+
 from . import data, torch
 from ._apertura import (
     Examples,
@@ -67,6 +70,15 @@ from .page import Shown, find_page, show
 from .program import find_program, open
 from .rows import read_rows
 from .serve import Request, serve
+
+
+
+def __getattr__(name: str) -> ModuleType:
+    # Loaded when they are asked for: `live` needs PyTorch, which takes seconds.
+    if name in ("benchmark", "campaign", "live"):
+        return importlib.import_module(f".{name}", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
 
 __all__ = [
     "ArgumentError",

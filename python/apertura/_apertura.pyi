@@ -313,14 +313,14 @@ class Method:
     def weights(self) -> str: ...
     @property
     def eta(self) -> float: ...
-    def refusal(self, radar: Radar | None = None) -> str | None: ...
+    def refusal(self, radar: Radar | None = None, *, layout: str | Sequence[int] | None = None) -> str | None: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     def reconstruct(
         self,
         ends: npt.ArrayLike,
         radar: Radar | None = None,
         *,
-        layout: Sequence[int] | None = None,
+        layout: str | Sequence[int] | None = None,
         floor: str = "thesis",
         normalisation: str = "min-max",
         snapshot_range_metres: float | None = None,
@@ -400,7 +400,7 @@ class Examples:
         radar: Radar | Literal["random"] | None = None,
         targets: Sequence[str] | None = None,
         features: bool | None = None,
-        layout: Sequence[int] | None = None,
+        layout: str | Sequence[int] | None = None,
     ) -> Examples: ...
     @property
     def domain(self) -> str: ...
@@ -424,7 +424,7 @@ def dataset(
     thermal: tuple[float, float, float] | None = None,
     elements: tuple[float, float, float, float] | None = None,
     radar: Radar | Literal["random"] | None = None,
-    layout: Sequence[int] | None = None,
+    layout: str | Sequence[int] | None = None,
     dtype: Literal["f16", "f32"] = "f16",
     arrays: Sequence[Literal["ends", "features", "target_ideal", "target_measured", "target_calibrated"]] | None = None,
     shard: int = 64,
@@ -471,7 +471,7 @@ def evaluate(
     radar: Radar | None = None,
     elements: Elements | tuple[float, float, float] | None = None,
     target: _Target = "measured",
-    layout: Sequence[int] | None = None,
+    layout: str | Sequence[int] | None = None,
     on_row: Callable[[dict[str, Any]], object] | None = None,
     progress: _Progress | None = None,
     path: _Path | None = None,
@@ -491,7 +491,7 @@ def robustness(
     seed: int = 0,
     floor: str = "thesis",
     radar: Radar | None = None,
-    layout: Sequence[int] | None = None,
+    layout: str | Sequence[int] | None = None,
     calibrate: bool = False,
     progress: _Progress | None = None,
 ) -> list[dict[str, Any]]: ...
@@ -505,7 +505,7 @@ def threshold(
     floor: str = "thesis",
     normalisation: str = "min-max",
     radar: Radar | None = None,
-    layout: Sequence[int] | None = None,
+    layout: str | Sequence[int] | None = None,
     progress: _Progress | None = None,
 ) -> Threshold: ...
 def read_rows(path: _Path) -> list[dict[str, Any]]: ...

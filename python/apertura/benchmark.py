@@ -23,6 +23,7 @@ from . import _apertura
 from ._entries import FIGURES, Row, changed_scenes, differences, digest_of, markdown, mean_and_error, paired_z, pooled_z
 from ._entries import read_entry, second_seed, table, text_of
 from ._suites import SCENES, SEED, SUITES, VERSION, Suite, check_scenes, samples_hash, scenes_hash, target_ideal
+from .objects import ArgumentError
 
 #: Methods of this package that docs/benchmark has entries of.
 OWN = ("baseline", "capon", "iaa", "live", "nomp", "hybrid")
@@ -75,6 +76,10 @@ def draw(method: _apertura.Method, seed: int, scenes: int = SCENES, suites: Sequ
 
 def entry(method: _apertura.Method, *, weights: str = "", scenes: int = SCENES, suites: Sequence[Suite] = SUITES) -> dict[str, Any]:
     """Scores a method on both draws: a whole entry where `scenes` and `suites` are the usual ones."""
+    if not isinstance(method, _apertura.Method):
+        raise ArgumentError(f"method is {method!r}; expected a Method, as apertura.method gives it")
+    if not 1 <= scenes <= SCENES:
+        raise ValueError(f"scenes is {scenes}; expected 1 to {SCENES}")
     first = draw(method, SEED, scenes, suites)
     found = {
         "apertura_benchmark": VERSION,

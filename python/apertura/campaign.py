@@ -12,7 +12,7 @@ import argparse
 import os
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any, Callable, Iterator, Sequence
@@ -198,13 +198,35 @@ def work(client: Any, run: Run, done: Any, on_rows: Callable[[list[dict[str, Any
             waiting.add(submit(more))
 
 
-def client_of(scheduler: str | None, workers: int | None) -> Any:
-    """A client of the cluster at this address, or of workers on this machine."""
+def hearing(run: Run) -> Run:
+    """The run without methods that can't hear its layout; standard error names them.
+
+    Raises:
+        ValueError: No method can.
+    """
+    if run.layout is None:
+        return run
+    refusals = {name: _apertura.method(name).refusal(run.radar, layout=run.layout) for name in run.methods}
+    able = tuple(name for name, refusal in refusals.items() if refusal is None)
+    for refusal in filter(None, refusals.values()):
+        if not able:
+            raise ValueError(refusal)
+        print(f"left out: {refusal}", file=sys.stderr)
+    return replace(run, methods=able)
+
+
+def _dask() -> None:
     try:
-        import dask
-        from dask.distributed import Client, LocalCluster
+        import dask.distributed  # noqa: F401
     except ImportError as error:
         raise ImportError(f'a campaign needs Dask: pip install "dask[distributed]" ({error})') from None
+
+
+def client_of(scheduler: str | None, workers: int | None) -> Any:
+    """A client of the cluster at this address, or of workers on this machine."""
+    import dask
+    from dask.distributed import Client, LocalCluster
+
     dask.config.set({"distributed.scheduler.allowed-failures": TRIES})
     if scheduler is not None:
         return Client(scheduler, timeout="30s")
@@ -220,16 +242,22 @@ def campaign(run: Run, out: Path, *, scheduler: str | None = None, workers: int 
         OSError: A file can't be written, or the scheduler isn't there.
         ImportError: Dask, or pyarrow for Parquet, isn't installed.
     """
+    out = Path(out)
     if out.suffix not in (".csv", ".parquet"):
         raise ValueError(f"{out}: expected a name that ends in .csv or .parquet")
+    own = [name for name in run.methods if not isinstance(name, str)]
+    if own:
+        raise ValueError(f"methods holds {own[0]!r}; expected names: a campaign's workers start programs of one's own by `commands`")
     if out.suffix == ".parquet":
         import pyarrow  # noqa: F401  (told before the work, not after it)
     journal_path = out.with_name(out.name + ".journal")
     if out.exists() and not journal_path.exists():
         raise ValueError(f"{out} is there already; name another file, or remove it")
     start_commands(run.commands)
+    run = hearing(run)
     # Names are checked before workers start.
     run.evaluate([])
+    _dask()
     journal = Journal(journal_path, run.told())
     try:
         total = run.count * len(run.sets) * len(run.methods)
@@ -271,7 +299,7 @@ def _names(text: str) -> tuple[str, ...]:
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m apertura.campaign", description=(__doc__ or "").split("\n\n")[1])
     parser.add_argument("--methods", type=_names, default=(), help="names, separated by commas")
-    parser.add_argument("--method-command", action="append", default=[], metavar="COMMAND", help="a program of your own as a method")
+    parser.add_argument("--method-command", action="append", default=[], metavar="COMMAND", help="a program of your own as a method, for two ends; beside --methods its name is one of them")
     parser.add_argument("--sets", type=_names, required=True, help=f"kinds of scenes, separated by commas: {', '.join(_apertura.kinds())}")
     parser.add_argument("--count", type=int, required=True, help="scenes of each set")
     parser.add_argument("--seed", type=int, default=0)

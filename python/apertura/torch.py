@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import operator
-from typing import TYPE_CHECKING, Any, Callable, Literal, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Literal, Sequence, SupportsIndex
 
 import numpy as np
 
 from ._apertura import Examples, Radar, Scene
 from .data import Example
+from .objects import ArgumentError
 
 if TYPE_CHECKING:
     import torch as _torch
@@ -38,7 +39,7 @@ class Scenes:
             Each such scene has its own part of these standard deviations, uniform from none to all.
         radar: The `Radar` that sees all scenes; "random" for one drawn for each scene, as `Examples` says; that of table 3.1 where none is given.
         targets: The maps to learn, of "ideal", "measured" and "calibrated".
-        layout: Numbers of the elements that are heard in place of the two ends (`apertura.layout`).
+        layout: Name or numbers of the elements that are heard in place of the two ends (`apertura.layout`).
         scene: Makes the scenes in place of `mixture`: called as `scene(random, radar)` with a `numpy.random.Generator`, which is a function of seed,
             purpose and number of the example, and the example's `Radar`; it returns a `Scene`. Its noise is picked by seed, purpose and number.
         transform: Called with each example; what it returns is the example.
@@ -68,21 +69,21 @@ class Scenes:
         elements: tuple[float, float, float, float] | None = None,
         radar: Radar | Literal["random"] | None = None,
         targets: Sequence[str] = ("ideal", "measured"),
-        layout: Sequence[int] | None = None,
+        layout: str | Sequence[int] | None = None,
         scene: Callable[[np.random.Generator, Radar], Scene] | None = None,
         transform: Callable[[dict[str, Any]], Any] | None = None,
     ) -> None:
         if network not in (None, "live", "thesis", "none"):
             raise ValueError(f'network is {network!r}; expected "live", "thesis" or "none"')
-        if network == "thesis" and layout is not None:
+        if network == "thesis" and layout not in (None, "two-ends"):
             raise ValueError("the thesis' networks hear two ends; expected no layout, or another network")
         for name, function in (("scene", scene), ("transform", transform)):
             if function is not None and not callable(function):
                 raise ValueError(f"{name} is {function!r}; expected a function")
         self._network, self._scene, self._transform = network, scene, transform
+        if not isinstance(length, SupportsIndex) or not 1 <= operator.index(length) <= 1 << 32:
+            raise ArgumentError(f"length is {length!r}; expected a whole number from 1 to {1 << 32}")
         length = operator.index(length)
-        if not 1 <= length <= 1 << 32:
-            raise ValueError(f"length is {length}; expected 1 to {1 << 32}")
         self._length = length
         self._arguments: dict[str, Any] = {
             # A function may make scenes that no kind has room for.
@@ -93,9 +94,9 @@ class Scenes:
             "thermal": thermal,
             "elements": elements,
             "radar": radar,
-            "targets": list(targets),
+            "targets": [targets] if isinstance(targets, str) else list(targets),
             "features": {None: None, "live": True}.get(network, False),
-            "layout": None if layout is None else [operator.index(element) for element in layout],
+            "layout": layout,
         }
         self._examples: Examples | None = Examples(**self._arguments)
 

@@ -1,7 +1,7 @@
 //! NumPy arrays in and out.
 
 use crate::errors::{argument, value};
-use apertura::radar::Radar;
+use apertura::radar::{LayoutKind, Radar};
 use apertura::scene::Reflector;
 use apertura::signal::TwoEnds;
 use ndarray::{Array, Array2, ArrayBase, Axis, Data, Dimension};
@@ -83,11 +83,18 @@ pub fn both_ends(ends: &TwoEnds) -> ndarray::Array3<Complex64> {
     both
 }
 
-/// Numbers of elements, where any are given.
-pub fn layout_of(any: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<usize>>> {
+/// Numbers of the elements that an argument `layout` names or lists; `None` for the two ends.
+pub fn layout_of(any: Option<&Bound<'_, PyAny>>, radar: &Radar) -> PyResult<Option<Vec<usize>>> {
     let Some(any) = any else { return Ok(None) };
+    if let Ok(name) = any.extract::<String>() {
+        let wrong = |error: String| value(format!("layout: {error}"));
+        let kind: LayoutKind = name.parse().map_err(|e| wrong(format!("{e}")))?;
+        let numbers = || kind.numbers(radar).map_err(|e| wrong(e.to_string()));
+        return if kind == LayoutKind::TwoEnds { Ok(None) } else { numbers().map(Some) };
+    }
     any.extract().map(Some).or_else(|_| {
-        let message = format!("layout is {}; expected numbers of elements, as apertura.layout gives them", any.repr()?);
+        let expected = "a name, or numbers of elements, as apertura.layout takes and gives them";
+        let message = format!("layout is {}; expected {expected}", any.repr()?);
         Err(argument(any.py(), message))
     })
 }

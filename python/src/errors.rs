@@ -73,6 +73,10 @@ impl Bounded for u64 {
     const MAX_COUNT: u64 = u64::MAX;
 }
 
+impl Bounded for usize {
+    const MAX_COUNT: u64 = usize::MAX as u64;
+}
+
 impl Bounded for u32 {
     const MAX_COUNT: u64 = u32::MAX as u64;
 }

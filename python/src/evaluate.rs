@@ -2,7 +2,7 @@
 
 use crate::arrays::layout_of;
 use crate::errors::{argument, named, system, value, whole};
-use crate::methods::{caused, methods_of};
+use crate::methods::{self, caused, methods_of};
 use crate::objects;
 use crate::radar::{Radar, or_default};
 use crate::rows::{dict_of, list_of};
@@ -39,7 +39,7 @@ use std::sync::Arc;
 ///         with which each scene's are drawn. Those of the scenes where nothing is given.
 ///     target: The map that outputs are held against: "measured" (what the whole array heard), "ideal" (of the array as it should be, without noise)
 ///         or "calibrated" (as it should be, over the noise).
-///     layout: Numbers of the elements that methods hear in place of the two ends (`layout`). Functions then get `heard`, complex128
+///     layout: Name or numbers of the elements that methods hear in place of the two ends (`layout`). Functions then get `heard`, complex128
 ///         `[elements of the layout, samples]`; "matched-filter", "iaa", "sbl", "omp" and "fista" make maps of it. The other methods hear two ends
 ///         and refuse.
 ///     on_row: Called with each row as it is found.
@@ -47,7 +47,7 @@ use std::sync::Arc;
 ///     cfar: A detector as `cfar` takes it, which is tried on every output beside the threshold; rows say it in `cfar_detection`,
 ///         `cfar_false_alarm` and `cfar`.
 ///     path: A CSV file in the program's format. Each row is appended as it is found, and the same call goes on where a stopped one ended. A file that
-///         holds anything else is refused.
+///         holds anything else is refused, and one whose first row of a function has another error than the function has now.
 ///     overwrite: Whether `path` begins anew, over any content.
 ///     only: The rows to find, as (set, number of the scene, method), in place of all rows of the run.
 ///
@@ -94,6 +94,7 @@ pub fn evaluate<'py>(
     let (purpose, reading) = (purpose_of(purpose)?, reading_of(reading)?);
     let (floor, normalisation) = (named(floor)?, named(normalisation)?);
     let campaign = Campaign {
+        layout: layout_of(layout, &or_default(radar))?,
         radar: or_default(radar),
         reading,
         purpose,
@@ -104,13 +105,12 @@ pub fn evaluate<'py>(
         cfar: cfar.map(named).transpose()?,
         elements: elements.map_or(Ok(Elements::OfScenes), elements_of)?,
         target: named(target)?,
-        layout: layout_of(layout)?,
         ..Campaign::default()
     };
     let sets = sets_of(scenes, radar, purpose)?;
     let methods = methods_of(methods)?;
     let run = Run::new(campaign, sets, methods, only.map(|only| only.into_iter().collect()))?;
-    let mut file = path.as_deref().map(|path| run.open(path, overwrite)).transpose()?;
+    let mut file = path.as_deref().map(|path| run.open(py, path, overwrite)).transpose()?;
     let mut done = file.as_ref().map_or(0.0, |file| file.present.len() as f64);
     let all = run.rows();
     let rows = work::run_watched(
@@ -136,6 +136,9 @@ pub fn evaluate<'py>(
     let rows = file.map_or(Ok(rows), |file| file.finish().map_err(kept))?;
     list_of(py, &rows)
 }
+
+/// Relative difference up to which two errors of one function on one scene are the same: sums of a network may run in another order.
+const SAME_PART: f64 = 0.01;
 
 /// Set, number of the scene, method.
 type Key = (String, u32, String);
@@ -169,8 +172,40 @@ impl Run {
         self.only.as_ref().map_or(scenes * self.methods.len() as f64, |only| only.len() as f64)
     }
 
-    fn open(&self, path: &Path, overwrite: bool) -> PyResult<RowFile> {
-        RowFile::open(path, &RunRows::new(&self.empty), overwrite).map_err(kept)
+    fn open(&self, py: Python<'_>, path: &Path, overwrite: bool) -> PyResult<RowFile> {
+        let file = RowFile::open(path, &RunRows::new(&self.empty), overwrite).map_err(kept)?;
+        for method in self.methods.iter().filter(|method| methods::is_function_without_weights(method.name())) {
+            if let Some(row) = file.present.iter().find(|row| *row.method == *method.name()) {
+                self.check_function(py, path, row)?;
+            }
+        }
+        Ok(file)
+    }
+
+    /// Refuses a file whose row a function of the same name did not make: without weights nothing else tells functions apart.
+    fn check_function(&self, py: Python<'_>, path: &Path, row: &Row) -> PyResult<()> {
+        let is_other =
+            |set: &str, index: u32, method: &str| set != &*row.set || index != row.index || method != &*row.method;
+        let methods: Vec<&dyn Reconstructor> = self.methods.iter().map(AsRef::as_ref).collect();
+        let again = work::run(py, None, |task| {
+            self.campaign.run_rest(&self.sets, &methods, &self.empty, &is_other, task, |_, _, _| {})
+        })?;
+        let again = again.map_err(|error| caused(py, value(error), &self.methods))?;
+        let Some(now) = again.first() else { return Ok(()) };
+        let is_near = |a: f64, b: f64| (a - b).abs() <= SAME_PART * a.abs().max(b.abs());
+        if is_near(row.squared_error, now.squared_error) && is_near(row.eta.into(), now.eta.into()) {
+            return Ok(());
+        }
+        let Row { set, index, method, .. } = row;
+        Err(value(format!(
+            "{}: {method} has SE {:.1} and eta {:.4} there on scene {index} of set {set}, and {:.1} and {:.4} now: another function made \
+             the file; name another file, or write over this one with overwrite=True (Method.of_function(weights=...) tells networks apart)",
+            path.display(),
+            row.squared_error,
+            row.eta,
+            now.squared_error,
+            now.eta
+        )))
     }
 
     /// Finds the rows that `file` doesn't hold, and appends them to it.

@@ -47,7 +47,7 @@ use std::sync::OnceLock;
 ///         errors of elements), "calibrated" (with the noise alone).
 ///     features: Whether the live network's input is made. Where nothing is said, it is before radars of the shape that the shipped one is for (1024
 ///         elements, ends of 12, 512 samples).
-///     layout: Numbers of the elements that are heard, in place of the two ends.
+///     layout: Name or numbers of the elements that are heard (`layout`), in place of the two ends.
 ///
 /// Raises:
 ///     ValueError: A name is unknown, a number can't be used, or a kind finds no room before the radar.
@@ -86,7 +86,8 @@ impl Examples {
         features: Option<bool>,
         layout: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let layout = arrays::layout_of(layout)?;
+        let radars = radars_of(radar)?;
+        let layout = arrays::layout_of(layout, &seen_by(&radars))?;
         let fields = PyDict::new(py);
         fields.set_item("mixture", mixture)?;
         fields.set_item("seed", seed)?;
@@ -104,7 +105,7 @@ impl Examples {
             seed: whole("seed", seed)?,
             floors: floors_of(floor, thermal)?,
             arrays: arrays_of(elements)?,
-            radars: radars_of(radar)?,
+            radars,
             targets: targets.map_or(Ok(Target::USUAL.to_vec()), targets_of)?,
             features: match features {
                 None => Features::WherePossible,
@@ -133,8 +134,8 @@ impl Examples {
     ///
     /// Args:
     ///     index: Number of the example, 0 to 2^32 - 1.
-    fn radar(&self, index: u32) -> Radar {
-        Radar(self.inner.radar(index))
+    fn radar(&self, index: i128) -> PyResult<Radar> {
+        Ok(Radar(self.inner.radar(whole("index", index)?)))
     }
 
     /// Examples of these numbers, made in parallel.
@@ -158,12 +159,17 @@ impl Examples {
     fn batch<'py>(
         &self,
         py: Python<'py>,
-        indices: Vec<u32>,
+        indices: Vec<i128>,
         mag_phase: bool,
         scenes: Option<Vec<PyRef<'py, Scene>>>,
     ) -> PyResult<Bound<'py, PyList>> {
         if indices.len() > MAX_EXAMPLES {
             return Err(value(format!("{} examples are asked for; at most {MAX_EXAMPLES} at once", indices.len())));
+        }
+        let indices: Vec<u32> = indices.into_iter().map(|index| whole("indices", index)).collect::<PyResult<_>>()?;
+        let layout = self.fields.bind(py).get_item("layout")?;
+        if mag_phase && layout.is_some_and(|layout| !layout.is_none()) {
+            return Err(value("mag_phase is of the two ends; expected no layout beside it"));
         }
         let scenes: Option<Vec<_>> = scenes.map(|scenes| scenes.iter().map(|scene| scene.0.scene.clone()).collect());
         if let Some(scenes) = scenes.as_ref().filter(|scenes| scenes.len() != indices.len()) {
@@ -236,6 +242,14 @@ fn radars_of(radar: Option<&Bound<'_, PyAny>>) -> PyResult<Radars> {
     }
 }
 
+/// A radar with the elements of all of `radars`: those that are drawn have as many as that of table 3.1.
+fn seen_by(radars: &Radars) -> apertura::radar::Radar {
+    match radars {
+        Radars::Fixed(radar) => (**radar).clone(),
+        Radars::Random => apertura::radar::Radar::default(),
+    }
+}
+
 /// Writes examples as files: `apertura dataset`. `docs/data.md` says what is in them; `apertura.data.Files` reads them.
 ///
 /// Args:
@@ -284,7 +298,8 @@ pub fn dataset(
     let kinds: PyResult<Vec<Kind>> =
         sets.iter().map(|set| Kind::for_training(&set_name(set)?).map_err(value)).collect();
     let kinds = kinds?;
-    let (radars, layout) = (radars_of(radar)?, arrays::layout_of(layout)?);
+    let radars = radars_of(radar)?;
+    let layout = arrays::layout_of(layout, &seen_by(&radars))?;
     let parts: Result<Vec<ExamplePart>, _> = match arrays {
         None => Ok(ExamplePart::usual(&radars, layout.as_deref())),
         Some(names) => names.iter().map(|name| name.parse()).collect(),

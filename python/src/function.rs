@@ -77,6 +77,11 @@ impl Function {
         Ok(Function { about, weights, is_decades: answers == "decades", called, raised: Mutex::new(None) })
     }
 
+    /// Whether rows tell its weights from others.
+    pub fn has_weights(&self) -> bool {
+        self.weights.is_some()
+    }
+
     /// The exception that the function raised last, taken.
     pub fn take_raised(&self) -> Option<PyErr> {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).take()

@@ -128,6 +128,12 @@ pub fn caused(py: Python<'_>, error: PyErr, methods: &[Arc<dyn Reconstructor>]) 
     error
 }
 
+/// Whether a function of this name is a method somewhere that says no weights.
+pub fn is_function_without_weights(name: &str) -> bool {
+    let functions = FUNCTIONS.lock().unwrap_or_else(PoisonError::into_inner);
+    functions.iter().filter_map(Weak::upgrade).any(|function| function.name() == name && !function.has_weights())
+}
+
 /// The functions that are methods somewhere.
 static FUNCTIONS: Mutex<Vec<Weak<Function>>> = Mutex::new(Vec::new());
 
@@ -247,9 +253,18 @@ impl Method {
     ///
     /// Args:
     ///     radar: The radar; that of table 3.1 where none is given.
-    #[pyo3(signature = (radar=None))]
-    fn refusal(&self, radar: Option<&Radar>) -> Option<String> {
-        self.inner.check_array(&or_default(radar)).err().map(|error| error.to_string())
+    ///     layout: Name or numbers of the elements that are heard in place of the two ends (`layout`).
+    ///
+    /// Raises:
+    ///     ValueError: The radar has no such layout.
+    #[pyo3(signature = (radar=None, *, layout=None))]
+    fn refusal(&self, radar: Option<&Radar>, layout: Option<&Bound<'_, PyAny>>) -> PyResult<Option<String>> {
+        let radar = or_default(radar);
+        let checked = match layout_of(layout, &radar)? {
+            Some(layout) => self.inner.check_elements(&radar, &layout),
+            None => self.inner.check_array(&radar),
+        };
+        Ok(checked.err().map(|error| error.to_string()))
     }
 
     /// Estimates the whole array's map from the samples of the two ends, or of a layout.
@@ -257,7 +272,7 @@ impl Method {
     /// Args:
     ///     ends: Complex numbers `[2, end_elements, samples]`, or `[elements of the layout, samples]`, of any gain; they are copied.
     ///     radar: The radar that sampled them; that of table 3.1 where none is given.
-    ///     layout: Numbers of the elements that were heard in place of the two ends (`layout`), for methods that hear any, as `evaluate` says.
+    ///     layout: Name or numbers of the elements that were heard in place of the two ends (`layout`), for methods that hear any, as `evaluate` says.
     ///     floor: What lies beneath them: "thesis", "exact", "thermal", "snr=DB", "dbm=LEVEL", "white" or "white=SIGMA". SIGMA is the root mean
     ///         square of the noise in a sample; the level of any other white noise the method measures.
     ///     normalisation: How the map is normalised: "min-max" or "db=RANGE".
@@ -281,7 +296,7 @@ impl Method {
     ) -> PyResult<Reconstruction> {
         let (noise, normalisation): (NoisePrior, Normalisation) = (named(floor)?, named(normalisation)?);
         let radar = or_default(radar);
-        let (ends, heard) = match layout_of(layout)? {
+        let (ends, heard) = match layout_of(layout, &radar)? {
             None => (self::ends(ends, &radar)?, None),
             Some(layout) => {
                 let samples = numbers(ends, "ends", &format!("[{}, {}]", layout.len(), radar.samples))?;

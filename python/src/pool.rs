@@ -1,6 +1,6 @@
 //! The threads that work: a pool a process, since a pool does not survive a fork.
 
-use crate::errors::runtime;
+use crate::errors::{runtime, whole};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -71,7 +71,8 @@ pub fn current() -> PyResult<&'static ThreadPool> {
 /// Raises:
 ///     ValueError: `count` is out of range.
 #[pyfunction]
-pub fn set_threads(count: usize) -> PyResult<()> {
+pub fn set_threads(count: i128) -> PyResult<()> {
+    let count: usize = whole("count", count)?;
     if !(1..=MAX_THREADS).contains(&count) {
         return Err(PyValueError::new_err(format!("count is {count}; expected 1 to {MAX_THREADS} threads")));
     }

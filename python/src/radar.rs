@@ -2,7 +2,7 @@
 
 use crate::arrays::owned;
 use crate::budget::{LinkBudget, budget_of, link_figures};
-use crate::errors::{scene_file, system, value};
+use crate::errors::{scene_file, system, value, whole};
 use crate::radar_fields::{antennas_of, carrier_name, carrier_of, fields_of, replaced, text_of, usual_of, window_of};
 use apertura::files::read_bounded;
 use apertura::radar::presets::{ALL, RadarPreset};
@@ -21,7 +21,7 @@ use std::path::PathBuf;
 ///     transmit_power_watts: Transmit power in watts.
 ///     bandwidth_hz: Swept bandwidth in hertz.
 ///     carrier_hz: Carrier frequency in hertz.
-///     element_spacing_metres: Distance between neighbouring elements in metres.
+///     element_spacing_metres: Distance between neighbouring elements in metres; that of table 3.1 at any carrier where neither it nor convention is given.
 ///     elements: Elements of the whole array, also the columns of every map.
 ///     end_elements: Elements of each of the two ends.
 ///     samples: Samples of a chirp, also the range bins of every map.
@@ -77,9 +77,9 @@ impl Radar {
         bandwidth_hz: Option<f64>,
         carrier_hz: Option<f64>,
         element_spacing_metres: Option<f64>,
-        elements: Option<usize>,
-        end_elements: Option<usize>,
-        samples: Option<usize>,
+        elements: Option<i128>,
+        end_elements: Option<i128>,
+        samples: Option<i128>,
         carrier: Option<&str>,
         window: Option<&str>,
         convention: Option<&str>,
@@ -89,10 +89,13 @@ impl Radar {
         receiver_y_metres: Option<Vec<f64>>,
         focus_off_line: Option<bool>,
         chirp_seconds: Option<f64>,
-        chirps: Option<usize>,
+        chirps: Option<i128>,
         chirp_interval_seconds: Option<f64>,
         budget: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let count = |name, number: Option<i128>| number.map(|number| whole::<usize>(name, number)).transpose();
+        let (elements, end_elements) = (count("elements", elements)?, count("end_elements", end_elements)?);
+        let (samples, chirps) = (count("samples", samples)?, count("chirps", chirps)?);
         let usual = usual_of(convention, carrier, carrier_hz, bandwidth_hz)?;
         let radar = radar::Radar {
             transmit_power_watts: transmit_power_watts.unwrap_or(usual.transmit_power_watts),

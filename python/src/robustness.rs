@@ -36,7 +36,7 @@ const USUAL_SCALES: [f64; 5] = [0.0, 0.5, 1.0, 2.0, 4.0];
 ///     seed: Seed of scenes and errors.
 ///     floor: What lies beneath the reflectors.
 ///     radar: The radar; that of table 3.1 where none is given.
-///     layout: Numbers of the elements that methods hear in place of the two ends (`layout`).
+///     layout: Name or numbers of the elements that methods hear in place of the two ends (`layout`).
 ///     calibrate: Whether each array is first calibrated on its scene's strongest reflector.
 ///     progress: Called with the part that is done, 0 to 1.
 ///
@@ -79,8 +79,8 @@ pub fn robustness<'py>(
     }
     let methods = methods_of(methods)?;
     let robustness = Robustness {
+        layout: layout_of(layout, &or_default(radar))?,
         radar: or_default(radar),
-        layout: layout_of(layout)?,
         kind: named::<Kind>(&set_name(set)?)?,
         seed,
         count,

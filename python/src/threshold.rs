@@ -58,8 +58,8 @@ pub fn threshold<'py>(
         None => usual.kinds,
     };
     let search = ThresholdSearch {
+        layout: layout_of(layout, &or_default(radar))?,
         radar: or_default(radar),
-        layout: layout_of(layout)?,
         floor: named(floor)?,
         normalisation: named(normalisation)?,
         kinds,

@@ -119,6 +119,10 @@ def test_a_campaign_hears_a_layout():
     [row] = campaign.rows_of(run, [*run.keys()])
     assert row["layout"] == "0-1 9 85" and run.told()["layout"] == [0, 1, 9, 85]
     assert "layout" not in campaign.Run(METHODS, SETS, 1).told()
+    both = campaign.Run(("matched-filter", "capon"), ("2",), 1, radar=radar, layout=(0, 1, 9, 85))
+    assert campaign.hearing(both).methods == ("matched-filter",)
+    with pytest.raises(ValueError, match="capon: it hears the two ends"):
+        campaign.hearing(campaign.Run(("capon",), ("2",), 1, radar=radar, layout=(0, 1, 9, 85)))
 
 
 FAILS = """

@@ -144,6 +144,9 @@ def test_a_layout_is_heard_by_functions_and_the_matched_filter():
     assert {row["layout"] for row in rows} == {"0-8 17 26 35 44 53 62 71"}
     target = ap.Scene.random("2", radar=CHIP).simulate().target
     assert rows[1]["squared_error"] == pytest.approx(((target - 0.16) ** 2).sum(), rel=1e-5)
+    assert without_times(ap.evaluate(["matched-filter", lengths], ["2"], count=1, radar=CHIP, layout="nested=8x8")) == without_times(rows)
+    assert ap.evaluate(["capon"], ["2"], count=1, radar=CHIP, layout="two-ends")[0]["layout"] == ""
+    assert ap.method("iaa").refusal(CHIP, layout=nested) is None and "two ends" in ap.method("capon").refusal(CHIP, layout="nested=8x8")
     every = ap.evaluate(["matched-filter"], ["2"], count=1, radar=CHIP, layout=list(range(86)))
     assert every[0]["squared_error"] < rows[0]["squared_error"]
     with pytest.raises(ValueError, match="capon.*it hears the two ends of an array, and no other layout"):
@@ -212,6 +215,21 @@ def test_a_file_of_rows_is_gone_on_with(tmp_path):
     scenes = [ap.Scene([ap.Point(1.0, 4.0)], radar=CHIP)]
     mixed = [ap.evaluate(["baseline"], ["1", *scenes], count=1, radar=CHIP, path=tmp_path / "mixed.csv") for _ in range(2)]
     assert [row["set"] for row in mixed[0]] == ["1", "scenes"] and mixed[0] == mixed[1]
+
+
+def test_rows_of_a_function_that_changed_are_refused(tmp_path):
+    level = [0.2]
+
+    def flat(ends, radar):
+        return np.full((radar.samples, radar.elements), level[0]) + np.eye(radar.samples, radar.elements) / 2
+
+    run = {"count": 2, "radar": CHIP, "path": tmp_path / "rows.csv"}
+    rows = ap.evaluate([flat], ["1"], **run)
+    assert ap.evaluate([flat], ["1"], **run) == rows
+    level[0] = 0.4
+    with pytest.raises(ValueError, match="flat has SE .* another function made the file"):
+        ap.evaluate([flat], ["1"], **run)
+    assert ap.evaluate([flat], ["1"], overwrite=True, **run) != rows
 
 
 def test_robustness_takes_a_radar_and_functions():

@@ -1,4 +1,4 @@
-//! `--radar NAME|RADAR.toml`: the radar of samples that come without one.
+//! `--radar NAME|RADAR.toml`: the radar of samples that come without one, and of random scenes.
 
 use super::CommandError;
 use crate::files::read_bounded;
@@ -7,10 +7,10 @@ use crate::radar::presets::{self, RadarPreset};
 use crate::scene::file::{MAX_FILE_BYTES, radar_of};
 use std::path::{Path, PathBuf};
 
-/// Which radar measured the samples.
+/// The radar of samples, or of scenes.
 #[derive(Debug, Clone, clap::Args)]
 pub struct RadarArg {
-    /// Radar that measured the samples: the name of a preset, such as cascade-12x16, or any .toml with a table [radar], a scene or a
+    /// Radar: the name of a preset, such as cascade-12x16, or any .toml with a table [radar], a scene or a
     /// recording [default: table-3.1]
     #[arg(long, value_name = "NAME|RADAR.toml")]
     radar: Option<PathBuf>,

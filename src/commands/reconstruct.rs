@@ -17,14 +17,15 @@ use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstructor,
 use crate::recording::{self, Recording};
 use crate::scene::file;
 use crate::signal::{LayoutSamples, TwoEnds};
-use ndarray::{Array1, Array2, Array3, Ix2, Ix3, arr0};
+use ndarray::{Array1, Array2, Array3, Axis, Ix2, Ix3, arr0};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
 /// Estimate the whole array's map from the samples of the two ends
 ///
-/// IN has sub0 and sub1: complex128 [512, 12], or [samples, elements of an end] of another radar, of any gain. For the thesis' networks it may have
+/// IN has sub0 and sub1: complex128 [512, 12], or [samples, elements of an end] of another radar, of any gain; or ends, [2, elements of an end,
+/// samples], as a dataset has them. For the thesis' networks it may have
 /// polar_partial_mag_phase (f64 [4, 512, 1024]) instead. With --layout it has heard: complex128 [elements of the layout, samples]. Of a
 /// recording of every element, --layout picks elements. An archive of `apertura maps` and a recording's .toml name their own radar.
 ///
@@ -164,17 +165,18 @@ impl Args {
         }
         let (asked, range_metres) = self.radar.load()?;
         let mut archive = Npz::open(&self.input).map_err(|error| self.not_samples(error))?;
-        let has_samples = ["sub0", "heard", "polar_partial_mag_phase"].iter().any(|key| archive.has(key));
+        let has_samples = ["sub0", "ends", "heard", "polar_partial_mag_phase"].iter().any(|key| archive.has(key));
         if !has_samples && archive.has("all_point_x") {
             return Err(self.is_scene());
         }
-        let own = match self.radar.is_given() {
-            true => None,
-            false => read_radar(&mut archive).map_err(CommandError::on(&self.input))?,
-        };
+        let own = read_radar(&mut archive).map_err(CommandError::on(&self.input))?;
+        if self.radar.is_given() && own.as_ref().is_some_and(|own| *own != asked) {
+            let message = "the archive says which radar made it, and --radar names another; leave --radar out";
+            return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
+        }
         let radar = own.unwrap_or(asked);
         let layout = self.layout.numbers(&radar)?;
-        let ready_made = !archive.has("sub0") && archive.has("polar_partial_mag_phase");
+        let ready_made = !archive.has("sub0") && !archive.has("ends") && archive.has("polar_partial_mag_phase");
         let samples = if let Some(layout) = layout {
             let samples = archive.complexes::<Ix2>("heard").map_err(CommandError::on(&self.input))?;
             Samples::Heard(Heard::layout(&radar, LayoutSamples { layout, samples }))
@@ -211,13 +213,24 @@ impl Args {
 
     fn two_ends(&self, archive: &mut Npz, radar: &Radar) -> Result<TwoEnds, CommandError> {
         let Radar { samples, end_elements, .. } = radar;
+        let whose = if self.radar.is_given() { "--radar says" } else { "table 3.1 has; --radar FILE names another" };
+        let shape = |key: &str, found: &[usize], expected: String| {
+            let expected = format!("{expected}: the samples and elements of an end that {whose}");
+            NpzError::Shape { key: key.to_owned(), found: format!("{found:?}"), expected }
+        };
+        if !archive.has("sub0") && archive.has("ends") {
+            let both = archive.complexes::<Ix3>("ends").map_err(CommandError::on(&self.input))?;
+            if both.dim() != (2, *end_elements, *samples) {
+                let wrong = shape("ends", both.shape(), format!("[2, {end_elements}, {samples}]"));
+                return Err(CommandError::on(&self.input)(wrong));
+            }
+            let end = |i: usize| both.index_axis(Axis(0), i).to_owned();
+            return Ok(TwoEnds { first: end(0), last: end(1) });
+        }
         let [first, last] = ["sub0", "sub1"].map(|key| {
             let array = archive.complexes::<Ix2>(key)?;
             if array.dim() != (*samples, *end_elements) {
-                let whose =
-                    if self.radar.is_given() { "--radar says" } else { "table 3.1 has; --radar FILE names another" };
-                let expected = format!("[{samples}, {end_elements}]: the samples and elements of an end that {whose}");
-                return Err(NpzError::Shape { key: key.to_owned(), found: format!("{:?}", array.shape()), expected });
+                return Err(shape(key, array.shape(), format!("[{samples}, {end_elements}]")));
             }
             Ok(array.reversed_axes().as_standard_layout().into_owned())
         });

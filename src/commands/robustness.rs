@@ -5,10 +5,11 @@ use super::figure::{save, save_numbers};
 use super::layout_arg::LayoutArg;
 use super::line_chart::{ChartAxis, ChartLine, LineChart, span, widened};
 use super::own_method::OwnMethodArgs;
+use super::radar_arg::RadarArg;
 use super::{CommandError, print, print_json, write_file};
 use crate::evaluate::{Estimate, Robustness, RobustnessRow};
 use crate::methods;
-use crate::radar::{Decibels, LayoutKind, Radar, Tolerances, counted};
+use crate::radar::{Decibels, LayoutKind, Tolerances, counted};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::Kind;
 use crate::task::Task;
@@ -55,9 +56,8 @@ pub struct Args {
     #[arg(long)]
     calibrate: bool,
 
-    /// Test set: 1, 2 or 3
-    #[arg(long, value_name = "SET", default_value_t = 2, value_parser = whole(1..=3u8))]
-    set: u8,
+    #[arg(long, value_name = "KIND", default_value = "2", help = format!("Kind of the scenes: {}", Kind::names()))]
+    set: Kind,
 
     /// Scenes
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(1..=10_000u32))]
@@ -69,6 +69,9 @@ pub struct Args {
 
     #[command(flatten)]
     floor: FloorArgs,
+
+    #[command(flatten)]
+    radar: RadarArg,
 
     #[command(flatten)]
     layout: LayoutArg,
@@ -93,10 +96,11 @@ impl Args {
             .iter()
             .map(|name| methods::by_name(name.trim()).map_err(CommandError::failed))
             .collect::<Result<_, _>>()?;
+        let (radar, _) = self.radar.load()?;
         let robustness = Robustness {
-            radar: Radar::default(),
-            layout: self.layout.numbers(&Radar::default())?,
-            kind: Kind::TEST_SETS[usize::from(self.set) - 1],
+            layout: self.layout.numbers(&radar)?,
+            radar,
+            kind: self.set,
             seed: self.seed,
             count: self.count,
             floor: self.floor.floor,
@@ -114,7 +118,7 @@ impl Args {
         bar.finish_and_clear();
         let csv = csv(&rows);
         let report = Report {
-            set: self.set,
+            set: self.set.to_string(),
             count: self.count,
             seed: self.seed,
             floor: self.floor.floor.to_string(),
@@ -137,7 +141,7 @@ impl Args {
 /// The report, with the settings of its measurements; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
-    set: u8,
+    set: String,
     count: u32,
     seed: u64,
     floor: String,

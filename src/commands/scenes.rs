@@ -1,8 +1,9 @@
 //! `apertura scenes`: test scenes as files.
 
 use super::arguments::{seed, whole};
+use super::radar_arg::RadarArg;
 use super::{CommandError, print};
-use crate::radar::{Radar, counted};
+use crate::radar::counted;
 use crate::scene::file::{self, SceneFile};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use std::path::{Path, PathBuf};
@@ -26,6 +27,9 @@ pub struct Args {
     /// Seed: the same seed gives the same scenes
     #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed)]
     seed: u64,
+
+    #[command(flatten)]
+    radar: RadarArg,
 
     /// Folder to write to; with --index, the file (.toml or .npz). Folders are made where they are missing
     #[arg(short, long, value_name = "OUT")]
@@ -51,7 +55,7 @@ enum FileFormat {
 impl Args {
     /// Writes `set1-seed0-0000.toml`, `walls-seed0-0000.toml` and so on.
     pub fn run(self) -> Result<(), CommandError> {
-        let radar = Radar::default();
+        let (radar, _) = self.radar.load()?;
         let reading = if self.thesis_text { Reading::Text } else { Reading::Program };
         let generator = Generator::new(&radar, reading, Purpose::Test, self.seed);
         if let Some(index) = self.index {

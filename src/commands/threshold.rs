@@ -3,10 +3,11 @@
 use super::arguments::{FloorArgs, real, seed, whole};
 use super::layout_arg::LayoutArg;
 use super::own_method::OwnMethodArgs;
+use super::radar_arg::RadarArg;
 use super::{CommandError, print, print_json};
 use crate::evaluate::threshold::{KeptThreshold, ThresholdMeans, ThresholdSearch};
 use crate::methods;
-use crate::radar::{LayoutKind, Radar, counted};
+use crate::radar::{LayoutKind, counted};
 use crate::scene::generate::Kind;
 use crate::task::Task;
 use indicatif::ProgressBar;
@@ -56,6 +57,9 @@ pub struct Args {
     floor: FloorArgs,
 
     #[command(flatten)]
+    radar: RadarArg,
+
+    #[command(flatten)]
     layout: LayoutArg,
 
     /// Print one JSON object instead of text
@@ -100,8 +104,10 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         self.own.start()?;
         let method = methods::by_name(self.method.trim()).map_err(CommandError::failed)?;
+        let (radar, _) = self.radar.load()?;
         let search = ThresholdSearch {
-            layout: self.layout.numbers(&Radar::default())?,
+            layout: self.layout.numbers(&radar)?,
+            radar,
             floor: self.floor.floor,
             kinds: self.set.clone(),
             count: self.count,

@@ -75,7 +75,7 @@ impl Robustness {
             .map_err(CampaignError::Layout)?;
         let mut metrics = vec![vec![Vec::new(); self.scales.len()]; methods.len()];
         let request = Request { noise: self.floor.into(), task: task.clone(), ..Request::default() };
-        let set = || format!("{:?}", self.kind);
+        let set = || self.kind.to_string();
         for index in 0..self.count {
             let (mut trial, signals) =
                 self.trial(index).map_err(|source| CampaignError::Scene { set: set(), index, source })?;

@@ -260,6 +260,10 @@ fn reconstruct_layout<M: Reconstructor + ?Sized>(
         let (what, found) = ("samples of the layout", found.to_vec());
         return Err(ReconstructError::Shape { what, found, expected: expected.to_vec() });
     }
+    let is_finite = |v: &Complex64| v.re.is_finite() && v.im.is_finite();
+    if let Some(((place, sample), _)) = heard.samples.indexed_iter().find(|(_, v)| !is_finite(v)) {
+        return Err(method.unusable(format!("sample {sample} of element {} is not finite", heard.layout[place])));
+    }
     let (halves, ends) = heard.as_halves(radar);
     check_ends(&halves, &ends)?;
     method.check_elements(radar, &heard.layout)?;

@@ -53,6 +53,29 @@ fn two_ends_are_a_layout_that_every_method_hears() {
 }
 
 #[test]
+fn both_ends_of_a_dataset_are_reconstructed_with_their_radar() {
+    let folder = tempfile::tempdir().unwrap();
+    let [input, output, other] = ["in.npz", "out.npz", "other.toml"].map(|name| folder.path().join(name));
+    let mut npz = NpzWriter::new(File::create(&input).unwrap());
+    let ends = Array3::from_shape_fn((2, 6, 64), |(_, _, n)| Complex64::from_polar(3.0, 0.9 * n as f64));
+    npz.add_array("ends", &ends).unwrap();
+    npz.finish().unwrap();
+    let reconstruct = |radar: &Path| {
+        let mut command = program(&["reconstruct", "--method", "iaa", "-o"]);
+        command.arg(&output).arg(&input).arg("--radar").arg(radar);
+        command.assert()
+    };
+    reconstruct(&radar(folder.path())).success().stdout(contains("wrote"));
+    write(&other, "[radar]\nelements = 64\nend_elements = 8\nsamples = 64\n").unwrap();
+    reconstruct(&other).failure().stderr(contains("[2, 8, 64]"));
+    // An archive of `maps` says its radar itself.
+    let mut maps = program(&["maps", "-o"]);
+    maps.arg(&input).arg(radar(folder.path())).assert().success();
+    reconstruct(&radar(folder.path())).success();
+    reconstruct(&other).failure().stderr(contains("--radar names another"));
+}
+
+#[test]
 fn samples_of_a_layout_are_reconstructed() {
     let folder = tempfile::tempdir().unwrap();
     let (input, output) = (folder.path().join("in.npz"), folder.path().join("out.npz"));

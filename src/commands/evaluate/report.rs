@@ -205,7 +205,8 @@ impl SetReport {
     fn of(set: &str, rows: &[&Row], limit: Option<f64>) -> SetReport {
         let kind = set.parse::<Kind>().ok();
         let (test_set, description) = (kind.and_then(Kind::test_set), kind.map_or(OF_A_FOLDER, Kind::description));
-        let printed = test_set.map(|number| PrintedColumns {
+        let is_of_table = rows.iter().all(|row| row.radar.is_empty());
+        let printed = test_set.filter(|_| is_of_table).map(|number| PrintedColumns {
             baseline: PRINTED_BASELINE[number - 1],
             experiment_1: PRINTED_EXPERIMENT_1[number - 1],
             experiment_2: PRINTED_EXPERIMENT_2[number - 1],

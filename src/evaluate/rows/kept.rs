@@ -93,6 +93,10 @@ impl RowFile {
             let source = io::Error::new(io::ErrorKind::InvalidInput, "is no file; expected the name of a file");
             return Err(on_file(path)(source));
         }
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet")) {
+            let why = "rows are appended to a CSV file; expected a name that ends in .csv";
+            return Err(on_file(path)(io::Error::new(io::ErrorKind::InvalidInput, why)));
+        }
         let mut file =
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(on_file(path))?;
         // On a system without locks the file is written without one.

@@ -107,8 +107,8 @@ fn largest(data: &Path) -> Result<(Option<String>, Numbers), Fault> {
 }
 
 /// Keys of an `.npz` that is a scene, or that the program itself wrote.
-const OTHERS: [&str; 7] =
-    [X_KEY, "format_version", "heard", "net_output", "polar_full", "polar_partial_mag_phase", "sub0"];
+const OTHERS: [&str; 8] =
+    [X_KEY, "ends", "format_version", "heard", "net_output", "polar_full", "polar_partial_mag_phase", "sub0"];
 
 /// Whether an `.npz` holds samples: an array of two axes or more, and none of a scene or of maps.
 pub(super) fn has_samples(path: &Path) -> bool {

@@ -195,7 +195,9 @@ pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Man
         move |source| DatasetError::File { path, source }
     };
     check(request)?;
-    makers(request, Purpose::Training)?;
+    for ((_, purpose), _) in SPLITS.into_iter().zip(request.counts).filter(|(_, count)| *count > 0) {
+        makers(request, purpose)?;
+    }
     fs::create_dir_all(folder).map_err(on(folder))?;
     if fs::read_dir(folder).map_err(on(folder))?.next().is_some() {
         let message = format!("{} is not empty; expected an empty folder or a new one", folder.display());
