@@ -19,7 +19,7 @@ NEAR = ap.Radar(bandwidth_hz=8e9)
         (lambda: ap.evaluate(["baseline"], ["3"], count=-1), "count is -1"),
         (lambda: ap.evaluate(["baseline"], ["3"], target="target"), "target_ideal"),
         (lambda: ap.evaluate(["baseline"], ["3"], elements=3), "elements is 3; expected an Elements"),
-        (lambda: ap.evaluate(["baseline"], ["3"], layout="nested=8"), 'layout: unknown layout "nested=8"'),
+        (lambda: ap.evaluate(["baseline"], ["3"], layout="nested=8"), 'layout: there is no layout "nested=8"'),
         (lambda: ap.evaluate(["baseline"], ["3"], layout=5), "layout is 5; expected a name, or numbers of elements"),
         (lambda: ap.evaluate(["baseline"], ["3"], path="rows.parquet"), "expected a name that ends in .csv"),
         (lambda: ap.torch.Scenes("2", layout=[0.5]), "layout is [0.5]"),
