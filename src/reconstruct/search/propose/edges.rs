@@ -28,9 +28,6 @@ const MOST_LOOKS: usize = 4;
 const ONE_LINE_RADIANS: f64 = 0.045;
 const ONE_LINE_METRES: f64 = 1.0;
 
-/// How much echoes behind a point speak against its being an edge, as a part of those ahead of it.
-const BEHIND: f64 = 0.5;
-
 /// Radians by which a wall may deviate from its direction.
 const WITHIN_RADIANS: f64 = 0.01;
 
@@ -68,9 +65,7 @@ fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], directions_radians:
         going_on(|place| beams.presence(&strongest, place), beams.bin_metres(), points[first], radians)
     };
     let look = |first: usize, &radians: &f64| {
-        let ahead = along(first, radians)?;
-        let score = ahead - BEHIND * along(first, radians + PI).unwrap_or(0.0);
-        Some(Look { first, radians, score })
+        along(first, radians).map(|score| Look { first, radians, score })
     };
     let mut looks: Vec<Look> = (0..points.len())
         .into_par_iter()
