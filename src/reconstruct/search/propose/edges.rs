@@ -24,10 +24,6 @@ const LEAST_EVEN: f64 = 0.02;
 /// Most directions of all points that are looked into.
 const MOST_LOOKS: usize = 4;
 
-/// Looks whose directions differ by less than this, radians, and that pass each other within this distance, metres, go into one wall.
-const ONE_LINE_RADIANS: f64 = 0.045;
-const ONE_LINE_METRES: f64 = 1.0;
-
 /// Radians by which a wall may deviate from its direction.
 const WITHIN_RADIANS: f64 = 0.01;
 
@@ -72,22 +68,17 @@ fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], directions_radians:
         .flat_map_iter(|first| directions_radians.iter().filter_map(move |radians| look(first, radians)))
         .collect();
     looks.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let mut kept: Vec<Look> = Vec::with_capacity(MOST_LOOKS);
-    for look in looks {
-        if kept.len() < MOST_LOOKS && !kept.iter().any(|other| are_along_one_line(points, &look, other)) {
-            kept.push(look);
-        }
-    }
+    looks.truncate(MOST_LOOKS);
     let rows_of = |look: &Look| {
         let fan = Fan::new(beams, points[look.first], look.radians);
         Simd::chosen().run(Scan { beams, fan: &fan })
     };
-    let starts: Vec<Start> = kept
+    let starts: Vec<Start> = looks
         .par_iter()
         .filter(|_| !task.is_cancelled())
         .flat_map_iter(|look| rows_of(look).into_iter().map(|row| Start { first: look.first, row }))
         .collect();
-    tracing::debug!(looks = kept.len(), starts = starts.len(), "edges");
+    tracing::debug!(looks = looks.len(), starts = starts.len(), "edges");
     best_of_each(beams, starts, task)
 }
 
@@ -133,13 +124,6 @@ struct Look {
     first: usize,
     radians: f64,
     score: f64,
-}
-
-/// Whether two looks go along about one line in one direction: into one wall, from different reflectors of it.
-fn are_along_one_line(points: &[[f64; 2]], a: &Look, b: &Look) -> bool {
-    let (sin, cos) = a.radians.sin_cos();
-    let apart = [0, 1].map(|axis| points[a.first][axis] - points[b.first][axis]);
-    (a.radians - b.radians).cos() > ONE_LINE_RADIANS.cos() && (apart[0] * sin - apart[1] * cos).abs() < ONE_LINE_METRES
 }
 
 /// Rows from one point in about one direction: step by step longer, and turned to both sides.
