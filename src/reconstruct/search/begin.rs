@@ -81,7 +81,7 @@ impl Grower<'_> {
         points.retain(|&[x_metres, y_metres]| {
             !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
         });
-        let all = self.unexplained(&flat, fit).with_points(points);
+        let all = self.unexplained(&flat).with_points(points);
         self.bench.work.spend(LOOK_A_POINT * points.len());
         let rows = strides(&all);
         // Looks from one point alone take longest.

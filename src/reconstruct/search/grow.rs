@@ -101,9 +101,9 @@ impl Grower<'_> {
         (noise * self.settings.least_prominence).max(self.rounding_power())
     }
 
-    /// What `fit` leaves, as sources of candidates look at it; `flat` is its residual.
-    pub fn unexplained<'a>(&'a self, flat: &'a [Complex64], fit: &'a Fit) -> Unexplained<'a> {
-        Unexplained::new(self.radar, flat, self.bench.hearing, fit, self.task)
+    /// The residual `flat`, as sources of candidates look at it.
+    pub fn unexplained<'a>(&'a self, flat: &'a [Complex64]) -> Unexplained<'a> {
+        Unexplained::new(self.radar, flat, self.bench.hearing, self.task)
     }
 
     /// Amplitude of the error by rounding a reflector's place to f64, if its samples are 1: many reflectors of one wall are each off

@@ -94,7 +94,7 @@ const CONFIDENCE_SLOPE: f64 = 0.8;
 
 /// The search's knowledge beside the samples, [`About::told`](crate::reconstruct::About::told).
 const TOLD_TO_SEARCH: &str = "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
-    along or across the array's axis, or each other; the kind of floor beneath the samples, and how the thesis' program rounds; \
+    along or across the array's axis; the kind of floor beneath the samples, and how the thesis' program rounds; \
     by about how much elements are off, where they are";
 
 /// Detect, refine, draw: objects from the raw samples, and the exact map of them.

@@ -44,7 +44,7 @@ impl State {
     pub fn start(search: &Search) -> Self {
         let nothing = search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0);
         let flat = nothing.residual.flat(&search.bench.sensor);
-        let is_long = search.grower().unexplained(&flat, &nothing).is_long();
+        let is_long = search.grower().unexplained(&flat).is_long();
         State { is_long, ..State::of(nothing) }
     }
 

@@ -6,11 +6,11 @@
 use super::phased::{Heard, PhasedBeams, Presence, Row};
 use super::strides::{FIRST, MOST_STEP_METRES, Start, Stride, best_of_each, pitches_metres, summits};
 use super::unexplained::Unexplained;
-use crate::reconstruct::fit::{Atom, Fit};
+use crate::reconstruct::fit::Atom;
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use rayon::prelude::*;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Range bins over which echoes must go on, and beyond which it no longer matters.
 const BINS: [u32; 2] = [20, 100];
@@ -43,29 +43,27 @@ const MOST_EDGES: usize = 24;
 /// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
 const LEAST_FROM_EDGE: usize = 24;
 
-/// Directions this near to each other, radians, are one.
-const ONE_DIRECTION: f64 = 0.005;
+/// Directions that walls mostly have, radians from the array's axis: along it and across it.
+const DIRECTIONS_RADIANS: [f64; 4] = [0.0, FRAC_PI_2, PI, -FRAC_PI_2];
 
 /// Lines from one point alone that may be among what is left, the most promising first.
 pub fn edges(left: &Unexplained) -> Vec<Atom> {
     let points = left.points_within_range(MOST_EDGES);
-    let rows = rows_from_edges(left.beams(), &points, &directions(left.found), left.task);
+    let rows = rows_from_edges(left.beams(), &points, left.task);
     rows.into_iter().map(|row| row.atom).filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
 }
 
-/// Rows that begin at one of `points` (x, y; metres) and lead in about one of the directions (radians from the array's axis), best
-/// first; one for each point at most.
-fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], directions_radians: &[f64], task: &Task) -> Vec<Stride> {
+/// Rows that begin at one of `points` (x, y; metres) and lead about along or across the array's axis, best first; one for each point at most.
+fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Stride> {
     let strongest = beams.strongest();
-    let along = |first: usize, radians: f64| {
-        going_on(|place| beams.presence(&strongest, place), beams.bin_metres(), points[first], radians)
-    };
-    let look = |first: usize, &radians: &f64| {
-        along(first, radians).map(|score| Look { first, radians, score })
+    let look = |first: usize, radians: f64| {
+        let presence = |place| beams.presence(&strongest, place);
+        let score = going_on(presence, beams.bin_metres(), points[first], radians)?;
+        Some(Look { first, radians, score })
     };
     let mut looks: Vec<Look> = (0..points.len())
         .into_par_iter()
-        .flat_map_iter(|first| directions_radians.iter().filter_map(move |radians| look(first, radians)))
+        .flat_map_iter(|first| DIRECTIONS_RADIANS.into_iter().filter_map(move |radians| look(first, radians)))
         .collect();
     looks.sort_by(|a, b| b.score.total_cmp(&a.score));
     looks.truncate(MOST_LOOKS);
@@ -80,24 +78,6 @@ fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], directions_radians:
         .collect();
     tracing::debug!(looks = looks.len(), starts = starts.len(), "edges");
     best_of_each(beams, starts, task)
-}
-
-/// Directions that walls mostly have: along and across the array's axis and the walls that are known.
-fn directions(fit: &Fit) -> Vec<f64> {
-    let of_atom = |atom: &Atom| match atom {
-        Atom::Segment { dx_metres, dy_metres, .. } => Some(dy_metres.atan2(*dx_metres)),
-        Atom::Point { .. } => None,
-    };
-    let mut directions: Vec<f64> = Vec::new();
-    for known in std::iter::once(0.0).chain(fit.atoms.iter().filter_map(of_atom)) {
-        for radians in (0..4).map(|k| (known + f64::from(k) * FRAC_PI_2).rem_euclid(TAU)) {
-            let is_near = |other: &f64| (radians - other + PI).rem_euclid(TAU) - PI;
-            if !directions.iter().any(|other| is_near(other).abs() < ONE_DIRECTION) {
-                directions.push(radians);
-            }
-        }
-    }
-    directions
 }
 
 /// Clarity and length of the echoes from `from` on in a direction; `None` where they soon end.
@@ -211,14 +191,13 @@ mod tests {
         let flat = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
         let last = [wall.x_metres, wall.y_start_metres + 89.0 * wall.spacing_metres];
         let points = [[point.x_metres, point.y_metres], last];
-        let directions = [0.0, 1.0, 2.0, 3.0].map(|k| k * FRAC_PI_2);
         let beams = PhasedBeams::new(&radar, &flat);
-        let rows = rows_from_edges(&beams, &points, &directions, &Task::default());
+        let rows = rows_from_edges(&beams, &points, &Task::default());
         let best = rows.first().expect("a row").atom;
         let [first, second] = [0.0, 1.0].map(|i| best.position_metres(i));
         assert!((first[0] - last[0]).hypot(first[1] - last[1]) < 0.1, "{best:?}");
         assert!((second[1] - first[1] + wall.spacing_metres).abs() < 1e-3 && best.reflector_count() > 40, "{best:?}");
         // Nothing goes on from a point that stands alone.
-        assert!(rows_from_edges(&beams, &points[..1], &directions, &Task::default()).is_empty());
+        assert!(rows_from_edges(&beams, &points[..1], &Task::default()).is_empty());
     }
 }

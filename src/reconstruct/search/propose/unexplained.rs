@@ -3,13 +3,12 @@
 use super::phased::PhasedBeams;
 use super::runs::{LONG_RUN_BINS, longest_run_bins};
 use crate::radar::Radar;
-use crate::reconstruct::fit::Fit;
 use crate::reconstruct::hearing::Hearing;
 use crate::task::Task;
 use num_complex::Complex64;
 use std::cell::OnceCell;
 
-/// What is left of the samples, and what is known so far.
+/// The residual of the samples, and places where points may be.
 pub struct Unexplained<'a> {
     /// The radar.
     pub radar: &'a Radar,
@@ -17,8 +16,6 @@ pub struct Unexplained<'a> {
     pub flat: &'a [Complex64],
     /// The noise in the residual.
     pub hearing: Hearing,
-    /// The objects found so far.
-    pub found: &'a Fit,
     /// Places (x, y), metres, where points may be: those first on which the ends agree best.
     pub points_metres: &'a [[f64; 2]],
     /// The task, which may be cancelled.
@@ -27,9 +24,9 @@ pub struct Unexplained<'a> {
 }
 
 impl<'a> Unexplained<'a> {
-    /// What `found` leaves, laid out as `flat`.
-    pub fn new(radar: &'a Radar, flat: &'a [Complex64], hearing: Hearing, found: &'a Fit, task: &'a Task) -> Self {
-        Unexplained { radar, flat, hearing, found, points_metres: &[], task, beams: OnceCell::new() }
+    /// The residual `flat`, channel by channel.
+    pub fn new(radar: &'a Radar, flat: &'a [Complex64], hearing: Hearing, task: &'a Task) -> Self {
+        Unexplained { radar, flat, hearing, points_metres: &[], task, beams: OnceCell::new() }
     }
 
     /// The residual with places where points may be.
