@@ -120,20 +120,15 @@ impl Grower<'_> {
         (self.rounding_amplitude() * radar.end_elements as f64 * window).powi(2) / radar.samples as f64
     }
 
-    /// Adds points to `fit` until nothing stands out, nothing helps, it goes too slowly or there are too many. Points can do harm where they
-    /// are too dense: the best of all rounds counts.
+    /// Adds points to `fit` until nothing stands out, nothing helps, it goes too slowly or there are too many.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn grown(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        let mut best = fit.clone();
         let mut look_back = (self.bench.work.done(), fit.cost());
         while fit.atoms.len() < self.settings.most_atoms && !self.bench.work.is_spent() {
             self.task.check()?;
             self.bench.work.spend(LOOK_ECHOES);
-            if fit.cost() < best.cost() {
-                best = fit.clone();
-            }
             let flat = fit.residual.flat(&self.bench.sensor);
             let room = self.settings.most_atoms - fit.atoms.len();
             let candidates = self.detector.peaks(self.radar, &flat, self.least_power(&flat), MOST_A_ROUND.min(room));
@@ -152,7 +147,7 @@ impl Grower<'_> {
                 look_back = (self.bench.work.done(), fit.cost());
             }
         }
-        Ok(if best.cost() < fit.cost() { best } else { fit })
+        Ok(fit)
     }
 
     /// All atoms refined with their neighbours, as long as the energy falls fast: what one group leaves blinds the others.
