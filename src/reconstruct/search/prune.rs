@@ -17,9 +17,6 @@ const MOST_ROUNDS: usize = 12;
 /// Atoms nearer than this in range are not taken away in one round: either may do for the other.
 const APART_BINS: f64 = 4.0;
 
-/// Of the atoms that stay.
-const PRUNED_LIMITS: Limits = Limits { iterations: 20, least_gain: 1e-2, ridge: 0.0 };
-
 impl Grower<'_> {
     /// `fit` without the atoms whose absence noise could hide or the rounding of the others' places, those whose place ran away, and
     /// those that only one end believes in.
@@ -59,7 +56,7 @@ impl Grower<'_> {
                 gone.iter().any(|&j| distance_bins(self.radar.samples, &rows[i], &rows[j]) < 2.0 * APART_BINS)
             };
             let marked: Vec<bool> = kept.map(beside).collect();
-            fit = self.refined(fit, &marked, APART_BINS, PRUNED_LIMITS)?;
+            fit = self.refined(fit, &marked, APART_BINS, Limits::ROUGH)?;
         }
         Ok(fit)
     }

@@ -5,9 +5,6 @@ use super::grow::Grower;
 use super::on_wall::MOST_REFLECTORS;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Narrow, Samples, Spectra, Tie, Workbench, rows_of};
 
-/// Of a wall by itself.
-const ALONE: Limits = Limits { iterations: 8, least_gain: 1e-2, ridge: 0.0 };
-
 /// Reflectors beyond the best end of a wall that are tried.
 const BEYOND: usize = 8;
 
@@ -48,7 +45,7 @@ impl Grower<'_> {
                 (atom, gains) = (trial.atoms[0], trial.gains[0]);
             }
         }
-        self.bench.refine(samples, vec![atom], vec![gains], Tie::PerEnd, ALONE)
+        self.bench.refine(samples, vec![atom], vec![gains], Tie::PerEnd, Limits::ROUGH)
     }
 
     /// The range bins in which `wall` is followed.
@@ -74,7 +71,7 @@ impl Grower<'_> {
 impl Narrow<'_> {
     /// The wall moved to its best place from where its gains may be these.
     fn moved(&self, wall: Atom, gains: Gains) -> Fit {
-        self.bench.refine(&self.samples, vec![wall], vec![gains], Tie::PerEnd, ALONE)
+        self.bench.refine(&self.samples, vec![wall], vec![gains], Tie::PerEnd, Limits::ROUGH)
     }
 }
 
