@@ -211,12 +211,11 @@ impl<'a> Workbench<'a> {
         None
     }
 
-    /// Whether no parameter of `atoms` is moved farther than a step may.
+    /// Whether no place is moved farther than the maximum range, after which ranges repeat: a point's second parameter is a square of a distance.
     fn is_within_reach(&self, atoms: &[Atom], step: &[f64]) -> bool {
-        let squared = |atom: &Atom, k: usize| matches!(atom, Atom::Point { .. }) && k == 1;
-        let most = |atom: &Atom, k: usize| match squared(atom, k) {
-            true => FARTHEST_SQUARE * self.max_range_metres.powi(2),
-            false => MAX_STEP_RATIO * self.max_range_metres,
+        let most = |atom: &Atom, k: usize| match (atom, k) {
+            (Atom::Point { .. }, 1) => self.max_range_metres.powi(2),
+            _ => self.max_range_metres,
         };
         let parameters = atoms.iter().flat_map(|atom| (0..atom.parameters()).map(move |k| (atom, k)));
         parameters.zip(step).all(|((atom, k), v)| v.abs() < most(atom, k))
@@ -327,12 +326,6 @@ impl<'a> Workbench<'a> {
         Fit { residual: left.residual, energy: left.energy, ..state.fit }
     }
 }
-
-/// Largest ratio of a step to the maximum range.
-const MAX_STEP_RATIO: f64 = 26.0;
-
-/// Largest change of the square of a distance in a step, relative to the square of the maximum range.
-const FARTHEST_SQUARE: f64 = 0.68;
 
 /// The reflectors of `atoms` with their gains.
 fn reflectors(atoms: &[Atom], gains: &[Gains]) -> Vec<(Reflector, Gains)> {
