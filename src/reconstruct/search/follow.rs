@@ -1,7 +1,7 @@
 //! The answer to samples that differ little from the last ones, starting from the last answer.
 
 use super::finish::Found;
-use super::ladder::{COMPLETION, climbed_from};
+use super::ladder::{POINTS, climbed_from};
 use super::state::{Answer, Search, State};
 use super::trace::FOLLOWING;
 use crate::reconstruct::ReconstructError;
@@ -43,7 +43,7 @@ impl Search<'_> {
         let mut is_sure = self.is_explained(&fit);
         if !is_sure && !is_as_good(&fit) {
             self.tell_of(&previous.atoms, &fit);
-            Answer { fit, is_sure } = climbed_from(self, COMPLETION, State::of(fit))?;
+            Answer { fit, is_sure } = climbed_from(self, &[POINTS], State::of(fit))?;
         }
         // Many new atoms make up for old ones that went astray.
         let is_like_it = fit.atoms.len() <= previous.atoms.len() + MOST_APPEARING;

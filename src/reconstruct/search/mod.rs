@@ -4,7 +4,7 @@
 //! detect the strongest cell of the residual, move it to its best place by Newton steps, then move everything found so far together,
 //! and repeat. The exact simulator draws the map of what was found.
 //!
-//! `ladder` lists the steps of the search in the order in which they run, when each is skipped and why the search stops.
+//! `ladder` lists the steps of the search in the order in which they run, and why the search stops.
 //!
 //! | file | content |
 //! |---|---|

@@ -14,9 +14,6 @@ const MOST_ROUNDS: usize = 3;
 /// Another round of pairing needs that this part of the energy at most is left by the last.
 const WORTH_ANOTHER: f64 = 0.5;
 
-/// Most atoms of a fit that is worth a second search for what it lacks.
-pub const MOST_AGAIN: usize = 60;
-
 impl Search<'_> {
     /// Points that both ends' tones lead to, kept where they are all there is.
     pub fn climb_tones(&self, state: &mut State) -> Result<(), ReconstructError> {
