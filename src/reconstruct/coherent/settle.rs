@@ -8,7 +8,7 @@ use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, Samples, Tie, Workbench, distance_bins, rows_of};
-use crate::reconstruct::search::{Detector, Grower, MIN_WORTH_RATIO, Settings, TIED_COST_RATIO};
+use crate::reconstruct::search::{Detector, MIN_WORTH_RATIO, Search, Settings, TIED_COST_RATIO, Trace};
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
 use crate::task::Task;
@@ -94,6 +94,7 @@ pub(super) struct Settled<'a> {
     detector: Arc<Detector>,
     settings: Settings,
     samples: Samples,
+    trace: Trace,
     pub(super) fit: Fit,
     /// Residual energy at which the search ends.
     pub(super) enough: f64,
@@ -109,7 +110,7 @@ impl<'a> Settled<'a> {
         let samples = Samples::new(&bench.sensor, &flat);
         let fit = bench.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
         let (detector, settings, enough) = (Detector::of(radar), Settings::default(), fit.cost() * AS_GOOD_AS_NOTHING);
-        Settled { radar, task, bench, detector, settings, samples, fit, enough, trials: None }
+        Settled { radar, task, bench, detector, settings, samples, trace: Trace::default(), fit, enough, trials: None }
     }
 
     /// The start, with echoes tried as two.
@@ -117,9 +118,9 @@ impl<'a> Settled<'a> {
         Settled { trials: Some(Trials::default()), ..self }
     }
 
-    pub(super) fn grower(&self) -> Grower<'_> {
-        let Settled { radar, task, bench, detector, settings, .. } = self;
-        Grower { radar, bench, detector, settings, in_noise: false, task, trace: None }
+    pub(super) fn search(&self) -> Search<'_> {
+        let Settled { radar, task, bench, detector, settings, samples, trace, .. } = self;
+        Search { radar, bench, detector, samples, in_noise: false, settings, task, trace }
     }
 
     /// The residual of the reflectors.
@@ -150,13 +151,12 @@ impl<'a> Settled<'a> {
             if taken.is_empty() || self.is_done() {
                 break;
             }
-            let grower = self.grower();
-            self.fit = grower.settled(grower.with_points(self.fit.clone(), &taken)?)?;
+            let search = self.search();
+            self.fit = search.settled(search.with_points(self.fit.clone(), &taken)?)?;
             self.split()?;
             waiting = left.into_iter().map(|(_, w)| w).collect();
         }
-        let grower = self.grower();
-        self.fit = grower.pruned(self.fit.clone())?;
+        self.fit = self.search().pruned(self.fit.clone())?;
         self.merge()?;
         let is_better = self.fit.cost() < WORTH_ANOTHER * before.cost();
         if self.fit.cost() > before.cost() {

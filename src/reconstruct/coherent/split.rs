@@ -62,7 +62,7 @@ impl Settled<'_> {
         let count = self.fit.atoms.len();
         (1..=MOST_TWOS).contains(&count)
             && !self.is_done()
-            && (self.has_companions() || self.grower().in_need(&self.fit).contains(&true))
+            && (self.has_companions() || self.search().in_need(&self.fit).contains(&true))
     }
 
     /// Whether a weak echo stands beside a strong one.
@@ -93,7 +93,7 @@ impl Settled<'_> {
     /// [`ReconstructError::Cancelled`].
     pub fn split(&mut self) -> Result<(), ReconstructError> {
         let Some(mut trials) = self.trials else { return Ok(()) };
-        let in_need = self.grower().in_need(&self.fit);
+        let in_need = self.search().in_need(&self.fit);
         let energy = |i: usize| self.fit.gains[i].iter().map(|g| g.norm_sqr()).sum::<f64>();
         let mut order: Vec<usize> = (0..in_need.len()).filter(|i| in_need[*i]).collect();
         order.sort_by(|a, b| energy(*b).total_cmp(&energy(*a)));
@@ -164,7 +164,7 @@ impl Settled<'_> {
             let less = self.bench.less(self.fit.clone(), &[gone]);
             let beside = if beside > gone { beside - 1 } else { beside };
             let marked: Vec<bool> = (0..less.atoms.len()).map(|i| i == beside).collect();
-            let fewer = self.grower().refined(less, &marked, 4.0, TRIED)?;
+            let fewer = self.search().refined(less, &marked, 4.0, TRIED)?;
             if fewer.cost() > (1.0 + AS_GOOD) * self.fit.cost() + 4.0 * noise + self.enough {
                 break;
             }

@@ -1,6 +1,7 @@
 //! Beginnings of walls: rows over two points or from the edge of a wall, tested against the samples.
 
-use super::grow::{Grower, tried};
+use super::grow::tried;
+use super::state::Search;
 use super::on_wall::is_on;
 use super::propose::edges::edges;
 use super::propose::strides::strides;
@@ -70,7 +71,7 @@ struct Begun {
     part: f64,
 }
 
-impl Grower<'_> {
+impl Search<'_> {
     /// A wall that begins at one of `points` (x, y; metres), followed to its ends in what `fit` leaves, that is borne out by how much it explains.
     /// Points on the walls of `fit` are taken from `points`.
     pub fn next_wall(&self, fit: &Fit, points: &mut Vec<[f64; 2]>) -> Option<Fit> {

@@ -80,14 +80,15 @@ fn found_in(
     let samples = Samples::new(&bench.sensor, &flat);
     let detector = Detector::of(radar);
     let trace = Trace::default();
-    let search =
-        Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings, trace: &trace };
+    let (in_noise, task) = (request.noise.is_white(), &request.task);
+    let (bench, detector, samples) = (&bench, &detector, &samples);
+    let search = Search { radar, bench, detector, samples, in_noise, settings, task, trace: &trace };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
     let measure = followed.as_ref().filter(|f| !f.is_sure).and(previous).map(|p| p.left_by_search);
     let answer = search.ordered(followed.map_or_else(|| climbed(&search), Ok)?)?;
     request.task.check()?;
     request.task.set_progress(1.0);
-    let found = finish(radar, &bench, &samples, answer, request, scale)?;
+    let found = finish(radar, bench, samples, answer, request, scale)?;
     let left_by_search = measure.unwrap_or(found.left_by_search);
     Ok(Found { left_by_search, trace: trace.into_attempts(), ..found })
 }

@@ -1,7 +1,7 @@
 //! The last step from a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
 use super::element_gains::ElementGains;
-use super::state::Answer;
+use super::state::State;
 use crate::radar::{End, Radar};
 use crate::reconstruct::attempt::Attempt;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, Workbench, rows_of};
@@ -113,11 +113,11 @@ pub(super) fn finish(
     radar: &Radar,
     bench: &Workbench,
     samples: &Samples,
-    answer: Answer,
+    answer: State,
     request: &Request,
     scale: f64,
 ) -> Result<Found, ReconstructError> {
-    let Answer { fit, is_sure: complete } = answer;
+    let State { fit, is_sure: complete, .. } = answer;
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     let hearing = bench.hearing;
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.

@@ -1,18 +1,15 @@
 //! The greedy loop: places that stand out, each refined alone, then with its neighbours, until nothing stands out of the noise.
 
 use super::propose::end_beams::beam_noise_power;
-use super::propose::peaks::Detector;
 use super::propose::unexplained::Unexplained;
-use super::settings::Settings;
-use super::trace::{Trace, decades};
-use crate::radar::Radar;
+use super::state::Search;
+use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
 use crate::reconstruct::fit::{
-    Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, Workbench, groups, rows_of, union_of,
+    Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, groups, rows_of, union_of,
 };
 use crate::scene::Reflector;
-use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -55,30 +52,10 @@ const MOST_TOGETHER: usize = 48;
 /// Candidates taken from one look at the residual.
 const MOST_A_ROUND: usize = 16;
 
-/// Greedy search in the samples of one radar.
-pub struct Grower<'a> {
-    /// The radar.
-    pub radar: &'a Radar,
-    /// Refinement under the search's window.
-    pub bench: &'a Workbench<'a>,
-    /// Looks for places.
-    pub detector: &'a Detector,
-    /// Limits.
-    pub settings: &'a Settings,
-    /// Whether white noise lies beneath the samples.
-    pub in_noise: bool,
-    /// To be cancelled by.
-    pub task: &'a Task,
-    /// The record of attempts, if there is one.
-    pub trace: Option<&'a Trace>,
-}
-
-impl Grower<'_> {
+impl Search<'_> {
     /// Records an attempt that was refused.
     pub fn refuse(&self, tried: Tried, gain_decades: f64, why: Refusal) {
-        if let Some(trace) = self.trace {
-            trace.add(tried, gain_decades, Verdict::Refused(why), self.bench.work.done());
-        }
+        self.trace.add(tried, gain_decades, Verdict::Refused(why), self.bench.work.done());
     }
 
     /// Decades by which the energy that `fit` leaves would grow without this object of it, the others staying as they are.

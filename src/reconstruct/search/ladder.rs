@@ -6,12 +6,13 @@
 //!
 //! Within a rung, work is counted ([`Settings::most_work`](super::Settings)): where it is spent, each loop ends with the best it has.
 
-use super::state::{Answer, Search, State};
+use super::state::{Search, State};
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
+use crate::reconstruct::fit::Tie;
 
 /// The change that a rung makes to the state of a search.
-type Climb = fn(&Search, &mut State) -> Result<(), ReconstructError>;
+type Climb = fn(&Search, State) -> Result<State, ReconstructError>;
 
 /// One step of the search.
 pub struct Rung {
@@ -53,26 +54,26 @@ pub(super) const POINTS: Rung = Rung {
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
-pub(super) fn climbed(search: &Search) -> Result<Answer, ReconstructError> {
-    climbed_from(search, LADDER, State::start(search))
+pub(super) fn climbed(search: &Search) -> Result<State, ReconstructError> {
+    climbed_from(search, LADDER, State::of(search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0)))
 }
 
 /// `state` after `rungs`, one after another until nothing stands out.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
-pub(super) fn climbed_from(search: &Search, rungs: &[Rung], mut state: State) -> Result<Answer, ReconstructError> {
+pub(super) fn climbed_from(search: &Search, rungs: &[Rung], mut state: State) -> Result<State, ReconstructError> {
     for rung in rungs {
         search.trace.enter(rung.name);
         let (before, attempts) = (state.fit.atoms.clone(), search.trace.count());
-        (rung.climb)(search, &mut state)?;
+        state = (rung.climb)(search, state)?;
         search.tell_of(&before, &state.fit);
         if search.trace.count() == attempts {
-            search.grower().refuse(Tried::Nothing, 0.0, Refusal::NothingFound);
+            search.refuse(Tried::Nothing, 0.0, Refusal::NothingFound);
         }
         if state.is_sure {
             break;
         }
     }
-    Ok(Answer { fit: state.fit, is_sure: state.is_sure })
+    Ok(state)
 }

@@ -66,11 +66,12 @@ pub use element_gains::ElementGains;
 pub use find::{find, find_from};
 pub use finish::Found;
 pub(super) use finish::TIED_COST_RATIO;
-pub(super) use grow::Grower;
 pub use ladder::{LADDER, Rung};
 pub(super) use propose::peaks::Detector;
 pub(super) use prune::MIN_WORTH_RATIO;
 pub use settings::Settings;
+pub(super) use state::Search;
+pub(super) use trace::Trace;
 pub use trace::{CALIBRATION, FOLLOWING, MOST_ATTEMPTS, ORDERING};
 
 use super::answer::{Reconstruction, Request};

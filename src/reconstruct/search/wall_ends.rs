@@ -1,7 +1,7 @@
 //! The ends of a wall: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
 
 use super::begin::MIN_REFLECTORS;
-use super::grow::Grower;
+use super::state::Search;
 use super::on_wall::MOST_REFLECTORS;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Narrow, Samples, Spectra, Tie, Workbench, rows_of};
 
@@ -18,7 +18,7 @@ const MOST_WALKS: usize = 8;
 const ROOM_BINS: f64 = 12.0;
 const ROOM: f64 = 0.5;
 
-impl Grower<'_> {
+impl Search<'_> {
     /// The wall moved to its best place in `samples` and made longer, by turns, until neither helps.
     pub fn followed_to_its_ends(&self, samples: &Samples, seed: Atom) -> Fit {
         let spectra = Spectra::new(self.radar, self.bench, samples);

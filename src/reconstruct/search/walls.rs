@@ -1,8 +1,8 @@
 //! Walls, one after another: each is looked for in what the others leave, and all are moved together.
 
-use super::grow::Grower;
+use super::state::Search;
 use crate::reconstruct::ReconstructError;
-use crate::reconstruct::fit::{Fit, Limits, Samples, Tie};
+use crate::reconstruct::fit::{Fit, Limits, Tie};
 
 /// Most walls of one scene.
 const MOST_WALLS: usize = 8;
@@ -10,17 +10,12 @@ const MOST_WALLS: usize = 8;
 /// Part of the work granted that the search for walls may take.
 const MOST_SPENT: f64 = 0.5;
 
-impl Grower<'_> {
+impl Search<'_> {
     /// `fit` and the walls that begin at `points` (x, y; metres), as long as each explains much of what there is in its range bins.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn more_walls(
-        &self,
-        samples: &Samples,
-        mut fit: Fit,
-        mut points: Vec<[f64; 2]>,
-    ) -> Result<Fit, ReconstructError> {
+    pub fn more_walls(&self, mut fit: Fit, mut points: Vec<[f64; 2]>) -> Result<Fit, ReconstructError> {
         let (known, before) = (fit.atoms.len(), self.bench.work.spent());
         while fit.atoms.len() < known + MOST_WALLS && self.bench.work.spent() < before + MOST_SPENT {
             self.task.check()?;
@@ -32,6 +27,6 @@ impl Grower<'_> {
         if fit.atoms.len() == known {
             return Ok(fit);
         }
-        Ok(self.bench.refine(samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH))
+        Ok(self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH))
     }
 }
