@@ -3,7 +3,8 @@
 //! The cyclic least squares by which Yardibi et al. refine their own peaks (RELAX: J. Li and P. Stoica, "Efficient mixed-spectrum estimation
 //! with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), with the tools of the search.
 
-use super::peaks::{Peak, gains};
+use super::peaks::{Peak, apart, gains};
+use super::sectors::end_beam_cos;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
@@ -199,26 +200,9 @@ impl<'a> Settled<'a> {
             let peak = Peak { range_metres: place.range_metres, cos_theta: place.cos_theta, power };
             (is_certain || is_heard_at_the_ends(radar, x, y)).then_some(peak)
         };
-        let peaks: Vec<Peak> = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
-        gains(radar, &once_each(radar, peaks), ends, task)
+        let peaks = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
+        gains(radar, &apart(radar, peaks, [SAME_PLACE.1, SAME_PLACE.0 * end_beam_cos(radar)]), ends, task)
     }
-}
-
-/// `peaks` without those at the place of an earlier one.
-fn once_each(radar: &Radar, peaks: Vec<Peak>) -> Vec<Peak> {
-    let end_metres = radar.end_elements as f64 * radar.element_spacing_metres;
-    let beam_cos = radar.beam_cos(end_metres);
-    let mut kept: Vec<Peak> = Vec::with_capacity(peaks.len());
-    for peak in peaks {
-        let is_same = |k: &Peak| {
-            (k.cos_theta - peak.cos_theta).abs() < SAME_PLACE.0 * beam_cos
-                && radar.bin_of_range((k.range_metres - peak.range_metres).abs()) < SAME_PLACE.1
-        };
-        if !kept.iter().any(is_same) {
-            kept.push(peak);
-        }
-    }
-    kept
 }
 
 /// Whether a reflector's echo is not much louder at an element between the ends than at the ends: such a reflector would fill the map without

@@ -5,6 +5,7 @@
 //! runs once more, and each echo with a residual at its own range is tried as two before others are added beside it. The answer is the run that
 //! needs fewer echoes for the same residual, or leaves less.
 
+use super::sectors::end_beam_cos;
 use super::settle::{MOST_TWOS, Settled};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Profile, Tie, distance_bins, rows_of};
@@ -51,12 +52,6 @@ struct Spot {
 }
 
 impl Settled<'_> {
-    /// Width of an end's beam in cos(theta).
-    fn beam_cos(&self) -> f64 {
-        let end_metres = self.radar.end_elements as f64 * self.radar.element_spacing_metres;
-        self.radar.beam_cos(end_metres)
-    }
-
     /// Whether there is a residual at the range of an echo, or a weak echo beside a strong one: either may be two reflectors found as one.
     pub fn is_doubtful(&self) -> bool {
         let count = self.fit.atoms.len();
@@ -121,7 +116,7 @@ impl Settled<'_> {
         let without = self.bench.less(self.fit.clone(), &[i]);
         let [x, y] = self.fit.atoms[i].position_metres(0.0);
         let place = self.radar.polar_of(x, y);
-        let (beam_cos, bin_metres) = (self.beam_cos(), self.radar.range_resolution_metres());
+        let (beam_cos, bin_metres) = (end_beam_cos(self.radar), self.radar.range_resolution_metres());
         let refined =
             |atoms: Vec<Atom>, gains, limits| self.bench.refine(&without.residual, atoms, gains, Tie::PerEnd, limits);
         let start = |(beams, bins): &(f64, f64)| {
@@ -179,7 +174,7 @@ impl Settled<'_> {
             let [x, y] = atom.position_metres(0.0);
             let place = self.radar.polar_of(x, y);
             Spot {
-                beam: place.cos_theta / self.beam_cos(),
+                beam: place.cos_theta / end_beam_cos(self.radar),
                 bin: self.radar.bin_of_range(place.range_metres),
                 energy: gains.iter().map(Complex64::norm_sqr).sum::<f64>() / place.range_metres.max(1e-3).powi(4),
             }

@@ -4,12 +4,12 @@ use super::grow::tried;
 use super::state::Search;
 use super::on_wall::is_on;
 use super::propose::edges::edges;
+use super::propose::end_beams::beam_noise_power;
 use super::propose::strides::strides;
 use super::trace::decades;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, Fit, Profile, Rows, Spectra, rows_of};
-use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Rows that are held against the samples themselves, at each look.
@@ -77,7 +77,7 @@ impl Search<'_> {
     pub fn next_wall(&self, fit: &Fit, points: &mut Vec<[f64; 2]>) -> Option<Fit> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let profile = Profile::new(self.radar, &flat);
-        let noise_a_bin = self.noise_a_bin(&flat);
+        let noise_a_bin = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, &flat));
         let left = Left { fit, profile, noise_a_bin, spectra: Spectra::new(self.radar, self.bench, &fit.residual) };
         points.retain(|&[x_metres, y_metres]| {
             !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
@@ -90,13 +90,6 @@ impl Search<'_> {
             let from_edges = if all.is_long() { edges(&all) } else { Vec::new() };
             self.borne_out(&left, &from_edges)
         })
-    }
-
-    /// Energy that the noise heard in `flat`, channel by channel, gives to a range bin of an end.
-    fn noise_a_bin(&self, flat: &[Complex64]) -> f64 {
-        let window = self.radar.window.weights(self.radar.samples).iter().map(|w| w * w).sum::<f64>();
-        let variance = self.bench.hearing.noise_variance(self.radar, flat);
-        variance * window * self.radar.end_elements as f64 / self.radar.samples as f64
     }
 
     /// The row with the part that it explains, where it is, of the energy in its range bins.

@@ -19,7 +19,7 @@ use crate::signal::TwoEnds;
 /// # Errors
 /// [`ReconstructError::Cancelled`] when the request was cancelled.
 pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Settings) -> Result<Found, ReconstructError> {
-    find_with(None, radar, ends, request, settings)
+    find_from(&Found::nothing(), radar, ends, request, settings)
 }
 
 /// Takes samples apart that differ little from those of `previous`: starts from its atoms, and falls back to [`find`] where they
@@ -34,16 +34,7 @@ pub fn find_from(
     request: &Request,
     settings: &Settings,
 ) -> Result<Found, ReconstructError> {
-    find_with(Some(previous).filter(|p| !p.atoms.is_empty()), radar, ends, request, settings)
-}
-
-fn find_with(
-    previous: Option<&Found>,
-    radar: &Radar,
-    ends: &TwoEnds,
-    request: &Request,
-    settings: &Settings,
-) -> Result<Found, ReconstructError> {
+    let previous = Some(previous).filter(|previous| !previous.atoms.is_empty());
     let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
     let search = |previous: Option<&Found>, ends: &TwoEnds, told: &Request, settings: &Settings| {
         found_in(previous, radar, ends, told, settings, scale)

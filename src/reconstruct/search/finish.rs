@@ -1,6 +1,7 @@
 //! The last step from a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
 use super::element_gains::ElementGains;
+use super::propose::end_beams::beam_noise_power;
 use super::state::State;
 use crate::radar::{End, Radar};
 use crate::reconstruct::attempt::Attempt;
@@ -232,12 +233,11 @@ fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
 /// For each atom of `fit` the energy that would be left more without it, over what `fit` leaves or noise holds around its range, in decades.
 fn needed_decades(radar: &Radar, bench: &Workbench, fit: &Fit, noise_variance: f64) -> Vec<f64> {
     let profile = Profile::new(radar, &fit.residual.flat(&bench.sensor));
-    let window = radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>();
-    let squared = bench.squared.iter().sum::<f64>();
     // Both energies as they are under the radar's window.
-    let worths = bench.worths(fit).into_iter().map(|worth| worth * window / squared);
+    let noise = 2.0 * beam_noise_power(radar, noise_variance);
+    let window = radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>();
+    let worths = bench.worths(fit).into_iter().map(|worth| worth * window / bench.squared.iter().sum::<f64>());
     let of_atom = |(worth, atom): (f64, &Atom)| {
-        let noise = noise_variance * window * bench.sensor.element_x.len() as f64 / radar.samples as f64;
         let left = profile.at(&rows_of(radar, atom)).max(noise).max(f64::MIN_POSITIVE);
         (worth / left).max(f64::MIN_POSITIVE).log10()
     };

@@ -28,7 +28,10 @@ impl Search<'_> {
         for _ in 0..MOST_WALKS {
             let (before, after) =
                 rayon::join(|| self.more_reflectors(&near, &wall, false), || self.more_reflectors(&near, &wall, true));
-            let Some(longer) = extended(wall.atoms[0], before, after).filter(|_| before + after > 0) else { break };
+            if before + after == 0 {
+                break;
+            }
+            let Some(longer) = resized(wall.atoms[0], -(before as i64), -(after as i64)) else { break };
             let explained = near.energy - wall.cost();
             let wider = self.near(&spectra, &longer);
             let trial = wider.moved(longer, wall.gains[0]);
@@ -79,10 +82,10 @@ impl Narrow<'_> {
 fn trimmed(near: &Narrow, mut seed: Atom) -> Atom {
     for _ in 0..MOST_TRIMS {
         let wall = near.bench.solve_alone(&near.samples, seed);
-        let fewer =
+        let (first, last) =
             rayon::join(|| fewer_reflectors(&near.bench, &wall, false), || fewer_reflectors(&near.bench, &wall, true));
-        match shortened(seed, fewer.into()) {
-            Some(shorter) if fewer != (0, 0) => seed = shorter,
+        match resized(seed, first as i64, last as i64) {
+            Some(shorter) if first + last > 0 => seed = shorter,
             _ => break,
         }
     }
@@ -115,18 +118,11 @@ fn how_many(bench: &Workbench, wall: &Fit, gains: &[Gains], places: impl Iterato
     best
 }
 
-/// `wall` with this many reflectors more before its first and after its last.
-fn extended(wall: Atom, before: usize, after: usize) -> Option<Atom> {
-    let Atom::Segment { dx_metres, dy_metres, count, .. } = wall else { return None };
-    let [x_metres, y_metres] = wall.position_metres(-(before as f64));
-    let count = count + before + after;
-    (count <= MOST_REFLECTORS).then_some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
-}
-
-/// `wall` without this many reflectors at its first and at its last end.
-fn shortened(wall: Atom, [first, last]: [usize; 2]) -> Option<Atom> {
+/// `wall` without this many reflectors at its first and at its last end; with more of them where the numbers are negative.
+fn resized(wall: Atom, first: i64, last: i64) -> Option<Atom> {
     let Atom::Segment { dx_metres, dy_metres, count, .. } = wall else { return None };
     let [x_metres, y_metres] = wall.position_metres(first as f64);
-    let count = count.checked_sub(first + last).filter(|count| *count >= MIN_REFLECTORS)?;
-    Some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
+    let count = usize::try_from(count as i64 - first - last).ok()?;
+    let is_wall = (MIN_REFLECTORS..=MOST_REFLECTORS).contains(&count);
+    is_wall.then_some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
 }

@@ -1,5 +1,6 @@
 //! The number of successive range bins with an echo.
 
+use super::end_beams::beam_noise_power;
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
@@ -21,9 +22,7 @@ pub const LONG_RUN_BINS: usize = 18;
 /// stands out of noise of `noise_variance`, and lies at most 60 dB below the strongest when ranges are evened out.
 pub fn longest_run_bins(radar: &Radar, residual: &[Complex64], noise_variance: f64) -> usize {
     let ends = TwoEnds::of_flat(radar, residual);
-    let weights = radar.window.weights(radar.samples);
-    let window = weights.iter().map(|w| w * w).sum::<f64>() / radar.samples as f64;
-    let noise = window * radar.end_elements as f64 * noise_variance;
+    let noise = beam_noise_power(radar, noise_variance);
     let run_of = |end: End| {
         let profiles = channels_range_transform(radar, ends.end(end).view()).profiles;
         let power = |bin: usize| profiles.column(bin).iter().map(Complex64::norm_sqr).sum::<f64>();
