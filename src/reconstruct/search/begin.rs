@@ -1,11 +1,12 @@
 //! Beginnings of walls: rows over two points or from the edge of a wall, tested against the samples.
 
-use super::grow::tried;
+use super::grow::{LOOK_ECHOES, tried};
 use super::state::Search;
 use super::on_wall::is_on;
-use super::propose::edges::edges;
+use super::propose::edges::rows_from_edges;
 use super::propose::end_beams::beam_noise_power;
-use super::propose::strides::strides;
+use super::propose::phased::PhasedBeams;
+use super::propose::strides::rows_over_pairs;
 use super::trace::decades;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Refusal;
@@ -18,7 +19,7 @@ const MOST_TRIED: usize = 24;
 /// Least part of the energy in its range bins that a row must explain to be followed to its ends.
 const LEAST_BEGUN: f64 = 0.3;
 
-/// Fewest reflectors of a wall.
+/// Fewest reflectors of a wall, and those over which rows are tried first.
 pub const MIN_REFLECTORS: usize = 8;
 
 /// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
@@ -30,8 +31,8 @@ const LEAST_OF_LONG: f64 = 0.6;
 /// Fewest reflectors of a long wall, and fewest range bins that it goes through.
 const LEAST_LONG: usize = 45;
 
-/// Echoes that the look for rows over one point takes as long as.
-const LOOK_A_POINT: usize = 20;
+/// Points, those first on which the ends agree best, that a wall may begin at alone.
+const MOST_EDGES: usize = 24;
 
 /// Whether a wall that explains this part of the energy in its range bins can be believed.
 fn is_borne_out(radar: &Radar, wall: &Atom, explained: f64) -> bool {
@@ -82,12 +83,13 @@ impl Search<'_> {
         points.retain(|&[x_metres, y_metres]| {
             !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
         });
-        let all = self.unexplained(&flat).with_points(points);
-        self.bench.work.spend(LOOK_A_POINT * points.len());
-        let rows = strides(&all);
+        self.bench.work.spend(LOOK_ECHOES / 10 * points.len());
+        let beams = PhasedBeams::new(self.radar, &flat);
         // Looks from one point alone take longest.
-        self.borne_out(&left, &rows).or_else(|| {
-            let from_edges = if all.is_long() { edges(&all) } else { Vec::new() };
+        self.borne_out(&left, &rows_over_pairs(&beams, points, self.task)).or_else(|| {
+            let is_near = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
+            let first: Vec<[f64; 2]> = points.iter().filter(is_near).take(MOST_EDGES).copied().collect();
+            let from_edges = if self.is_long(&flat) { rows_from_edges(&beams, &first, self.task) } else { Vec::new() };
             self.borne_out(&left, &from_edges)
         })
     }

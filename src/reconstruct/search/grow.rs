@@ -1,7 +1,7 @@
 //! The greedy loop: places that stand out, each refined alone, then with its neighbours, until nothing stands out of the noise.
 
 use super::propose::end_beams::beam_noise_power;
-use super::propose::unexplained::Unexplained;
+use super::propose::runs::{LONG_RUN_BINS, longest_run_bins};
 use super::state::Search;
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
@@ -78,9 +78,10 @@ impl Search<'_> {
         (noise * self.settings.least_prominence).max(self.rounding_power())
     }
 
-    /// The residual `flat`, as sources of candidates look at it.
-    pub fn unexplained<'a>(&'a self, flat: &'a [Complex64]) -> Unexplained<'a> {
-        Unexplained::new(self.radar, flat, self.bench.hearing, self.task)
+    /// Whether the residual `flat` has something longer than a few reflectors.
+    pub fn is_long(&self, flat: &[Complex64]) -> bool {
+        let variance = self.bench.hearing.noise_variance(self.radar, flat);
+        longest_run_bins(self.radar, flat, variance) >= LONG_RUN_BINS
     }
 
     /// Amplitude of the error by rounding a reflector's place to f64, if its samples are 1: many reflectors of one wall are each off

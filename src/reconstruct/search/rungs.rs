@@ -71,7 +71,7 @@ impl Search<'_> {
     /// The points that the ends' tones lead to beside the lines, time and again. Where an echo is long and no wall was found, they are left where
     /// they are: lines are better found before.
     pub fn climb_pairs(&self, State { mut fit, mut pairs, .. }: State) -> Result<State, ReconstructError> {
-        let is_polished = !fit.atoms.is_empty() || !self.unexplained(&fit.residual.flat(&self.bench.sensor)).is_long();
+        let is_polished = !fit.atoms.is_empty() || !self.is_long(&fit.residual.flat(&self.bench.sensor));
         for _ in 0..MOST_ROUNDS {
             if self.is_explained(&fit) {
                 break;

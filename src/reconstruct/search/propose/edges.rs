@@ -3,9 +3,9 @@
 //! From such a point the beams tell whether echoes go on in a direction that walls mostly have. There every step that may be meant is tried
 //! over the first few reflectors, and the best are followed as rows over two points are.
 
+use super::super::begin::MIN_REFLECTORS;
 use super::phased::{Heard, PhasedBeams, Presence, Row};
-use super::strides::{FIRST, MOST_STEP_METRES, Start, Stride, best_of_each, pitches_metres, summits};
-use super::unexplained::Unexplained;
+use super::strides::{MOST_STEP_METRES, Start, best_of_each, pitches_metres, summits};
 use crate::reconstruct::fit::Atom;
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
@@ -37,24 +37,14 @@ const PITCH_WAVELENGTHS: f64 = 0.5;
 /// Rows of one look that are tried over twice as many reflectors, and those that are followed.
 const KEPT_ROWS: [usize; 2] = [40, 4];
 
-/// Points, those first on which the ends agree best, that a wall may begin at alone.
-const MOST_EDGES: usize = 24;
-
 /// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
 const LEAST_FROM_EDGE: usize = 24;
 
 /// Directions that walls mostly have, radians from the array's axis: along it and across it.
 const DIRECTIONS_RADIANS: [f64; 4] = [0.0, FRAC_PI_2, PI, -FRAC_PI_2];
 
-/// Lines from one point alone that may be among what is left, the most promising first.
-pub fn edges(left: &Unexplained) -> Vec<Atom> {
-    let points = left.points_within_range(MOST_EDGES);
-    let rows = rows_from_edges(left.beams(), &points, left.task);
-    rows.into_iter().map(|row| row.atom).filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
-}
-
 /// Rows that begin at one of `points` (x, y; metres) and lead about along or across the array's axis, best first; one for each point at most.
-fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Stride> {
+pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Atom> {
     let strongest = beams.strongest();
     let look = |first: usize, radians: f64| {
         let presence = |place| beams.presence(&strongest, place);
@@ -77,7 +67,8 @@ fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec
         .flat_map_iter(|look| rows_of(look).into_iter().map(|row| Start { first: look.first, row }))
         .collect();
     tracing::debug!(looks = looks.len(), starts = starts.len(), "edges");
-    best_of_each(beams, starts, task)
+    let rows = best_of_each(beams, starts, task).into_iter();
+    rows.filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
 }
 
 /// Clarity and length of the echoes from `from` on in a direction; `None` where they soon end.
@@ -158,10 +149,10 @@ impl Kernel for Scan<'_> {
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
         let Scan { beams, fan } = self;
-        let mut heard = [Heard::default(); 2 * FIRST];
+        let mut heard = [Heard::default(); 2 * MIN_REFLECTORS];
         let mut parts = vec![0.0; fan.lengths * fan.directions.len()];
         for (at, part) in parts.iter_mut().enumerate() {
-            *part = beams.part_adding_up::<FMA>(&fan.row(at), &mut heard[..FIRST]);
+            *part = beams.part_adding_up::<FMA>(&fan.row(at), &mut heard[..MIN_REFLECTORS]);
         }
         let mut longer: Vec<(f64, Row)> = Vec::with_capacity(KEPT_ROWS[0]);
         for at in summits(&parts, fan.lengths, KEPT_ROWS[0]) {
@@ -193,7 +184,7 @@ mod tests {
         let points = [[point.x_metres, point.y_metres], last];
         let beams = PhasedBeams::new(&radar, &flat);
         let rows = rows_from_edges(&beams, &points, &Task::default());
-        let best = rows.first().expect("a row").atom;
+        let best = *rows.first().expect("a row");
         let [first, second] = [0.0, 1.0].map(|i| best.position_metres(i));
         assert!((first[0] - last[0]).hypot(first[1] - last[1]) < 0.1, "{best:?}");
         assert!((second[1] - first[1] + wall.spacing_metres).abs() < 1e-3 && best.reflector_count() > 40, "{best:?}");
