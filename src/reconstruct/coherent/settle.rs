@@ -8,23 +8,14 @@ use super::sectors::end_beam_cos;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, Samples, Tie, Workbench, distance_bins, rows_of};
-use crate::reconstruct::search::{Detector, MIN_WORTH_RATIO, Search, Settings, TIED_COST_RATIO, Trace};
+use crate::reconstruct::fit::{Atom, Fit, Rows, Samples, Tie, Workbench, distance_bins, rows_of};
+use crate::reconstruct::search::{APART_BINS, Detector, MIN_WORTH_RATIO, Search, Settings, Trace, tied};
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
 use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::Arc;
-
-/// Limits of the refinement of all reflectors with one gain for both ends.
-const TIED: Limits = Limits { iterations: 20, least_gain: 1e-4, ridge: 0.0 };
-
-/// Most reflectors whose gains are tied by moving them together.
-const MOST_TIED: usize = 48;
-
-/// Distance in range at either end within which the strongest peak is taken first.
-const BESIDE_STRONGER_BINS: f64 = 4.0;
 
 /// Distance from the array that a reflector must keep, as a part of its distance from the nearer end.
 const NEAREST_BETWEEN: f64 = 0.25;
@@ -186,12 +177,7 @@ impl<'a> Settled<'a> {
     /// [`ReconstructError::Cancelled`].
     pub fn found(self, ends: &TwoEnds) -> Result<Vec<Gained>, ReconstructError> {
         let Settled { radar, task, bench, samples, mut fit, enough, .. } = self;
-        if fit.atoms.len() <= MOST_TIED {
-            let tied = bench.refine(&samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
-            if tied.cost() <= TIED_COST_RATIO * fit.cost() {
-                fit = tied;
-            }
-        }
+        fit = tied(&bench, &samples, fit, false);
         let is_certain = fit.cost() <= enough * CERTAIN;
         let peak = |(atom, gains): (&Atom, &[Complex64; 2])| {
             let [x, y] = atom.position_metres(0.0);
@@ -229,7 +215,7 @@ impl Waiting {
 fn strongest_apart(radar: &Radar, left: &mut Vec<(f64, Waiting)>) -> Vec<[f64; 2]> {
     let mut taken: Vec<(Rows, [f64; 2])> = Vec::new();
     left.retain(|(_, w)| {
-        let is_apart = taken.iter().all(|(rows, _)| distance_bins(radar.samples, rows, &w.rows) > BESIDE_STRONGER_BINS);
+        let is_apart = taken.iter().all(|(rows, _)| distance_bins(radar.samples, rows, &w.rows) > APART_BINS);
         if is_apart {
             taken.push((w.rows, [w.echo.reflector.x_metres, w.echo.reflector.y_metres]));
         }

@@ -8,18 +8,13 @@
 use super::sectors::end_beam_cos;
 use super::settle::{MOST_TWOS, Settled};
 use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::search::APART_BINS;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Profile, Tie, distance_bins, rows_of};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Starts of the two echoes: offsets to either side of the one, in parts of an end's beam and in range bins.
 const STARTS: [(f64, f64); 5] = [(0.1, 0.0), (0.1, 0.25), (0.1, -0.25), (0.02, 0.25), (0.3, 0.0)];
-
-/// Limits of the refinement of the two while starts are compared.
-const TRYING: Limits = Limits { iterations: 10, least_gain: 1e-2, ridge: 0.0 };
-
-/// Limits of the refinement of the best start.
-const TRIED: Limits = Limits { iterations: 40, least_gain: 1e-4, ridge: 0.0 };
 
 /// Largest residual of two echoes at their range, as a part of that of the one, for which two replace one.
 const WORTH_TWO: f64 = 0.2;
@@ -125,11 +120,11 @@ impl Settled<'_> {
                 let range = (place.range_metres + sign * bins * bin_metres).max(bin_metres);
                 Atom::Point { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).max(0.0).sqrt() }
             };
-            refined(vec![side(1.0), side(-1.0)], vec![Default::default(); 2], TRYING)
+            refined(vec![side(1.0), side(-1.0)], vec![Default::default(); 2], Limits::ROUGH)
         };
         let tried: Vec<Fit> = STARTS.par_iter().map(start).collect();
         let best = tried.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()))?;
-        let two = refined(best.atoms, best.gains, TRIED);
+        let two = refined(best.atoms, best.gains, Limits::FINE);
         let mut fit = without;
         fit.atoms.extend(two.atoms);
         fit.gains.extend(two.gains);
@@ -159,7 +154,7 @@ impl Settled<'_> {
             let less = self.bench.less(self.fit.clone(), &[gone]);
             let beside = if beside > gone { beside - 1 } else { beside };
             let marked: Vec<bool> = (0..less.atoms.len()).map(|i| i == beside).collect();
-            let fewer = self.search().refined(less, &marked, 4.0, TRIED)?;
+            let fewer = self.search().refined(less, &marked, APART_BINS, Limits::FINE)?;
             if fewer.cost() > (1.0 + AS_GOOD) * self.fit.cost() + 4.0 * noise + self.enough {
                 break;
             }

@@ -40,7 +40,7 @@ const LOUD_ENERGY_RATIO: f64 = 1.5;
 const SAME_PLACE: [f64; 2] = [0.25, 1.0];
 
 /// Energy that tied gains may leave over what each end's own leave, as a ratio: at a wrong place they leave more.
-pub const TIED_COST_RATIO: f64 = 4.0;
+const TIED_COST_RATIO: f64 = 4.0;
 
 /// The objects found in the samples.
 #[derive(Debug, Clone, PartialEq)]
@@ -217,7 +217,7 @@ pub fn are_loud(radar: &Radar, bench: &Workbench, fit: &Fit) -> Vec<bool> {
 }
 
 /// `fit` with one gain an object for both ends, on the right tooth of the comb, where it has few reflectors and the ends agree on them.
-fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
+pub fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     if reflectors > MAX_TIED_REFLECTORS {
         return fit;

@@ -1,7 +1,7 @@
 //! The greedy loop: places that stand out, each refined alone, then with its neighbours, until nothing stands out of the noise.
 
 use super::propose::end_beams::beam_noise_power;
-use super::propose::runs::{LONG_RUN_BINS, longest_run_bins};
+use super::propose::runs::{ABOVE_NOISE, LONG_RUN_BINS, longest_run_bins};
 use super::state::Search;
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
@@ -16,9 +16,6 @@ use rayon::prelude::*;
 /// Limits of the refinement of a group while more atoms are to come.
 const GROWING: Limits = Limits { iterations: 12, least_gain: 3e-2, ridge: 0.0 };
 
-/// Limits of the refinement of a group once all atoms are there.
-const POLISH: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
-
 /// Atoms this many bins apart at either end are refined together.
 const LINK_BINS: f64 = 6.0;
 
@@ -30,9 +27,6 @@ const WORTH_ANOTHER_SWEEP: f64 = 0.3;
 
 /// A point that both ends see has the same gain at both, within this factor while its neighbours are not known.
 const MOST_UNLIKE: f64 = 3.0;
-
-/// Power in a range bin, over that of the noise, from which on the atoms there are not yet right.
-const NEEDED: f64 = 4.0;
 
 /// Power in a range bin, over that in the bin of which most is left, up to which it may be a side lobe.
 const SIDE_LOBE: f64 = 1e-4;
@@ -240,7 +234,7 @@ impl Search<'_> {
         let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, &flat));
         let left: Vec<f64> = fit.atoms.iter().map(|atom| profile.strongest(&rows_of(self.radar, atom))).collect();
         let strongest = left.iter().copied().fold(0.0, f64::max);
-        let least = (NEEDED * noise.max(self.rounding_power())).max(SIDE_LOBE * strongest);
+        let least = (ABOVE_NOISE * noise.max(self.rounding_power())).max(SIDE_LOBE * strongest);
         left.into_iter().map(|left| left > least).collect()
     }
 
@@ -257,7 +251,7 @@ impl Search<'_> {
             }
             // Groups that are far apart still hear a little of each other: all together they come to the end at once.
             let link_bins = if sweep == 0 { LINK_BINS } else { self.radar.samples as f64 };
-            fit = self.refined(fit, &marked, link_bins, POLISH)?;
+            fit = self.refined(fit, &marked, link_bins, Limits::FINE)?;
             tracing::debug!(
                 before,
                 cost = fit.cost(),
@@ -279,7 +273,7 @@ impl Search<'_> {
         for _ in 0..rounds {
             let before = fit.cost();
             let all = vec![true; fit.atoms.len()];
-            fit = self.refined(fit, &all, 2.0 * LINK_BINS, POLISH)?;
+            fit = self.refined(fit, &all, 2.0 * LINK_BINS, Limits::FINE)?;
             if fit.cost() > 0.9 * before {
                 break;
             }

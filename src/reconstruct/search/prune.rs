@@ -15,8 +15,8 @@ pub const MIN_WORTH_RATIO: f64 = 16.0;
 /// Most rounds of taking away.
 const MOST_ROUNDS: usize = 12;
 
-/// Atoms nearer than this in range are not taken away in one round: either may do for the other.
-const APART_BINS: f64 = 4.0;
+/// Atoms nearer than this in range may do for each other: they are not taken, or taken away, in one round.
+pub const APART_BINS: f64 = 4.0;
 
 impl Search<'_> {
     /// `fit` without the atoms whose absence noise could hide or the rounding of the others' places, those whose place ran away, and

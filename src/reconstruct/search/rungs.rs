@@ -10,8 +10,8 @@ use crate::reconstruct::fit::{Atom, Gains, Limits, Tie};
 /// Most rounds of pairing what is left.
 const MOST_ROUNDS: usize = 3;
 
-/// Another round of pairing needs that this part of the energy at most is left by the last.
-const WORTH_ANOTHER: f64 = 0.5;
+/// Another round needs that this part of the energy at most is left by the last.
+pub const WORTH_ANOTHER: f64 = 0.5;
 
 impl Search<'_> {
     /// Points that both ends' tones lead to, kept where they are all there is.

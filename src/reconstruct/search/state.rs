@@ -12,7 +12,7 @@ use crate::reconstruct::ReconstructError;
 use crate::task::Task;
 
 /// Part of the samples' energy that is left where all is found but for its exact place.
-const NEARLY_NOTHING: f64 = 1e-5;
+pub const NEARLY_NOTHING: f64 = 1e-5;
 
 /// Rounds in which pairs that the ends don't agree on are dropped.
 const MOST_DOUBTS: usize = 3;

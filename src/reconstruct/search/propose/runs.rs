@@ -7,7 +7,7 @@ use crate::signal::TwoEnds;
 use num_complex::Complex64;
 
 /// Power of an echo in a range bin, over that of the noise.
-const ABOVE_NOISE: f64 = 4.0;
+pub const ABOVE_NOISE: f64 = 4.0;
 
 /// Weakest echo, over the strongest, after scaling by the 1/R^4 law of power.
 const WEAKEST: f64 = 1e-6;
