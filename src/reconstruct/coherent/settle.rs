@@ -45,12 +45,11 @@ const SAME_PLACE: (f64, f64) = (1e-3, 1e-2);
 /// Budget of work, in units of about ten microseconds.
 const MOST_WORK: usize = 30_000;
 
-/// Most echoes among which doubtful ones are searched, since rows of reflectors always leave a residual; and most that are tried as two or taken
-/// away in one reconstruction.
+/// Most echoes among which doubtful ones are searched, since rows of reflectors always leave a residual; and most that are taken away at once.
 pub(super) const MOST_TWOS: usize = 24;
 
 /// Most successive echoes that fail to be two.
-const MOST_FAILURES: usize = 4;
+pub(super) const MOST_FAILURES: usize = 4;
 
 /// A peak without a reflector so far.
 struct Waiting {
@@ -58,24 +57,6 @@ struct Waiting {
     rows: Rows,
     /// Energy that the peak explained when it was found.
     energy: f64,
-}
-
-/// Number of echoes tried as two so far, and of successive failures.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Trials {
-    done: usize,
-    failed: usize,
-}
-
-impl Trials {
-    pub fn count(&mut self, was_worth_it: bool) {
-        self.done += 1;
-        self.failed = if was_worth_it { 0 } else { self.failed + 1 };
-    }
-
-    pub fn are_spent(&self) -> bool {
-        self.done >= MOST_TWOS || self.failed >= MOST_FAILURES
-    }
 }
 
 /// Reflectors found so far, with their residual.
@@ -90,8 +71,8 @@ pub(super) struct Settled<'a> {
     pub(super) fit: Fit,
     /// Residual energy at which the search ends.
     pub(super) enough: f64,
-    /// Counts of echoes tried as two; `None` where none are to be tried.
-    pub(super) trials: Option<Trials>,
+    /// Number of successive echoes that failed to be two, after [`MOST_FAILURES`] of which none is tried.
+    pub(super) failures: usize,
 }
 
 impl<'a> Settled<'a> {
@@ -102,12 +83,12 @@ impl<'a> Settled<'a> {
         let samples = Samples::new(&bench.sensor, &flat);
         let fit = bench.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
         let (detector, settings, enough) = (Detector::of(radar), Settings::default(), fit.cost() * AS_GOOD_AS_NOTHING);
-        Settled { radar, task, bench, detector, settings, samples, trace: Trace::default(), fit, enough, trials: None }
+        Settled { radar, task, bench, detector, settings, samples, trace: Trace::default(), fit, enough, failures: MOST_FAILURES }
     }
 
     /// The start, with echoes tried as two.
     pub fn trying_two(self) -> Self {
-        Settled { trials: Some(Trials::default()), ..self }
+        Settled { failures: 0, ..self }
     }
 
     pub(super) fn search(&self) -> Search<'_> {

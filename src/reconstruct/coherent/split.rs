@@ -6,7 +6,7 @@
 //! needs fewer echoes for the same residual, or leaves less.
 
 use super::sectors::end_beam_cos;
-use super::settle::{MOST_TWOS, Settled};
+use super::settle::{MOST_FAILURES, MOST_TWOS, Settled};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::search::APART_BINS;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Profile, Tie, distance_bins, rows_of};
@@ -82,25 +82,24 @@ impl Settled<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn split(&mut self) -> Result<(), ReconstructError> {
-        let Some(mut trials) = self.trials else { return Ok(()) };
         let in_need = self.search().in_need(&self.fit);
         let energy = |i: usize| self.fit.gains[i].iter().map(|g| g.norm_sqr()).sum::<f64>();
         let mut order: Vec<usize> = (0..in_need.len()).filter(|i| in_need[*i]).collect();
         order.sort_by(|a, b| energy(*b).total_cmp(&energy(*a)));
         for i in order {
             self.task.check()?;
-            if trials.are_spent() || self.bench.work.is_spent() {
+            if self.failures >= MOST_FAILURES || self.bench.work.is_spent() {
                 break;
             }
-            let two = self.as_two(i);
-            trials.count(two.is_some());
-            if let Some(fit) = two {
+            match self.as_two(i) {
                 // The indices of the echoes have changed; remaining doubtful ones show in the next round.
-                self.fit = fit;
-                break;
+                Some(fit) => {
+                    (self.fit, self.failures) = (fit, 0);
+                    break;
+                }
+                None => self.failures += 1,
             }
         }
-        self.trials = Some(trials);
         Ok(())
     }
 

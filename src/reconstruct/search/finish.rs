@@ -43,7 +43,7 @@ const SAME_PLACE: [f64; 2] = [0.25, 1.0];
 const TIED_COST_RATIO: f64 = 4.0;
 
 /// The objects found in the samples.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Found {
     /// The objects.
     pub atoms: Vec<Atom>,
@@ -88,21 +88,7 @@ impl Found {
 
     /// The answer to silence.
     pub(super) fn nothing() -> Self {
-        Found {
-            atoms: Vec::new(),
-            reflectivities: Vec::new(),
-            scale: 1.0,
-            left_by_search: 0.0,
-            sample_power: 0.0,
-            residual_variance: 0.0,
-            noise_variance: 0.0,
-            gains: Vec::new(),
-            needed_decades: Vec::new(),
-            left_when_drawn: Vec::new(),
-            complete: true,
-            element_gains: None,
-            trace: Vec::new(),
-        }
+        Found { scale: 1.0, complete: true, ..Found::default() }
     }
 }
 
@@ -150,8 +136,7 @@ pub(super) fn finish(
         gains: best.gains,
         scale,
         complete,
-        element_gains: None,
-        trace: Vec::new(),
+        ..Found::default()
     })
 }
 

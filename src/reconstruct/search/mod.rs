@@ -82,8 +82,9 @@ use super::prior::NoisePrior;
 use super::reconstructor::{About, Reconstructor};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
+use crate::scene::Reflector;
 use crate::signal::TwoEnds;
-use draw::{Noise, Weighted, expected_lambda, expected_noise};
+use draw::{Noise, expected_lambda, expected_noise};
 
 /// Threshold for the maps of found objects, chosen on validation scenes.
 pub(super) const ETA: f32 = 0.896;
@@ -156,7 +157,7 @@ impl Found {
 
     /// The objects with a map of them, in which noise alone does not exceed `least_eta`, where that is known.
     pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
-        let reflectors = self.weighted().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
+        let reflectors = self.reflectors(self.scale).collect();
         Reconstruction {
             lambda,
             reflectors,
@@ -181,7 +182,7 @@ impl Found {
             NoisePrior::White { .. } if self.complete => Noise::Variance(self.residual_variance),
             NoisePrior::White { .. } => Noise::Variance(self.noise_variance),
         };
-        expected_lambda(radar, &self.weighted().collect::<Vec<_>>(), noise, request)
+        expected_lambda(radar, self.reflectors(1.0), noise, request)
     }
 
     /// Probability that each reflector is real, by the energy that only its atom explains.
@@ -193,7 +194,9 @@ impl Found {
         self.atoms.iter().zip(&self.needed_decades).flat_map(of_atom).collect()
     }
 
-    fn weighted(&self) -> impl Iterator<Item = Weighted> {
-        self.atoms.iter().zip(&self.reflectivities).map(|(&atom, &reflectivity)| Weighted { atom, reflectivity })
+    /// The reflectors of all objects, for samples divided by `scale`.
+    fn reflectors(&self, scale: f64) -> impl Iterator<Item = Reflector> {
+        let atoms = self.atoms.iter().zip(&self.reflectivities);
+        atoms.flat_map(move |(atom, reflectivity)| atom.reflectors(reflectivity / scale))
     }
 }
