@@ -148,6 +148,11 @@ impl<'a> Workbench<'a> {
         remainder(&self.sensor, &self.squared, samples, &reflectors, Asked::Nothing)
     }
 
+    /// Energy of the windowed `samples`.
+    pub fn energy(&self, samples: &Samples) -> f64 {
+        self.without(samples, &[], &[]).energy.iter().sum()
+    }
+
     /// The fit of `atoms` at their places.
     pub fn solve(&self, samples: &Samples, atoms: Vec<Atom>, tie: Tie, ridge: f64) -> Fit {
         let gains = vec![Gains::default(); atoms.len()];

@@ -210,7 +210,7 @@ fn turned(
         if gain.norm_sqr() > 0.0 { gain } else { Complex64::ONE }
     };
     let gains = raw.chunks(radar.samples).zip(drawn.chunks(radar.samples)).map(of_element).collect();
-    let all = bench.without(&samples, &[], &[]).energy.iter().sum::<f64>();
+    let all = bench.energy(&samples);
     Fitted { gains: ElementGains(gains), left: fit.cost() / all.max(f64::MIN_POSITIVE), fit }
 }
 

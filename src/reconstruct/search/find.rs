@@ -2,13 +2,13 @@
 
 use super::calibrate::{Calibration, asks_for_gains};
 use super::finish::{Found, finish};
-use super::ladder::climbed;
+use super::ladder::{LADDER, climbed};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
-use super::state::Search;
+use super::state::{Search, State};
 use super::trace::Trace;
 use crate::radar::{Radar, hann};
-use crate::reconstruct::fit::{Samples, Workbench};
+use crate::reconstruct::fit::{Samples, Tie, Workbench};
 use crate::reconstruct::hearing::Hearing;
 use crate::reconstruct::reconstructor::unit_gain;
 use crate::reconstruct::{ReconstructError, Request};
@@ -76,7 +76,8 @@ fn found_in(
     let search = Search { radar, bench, detector, samples, in_noise, settings, task, trace: &trace };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
     let measure = followed.as_ref().filter(|f| !f.is_sure).and(previous).map(|p| p.left_by_search);
-    let answer = search.ordered(followed.map_or_else(|| climbed(&search), Ok)?)?;
+    let nothing = || State::of(bench.solve(samples, Vec::new(), Tie::PerEnd, 0.0));
+    let answer = search.ordered(followed.map_or_else(|| climbed(&search, LADDER, nothing()), Ok)?)?;
     request.task.check()?;
     request.task.set_progress(1.0);
     let found = finish(radar, bench, samples, answer, request, scale)?;

@@ -121,8 +121,7 @@ pub(super) fn finish(
     request.task.check()?;
     let residual = best.residual.flat(&bench.sensor);
     let noise_variance = hearing.noise_variance(radar, &residual);
-    let silence = bench.without(samples, &[], &[]);
-    let all = silence.energy[0] + silence.energy[1];
+    let all = bench.energy(samples);
     let weight = bench.squared.iter().sum::<f64>() * bench.sensor.element_x.len() as f64;
     Ok(Found {
         reflectivities: reflectivities(&best.gains),

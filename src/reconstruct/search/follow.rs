@@ -1,7 +1,7 @@
 //! The answer to samples that differ little from the last ones, starting from the last answer.
 
 use super::finish::Found;
-use super::ladder::{POINTS, climbed_from};
+use super::ladder::{POINTS, climbed};
 use super::state::{Search, State};
 use super::trace::FOLLOWING;
 use crate::reconstruct::ReconstructError;
@@ -27,7 +27,7 @@ impl Search<'_> {
         let mut fit = Fit { atoms: previous.atoms.clone(), gains, residual: self.samples.clone(), energy: [0.0; 2] };
         let left = self.bench.without(self.samples, &fit.atoms, &fit.gains);
         (fit.residual, fit.energy) = (left.residual, left.energy);
-        let all = self.energy();
+        let all = self.bench.energy(self.samples);
         if fit.cost() > MOST_CHANGED * all {
             return Ok(None);
         }
@@ -42,7 +42,7 @@ impl Search<'_> {
         let mut answer = self.judged(fit);
         if !answer.is_sure && !is_as_good(&answer.fit) {
             self.tell_of(&previous.atoms, &answer.fit);
-            answer = climbed_from(self, &[POINTS], answer)?;
+            answer = climbed(self, &[POINTS], answer)?;
         }
         // Many new atoms make up for old ones that went astray.
         let is_like_it = answer.fit.atoms.len() <= previous.atoms.len() + MOST_APPEARING;

@@ -9,7 +9,6 @@
 use super::state::{Search, State};
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
-use crate::reconstruct::fit::Tie;
 
 /// The change that a rung makes to the state of a search.
 type Climb = fn(&Search, State) -> Result<State, ReconstructError>;
@@ -50,19 +49,11 @@ pub(super) const POINTS: Rung = Rung {
     climb: |search, state| search.climb_points(state),
 };
 
-/// The answer of the whole ladder, without an earlier answer.
-///
-/// # Errors
-/// [`ReconstructError::Cancelled`].
-pub(super) fn climbed(search: &Search) -> Result<State, ReconstructError> {
-    climbed_from(search, LADDER, State::of(search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0)))
-}
-
 /// `state` after `rungs`, one after another until nothing stands out.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
-pub(super) fn climbed_from(search: &Search, rungs: &[Rung], mut state: State) -> Result<State, ReconstructError> {
+pub(super) fn climbed(search: &Search, rungs: &[Rung], mut state: State) -> Result<State, ReconstructError> {
     for rung in rungs {
         search.trace.enter(rung.name);
         let (before, attempts) = (state.fit.atoms.clone(), search.trace.count());

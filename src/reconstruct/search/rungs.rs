@@ -47,9 +47,6 @@ impl Search<'_> {
             let more: Vec<Atom> =
                 sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();
             if fit.atoms.len() + more.len() == before {
-                if fit.cost() != cost {
-                    pairs = self.pairs(&fit);
-                }
                 break;
             }
             fit.gains.extend(vec![Gains::default(); more.len()]);

@@ -107,12 +107,7 @@ impl Search<'_> {
 
     /// Whether `fit` holds all objects, though perhaps not quite where they are.
     pub fn is_nearly_all(&self, fit: &Fit) -> bool {
-        fit.cost() <= NEARLY_NOTHING * self.energy()
-    }
-
-    /// Energy of the windowed samples.
-    pub fn energy(&self) -> f64 {
-        self.bench.without(self.samples, &[], &[]).energy.iter().sum()
+        fit.cost() <= NEARLY_NOTHING * self.bench.energy(self.samples)
     }
 
     /// Points whose tones both ends hear in what `fit` leaves; none where there are too many to tell apart.

@@ -40,15 +40,14 @@ impl Search<'_> {
             }
             (near, wall) = (wider, trial);
         }
-        let (mut atom, mut gains) = (wall.atoms[0], wall.gains[0]);
-        let shorter = trimmed(&near, atom);
-        if shorter != atom {
-            let trial = near.moved(shorter, gains);
+        let shorter = trimmed(&near, wall.atoms[0]);
+        if shorter != wall.atoms[0] {
+            let trial = near.moved(shorter, wall.gains[0]);
             if trial.cost() < wall.cost() {
-                (atom, gains) = (trial.atoms[0], trial.gains[0]);
+                wall = trial;
             }
         }
-        self.bench.refine(samples, vec![atom], vec![gains], Tie::PerEnd, Limits::ROUGH)
+        self.bench.refine(samples, wall.atoms, wall.gains, Tie::PerEnd, Limits::ROUGH)
     }
 
     /// The range bins in which `wall` is followed.

@@ -7,17 +7,16 @@ use crate::reconstruct::fit::{Fit, Limits, Tie};
 /// Most walls of one scene.
 const MOST_WALLS: usize = 8;
 
-/// Part of the work granted that the search for walls may take.
-const MOST_SPENT: f64 = 0.5;
-
 impl Search<'_> {
     /// `fit` and the walls that begin at `points` (x, y; metres), as long as each explains much of what there is in its range bins.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn more_walls(&self, mut fit: Fit, mut points: Vec<[f64; 2]>) -> Result<Fit, ReconstructError> {
-        let (known, before) = (fit.atoms.len(), self.bench.work.spent());
-        while fit.atoms.len() < known + MOST_WALLS && self.bench.work.spent() < before + MOST_SPENT {
+        let (known, before) = (fit.atoms.len(), self.bench.work.done());
+        // Half of the work is for what is no wall.
+        let most = before + self.settings.most_work / 2;
+        while fit.atoms.len() < known + MOST_WALLS && self.bench.work.done() < most {
             self.task.check()?;
             let Some(wall) = self.next_wall(&fit, &mut points) else { break };
             fit.atoms.push(wall.atoms[0]);
