@@ -79,8 +79,8 @@ impl Model {
         let mut powers = vec![0.0; self.steering.vectors()];
         // Without any power the covariance is the noise alone: the matched filter.
         if let Some(start) = explained(&self.steering, &powers, noise, &heard) {
-            for ((power, matched), square) in powers.iter_mut().zip(start.matched).zip(self.steering.squares()) {
-                *power = if square > 0.0 { matched * (noise as f32 / square).powi(2) } else { 0.0 };
+            for ((power, matched), held) in powers.iter_mut().zip(start.matched).zip(start.held) {
+                *power = if held > 0.0 { matched / (held * held) } else { 0.0 };
             }
         }
         for _ in 0..update.iterations {
