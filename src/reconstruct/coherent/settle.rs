@@ -83,7 +83,8 @@ impl<'a> Settled<'a> {
         let samples = Samples::new(&bench.sensor, &flat);
         let fit = bench.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
         let (detector, settings, enough) = (Detector::of(radar), Settings::default(), fit.cost() * AS_GOOD_AS_NOTHING);
-        Settled { radar, task, bench, detector, settings, samples, trace: Trace::default(), fit, enough, failures: MOST_FAILURES }
+        let (trace, failures) = (Trace::default(), MOST_FAILURES);
+        Settled { radar, task, bench, detector, settings, samples, trace, fit, enough, failures }
     }
 
     /// The start, with echoes tried as two.

@@ -8,8 +8,8 @@
 use super::sectors::end_beam_cos;
 use super::settle::{MOST_FAILURES, MOST_TWOS, Settled};
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::search::APART_BINS;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Profile, Tie, distance_bins, rows_of};
+use crate::reconstruct::search::APART_BINS;
 use num_complex::Complex64;
 use rayon::prelude::*;
 

@@ -1,19 +1,20 @@
 //! Beginnings of walls: rows over two points or from the edge of a wall, tested against the samples.
 
 use super::grow::{LOOK_ECHOES, tried};
-use super::state::Search;
 use super::on_wall::is_on;
 use super::propose::edges::rows_from_edges;
 use super::propose::end_beams::beam_noise_power;
 use super::propose::phased::PhasedBeams;
 use super::propose::strides::rows_over_pairs;
+use super::state::Search;
 use super::trace::decades;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, Fit, Profile, Rows, Spectra, rows_of};
 use rayon::prelude::*;
 
-/// Rows that are held against the samples themselves, at each look.
+/// Rows that are held against the samples themselves at each look, and points, those first on which the ends agree best, that a wall may begin at
+/// alone: there is one row a point.
 const MOST_TRIED: usize = 24;
 
 /// Least part of the energy in its range bins that a row must explain to be followed to its ends.
@@ -30,9 +31,6 @@ const LEAST_OF_LONG: f64 = 0.6;
 
 /// Fewest reflectors of a long wall, and fewest range bins that it goes through.
 const LEAST_LONG: usize = 45;
-
-/// Points, those first on which the ends agree best, that a wall may begin at alone.
-const MOST_EDGES: usize = 24;
 
 /// Whether a wall that explains this part of the energy in its range bins can be believed.
 fn is_borne_out(radar: &Radar, wall: &Atom, explained: f64) -> bool {
@@ -88,7 +86,7 @@ impl Search<'_> {
         // Looks from one point alone take longest.
         self.borne_out(&left, &rows_over_pairs(&beams, points, self.task)).or_else(|| {
             let is_near = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
-            let first: Vec<[f64; 2]> = points.iter().filter(is_near).take(MOST_EDGES).copied().collect();
+            let first: Vec<[f64; 2]> = points.iter().filter(is_near).take(MOST_TRIED).copied().collect();
             let from_edges = if self.is_long(&flat) { rows_from_edges(&beams, &first, self.task) } else { Vec::new() };
             self.borne_out(&left, &from_edges)
         })

@@ -39,7 +39,8 @@ impl Found {
         let drawn = &expected.map.lambda;
         let decades = (2.0 * expected.decades) as f32;
         let cos_of = |column: usize| radar.cos_of_column(column as f64);
-        let stronger = |best: ((usize, usize), f32), (at, v): ((usize, usize), &f32)| if *v > best.1 { (at, *v) } else { best };
+        let stronger =
+            |best: ((usize, usize), f32), (at, v): ((usize, usize), &f32)| if *v > best.1 { (at, *v) } else { best };
         let (peak_bin, peak_column) = drawn.indexed_iter().fold(((0, 0), f32::NEG_INFINITY), stronger).0;
         let views = End::BOTH.map(|end| View::of(radar, end));
         let seen_at = |view: &View, bin: usize, cos: f64| {

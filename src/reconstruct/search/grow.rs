@@ -6,9 +6,7 @@ use super::state::Search;
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
-use crate::reconstruct::fit::{
-    Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, groups, rows_of, union_of,
-};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, groups, rows_of, union_of};
 use crate::scene::Reflector;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -63,7 +61,7 @@ impl Search<'_> {
     /// Whether nothing stands out of the noise of what `fit` leaves.
     pub fn is_explained(&self, fit: &Fit) -> bool {
         let flat = fit.residual.flat(&self.bench.sensor);
-        !self.detector.stands_out(self.radar, &flat, self.least_power(&flat))
+        self.detector.peaks(self.radar, &flat, self.least_power(&flat), 1).is_empty()
     }
 
     /// The power in a beam that stands out of the noise of `flat`.
@@ -103,8 +101,7 @@ impl Search<'_> {
             self.bench.work.spend(LOOK_ECHOES);
             let flat = fit.residual.flat(&self.bench.sensor);
             let room = self.settings.most_atoms - fit.atoms.len();
-            let candidates = self.detector.peaks(self.radar, &flat, self.least_power(&flat), MOST_A_ROUND.min(room));
-            let points: Vec<[f64; 2]> = candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect();
+            let points = self.detector.peaks(self.radar, &flat, self.least_power(&flat), MOST_A_ROUND.min(room));
             if points.is_empty() {
                 break;
             }

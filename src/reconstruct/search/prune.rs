@@ -2,8 +2,8 @@
 
 use super::finish::are_loud;
 use super::grow::tried;
-use super::state::Search;
 use super::propose::strides::MAX_RANGES;
+use super::state::Search;
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
@@ -35,7 +35,11 @@ impl Search<'_> {
             let worth = self.bench.worths(&fit);
             let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
             let is_loud = self.in_noise.then(|| are_loud(self.radar, self.bench, &fit));
-            let is_needless = |i: &usize| worth[*i] < least || self.ran_away(&fit.atoms[*i]) || is_loud.as_ref().is_some_and(|is_loud| is_loud[*i]);
+            let is_needless = |i: &usize| {
+                worth[*i] < least
+                    || self.ran_away(&fit.atoms[*i])
+                    || is_loud.as_ref().is_some_and(|is_loud| is_loud[*i])
+            };
             let mut order: Vec<usize> = (0..fit.atoms.len()).filter(is_needless).collect();
             order.sort_by(|a, b| worth[*a].total_cmp(&worth[*b]));
             let mut gone: Vec<usize> = Vec::new();

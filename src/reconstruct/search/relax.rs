@@ -7,8 +7,8 @@
 //! likelihood (P. Stoica and Y. Selén, "Model-order selection: a review of information criterion rules", IEEE Signal Process. Mag. 21, 2004).
 
 use super::grow::{LOOK_ECHOES, tried};
-use super::state::Search;
 use super::settings::price_of_an_echo;
+use super::state::Search;
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;

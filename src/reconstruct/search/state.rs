@@ -3,19 +3,17 @@
 use super::grow::{ends_agree, tried};
 use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
+use super::rungs::MOST_ROUNDS;
 use super::settings::Settings;
 use super::trace::{ORDERING, Trace, decades};
 use crate::radar::Radar;
+use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
 use crate::reconstruct::fit::{Atom, Fit, Samples, Tie, Workbench};
-use crate::reconstruct::ReconstructError;
 use crate::task::Task;
 
 /// Part of the samples' energy that is left where all is found but for its exact place.
 pub const NEARLY_NOTHING: f64 = 1e-5;
-
-/// Rounds in which pairs that the ends don't agree on are dropped.
-const MOST_DOUBTS: usize = 3;
 
 /// Gains of one pair at both ends agree within this factor.
 const MOST_UNLIKE: f64 = 1.5;
@@ -132,7 +130,7 @@ impl Search<'_> {
         }
         atoms.truncate(self.settings.most_atoms);
         let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
-        for _ in 0..MOST_DOUBTS {
+        for _ in 0..MOST_ROUNDS {
             let (kept, unlike): (Vec<_>, Vec<_>) =
                 fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MOST_UNLIKE));
             if unlike.is_empty() {

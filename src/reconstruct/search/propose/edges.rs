@@ -4,10 +4,9 @@
 //! over the first few reflectors, and the best are followed as rows over two points are.
 
 use super::super::begin::MIN_REFLECTORS;
-use super::phased::{Heard, PhasedBeams, Presence, Row};
+use super::phased::{PhasedBeams, Presence, Row};
 use super::strides::{MOST_STEP_METRES, Start, best_of_each, pitches_metres, summits};
 use crate::reconstruct::fit::Atom;
-use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -58,13 +57,19 @@ pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) ->
     looks.sort_by(|a, b| b.score.total_cmp(&a.score));
     looks.truncate(MOST_LOOKS);
     let rows_of = |look: &Look| {
-        let fan = Fan::new(beams, points[look.first], look.radians);
-        Simd::chosen().run(Scan { beams, fan: &fan })
+        let (rows, lengths) = fan(beams, points[look.first], look.radians);
+        let parts = beams.parts_adding_up(&rows, MIN_REFLECTORS);
+        let kept: Vec<Row> = summits(&parts, lengths, KEPT_ROWS[0]).into_iter().map(|at| rows[at]).collect();
+        let parts = beams.parts_adding_up(&kept, 2 * MIN_REFLECTORS);
+        let mut longer: Vec<(f64, Row)> = parts.into_iter().zip(kept).collect();
+        longer.sort_by(|a, b| b.0.total_cmp(&a.0));
+        longer.truncate(KEPT_ROWS[1]);
+        longer
     };
     let starts: Vec<Start> = looks
         .par_iter()
         .filter(|_| !task.is_cancelled())
-        .flat_map_iter(|look| rows_of(look).into_iter().map(|row| Start { first: look.first, row }))
+        .flat_map_iter(|look| rows_of(look).into_iter().map(|(_, row)| Start { first: look.first, row }))
         .collect();
     tracing::debug!(looks = looks.len(), starts = starts.len(), "edges");
     let rows = best_of_each(beams, starts, task).into_iter();
@@ -97,72 +102,25 @@ struct Look {
     score: f64,
 }
 
-/// Rows from one point in about one direction: step by step longer, and turned to both sides.
-struct Fan {
-    from_metres: [f64; 2],
-    length_pitch_metres: f64,
-    lengths: usize,
-    /// Directions turned from one side to the other (x, y).
-    directions: Vec<[f64; 2]>,
-}
-
-impl Fan {
-    fn new(beams: &PhasedBeams, from_metres: [f64; 2], radians: f64) -> Self {
-        let [along, across] = pitches_metres(beams, from_metres, MOST_STEP_METRES, PITCH_WAVELENGTHS);
-        let range = from_metres[0].hypot(from_metres[1]).max(0.1);
-        let (sin, cos) = radians.sin_cos();
-        let by_sight = ((cos * from_metres[0] + sin * from_metres[1]) / range).abs();
-        let by_side = (1.0 - by_sight * by_sight).max(0.0).sqrt();
-        let length_pitch_metres = (by_sight / along + by_side / across).recip();
-        // A turn moves the ends of middling steps by the pitch across them.
-        let turn_pitch_radians = (by_sight / across + by_side / along).recip() / (0.5 * MOST_STEP_METRES);
-        let turns = (WITHIN_RADIANS / turn_pitch_radians).ceil() as i32;
-        let direction = |turn: i32| {
-            let (sin, cos) = (radians + f64::from(turn) * turn_pitch_radians).sin_cos();
-            [cos, sin]
-        };
-        Fan {
-            from_metres,
-            length_pitch_metres,
-            lengths: ((MOST_STEP_METRES - LEAST_STEP_METRES) / length_pitch_metres) as usize + 1,
-            directions: (-turns..=turns).map(direction).collect(),
-        }
-    }
-
-    /// Row number `at`, turn after turn of one length after the other.
-    fn row(&self, at: usize) -> Row {
-        let metres = LEAST_STEP_METRES + (at / self.directions.len()) as f64 * self.length_pitch_metres;
-        let step_metres = self.directions[at % self.directions.len()].map(|v| metres * v);
-        Row { first_metres: self.from_metres, step_metres }
-    }
-}
-
-/// All rows of a fan tried over their first few reflectors, and the best over some more.
-struct Scan<'a> {
-    beams: &'a PhasedBeams,
-    fan: &'a Fan,
-}
-
-impl Kernel for Scan<'_> {
-    type Output = Vec<Row>;
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) -> Self::Output {
-        let Scan { beams, fan } = self;
-        let mut heard = [Heard::default(); 2 * MIN_REFLECTORS];
-        let mut parts = vec![0.0; fan.lengths * fan.directions.len()];
-        for (at, part) in parts.iter_mut().enumerate() {
-            *part = beams.part_adding_up::<FMA>(&fan.row(at), &mut heard[..MIN_REFLECTORS]);
-        }
-        let mut longer: Vec<(f64, Row)> = Vec::with_capacity(KEPT_ROWS[0]);
-        for at in summits(&parts, fan.lengths, KEPT_ROWS[0]) {
-            let row = fan.row(at);
-            longer.push((beams.part_adding_up::<FMA>(&row, &mut heard), row));
-        }
-        longer.sort_by(|a, b| b.0.total_cmp(&a.0));
-        longer.truncate(KEPT_ROWS[1]);
-        longer.into_iter().map(|(_, row)| row).collect()
-    }
+/// Rows from one point in about one direction, turned from one side to the other, length after length; and the number of lengths.
+fn fan(beams: &PhasedBeams, from_metres: [f64; 2], radians: f64) -> (Vec<Row>, usize) {
+    let [along, across] = pitches_metres(beams, from_metres, MOST_STEP_METRES, PITCH_WAVELENGTHS);
+    let range = from_metres[0].hypot(from_metres[1]).max(0.1);
+    let (sin, cos) = radians.sin_cos();
+    let by_sight = ((cos * from_metres[0] + sin * from_metres[1]) / range).abs();
+    let by_side = (1.0 - by_sight * by_sight).max(0.0).sqrt();
+    let length_pitch_metres = (by_sight / along + by_side / across).recip();
+    // A turn moves the ends of middling steps by the pitch across them.
+    let turn_pitch_radians = (by_sight / across + by_side / along).recip() / (0.5 * MOST_STEP_METRES);
+    let turns = (WITHIN_RADIANS / turn_pitch_radians).ceil() as i32;
+    let lengths = ((MOST_STEP_METRES - LEAST_STEP_METRES) / length_pitch_metres) as usize + 1;
+    let row = |(length, turn): (usize, i32)| {
+        let metres = LEAST_STEP_METRES + length as f64 * length_pitch_metres;
+        let (sin, cos) = (radians + f64::from(turn) * turn_pitch_radians).sin_cos();
+        Row { first_metres: from_metres, step_metres: [metres * cos, metres * sin] }
+    };
+    let all = (0..lengths).flat_map(|length| (-turns..=turns).map(move |turn| (length, turn)));
+    (all.map(row).collect(), lengths)
 }
 
 #[cfg(test)]

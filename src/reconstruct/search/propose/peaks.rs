@@ -24,17 +24,6 @@ const EDGE_BINS: f64 = 1.0;
 /// Fewest cells of the common grid that are worth a task of their own.
 const LEAST_CELLS: usize = 4096;
 
-/// A place with a peak.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Candidate {
-    /// Position along the array.
-    pub x_metres: f64,
-    /// Position ahead of the array, at least 0.
-    pub y_metres: f64,
-    /// Product of both ends' magnitudes: the power of one end's beam where both are alike.
-    pub power: f64,
-}
-
 /// A search for peaks on the common grid.
 pub struct Detector {
     /// Centre (x, y) of every cell, metres, range after range; one wrap beyond the maximum range included.
@@ -88,18 +77,17 @@ impl Detector {
         self.cells[end][i as usize] as usize % self.bins
     }
 
-    /// Up to `most` places whose power exceeds `least`, strongest first, none of which may be a side lobe of a stronger one.
+    /// Up to `most` places (x, y; metres) whose power exceeds `least`, strongest first, none of which may be a side lobe of a stronger one.
     /// `residual` is not windowed.
-    pub fn peaks(&self, radar: &Radar, residual: &[Complex64], least: f64, most: usize) -> Vec<Candidate> {
+    pub fn peaks(&self, radar: &Radar, residual: &[Complex64], least: f64, most: usize) -> Vec<[f64; 2]> {
         let powers = self.powers(radar, residual);
         let strong = |i: u32| Some((powers.of(i), i)).filter(|(p, _)| f64::from(*p) > least);
         let mut strong: Vec<(f32, u32)> = self.cells().filter_map(strong).collect();
-        let mut found: Vec<Candidate> = Vec::new();
+        let mut found = Vec::new();
         let mut next = strongest(strong.iter().copied());
         while let Some((power, i)) = next {
             let power = f64::from(power);
-            let [x_metres, y_metres] = self.places_metres[i as usize];
-            found.push(Candidate { x_metres, y_metres, power });
+            found.push(self.places_metres[i as usize]);
             if found.len() == most {
                 break;
             }
@@ -124,12 +112,6 @@ impl Detector {
         let is_near = |i: &u32| first[self.bin(0, *i)] && last[self.bin(1, *i)];
         let cells: Vec<(f32, u32)> = self.cells().filter(is_near).map(|i| (powers.of(i), i)).collect();
         strongest(cells.into_iter()).map(|(_, i)| self.places_metres[i as usize])
-    }
-
-    /// Whether the power exceeds `least` anywhere.
-    pub fn stands_out(&self, radar: &Radar, residual: &[Complex64], least: f64) -> bool {
-        let powers = self.powers(radar, residual);
-        self.cells().any(|i| f64::from(powers.of(i)) > least)
     }
 
     /// All cells of the common grid.
@@ -189,12 +171,11 @@ mod tests {
         let detector = Detector::of(&radar);
         let found = detector.peaks(&radar, &flat, 0.0, 2);
         let [first, second] = found[..] else { panic!("{found:?}") };
-        assert!((first.x_metres - 3.0).hypot(first.y_metres - 11.0) < 0.3, "{first:?}");
-        assert!(
-            (second.x_metres + 9.0).hypot(second.y_metres - 20.0) < 0.5 && second.power < first.power,
-            "{second:?}"
-        );
-        assert!(detector.stands_out(&radar, &flat, 0.999 * first.power));
-        assert!(!detector.stands_out(&radar, &flat, 1.001 * first.power));
+        assert!((first[0] - 3.0).hypot(first[1] - 11.0) < 0.3, "{first:?}");
+        assert!((second[0] + 9.0).hypot(second[1] - 20.0) < 0.5, "{second:?}");
+        let powers = detector.powers(&radar, &flat);
+        let highest = detector.cells().map(|i| f64::from(powers.of(i))).reduce(|| 0.0, f64::max);
+        assert_eq!(detector.peaks(&radar, &flat, 0.999 * highest, 1), [first]);
+        assert!(detector.peaks(&radar, &flat, 1.001 * highest, 1).is_empty());
     }
 }

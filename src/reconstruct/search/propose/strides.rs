@@ -59,17 +59,20 @@ const PASSED: f64 = 0.4;
 
 /// Rows from one of `points` (x, y; metres) over another, best first; one for each first point at most.
 pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Atom> {
-    let pairs = (0..points.len()).flat_map(|i| neighbours(points, i).map(move |j| (i, j)));
-    let mut grids: Vec<Grid> = pairs.map(|(i, j)| Grid::new(beams, i, points[i], points[j])).collect();
-    grids.par_iter_mut().for_each(|grid| {
-        if !task.is_cancelled() {
-            grid.rows = Simd::chosen().run(Glance { beams, grid });
-        }
-    });
-    grids.sort_by(|a, b| b.best().total_cmp(&a.best()));
+    let neighbours_of = |i: usize| neighbours(points, i).map(move |j| (i, j));
+    let pairs: Vec<(usize, usize)> = (0..points.len()).flat_map(neighbours_of).collect();
+    // The best rows of every pair, with the part of the beams' power that adds up in each.
+    let glance = |&(first, over): &(usize, usize)| {
+        let rows = if task.is_cancelled() { Vec::new() } else { grid(beams, points[first], points[over]) };
+        let parts = beams.parts_adding_up(&rows, MIN_REFLECTORS);
+        let best = summits(&parts, (2 * REACH[0] + 1) as usize, KEPT_STEPS).into_iter();
+        best.map(|at| (parts[at], Start { first, row: rows[at] })).collect()
+    };
+    let mut grids: Vec<Vec<(f64, Start)>> = pairs.par_iter().map(glance).collect();
+    let best = |grid: &[(f64, Start)]| grid.first().map_or(0.0, |(part, _)| *part);
+    grids.sort_by(|a, b| best(b).total_cmp(&best(a)));
     grids.truncate(MOST_GRIDS);
-    let starts = grids.iter().flat_map(|grid| grid.rows.iter().map(|(row, _)| Start { first: grid.first, row: *row }));
-    best_of_each(beams, starts.collect(), task)
+    best_of_each(beams, grids.into_iter().flatten().map(|(_, start)| start).collect(), task)
 }
 
 /// A row of a few reflectors, to be followed.
@@ -113,42 +116,19 @@ fn neighbours(points: &[[f64; 2]], i: usize) -> impl Iterator<Item = usize> {
     near.into_iter().take(NEIGHBOURS).map(|(_, j)| j)
 }
 
-/// Steps from one point over about another.
-struct Grid {
-    /// Number of the first point.
-    first: usize,
-    middle: Row,
-    /// One step of the grid along the line of sight, and one across (x, y), metres.
-    along: [f64; 2],
-    across: [f64; 2],
-    /// The best rows with the part of the beams' power that adds up in each.
-    rows: Vec<(Row, f64)>,
-}
-
-impl Grid {
-    fn new(beams: &PhasedBeams, first: usize, from: [f64; 2], over: [f64; 2]) -> Self {
-        let step = [over[0] - from[0], over[1] - from[1]];
-        let range = from[0].hypot(from[1]).max(0.1);
-        let sight = [from[0] / range, from[1] / range];
-        let [along, across] = pitches_metres(beams, from, step[0].hypot(step[1]), PITCH_WAVELENGTHS);
-        Grid {
-            first,
-            middle: Row { first_metres: from, step_metres: step },
-            along: sight.map(|v| v * along),
-            across: [-sight[1] * across, sight[0] * across],
-            rows: Vec::new(),
-        }
-    }
-
-    fn at(&self, i: i32, j: i32) -> Row {
+/// Rows from one point over about another: by steps along the line of sight, and for each of these by steps across.
+fn grid(beams: &PhasedBeams, from: [f64; 2], over: [f64; 2]) -> Vec<Row> {
+    let step = [over[0] - from[0], over[1] - from[1]];
+    let range = from[0].hypot(from[1]).max(0.1);
+    let sight = [from[0] / range, from[1] / range];
+    let [along, across] = pitches_metres(beams, from, step[0].hypot(step[1]), PITCH_WAVELENGTHS);
+    let (along, across) = (sight.map(|v| v * along), [-sight[1] * across, sight[0] * across]);
+    let row = |i: i32, j: i32| {
         let [i, j] = [i, j].map(f64::from);
-        let step = [0, 1].map(|axis| self.middle.step_metres[axis] + i * self.along[axis] + j * self.across[axis]);
-        Row { step_metres: step, ..self.middle }
-    }
-
-    fn best(&self) -> f64 {
-        self.rows.first().map_or(0.0, |(_, part)| *part)
-    }
+        Row { first_metres: from, step_metres: [0, 1].map(|axis| step[axis] + i * along[axis] + j * across[axis]) }
+    };
+    let [far, wide] = REACH;
+    (-far..=far).flat_map(|i| (-wide..=wide).map(move |j| (i, j))).map(|(i, j)| row(i, j)).collect()
 }
 
 /// Steps of a grid over the first few reflectors, for rows of about this step, so that neighbours differ by so many wavelengths over all of
@@ -162,29 +142,6 @@ pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64, wav
     let along = wavelengths * wavelength / last;
     let curved = wavelengths * wavelength * range / (step_metres * last * last);
     [along, (along * range / between).min(curved)]
-}
-
-/// Kernel that tries all steps of a grid over the first few reflectors.
-struct Glance<'a> {
-    beams: &'a PhasedBeams,
-    grid: &'a Grid,
-}
-
-impl Kernel for Glance<'_> {
-    type Output = Vec<(Row, f64)>;
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) -> Self::Output {
-        let [rows, columns] = REACH.map(|reach| (2 * reach + 1) as usize);
-        let mut parts = vec![0.0; rows * columns];
-        let mut heard = [Heard::default(); MIN_REFLECTORS];
-        for (at, part) in parts.iter_mut().enumerate() {
-            let row = self.grid.at((at / columns) as i32 - REACH[0], (at % columns) as i32 - REACH[1]);
-            *part = self.beams.part_adding_up::<FMA>(&row, &mut heard);
-        }
-        let row = |at: usize| self.grid.at((at / columns) as i32 - REACH[0], (at % columns) as i32 - REACH[1]);
-        summits(&parts, rows, KEPT_STEPS).into_iter().map(|at| (row(at), parts[at])).collect()
-    }
 }
 
 /// The `most` highest of those places of a grid of so many `rows` that no neighbour exceeds, best first.

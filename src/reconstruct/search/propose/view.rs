@@ -49,9 +49,7 @@ impl View {
     pub fn range_metres<const W: usize>(&self, dx: Lanes<f64, W>, y: Lanes<f64, W>) -> Lanes<f64, W> {
         match &self.pairs {
             None => (dx * dx + y * y).sqrt(),
-            Some(ViewOfPairs { middle: [a, b], .. }) => {
-                (range_for(a, dx, y) + range_for(b, dx, y)) * Lanes::splat(0.5)
-            }
+            Some(ViewOfPairs { middle: [a, b], .. }) => (range_for(a, dx, y) + range_for(b, dx, y)) * Lanes::splat(0.5),
         }
     }
 
