@@ -27,6 +27,7 @@ pub struct PairBlocks<const W: usize> {
 
 impl<const W: usize> PairBlocks<W> {
     /// The pairs that `pair` returns for lanes 0, 1 and so on.
+    #[inline(always)]
     pub fn new(pair: impl Fn(usize) -> Pair) -> Self {
         let pairs: [Pair; W] = std::array::from_fn(pair);
         PairBlocks {

@@ -66,7 +66,7 @@ pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) ->
         let rows = if task.is_cancelled() { Vec::new() } else { grid(beams, points[first], points[over]) };
         let parts = beams.parts_adding_up(&rows, MIN_REFLECTORS);
         let best = summits(&parts, (2 * REACH[0] + 1) as usize, KEPT_STEPS).into_iter();
-        best.map(|at| (parts[at], Start { first, row: rows[at] })).collect()
+        best.map(|at| (parts[at], Start { first, row: rows[at] })).collect::<Vec<_>>()
     };
     let mut grids: Vec<Vec<(f64, Start)>> = pairs.par_iter().map(glance).collect();
     let best = |grid: &[(f64, Start)]| grid.first().map_or(0.0, |(part, _)| *part);
