@@ -76,8 +76,6 @@ pub enum Verdict {
 pub enum Refusal {
     /// No candidate was found, or none was worth an attempt.
     NothingFound,
-    /// The rung was skipped.
-    Skipped(&'static str),
     /// An end has more tones than can be paired in the time.
     TooManyTones,
     /// Other energy remains, so that other explanations are tried first.
@@ -107,7 +105,6 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Refusal::NothingFound => write!(f, "found nothing"),
-            Refusal::Skipped(why) => write!(f, "skipped: {why}"),
             Refusal::TooManyTones => write!(f, "refused: an end hears too many tones"),
             Refusal::LeavesSomething => write!(f, "refused: something else is left"),
             Refusal::ExplainsTooLittle(part) => {

@@ -27,6 +27,7 @@ pub struct PairBlocks<const W: usize> {
 
 impl<const W: usize> PairBlocks<W> {
     /// The pairs that `pair` returns for lanes 0, 1 and so on.
+    #[inline(always)]
     pub fn new(pair: impl Fn(usize) -> Pair) -> Self {
         let pairs: [Pair; W] = std::array::from_fn(pair);
         PairBlocks {
@@ -49,6 +50,18 @@ impl<const W: usize> From<Lanes<f64, W>> for PairBlocks<W> {
 }
 
 impl<const W: usize> PairBlocks<W> {
+    /// Ranges of the places at x and y, one a lane, in plain double precision, metres.
+    #[inline(always)]
+    pub fn ranges_metres(&self, x_metres: Lanes<f64, W>, y_metres: Lanes<f64, W>) -> Lanes<f64, W> {
+        let leg = |antenna_x: Lanes<f64, W>, antenna_y: Option<Lanes<f64, W>>| {
+            let (dx, dy) = (x_metres - antenna_x, antenna_y.map_or(y_metres, |y| y_metres - y));
+            (dx * dx + dy * dy).sqrt()
+        };
+        let [out, home] = self.ahead();
+        let there = leg(self.transmitter_x_metres, out);
+        if self.is_monostatic { there } else { (there + leg(self.receiver_x_metres, home)) * Lanes::splat(0.5) }
+    }
+
     /// y of transmitters and receivers, each `None` on the array's line.
     #[inline(always)]
     fn ahead(&self) -> [Option<Lanes<f64, W>>; 2] {

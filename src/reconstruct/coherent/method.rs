@@ -24,6 +24,9 @@ const MOST_HEARD_ELEMENTS: usize = 96;
 /// Most looks: searches for peaks in the samples and in the residuals of the reflectors found so far.
 const LOOKS: usize = 4;
 
+/// Peaks are the same reflector when nearer than this in range bins and in periods of the ends' fringes.
+const SAME_PEAK: (f64, f64) = (1.0, 0.75);
+
 /// Most sectors, those of an array as long as so many range bins.
 const MOST_SECTORS: f64 = 1000.0;
 
@@ -119,7 +122,7 @@ impl CoherentMethod {
                 Ok(peaks(&sectors, place, &powers, self.least_part))
             })
             .collect::<Result<_, ReconstructError>>()?;
-        Ok(apart(radar, found.concat(), sectors.fringe_cos))
+        Ok(apart(radar, found.concat(), [SAME_PEAK.0, SAME_PEAK.1 * sectors.fringe_cos]))
     }
 }
 

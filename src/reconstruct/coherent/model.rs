@@ -1,12 +1,13 @@
 //! The linear model of one place: steering vectors of both ends together, and their powers.
 
-use super::ends::{Ends, PairLanes, distances_metres};
+use super::ends::{Ends, distances_metres};
 use super::linear::{Lane, Steering, W, explained};
 use super::places::Place;
 use super::sectors::Sectors;
 use crate::radar::{Pair, Radar};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::profiles::range_response_near;
+use crate::signal::path::PairBlocks;
 use crate::signal::simd::{Kernel, Lanes, Simd};
 use crate::task::Task;
 use num_complex::Complex64;
@@ -78,8 +79,8 @@ impl Model {
         let mut powers = vec![0.0; self.steering.vectors()];
         // Without any power the covariance is the noise alone: the matched filter.
         if let Some(start) = explained(&self.steering, &powers, noise, &heard) {
-            for ((power, matched), square) in powers.iter_mut().zip(start.matched).zip(self.steering.squares()) {
-                *power = if square > 0.0 { matched * (noise as f32 / square).powi(2) } else { 0.0 };
+            for ((power, matched), held) in powers.iter_mut().zip(start.matched).zip(start.held) {
+                *power = if held > 0.0 { matched / (held * held) } else { 0.0 };
             }
         }
         for _ in 0..update.iterations {
@@ -118,7 +119,7 @@ impl Kernel for Make<'_> {
         let Make { ends, place, .. } = self;
         let range = place.range_metres;
         let middle = Lanes([place.sector.middle_cos]);
-        let own = |pair: &Pair| distances_metres::<1, FMA>(PairLanes::new(|_| *pair), range, middle).0[0];
+        let own = |pair: &Pair| distances_metres(PairBlocks::from(*pair), range, middle).0[0];
         let own: Vec<f64> = ends.pairs.iter().map(own).collect();
         let mut heard = vec![Complex64::default(); ends.len()];
         ends.listen::<FMA>(range, place.sector.middle_cos, &mut heard);
@@ -159,7 +160,7 @@ impl Make<'_> {
         let inside = cosines.map(|cos| cos.clamp(-1.0, 1.0));
         let per_bin = if radar.samples == 1 { 0.0 } else { 1.0 / radar.range_resolution_metres() };
         for (n, (pair, own)) in ends.pairs.iter().zip(own).enumerate() {
-            let distances = distances_metres::<W, FMA>(PairLanes::new(|_| *pair), place.range_metres, inside);
+            let distances = distances_metres(PairBlocks::<W>::new(|_| *pair), place.range_metres, inside);
             let further = distances - Lanes::splat(*own);
             let response = range_response_near::<W, FMA>(further * Lanes::splat(per_bin)).round_to();
             let wave = ends.profiles.phases::<f32, W, FMA>(further).scaled(response);

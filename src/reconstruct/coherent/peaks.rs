@@ -12,9 +12,6 @@ use faer::{Mat, Side};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Peaks are the same reflector when nearer than this in range bins and in periods of the ends' fringes.
-const SAME_PEAK: (f64, f64) = (1.0, 0.75);
-
 /// Most peaks of one model: two ends of a dozen elements resolve no more.
 const MOST_A_PLACE: usize = 8;
 
@@ -61,14 +58,14 @@ pub(super) fn peaks(sectors: &Sectors, place: &Place, powers: &[f64], least_part
         .collect()
 }
 
-/// One peak for each reflector, strongest first: of equal peaks the strongest stays.
-pub(super) fn apart(radar: &Radar, mut peaks: Vec<Peak>, fringe_cos: f64) -> Vec<Peak> {
+/// One peak for each reflector, strongest first: of peaks nearer than these range bins and this difference of cosines the strongest stays.
+pub(super) fn apart(radar: &Radar, mut peaks: Vec<Peak>, [bins, cos]: [f64; 2]) -> Vec<Peak> {
     peaks.sort_by(|a, b| b.power.total_cmp(&a.power));
     let mut kept: Vec<Peak> = Vec::new();
     for peak in peaks {
         let same = |k: &Peak| {
-            radar.bin_of_range((k.range_metres - peak.range_metres).abs()) < SAME_PEAK.0
-                && (k.cos_theta - peak.cos_theta).abs() < SAME_PEAK.1 * fringe_cos
+            radar.bin_of_range((k.range_metres - peak.range_metres).abs()) < bins
+                && (k.cos_theta - peak.cos_theta).abs() < cos
         };
         if kept.len() < MOST_REFLECTORS && !kept.iter().any(same) {
             kept.push(peak);

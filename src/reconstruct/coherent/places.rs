@@ -1,7 +1,7 @@
 //! Ranges and sectors with energy at both ends.
 
 use super::ends::Ends;
-use super::sectors::{Sector, Sectors};
+use super::sectors::{Sector, Sectors, end_beam_cos};
 use crate::radar::Radar;
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::profiles::range_response;
@@ -52,9 +52,7 @@ struct Beams {
 impl Beams {
     /// As many beams as cover the sectors without a gap.
     fn new(radar: &Radar, ends: &Ends, half_width_cos: f64) -> Self {
-        let end_metres = radar.end_elements as f64 * radar.element_spacing_metres;
-        let beam_cos = radar.beam_cos(end_metres);
-        let count = (4.0 * half_width_cos / beam_cos).ceil().max(1.0);
+        let count = (4.0 * half_width_cos / end_beam_cos(radar)).ceil().max(1.0);
         let step = |i: usize| (2 * i + 1) as f64 * half_width_cos / count - half_width_cos;
         let weights = |i: usize| ends.x_metres.iter().map(|x| ends.profiles.phase(x * step(i))).collect();
         Beams { weights: (0..count as usize).map(weights).collect() }

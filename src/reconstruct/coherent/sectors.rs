@@ -15,6 +15,11 @@ const PER_FRINGE_ALONE: f64 = 12.0;
 /// Most directions of one model, beyond which the grid gets coarser.
 const MOST_DIRECTIONS: usize = 1536;
 
+/// Width of an end's beam in cos(theta).
+pub(super) fn end_beam_cos(radar: &Radar) -> f64 {
+    radar.beam_cos(radar.end_elements as f64 * radar.element_spacing_metres)
+}
+
 /// Neighbouring directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sector {

@@ -3,27 +3,19 @@
 //! The cyclic least squares by which Yardibi et al. refine their own peaks (RELAX: J. Li and P. Stoica, "Efficient mixed-spectrum estimation
 //! with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), with the tools of the search.
 
-use super::peaks::{Peak, gains};
+use super::peaks::{Peak, apart, gains};
+use super::sectors::end_beam_cos;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, Samples, Tie, Workbench, distance_bins, rows_of};
-use crate::reconstruct::search::{Detector, Grower, MIN_WORTH_RATIO, Settings, TIED_COST_RATIO};
+use crate::reconstruct::fit::{Atom, Fit, Rows, Samples, Tie, Workbench, distance_bins, rows_of};
+use crate::reconstruct::search::{APART_BINS, Detector, MIN_WORTH_RATIO, Search, Settings, Trace, tied};
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
 use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::Arc;
-
-/// Limits of the refinement of all reflectors with one gain for both ends.
-const TIED: Limits = Limits { iterations: 20, least_gain: 1e-4, ridge: 0.0 };
-
-/// Most reflectors whose gains are tied by moving them together.
-const MOST_TIED: usize = 48;
-
-/// Distance in range at either end within which the strongest peak is taken first.
-const BESIDE_STRONGER_BINS: f64 = 4.0;
 
 /// Distance from the array that a reflector must keep, as a part of its distance from the nearer end.
 const NEAREST_BETWEEN: f64 = 0.25;
@@ -53,12 +45,11 @@ const SAME_PLACE: (f64, f64) = (1e-3, 1e-2);
 /// Budget of work, in units of about ten microseconds.
 const MOST_WORK: usize = 30_000;
 
-/// Most echoes among which doubtful ones are searched, since rows of reflectors always leave a residual; and most that are tried as two or taken
-/// away in one reconstruction.
+/// Most echoes among which doubtful ones are searched, since rows of reflectors always leave a residual; and most that are taken away at once.
 pub(super) const MOST_TWOS: usize = 24;
 
 /// Most successive echoes that fail to be two.
-const MOST_FAILURES: usize = 4;
+pub(super) const MOST_FAILURES: usize = 4;
 
 /// A peak without a reflector so far.
 struct Waiting {
@@ -66,24 +57,6 @@ struct Waiting {
     rows: Rows,
     /// Energy that the peak explained when it was found.
     energy: f64,
-}
-
-/// Number of echoes tried as two so far, and of successive failures.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Trials {
-    done: usize,
-    failed: usize,
-}
-
-impl Trials {
-    pub fn count(&mut self, was_worth_it: bool) {
-        self.done += 1;
-        self.failed = if was_worth_it { 0 } else { self.failed + 1 };
-    }
-
-    pub fn are_spent(&self) -> bool {
-        self.done >= MOST_TWOS || self.failed >= MOST_FAILURES
-    }
 }
 
 /// Reflectors found so far, with their residual.
@@ -94,11 +67,12 @@ pub(super) struct Settled<'a> {
     detector: Arc<Detector>,
     settings: Settings,
     samples: Samples,
+    trace: Trace,
     pub(super) fit: Fit,
     /// Residual energy at which the search ends.
     pub(super) enough: f64,
-    /// Counts of echoes tried as two; `None` where none are to be tried.
-    pub(super) trials: Option<Trials>,
+    /// Number of successive echoes that failed to be two, after [`MOST_FAILURES`] of which none is tried.
+    pub(super) failures: usize,
 }
 
 impl<'a> Settled<'a> {
@@ -109,17 +83,18 @@ impl<'a> Settled<'a> {
         let samples = Samples::new(&bench.sensor, &flat);
         let fit = bench.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
         let (detector, settings, enough) = (Detector::of(radar), Settings::default(), fit.cost() * AS_GOOD_AS_NOTHING);
-        Settled { radar, task, bench, detector, settings, samples, fit, enough, trials: None }
+        let (trace, failures) = (Trace::default(), MOST_FAILURES);
+        Settled { radar, task, bench, detector, settings, samples, trace, fit, enough, failures }
     }
 
     /// The start, with echoes tried as two.
     pub fn trying_two(self) -> Self {
-        Settled { trials: Some(Trials::default()), ..self }
+        Settled { failures: 0, ..self }
     }
 
-    pub(super) fn grower(&self) -> Grower<'_> {
-        let Settled { radar, task, bench, detector, settings, .. } = self;
-        Grower { radar, bench, detector, settings, in_noise: false, task, trace: None }
+    pub(super) fn search(&self) -> Search<'_> {
+        let Settled { radar, task, bench, detector, settings, samples, trace, .. } = self;
+        Search { radar, bench, detector, samples, in_noise: false, settings, task, trace }
     }
 
     /// The residual of the reflectors.
@@ -150,13 +125,12 @@ impl<'a> Settled<'a> {
             if taken.is_empty() || self.is_done() {
                 break;
             }
-            let grower = self.grower();
-            self.fit = grower.settled(grower.with_points(self.fit.clone(), &taken)?)?;
+            let search = self.search();
+            self.fit = search.settled(search.with_points(self.fit.clone(), &taken)?)?;
             self.split()?;
             waiting = left.into_iter().map(|(_, w)| w).collect();
         }
-        let grower = self.grower();
-        self.fit = grower.pruned(self.fit.clone())?;
+        self.fit = self.search().pruned(self.fit.clone())?;
         self.merge()?;
         let is_better = self.fit.cost() < WORTH_ANOTHER * before.cost();
         if self.fit.cost() > before.cost() {
@@ -185,12 +159,7 @@ impl<'a> Settled<'a> {
     /// [`ReconstructError::Cancelled`].
     pub fn found(self, ends: &TwoEnds) -> Result<Vec<Gained>, ReconstructError> {
         let Settled { radar, task, bench, samples, mut fit, enough, .. } = self;
-        if fit.atoms.len() <= MOST_TIED {
-            let tied = bench.refine(&samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
-            if tied.cost() <= TIED_COST_RATIO * fit.cost() {
-                fit = tied;
-            }
-        }
+        fit = tied(&bench, &samples, fit, false);
         let is_certain = fit.cost() <= enough * CERTAIN;
         let peak = |(atom, gains): (&Atom, &[Complex64; 2])| {
             let [x, y] = atom.position_metres(0.0);
@@ -199,26 +168,9 @@ impl<'a> Settled<'a> {
             let peak = Peak { range_metres: place.range_metres, cos_theta: place.cos_theta, power };
             (is_certain || is_heard_at_the_ends(radar, x, y)).then_some(peak)
         };
-        let peaks: Vec<Peak> = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
-        gains(radar, &once_each(radar, peaks), ends, task)
+        let peaks = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
+        gains(radar, &apart(radar, peaks, [SAME_PLACE.1, SAME_PLACE.0 * end_beam_cos(radar)]), ends, task)
     }
-}
-
-/// `peaks` without those at the place of an earlier one.
-fn once_each(radar: &Radar, peaks: Vec<Peak>) -> Vec<Peak> {
-    let end_metres = radar.end_elements as f64 * radar.element_spacing_metres;
-    let beam_cos = radar.beam_cos(end_metres);
-    let mut kept: Vec<Peak> = Vec::with_capacity(peaks.len());
-    for peak in peaks {
-        let is_same = |k: &Peak| {
-            (k.cos_theta - peak.cos_theta).abs() < SAME_PLACE.0 * beam_cos
-                && radar.bin_of_range((k.range_metres - peak.range_metres).abs()) < SAME_PLACE.1
-        };
-        if !kept.iter().any(is_same) {
-            kept.push(peak);
-        }
-    }
-    kept
 }
 
 /// Whether a reflector's echo is not much louder at an element between the ends than at the ends: such a reflector would fill the map without
@@ -245,7 +197,7 @@ impl Waiting {
 fn strongest_apart(radar: &Radar, left: &mut Vec<(f64, Waiting)>) -> Vec<[f64; 2]> {
     let mut taken: Vec<(Rows, [f64; 2])> = Vec::new();
     left.retain(|(_, w)| {
-        let is_apart = taken.iter().all(|(rows, _)| distance_bins(radar.samples, rows, &w.rows) > BESIDE_STRONGER_BINS);
+        let is_apart = taken.iter().all(|(rows, _)| distance_bins(radar.samples, rows, &w.rows) > APART_BINS);
         if is_apart {
             taken.push((w.rows, [w.echo.reflector.x_metres, w.echo.reflector.y_metres]));
         }

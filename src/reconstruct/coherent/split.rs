@@ -5,20 +5,16 @@
 //! runs once more, and each echo with a residual at its own range is tried as two before others are added beside it. The answer is the run that
 //! needs fewer echoes for the same residual, or leaves less.
 
-use super::settle::{MOST_TWOS, Settled};
+use super::sectors::end_beam_cos;
+use super::settle::{MOST_FAILURES, MOST_TWOS, Settled};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit, Limits, Profile, Tie, distance_bins, rows_of};
+use crate::reconstruct::search::APART_BINS;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Starts of the two echoes: offsets to either side of the one, in parts of an end's beam and in range bins.
 const STARTS: [(f64, f64); 5] = [(0.1, 0.0), (0.1, 0.25), (0.1, -0.25), (0.02, 0.25), (0.3, 0.0)];
-
-/// Limits of the refinement of the two while starts are compared.
-const TRYING: Limits = Limits { iterations: 10, least_gain: 1e-2, ridge: 0.0 };
-
-/// Limits of the refinement of the best start.
-const TRIED: Limits = Limits { iterations: 40, least_gain: 1e-4, ridge: 0.0 };
 
 /// Largest residual of two echoes at their range, as a part of that of the one, for which two replace one.
 const WORTH_TWO: f64 = 0.2;
@@ -51,18 +47,12 @@ struct Spot {
 }
 
 impl Settled<'_> {
-    /// Width of an end's beam in cos(theta).
-    fn beam_cos(&self) -> f64 {
-        let end_metres = self.radar.end_elements as f64 * self.radar.element_spacing_metres;
-        self.radar.beam_cos(end_metres)
-    }
-
     /// Whether there is a residual at the range of an echo, or a weak echo beside a strong one: either may be two reflectors found as one.
     pub fn is_doubtful(&self) -> bool {
         let count = self.fit.atoms.len();
         (1..=MOST_TWOS).contains(&count)
             && !self.is_done()
-            && (self.has_companions() || self.grower().in_need(&self.fit).contains(&true))
+            && (self.has_companions() || self.search().in_need(&self.fit).contains(&true))
     }
 
     /// Whether a weak echo stands beside a strong one.
@@ -92,25 +82,24 @@ impl Settled<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn split(&mut self) -> Result<(), ReconstructError> {
-        let Some(mut trials) = self.trials else { return Ok(()) };
-        let in_need = self.grower().in_need(&self.fit);
+        let in_need = self.search().in_need(&self.fit);
         let energy = |i: usize| self.fit.gains[i].iter().map(|g| g.norm_sqr()).sum::<f64>();
         let mut order: Vec<usize> = (0..in_need.len()).filter(|i| in_need[*i]).collect();
         order.sort_by(|a, b| energy(*b).total_cmp(&energy(*a)));
         for i in order {
             self.task.check()?;
-            if trials.are_spent() || self.bench.work.is_spent() {
+            if self.failures >= MOST_FAILURES || self.bench.work.is_spent() {
                 break;
             }
-            let two = self.as_two(i);
-            trials.count(two.is_some());
-            if let Some(fit) = two {
+            match self.as_two(i) {
                 // The indices of the echoes have changed; remaining doubtful ones show in the next round.
-                self.fit = fit;
-                break;
+                Some(fit) => {
+                    (self.fit, self.failures) = (fit, 0);
+                    break;
+                }
+                None => self.failures += 1,
             }
         }
-        self.trials = Some(trials);
         Ok(())
     }
 
@@ -121,7 +110,7 @@ impl Settled<'_> {
         let without = self.bench.less(self.fit.clone(), &[i]);
         let [x, y] = self.fit.atoms[i].position_metres(0.0);
         let place = self.radar.polar_of(x, y);
-        let (beam_cos, bin_metres) = (self.beam_cos(), self.radar.range_resolution_metres());
+        let (beam_cos, bin_metres) = (end_beam_cos(self.radar), self.radar.range_resolution_metres());
         let refined =
             |atoms: Vec<Atom>, gains, limits| self.bench.refine(&without.residual, atoms, gains, Tie::PerEnd, limits);
         let start = |(beams, bins): &(f64, f64)| {
@@ -130,11 +119,11 @@ impl Settled<'_> {
                 let range = (place.range_metres + sign * bins * bin_metres).max(bin_metres);
                 Atom::Point { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).max(0.0).sqrt() }
             };
-            refined(vec![side(1.0), side(-1.0)], vec![Default::default(); 2], TRYING)
+            refined(vec![side(1.0), side(-1.0)], vec![Default::default(); 2], Limits::ROUGH)
         };
         let tried: Vec<Fit> = STARTS.par_iter().map(start).collect();
         let best = tried.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()))?;
-        let two = refined(best.atoms, best.gains, TRIED);
+        let two = refined(best.atoms, best.gains, Limits::FINE);
         let mut fit = without;
         fit.atoms.extend(two.atoms);
         fit.gains.extend(two.gains);
@@ -164,7 +153,7 @@ impl Settled<'_> {
             let less = self.bench.less(self.fit.clone(), &[gone]);
             let beside = if beside > gone { beside - 1 } else { beside };
             let marked: Vec<bool> = (0..less.atoms.len()).map(|i| i == beside).collect();
-            let fewer = self.grower().refined(less, &marked, 4.0, TRIED)?;
+            let fewer = self.search().refined(less, &marked, APART_BINS, Limits::FINE)?;
             if fewer.cost() > (1.0 + AS_GOOD) * self.fit.cost() + 4.0 * noise + self.enough {
                 break;
             }
@@ -179,7 +168,7 @@ impl Settled<'_> {
             let [x, y] = atom.position_metres(0.0);
             let place = self.radar.polar_of(x, y);
             Spot {
-                beam: place.cos_theta / self.beam_cos(),
+                beam: place.cos_theta / end_beam_cos(self.radar),
                 bin: self.radar.bin_of_range(place.range_metres),
                 energy: gains.iter().map(Complex64::norm_sqr).sum::<f64>() / place.range_metres.max(1e-3).powi(4),
             }

@@ -3,9 +3,7 @@
 use super::atom::Atom;
 use super::echoes::{Samples, echo_of_all};
 use super::refine::{Fit, Workbench};
-use super::sensor::W;
 use crate::scene::Reflector;
-use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Simd};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -14,98 +12,23 @@ impl Workbench<'_> {
     pub fn solve_alone(&self, samples: &Samples, atom: Atom) -> Fit {
         let reflectors: Vec<Reflector> = atom.reflectors(1.0).collect();
         self.work.spend(reflectors.len() + 1);
-        let (sensor, simd, squared) = (&self.sensor, Simd::chosen(), &self.squared);
-        let listen = |(block, samples): (usize, &Block)| {
-            simd.run(Listen { squared, samples, echo: echo_of_all(sensor, &reflectors, block) })
-        };
-        let heard: Vec<Heard> = samples.blocks.par_iter().enumerate().map(listen).collect();
-        let mut sums = [(Complex64::default(), 0.0); 2];
-        for channel in 0..sensor.element_x.len() {
-            let (heard, lane) = (&heard[channel / W], channel % W);
-            let (shared, power) = &mut sums[channel / sensor.end_elements];
-            *shared += Complex64::new(heard.shared.re.0[lane], heard.shared.im.0[lane]);
-            *power += heard.power.0[lane];
+        let sensor = &self.sensor;
+        let blocks = (0..samples.blocks.len()).into_par_iter().map(|block| echo_of_all(sensor, &reflectors, block));
+        let echo = Samples { blocks: blocks.collect() }.flat(sensor);
+        let mut left = samples.flat(sensor);
+        let of_end = sensor.end_elements * sensor.samples;
+        let (mut gains, mut energy) = ([Complex64::ZERO; 2], [0.0; 2]);
+        for (end, (left, echo)) in left.chunks_exact_mut(of_end).zip(echo.chunks_exact(of_end)).enumerate() {
+            let weights = || self.squared.iter().cycle();
+            let weighted = left.iter().zip(echo).zip(weights());
+            let (shared, power) = weighted.fold((Complex64::ZERO, 0.0), |(shared, power), ((v, echo), w)| {
+                (shared + echo.conj() * v * w, power + echo.norm_sqr() * w)
+            });
+            gains[end] = if power > 0.0 { shared / power } else { Complex64::ZERO };
+            left.iter_mut().zip(echo).for_each(|(v, echo)| *v -= echo * gains[end]);
+            energy[end] = left.iter().zip(weights()).map(|(v, w)| v.norm_sqr() * w).sum();
         }
-        let gains = sums.map(|(shared, power)| if power > 0.0 { shared / power } else { Complex64::default() });
-        let last = sensor.element_x.len() - 1;
-        let leave = |(block, (samples, heard)): (usize, (&Block, &Heard))| {
-            let gain = |lane: usize| gains[(block * W + lane).min(last) / sensor.end_elements];
-            let gain = ComplexLanes {
-                re: Lanes(std::array::from_fn(|lane| -gain(lane).re)),
-                im: Lanes(std::array::from_fn(|lane| -gain(lane).im)),
-            };
-            simd.run(Leave { squared, samples, echo: &heard.echo, gain })
-        };
-        let left: Vec<Left> = samples.blocks.iter().zip(&heard).enumerate().map(leave).collect();
-        let mut energy = [0.0; 2];
-        for channel in 0..sensor.element_x.len() {
-            energy[channel / sensor.end_elements] += left[channel / W].energy.0[channel % W];
-        }
-        let residual = Samples { blocks: left.into_iter().map(|left| left.residual).collect() };
-        Fit { atoms: vec![atom], gains: vec![gains], residual, energy }
-    }
-}
-
-/// Samples of one block of channels.
-type Block = Vec<ComplexLanes<f64, W>>;
-
-/// An echo at one block of channels, with its products with the samples there and with itself.
-struct Heard {
-    echo: Block,
-    shared: ComplexLanes<f64, W>,
-    power: Lanes<f64, W>,
-}
-
-/// Kernel of these products under a window.
-struct Listen<'a> {
-    squared: &'a [f64],
-    samples: &'a [ComplexLanes<f64, W>],
-    echo: Block,
-}
-
-impl Kernel for Listen<'_> {
-    type Output = Heard;
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) -> Heard {
-        let (mut shared, mut power) = (ComplexLanes::zero(), Lanes::splat(0.0));
-        for ((v, echo), w) in self.samples.iter().zip(&self.echo).zip(self.squared) {
-            let weighted = echo.scaled(Lanes::splat(*w));
-            shared = shared.plus_product::<FMA>(weighted.conj(), *v);
-            power = weighted.re.mul_add::<FMA>(echo.re, weighted.im.mul_add::<FMA>(echo.im, power));
-        }
-        Heard { echo: self.echo, shared, power }
-    }
-}
-
-/// The residual of one block of channels after an echo of some gain, and its energy under the window.
-struct Left {
-    residual: Block,
-    energy: Lanes<f64, W>,
-}
-
-/// Kernel that adds an echo of some gain to one block of channels.
-struct Leave<'a> {
-    squared: &'a [f64],
-    samples: &'a [ComplexLanes<f64, W>],
-    echo: &'a [ComplexLanes<f64, W>],
-    gain: ComplexLanes<f64, W>,
-}
-
-impl Kernel for Leave<'_> {
-    type Output = Left;
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) -> Left {
-        let mut residual = self.samples.to_vec();
-        let mut energy = Lanes::splat(0.0);
-        for (left, echo) in residual.iter_mut().zip(self.echo) {
-            *left = left.plus_product::<FMA>(*echo, self.gain);
-        }
-        for (v, w) in residual.iter().zip(self.squared) {
-            energy = (v.re * v.re + v.im * v.im).mul_add::<FMA>(Lanes::splat(*w), energy);
-        }
-        Left { residual, energy }
+        Fit { atoms: vec![atom], gains: vec![gains], residual: Samples::new(sensor, &left), energy }
     }
 }
 

@@ -62,11 +62,10 @@ impl<'a> Spectra<'a> {
         let all = self.radar.samples;
         let fits = |part: &&usize| all.is_multiple_of(**part) && needed <= (all / **part) as f64;
         let Some(part) = PARTS.iter().find(fits) else {
-            let nothing = self.bench.without(self.samples, &[], &[]);
             return Narrow {
                 bench: self.bench.clone(),
                 samples: self.samples.clone(),
-                energy: nothing.energy[0] + nothing.energy[1],
+                energy: self.bench.energy(self.samples),
                 whole: [(f64::NEG_INFINITY, f64::INFINITY); 2],
             };
         };
@@ -159,7 +158,7 @@ mod tests {
                 near.holds(&rows_of(&radar, &truth))
                     && !near.holds(&rows_of(&radar, &Atom::Point { x_metres: 9.0, y_metres: 30.0 }))
             );
-            let all: f64 = bench.without(&samples, &[], &[]).energy.iter().sum();
+            let all = bench.energy(&samples);
             let explained = [
                 all - bench.solve_alone(&samples, seed).cost(),
                 near.energy - near.bench.solve_alone(&near.samples, seed).cost(),

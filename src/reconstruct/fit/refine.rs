@@ -42,6 +42,9 @@ pub struct Limits {
 impl Limits {
     /// Limits of a refinement before further ones: most of the way in a few steps.
     pub const ROUGH: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
+
+    /// Limits of a refinement once all atoms are there.
+    pub const FINE: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
 }
 
 /// Gains at the first and at the last end.
@@ -145,6 +148,11 @@ impl<'a> Workbench<'a> {
         remainder(&self.sensor, &self.squared, samples, &reflectors, Asked::Nothing)
     }
 
+    /// Energy of the windowed `samples`.
+    pub fn energy(&self, samples: &Samples) -> f64 {
+        self.without(samples, &[], &[]).energy.iter().sum()
+    }
+
     /// The fit of `atoms` at their places.
     pub fn solve(&self, samples: &Samples, atoms: Vec<Atom>, tie: Tie, ridge: f64) -> Fit {
         let gains = vec![Gains::default(); atoms.len()];
@@ -211,12 +219,11 @@ impl<'a> Workbench<'a> {
         None
     }
 
-    /// Whether no parameter of `atoms` is moved farther than a step may.
+    /// Whether no place is moved farther than the maximum range, after which ranges repeat: a point's second parameter is a square of a distance.
     fn is_within_reach(&self, atoms: &[Atom], step: &[f64]) -> bool {
-        let squared = |atom: &Atom, k: usize| matches!(atom, Atom::Point { .. }) && k == 1;
-        let most = |atom: &Atom, k: usize| match squared(atom, k) {
-            true => FARTHEST_SQUARE * self.max_range_metres.powi(2),
-            false => MAX_STEP_RATIO * self.max_range_metres,
+        let most = |atom: &Atom, k: usize| match (atom, k) {
+            (Atom::Point { .. }, 1) => self.max_range_metres.powi(2),
+            _ => self.max_range_metres,
         };
         let parameters = atoms.iter().flat_map(|atom| (0..atom.parameters()).map(move |k| (atom, k)));
         parameters.zip(step).all(|((atom, k), v)| v.abs() < most(atom, k))
@@ -327,12 +334,6 @@ impl<'a> Workbench<'a> {
         Fit { residual: left.residual, energy: left.energy, ..state.fit }
     }
 }
-
-/// Largest ratio of a step to the maximum range.
-const MAX_STEP_RATIO: f64 = 26.0;
-
-/// Largest change of the square of a distance in a step, relative to the square of the maximum range.
-const FARTHEST_SQUARE: f64 = 0.68;
 
 /// The reflectors of `atoms` with their gains.
 fn reflectors(atoms: &[Atom], gains: &[Gains]) -> Vec<(Reflector, Gains)> {

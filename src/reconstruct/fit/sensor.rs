@@ -89,17 +89,8 @@ impl Sensor {
 
 /// `r`, moved so that its distance from every element is large enough to divide by.
 pub fn kept_apart(sensor: &Sensor, r: &Reflector) -> Reflector {
-    let apart = |m: f64, x: f64| m.min((x - r.x_metres).abs());
-    let antennas = || sensor.pairs.iter().flat_map(Pair::places_metres);
-    if !sensor.pairs.iter().all(Pair::is_on_line) {
-        let is_near = |[x, y]: &[f64; 2]| (x - r.x_metres).hypot(y - r.y_metres) < NEAREST_METRES;
-        let y_metres = antennas().find(is_near).map_or(r.y_metres, |[_, y]| y + NEAREST_METRES);
-        return Reflector { y_metres, ..*r };
-    }
-    let nearest = match sensor.is_monostatic {
-        true => sensor.element_x.iter().fold(f64::INFINITY, |m, x| apart(m, *x)),
-        false => antennas().fold(f64::INFINITY, |m, [x, _]| apart(m, x)),
-    };
-    let y_metres = if nearest.hypot(r.y_metres) < NEAREST_METRES { NEAREST_METRES } else { r.y_metres };
+    let is_near = |[x, y]: &[f64; 2]| (x - r.x_metres).powi(2) + (y - r.y_metres).powi(2) < NEAREST_METRES.powi(2);
+    let nearest = sensor.pairs.iter().flat_map(Pair::places_metres).find(is_near);
+    let y_metres = nearest.map_or(r.y_metres, |[_, y]| y + NEAREST_METRES);
     Reflector { y_metres, ..*r }
 }

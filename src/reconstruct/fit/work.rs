@@ -36,11 +36,6 @@ impl Work {
         self.done.load(Ordering::Relaxed)
     }
 
-    /// Part of the granted work that is done; call it where nothing runs in parallel.
-    pub fn spent(&self) -> f64 {
-        self.done.load(Ordering::Relaxed) as f64 / self.most.max(1) as f64
-    }
-
     /// Whether the granted work is done. Call it where nothing runs in parallel: only there is the answer the same every time.
     pub fn is_spent(&self) -> bool {
         self.done.load(Ordering::Relaxed) >= self.most

@@ -1,23 +1,26 @@
 //! Beginnings of walls: rows over two points or from the edge of a wall, tested against the samples.
 
-use super::grow::{Grower, tried};
+use super::grow::{LOOK_ECHOES, tried};
 use super::on_wall::is_on;
-use super::propose::edges::edges;
-use super::propose::strides::strides;
+use super::propose::edges::rows_from_edges;
+use super::propose::end_beams::beam_noise_power;
+use super::propose::phased::PhasedBeams;
+use super::propose::strides::rows_over_pairs;
+use super::state::Search;
 use super::trace::decades;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, Fit, Profile, Rows, Spectra, rows_of};
-use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Rows that are held against the samples themselves, at each look.
+/// Rows that are held against the samples themselves at each look, and points, those first on which the ends agree best, that a wall may begin at
+/// alone: there is one row a point.
 const MOST_TRIED: usize = 24;
 
 /// Least part of the energy in its range bins that a row must explain to be followed to its ends.
 const LEAST_BEGUN: f64 = 0.3;
 
-/// Fewest reflectors of a wall.
+/// Fewest reflectors of a wall, and those over which rows are tried first.
 pub const MIN_REFLECTORS: usize = 8;
 
 /// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
@@ -28,9 +31,6 @@ const LEAST_OF_LONG: f64 = 0.6;
 
 /// Fewest reflectors of a long wall, and fewest range bins that it goes through.
 const LEAST_LONG: usize = 45;
-
-/// Echoes that the look for rows over one point takes as long as.
-const LOOK_A_POINT: usize = 20;
 
 /// Whether a wall that explains this part of the energy in its range bins can be believed.
 fn is_borne_out(radar: &Radar, wall: &Atom, explained: f64) -> bool {
@@ -70,32 +70,26 @@ struct Begun {
     part: f64,
 }
 
-impl Grower<'_> {
+impl Search<'_> {
     /// A wall that begins at one of `points` (x, y; metres), followed to its ends in what `fit` leaves, that is borne out by how much it explains.
     /// Points on the walls of `fit` are taken from `points`.
     pub fn next_wall(&self, fit: &Fit, points: &mut Vec<[f64; 2]>) -> Option<Fit> {
         let flat = fit.residual.flat(&self.bench.sensor);
         let profile = Profile::new(self.radar, &flat);
-        let noise_a_bin = self.noise_a_bin(&flat);
+        let noise_a_bin = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, &flat));
         let left = Left { fit, profile, noise_a_bin, spectra: Spectra::new(self.radar, self.bench, &fit.residual) };
         points.retain(|&[x_metres, y_metres]| {
             !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
         });
-        let all = self.unexplained(&flat, fit).with_points(points);
-        self.bench.work.spend(LOOK_A_POINT * points.len());
-        let rows = strides(&all);
+        self.bench.work.spend(LOOK_ECHOES / 10 * points.len());
+        let beams = PhasedBeams::new(self.radar, &flat);
         // Looks from one point alone take longest.
-        self.borne_out(&left, &rows).or_else(|| {
-            let from_edges = if all.is_long() { edges(&all) } else { Vec::new() };
+        self.borne_out(&left, &rows_over_pairs(&beams, points, self.task)).or_else(|| {
+            let is_near = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
+            let first: Vec<[f64; 2]> = points.iter().filter(is_near).take(MOST_TRIED).copied().collect();
+            let from_edges = if self.is_long(&flat) { rows_from_edges(&beams, &first, self.task) } else { Vec::new() };
             self.borne_out(&left, &from_edges)
         })
-    }
-
-    /// Energy that the noise heard in `flat`, channel by channel, gives to a range bin of an end.
-    fn noise_a_bin(&self, flat: &[Complex64]) -> f64 {
-        let window = self.radar.window.weights(self.radar.samples).iter().map(|w| w * w).sum::<f64>();
-        let variance = self.bench.hearing.noise_variance(self.radar, flat);
-        variance * window * self.radar.end_elements as f64 / self.radar.samples as f64
     }
 
     /// The row with the part that it explains, where it is, of the energy in its range bins.

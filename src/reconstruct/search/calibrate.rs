@@ -6,7 +6,9 @@
 
 use super::element_gains::ElementGains;
 use super::finish::Found;
+use super::rungs::WORTH_ANOTHER;
 use super::settings::Settings;
+use super::state::NEARLY_NOTHING;
 use super::trace::{CALIBRATION, MOST_ATTEMPTS, decades};
 use crate::radar::{Radar, hann};
 use crate::reconstruct::attempt::{Attempt, Verdict};
@@ -16,11 +18,9 @@ use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
 
-/// Noise that the search is told of, as a part of the samples' power, level by level.
+/// Noise that the search is told of, as a part of the samples' power, level by level. After the first two an offset and a slope of phase are taken
+/// from each end's gains: while places are rough, both are a place of all objects.
 const NOISE_LEVELS: [f64; 5] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4];
-
-/// Least noise after which an offset and a slope of phase are taken from each end's gains: while places are rough, both are a place of all objects.
-const MIN_ROUGH_LEVEL: f64 = 0.1;
 
 /// Part of a search's work that is granted to a level: what takes longer is no scene of a few objects.
 const WORK_SHARE: usize = 4;
@@ -31,9 +31,8 @@ const TURNS: usize = 6;
 /// Maximum energy that a level leaves, as a part of the samples' energy.
 const MAX_LEVEL_ENERGY_RATIO: f64 = 0.3;
 
-/// Most turns of places, gains of objects and of elements after the last level, and the part that a turn must leave at most to be worth another.
+/// Most turns of places, gains of objects and of elements after the last level.
 const MAX_LAST_TURNS: usize = 30;
-const WORTH_ANOTHER_TURN: f64 = 0.5;
 
 /// Maximum energy that calibrated objects leave over the rounding floor, as a part of the samples' energy. More than that is an echo.
 const MAX_ROUNDING_ENERGY_RATIO: f64 = 1e-6;
@@ -54,9 +53,6 @@ const EXPECTED_SQUARE: f64 = 0.02;
 /// Gains that differ more from 1 in the mean square's root are no tolerances.
 const MAX_DEVIATION: f64 = 0.3;
 
-/// Part of the samples' energy that objects must leave for elements to be suspected: errors of a twentieth of the usual ones.
-const MIN_ENERGY_RATIO: f64 = 1e-5;
-
 /// Maximum energy that calibrated objects leave over noise, as a part of the samples' energy.
 const MAX_ENERGY_RATIO: f64 = 1e-2;
 
@@ -65,7 +61,7 @@ const MAX_PLAIN_RATIO: f64 = 0.1;
 
 /// Whether the residual of objects found in samples is larger than equal elements would leave.
 pub(super) fn asks_for_gains(plain: &Found) -> bool {
-    !plain.complete && !plain.atoms.is_empty() && plain.drawn_left() > MIN_ENERGY_RATIO
+    !plain.complete && !plain.atoms.is_empty() && plain.drawn_left() > NEARLY_NOTHING
 }
 
 /// The objects in samples of equal elements, starting from those of an answer where there is one.
@@ -155,7 +151,7 @@ impl Calibration<'_> {
             }
             for _ in 0..TURNS {
                 let turned = turned(radar, &bench, ends, &atoms, &gains, false);
-                gains = turned.gains.clone().normalised(*level >= MIN_ROUGH_LEVEL);
+                gains = turned.gains.clone().normalised(*level >= NOISE_LEVELS[1]);
                 last = Some(turned);
             }
             if last
@@ -170,7 +166,7 @@ impl Calibration<'_> {
             request.task.check()?;
             let before = last.left;
             last = turned(radar, &bench, ends, &last.fit.atoms, &last.gains.normalised(false), true);
-            if last.left > WORTH_ANOTHER_TURN * before {
+            if last.left > WORTH_ANOTHER * before {
                 break;
             }
         }
@@ -214,7 +210,7 @@ fn turned(
         if gain.norm_sqr() > 0.0 { gain } else { Complex64::ONE }
     };
     let gains = raw.chunks(radar.samples).zip(drawn.chunks(radar.samples)).map(of_element).collect();
-    let all = bench.without(&samples, &[], &[]).energy.iter().sum::<f64>();
+    let all = bench.energy(&samples);
     Fitted { gains: ElementGains(gains), left: fit.cost() / all.max(f64::MIN_POSITIVE), fit }
 }
 

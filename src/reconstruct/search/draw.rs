@@ -8,7 +8,6 @@ use crate::maps::fast::{FastLogMap, MapMaker, MapSources};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{End, Radar};
 use crate::reconstruct::Request;
-use crate::reconstruct::fit::Atom;
 use crate::reconstruct::significance::decades_above_cells;
 use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
 use crate::signal::floor::{snr_over, thesis_noise_variance};
@@ -33,15 +32,6 @@ pub enum Noise {
     Variance(f64),
 }
 
-/// An atom and its reflectivity.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Weighted {
-    /// The atom.
-    pub atom: Atom,
-    /// Reflectivity of the atom.
-    pub reflectivity: f64,
-}
-
 /// An expected map, and its scale.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
@@ -53,11 +43,14 @@ pub struct Expected {
     pub least_eta: f32,
 }
 
-/// Expected Lambda of the whole array over `objects`, as accurate as the floor of `request` requires.
-pub fn expected_lambda(radar: &Radar, objects: &[Weighted], noise: Noise, request: &Request) -> Expected {
-    let reflectors: Vec<Reflector> = objects
-        .iter()
-        .flat_map(|o| o.atom.reflectors(o.reflectivity))
+/// Expected Lambda of the whole array over `reflectors`, as accurate as the floor of `request` requires.
+pub fn expected_lambda(
+    radar: &Radar,
+    reflectors: impl Iterator<Item = Reflector>,
+    noise: Noise,
+    request: &Request,
+) -> Expected {
+    let reflectors: Vec<Reflector> = reflectors
         // The simulator requires a distance of reflectors from the elements.
         .map(|r| Reflector { y_metres: r.y_metres.max(MIN_ELEMENT_DISTANCE_METRES), ..r })
         .collect();

@@ -9,7 +9,7 @@ use super::propose::end_beams::{BEAMS_PER_ELEMENT, beam_noise_power, beam_of_cos
 use super::propose::view::View;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
-use ndarray::{Array2, ArrayView1, Axis};
+use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -39,7 +39,9 @@ impl Found {
         let drawn = &expected.map.lambda;
         let decades = (2.0 * expected.decades) as f32;
         let cos_of = |column: usize| radar.cos_of_column(column as f64);
-        let [peak_bin, peak_column] = strongest_cell(drawn);
+        let stronger =
+            |best: ((usize, usize), f32), (at, v): ((usize, usize), &f32)| if *v > best.1 { (at, *v) } else { best };
+        let (peak_bin, peak_column) = drawn.indexed_iter().fold(((0, 0), f32::NEG_INFINITY), stronger).0;
         let views = End::BOTH.map(|end| View::of(radar, end));
         let seen_at = |view: &View, bin: usize, cos: f64| {
             let (range, cos) = (radar.range_of_bin_metres(bin as f64), cos.clamp(-1.0, 1.0));
@@ -63,15 +65,6 @@ impl Found {
         });
         over
     }
-}
-
-/// Row and column of the strongest cell of a map, the first of equal ones.
-fn strongest_cell(map: &Array2<f32>) -> [usize; 2] {
-    let strongest_of = |row: ArrayView1<f32>| row.iter().fold(f32::NEG_INFINITY, |a, b| a.max(*b));
-    let rows: Vec<f32> = map.axis_iter(Axis(0)).into_par_iter().map(strongest_of).collect();
-    let most = rows.iter().fold(f32::NEG_INFINITY, |a, b| a.max(*b));
-    let row = rows.iter().position(|v| *v == most).unwrap_or(0);
-    [row, map.row(row).iter().position(|v| *v == most).unwrap_or(0)]
 }
 
 /// Means over neighbouring beams and rows, `[beam, range bin]`; the rows wrap.

@@ -2,13 +2,13 @@
 
 use super::calibrate::{Calibration, asks_for_gains};
 use super::finish::{Found, finish};
-use super::ladder::climbed;
+use super::ladder::{LADDER, climbed};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
-use super::state::Search;
+use super::state::{Search, State};
 use super::trace::Trace;
 use crate::radar::{Radar, hann};
-use crate::reconstruct::fit::{Samples, Workbench};
+use crate::reconstruct::fit::{Samples, Tie, Workbench};
 use crate::reconstruct::hearing::Hearing;
 use crate::reconstruct::reconstructor::unit_gain;
 use crate::reconstruct::{ReconstructError, Request};
@@ -19,7 +19,7 @@ use crate::signal::TwoEnds;
 /// # Errors
 /// [`ReconstructError::Cancelled`] when the request was cancelled.
 pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Settings) -> Result<Found, ReconstructError> {
-    find_with(None, radar, ends, request, settings)
+    find_from(&Found::nothing(), radar, ends, request, settings)
 }
 
 /// Takes samples apart that differ little from those of `previous`: starts from its atoms, and falls back to [`find`] where they
@@ -34,16 +34,7 @@ pub fn find_from(
     request: &Request,
     settings: &Settings,
 ) -> Result<Found, ReconstructError> {
-    find_with(Some(previous).filter(|p| !p.atoms.is_empty()), radar, ends, request, settings)
-}
-
-fn find_with(
-    previous: Option<&Found>,
-    radar: &Radar,
-    ends: &TwoEnds,
-    request: &Request,
-    settings: &Settings,
-) -> Result<Found, ReconstructError> {
+    let previous = Some(previous).filter(|previous| !previous.atoms.is_empty());
     let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
     let search = |previous: Option<&Found>, ends: &TwoEnds, told: &Request, settings: &Settings| {
         found_in(previous, radar, ends, told, settings, scale)
@@ -80,14 +71,16 @@ fn found_in(
     let samples = Samples::new(&bench.sensor, &flat);
     let detector = Detector::of(radar);
     let trace = Trace::default();
-    let search =
-        Search { radar, bench: &bench, detector: &detector, samples: &samples, request, settings, trace: &trace };
+    let (in_noise, task) = (request.noise.is_white(), &request.task);
+    let (bench, detector, samples) = (&bench, &detector, &samples);
+    let search = Search { radar, bench, detector, samples, in_noise, settings, task, trace: &trace };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
     let measure = followed.as_ref().filter(|f| !f.is_sure).and(previous).map(|p| p.left_by_search);
-    let answer = search.ordered(followed.map_or_else(|| climbed(&search), Ok)?)?;
+    let nothing = || State::of(bench.solve(samples, Vec::new(), Tie::PerEnd, 0.0));
+    let answer = search.ordered(followed.map_or_else(|| climbed(&search, LADDER, nothing()), Ok)?)?;
     request.task.check()?;
     request.task.set_progress(1.0);
-    let found = finish(radar, &bench, &samples, answer, request, scale)?;
+    let found = finish(radar, bench, samples, answer, request, scale)?;
     let left_by_search = measure.unwrap_or(found.left_by_search);
     Ok(Found { left_by_search, trace: trace.into_attempts(), ..found })
 }

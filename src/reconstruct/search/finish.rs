@@ -1,7 +1,8 @@
 //! The last step from a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
 
 use super::element_gains::ElementGains;
-use super::state::Answer;
+use super::propose::end_beams::beam_noise_power;
+use super::state::State;
 use crate::radar::{End, Radar};
 use crate::reconstruct::attempt::Attempt;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, Workbench, rows_of};
@@ -39,10 +40,10 @@ const LOUD_ENERGY_RATIO: f64 = 1.5;
 const SAME_PLACE: [f64; 2] = [0.25, 1.0];
 
 /// Energy that tied gains may leave over what each end's own leave, as a ratio: at a wrong place they leave more.
-pub const TIED_COST_RATIO: f64 = 4.0;
+const TIED_COST_RATIO: f64 = 4.0;
 
 /// The objects found in the samples.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Found {
     /// The objects.
     pub atoms: Vec<Atom>,
@@ -87,21 +88,7 @@ impl Found {
 
     /// The answer to silence.
     pub(super) fn nothing() -> Self {
-        Found {
-            atoms: Vec::new(),
-            reflectivities: Vec::new(),
-            scale: 1.0,
-            left_by_search: 0.0,
-            sample_power: 0.0,
-            residual_variance: 0.0,
-            noise_variance: 0.0,
-            gains: Vec::new(),
-            needed_decades: Vec::new(),
-            left_when_drawn: Vec::new(),
-            complete: true,
-            element_gains: None,
-            trace: Vec::new(),
-        }
+        Found { scale: 1.0, complete: true, ..Found::default() }
     }
 }
 
@@ -113,11 +100,11 @@ pub(super) fn finish(
     radar: &Radar,
     bench: &Workbench,
     samples: &Samples,
-    answer: Answer,
+    answer: State,
     request: &Request,
     scale: f64,
 ) -> Result<Found, ReconstructError> {
-    let Answer { fit, is_sure: complete } = answer;
+    let State { fit, is_sure: complete, .. } = answer;
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     let hearing = bench.hearing;
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
@@ -134,8 +121,7 @@ pub(super) fn finish(
     request.task.check()?;
     let residual = best.residual.flat(&bench.sensor);
     let noise_variance = hearing.noise_variance(radar, &residual);
-    let silence = bench.without(samples, &[], &[]);
-    let all = silence.energy[0] + silence.energy[1];
+    let all = bench.energy(samples);
     let weight = bench.squared.iter().sum::<f64>() * bench.sensor.element_x.len() as f64;
     Ok(Found {
         reflectivities: reflectivities(&best.gains),
@@ -149,8 +135,7 @@ pub(super) fn finish(
         gains: best.gains,
         scale,
         complete,
-        element_gains: None,
-        trace: Vec::new(),
+        ..Found::default()
     })
 }
 
@@ -216,7 +201,7 @@ pub fn are_loud(radar: &Radar, bench: &Workbench, fit: &Fit) -> Vec<bool> {
 }
 
 /// `fit` with one gain an object for both ends, on the right tooth of the comb, where it has few reflectors and the ends agree on them.
-fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
+pub fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     if reflectors > MAX_TIED_REFLECTORS {
         return fit;
@@ -232,12 +217,11 @@ fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
 /// For each atom of `fit` the energy that would be left more without it, over what `fit` leaves or noise holds around its range, in decades.
 fn needed_decades(radar: &Radar, bench: &Workbench, fit: &Fit, noise_variance: f64) -> Vec<f64> {
     let profile = Profile::new(radar, &fit.residual.flat(&bench.sensor));
-    let window = radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>();
-    let squared = bench.squared.iter().sum::<f64>();
     // Both energies as they are under the radar's window.
-    let worths = bench.worths(fit).into_iter().map(|worth| worth * window / squared);
+    let noise = 2.0 * beam_noise_power(radar, noise_variance);
+    let window = radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>();
+    let worths = bench.worths(fit).into_iter().map(|worth| worth * window / bench.squared.iter().sum::<f64>());
     let of_atom = |(worth, atom): (f64, &Atom)| {
-        let noise = noise_variance * window * bench.sensor.element_x.len() as f64 / radar.samples as f64;
         let left = profile.at(&rows_of(radar, atom)).max(noise).max(f64::MIN_POSITIVE);
         (worth / left).max(f64::MIN_POSITIVE).log10()
     };

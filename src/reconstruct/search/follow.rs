@@ -1,8 +1,8 @@
 //! The answer to samples that differ little from the last ones, starting from the last answer.
 
 use super::finish::Found;
-use super::ladder::{COMPLETION, climbed_from};
-use super::state::{Answer, Search, State};
+use super::ladder::{POINTS, climbed};
+use super::state::{Search, State};
 use super::trace::FOLLOWING;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit};
@@ -20,40 +20,39 @@ impl Search<'_> {
     /// The answer to samples a little different from those of `previous`: what stands elsewhere now found anew, or else its atoms refined
     /// where the residual asks for it, and more or fewer of them where that is not enough. `None` where they don't explain the samples
     /// as well as they did.
-    pub fn followed(&self, previous: &Found, scale: f64) -> Result<Option<Answer>, ReconstructError> {
+    pub fn followed(&self, previous: &Found, scale: f64) -> Result<Option<State>, ReconstructError> {
         self.trace.enter(FOLLOWING);
         let ratio = scale / previous.scale;
         let gains = previous.gains.iter().map(|g| g.map(|g| g * ratio)).collect();
         let mut fit = Fit { atoms: previous.atoms.clone(), gains, residual: self.samples.clone(), energy: [0.0; 2] };
         let left = self.bench.without(self.samples, &fit.atoms, &fit.gains);
         (fit.residual, fit.energy) = (left.residual, left.energy);
-        let all = self.energy();
+        let all = self.bench.energy(self.samples);
         if fit.cost() > MOST_CHANGED * all {
             return Ok(None);
         }
         if let Some(fit) = self.found_anew(&fit)? {
             self.tell_of(&previous.atoms, &fit);
-            return Ok(Some(Answer { fit, is_sure: true }));
+            return Ok(Some(State { is_sure: true, ..State::of(fit) }));
         }
         // A vanished object leaves an atom that the others don't need.
-        let grower = self.grower();
-        fit = grower.pruned(grower.refined_where_needed(fit)?)?;
+        fit = self.pruned(self.refined_where_needed(fit)?)?;
         let most_left = MOST_LOST * previous.left_by_search * all;
         let is_as_good = |fit: &Fit| !previous.complete && fit.cost() < most_left;
-        let mut is_sure = self.is_explained(&fit);
-        if !is_sure && !is_as_good(&fit) {
-            self.tell_of(&previous.atoms, &fit);
-            Answer { fit, is_sure } = climbed_from(self, COMPLETION, State::of(fit))?;
+        let mut answer = self.judged(fit);
+        if !answer.is_sure && !is_as_good(&answer.fit) {
+            self.tell_of(&previous.atoms, &answer.fit);
+            answer = climbed(self, &[POINTS], answer)?;
         }
         // Many new atoms make up for old ones that went astray.
-        let is_like_it = fit.atoms.len() <= previous.atoms.len() + MOST_APPEARING;
-        Ok((is_like_it && (is_sure || is_as_good(&fit))).then_some(Answer { fit, is_sure }))
+        let is_like_it = answer.fit.atoms.len() <= previous.atoms.len() + MOST_APPEARING;
+        Ok((is_like_it && (answer.is_sure || is_as_good(&answer.fit))).then_some(answer))
     }
 
     /// The points of `fit` in whose range bins more is left than noise looked for once more, by their tones: few echoes are told apart at
     /// once, however far they have moved. `None` where that doesn't explain all.
     fn found_anew(&self, fit: &Fit) -> Result<Option<Fit>, ReconstructError> {
-        let needed = self.grower().in_need(fit);
+        let needed = self.in_need(fit);
         let is_moved = |i: &usize| needed[*i] && matches!(fit.atoms[*i], Atom::Point { .. });
         let moved: Vec<usize> = (0..needed.len()).filter(is_moved).collect();
         let stayed = if moved.is_empty() { fit.clone() } else { self.bench.less(fit.clone(), &moved) };

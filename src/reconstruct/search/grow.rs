@@ -1,26 +1,18 @@
 //! The greedy loop: places that stand out, each refined alone, then with its neighbours, until nothing stands out of the noise.
 
 use super::propose::end_beams::beam_noise_power;
-use super::propose::peaks::Detector;
-use super::propose::unexplained::Unexplained;
-use super::settings::Settings;
-use super::trace::{Trace, decades};
-use crate::radar::Radar;
+use super::propose::runs::{ABOVE_NOISE, LONG_RUN_BINS, longest_run_bins};
+use super::state::Search;
+use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
-use crate::reconstruct::fit::{
-    Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, Workbench, groups, rows_of, union_of,
-};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, groups, rows_of, union_of};
 use crate::scene::Reflector;
-use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Limits of the refinement of a group while more atoms are to come.
 const GROWING: Limits = Limits { iterations: 12, least_gain: 3e-2, ridge: 0.0 };
-
-/// Limits of the refinement of a group once all atoms are there.
-const POLISH: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
 
 /// Atoms this many bins apart at either end are refined together.
 const LINK_BINS: f64 = 6.0;
@@ -33,9 +25,6 @@ const WORTH_ANOTHER_SWEEP: f64 = 0.3;
 
 /// A point that both ends see has the same gain at both, within this factor while its neighbours are not known.
 const MOST_UNLIKE: f64 = 3.0;
-
-/// Power in a range bin, over that of the noise, from which on the atoms there are not yet right.
-const NEEDED: f64 = 4.0;
 
 /// Power in a range bin, over that in the bin of which most is left, up to which it may be a side lobe.
 const SIDE_LOBE: f64 = 1e-4;
@@ -55,30 +44,10 @@ const MOST_TOGETHER: usize = 48;
 /// Candidates taken from one look at the residual.
 const MOST_A_ROUND: usize = 16;
 
-/// Greedy search in the samples of one radar.
-pub struct Grower<'a> {
-    /// The radar.
-    pub radar: &'a Radar,
-    /// Refinement under the search's window.
-    pub bench: &'a Workbench<'a>,
-    /// Looks for places.
-    pub detector: &'a Detector,
-    /// Limits.
-    pub settings: &'a Settings,
-    /// Whether white noise lies beneath the samples.
-    pub in_noise: bool,
-    /// To be cancelled by.
-    pub task: &'a Task,
-    /// The record of attempts, if there is one.
-    pub trace: Option<&'a Trace>,
-}
-
-impl Grower<'_> {
+impl Search<'_> {
     /// Records an attempt that was refused.
     pub fn refuse(&self, tried: Tried, gain_decades: f64, why: Refusal) {
-        if let Some(trace) = self.trace {
-            trace.add(tried, gain_decades, Verdict::Refused(why), self.bench.work.done());
-        }
+        self.trace.add(tried, gain_decades, Verdict::Refused(why), self.bench.work.done());
     }
 
     /// Decades by which the energy that `fit` leaves would grow without this object of it, the others staying as they are.
@@ -92,7 +61,7 @@ impl Grower<'_> {
     /// Whether nothing stands out of the noise of what `fit` leaves.
     pub fn is_explained(&self, fit: &Fit) -> bool {
         let flat = fit.residual.flat(&self.bench.sensor);
-        !self.detector.stands_out(self.radar, &flat, self.least_power(&flat))
+        self.detector.peaks(self.radar, &flat, self.least_power(&flat), 1).is_empty()
     }
 
     /// The power in a beam that stands out of the noise of `flat`.
@@ -101,9 +70,10 @@ impl Grower<'_> {
         (noise * self.settings.least_prominence).max(self.rounding_power())
     }
 
-    /// What `fit` leaves, as sources of candidates look at it; `flat` is its residual.
-    pub fn unexplained<'a>(&'a self, flat: &'a [Complex64], fit: &'a Fit) -> Unexplained<'a> {
-        Unexplained::new(self.radar, flat, self.bench.hearing, fit, self.task)
+    /// Whether the residual `flat` has something longer than a few reflectors.
+    pub fn is_long(&self, flat: &[Complex64]) -> bool {
+        let variance = self.bench.hearing.noise_variance(self.radar, flat);
+        longest_run_bins(self.radar, flat, variance) >= LONG_RUN_BINS
     }
 
     /// Amplitude of the error by rounding a reflector's place to f64, if its samples are 1: many reflectors of one wall are each off
@@ -120,24 +90,18 @@ impl Grower<'_> {
         (self.rounding_amplitude() * radar.end_elements as f64 * window).powi(2) / radar.samples as f64
     }
 
-    /// Adds points to `fit` until nothing stands out, nothing helps, it goes too slowly or there are too many. Points can do harm where they
-    /// are too dense: the best of all rounds counts.
+    /// Adds points to `fit` until nothing stands out, nothing helps, it goes too slowly or there are too many.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn grown(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        let mut best = fit.clone();
         let mut look_back = (self.bench.work.done(), fit.cost());
         while fit.atoms.len() < self.settings.most_atoms && !self.bench.work.is_spent() {
             self.task.check()?;
             self.bench.work.spend(LOOK_ECHOES);
-            if fit.cost() < best.cost() {
-                best = fit.clone();
-            }
             let flat = fit.residual.flat(&self.bench.sensor);
             let room = self.settings.most_atoms - fit.atoms.len();
-            let candidates = self.detector.peaks(self.radar, &flat, self.least_power(&flat), MOST_A_ROUND.min(room));
-            let points: Vec<[f64; 2]> = candidates.iter().map(|c| [c.x_metres, c.y_metres]).collect();
+            let points = self.detector.peaks(self.radar, &flat, self.least_power(&flat), MOST_A_ROUND.min(room));
             if points.is_empty() {
                 break;
             }
@@ -152,7 +116,7 @@ impl Grower<'_> {
                 look_back = (self.bench.work.done(), fit.cost());
             }
         }
-        Ok(if best.cost() < fit.cost() { best } else { fit })
+        Ok(fit)
     }
 
     /// All atoms refined with their neighbours, as long as the energy falls fast: what one group leaves blinds the others.
@@ -267,7 +231,7 @@ impl Grower<'_> {
         let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, &flat));
         let left: Vec<f64> = fit.atoms.iter().map(|atom| profile.strongest(&rows_of(self.radar, atom))).collect();
         let strongest = left.iter().copied().fold(0.0, f64::max);
-        let least = (NEEDED * noise.max(self.rounding_power())).max(SIDE_LOBE * strongest);
+        let least = (ABOVE_NOISE * noise.max(self.rounding_power())).max(SIDE_LOBE * strongest);
         left.into_iter().map(|left| left > least).collect()
     }
 
@@ -284,7 +248,7 @@ impl Grower<'_> {
             }
             // Groups that are far apart still hear a little of each other: all together they come to the end at once.
             let link_bins = if sweep == 0 { LINK_BINS } else { self.radar.samples as f64 };
-            fit = self.refined(fit, &marked, link_bins, POLISH)?;
+            fit = self.refined(fit, &marked, link_bins, Limits::FINE)?;
             tracing::debug!(
                 before,
                 cost = fit.cost(),
@@ -306,7 +270,7 @@ impl Grower<'_> {
         for _ in 0..rounds {
             let before = fit.cost();
             let all = vec![true; fit.atoms.len()];
-            fit = self.refined(fit, &all, 2.0 * LINK_BINS, POLISH)?;
+            fit = self.refined(fit, &all, 2.0 * LINK_BINS, Limits::FINE)?;
             if fit.cost() > 0.9 * before {
                 break;
             }

@@ -1,18 +1,17 @@
 //! The search in reading order.
 //!
 //! Each rung changes what was found so far. The search stops after the first rung whose answer leaves nothing that stands out of the
-//! noise, or after the last. A rung that is not due is skipped. What was found is then read off as objects (`finish`): one gain for both
+//! noise, or after the last. What was found is then read off as objects (`finish`): one gain for both
 //! ends, one reflectivity an object.
 //!
 //! Within a rung, work is counted ([`Settings::most_work`](super::Settings)): where it is spent, each loop ends with the best it has.
 
-use super::rungs::MOST_AGAIN;
-use super::state::{Answer, Search, State};
+use super::state::{Search, State};
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 
 /// The change that a rung makes to the state of a search.
-type Climb = fn(&Search, &mut State) -> Result<(), ReconstructError>;
+type Climb = fn(&Search, State) -> Result<State, ReconstructError>;
 
 /// One step of the search.
 pub struct Rung {
@@ -20,9 +19,6 @@ pub struct Rung {
     pub name: &'static str,
     /// The effect of the rung, in a sentence.
     pub does: &'static str,
-    /// When it is skipped, in a sentence; `None` where it always runs once it is reached.
-    pub skipped: Option<&'static str>,
-    is_due: fn(&State) -> bool,
     climb: Climb,
 }
 
@@ -31,75 +27,44 @@ pub const LADDER: &[Rung] = &[
     Rung {
         name: "tones",
         does: "Pairs the tones that each end hears into points. Keeps them only if they are all there is.",
-        skipped: None,
-        is_due: |_| true,
         climb: |search, state| search.climb_tones(state),
     },
     Rung {
         name: "lines",
         does: "Looks for lines of any direction that begin where both ends may hear a point.",
-        skipped: None,
-        is_due: |_| true,
         climb: |search, state| search.climb_lines(state),
     },
     Rung {
         name: "pairs",
         does: "Pairs the tones that the lines leave into points, and puts lines in place of points at equal steps.",
-        skipped: None,
-        is_due: |_| true,
         climb: |search, state| search.climb_pairs(state),
     },
     POINTS,
-    POINTS_AGAIN,
 ];
 
-/// The rungs that add points to an answer that is there.
-pub(super) const COMPLETION: &[Rung] = &[POINTS, POINTS_AGAIN];
-
-const POINTS: Rung = Rung {
+/// Adds points to an answer that is there.
+pub(super) const POINTS: Rung = Rung {
     name: "points",
     does: "Adds points where the residual of both ends stands out, refines them, and takes away those that explain too little.",
-    skipped: None,
-    is_due: |_| true,
     climb: |search, state| search.climb_points(state),
 };
-
-const POINTS_AGAIN: Rung = Rung {
-    name: "points again",
-    does: "Does the same again: what was taken away may have hidden something.",
-    skipped: Some("Too many objects were found."),
-    is_due: |state| state.fit.atoms.len() < MOST_AGAIN,
-    climb: |search, state| search.climb_points(state),
-};
-
-/// The answer of the whole ladder, without an earlier answer.
-///
-/// # Errors
-/// [`ReconstructError::Cancelled`].
-pub(super) fn climbed(search: &Search) -> Result<Answer, ReconstructError> {
-    climbed_from(search, LADDER, State::start(search))
-}
 
 /// `state` after `rungs`, one after another until nothing stands out.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
-pub(super) fn climbed_from(search: &Search, rungs: &[Rung], mut state: State) -> Result<Answer, ReconstructError> {
+pub(super) fn climbed(search: &Search, rungs: &[Rung], mut state: State) -> Result<State, ReconstructError> {
     for rung in rungs {
         search.trace.enter(rung.name);
-        if (rung.is_due)(&state) {
-            let (before, attempts) = (state.fit.atoms.clone(), search.trace.count());
-            (rung.climb)(search, &mut state)?;
-            search.tell_of(&before, &state.fit);
-            if search.trace.count() == attempts {
-                search.grower().refuse(Tried::Nothing, 0.0, Refusal::NothingFound);
-            }
-        } else if let Some(why) = rung.skipped {
-            search.grower().refuse(Tried::Nothing, 0.0, Refusal::Skipped(why));
+        let (before, attempts) = (state.fit.atoms.clone(), search.trace.count());
+        state = (rung.climb)(search, state)?;
+        search.tell_of(&before, &state.fit);
+        if search.trace.count() == attempts {
+            search.refuse(Tried::Nothing, 0.0, Refusal::NothingFound);
         }
         if state.is_sure {
             break;
         }
     }
-    Ok(Answer { fit: state.fit, is_sure: state.is_sure })
+    Ok(state)
 }

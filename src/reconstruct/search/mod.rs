@@ -4,7 +4,7 @@
 //! detect the strongest cell of the residual, move it to its best place by Newton steps, then move everything found so far together,
 //! and repeat. The exact simulator draws the map of what was found.
 //!
-//! `ladder` lists the steps of the search in the order in which they run, when each is skipped and why the search stops.
+//! `ladder` lists the steps of the search in the order in which they run, and why the search stops.
 //!
 //! | file | content |
 //! |---|---|
@@ -65,12 +65,13 @@ pub use draw::Expected;
 pub use element_gains::ElementGains;
 pub use find::{find, find_from};
 pub use finish::Found;
-pub(super) use finish::TIED_COST_RATIO;
-pub(super) use grow::Grower;
+pub(super) use finish::tied;
 pub use ladder::{LADDER, Rung};
 pub(super) use propose::peaks::Detector;
-pub(super) use prune::MIN_WORTH_RATIO;
+pub(super) use prune::{APART_BINS, MIN_WORTH_RATIO};
 pub use settings::Settings;
+pub(super) use state::Search;
+pub(super) use trace::Trace;
 pub use trace::{CALIBRATION, FOLLOWING, MOST_ATTEMPTS, ORDERING};
 
 use super::answer::{Reconstruction, Request};
@@ -81,8 +82,9 @@ use super::prior::NoisePrior;
 use super::reconstructor::{About, Reconstructor};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
+use crate::scene::Reflector;
 use crate::signal::TwoEnds;
-use draw::{Noise, Weighted, expected_lambda, expected_noise};
+use draw::{Noise, expected_lambda, expected_noise};
 
 /// Threshold for the maps of found objects, chosen on validation scenes.
 pub(super) const ETA: f32 = 0.896;
@@ -94,7 +96,7 @@ const CONFIDENCE_SLOPE: f64 = 0.8;
 
 /// The search's knowledge beside the samples, [`About::told`](crate::reconstruct::About::told).
 const TOLD_TO_SEARCH: &str = "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
-    along or across the array's axis, or each other; the kind of floor beneath the samples, and how the thesis' program rounds; \
+    along or across the array's axis; the kind of floor beneath the samples, and how the thesis' program rounds; \
     by about how much elements are off, where they are";
 
 /// Detect, refine, draw: objects from the raw samples, and the exact map of them.
@@ -155,7 +157,7 @@ impl Found {
 
     /// The objects with a map of them, in which noise alone does not exceed `least_eta`, where that is known.
     pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
-        let reflectors = self.weighted().flat_map(|o| o.atom.reflectors(o.reflectivity / self.scale)).collect();
+        let reflectors = self.reflectors(self.scale).collect();
         Reconstruction {
             lambda,
             reflectors,
@@ -180,7 +182,7 @@ impl Found {
             NoisePrior::White { .. } if self.complete => Noise::Variance(self.residual_variance),
             NoisePrior::White { .. } => Noise::Variance(self.noise_variance),
         };
-        expected_lambda(radar, &self.weighted().collect::<Vec<_>>(), noise, request)
+        expected_lambda(radar, self.reflectors(1.0), noise, request)
     }
 
     /// Probability that each reflector is real, by the energy that only its atom explains.
@@ -192,7 +194,9 @@ impl Found {
         self.atoms.iter().zip(&self.needed_decades).flat_map(of_atom).collect()
     }
 
-    fn weighted(&self) -> impl Iterator<Item = Weighted> {
-        self.atoms.iter().zip(&self.reflectivities).map(|(&atom, &reflectivity)| Weighted { atom, reflectivity })
+    /// The reflectors of all objects, for samples divided by `scale`.
+    fn reflectors(&self, scale: f64) -> impl Iterator<Item = Reflector> {
+        let atoms = self.atoms.iter().zip(&self.reflectivities);
+        atoms.flat_map(move |(atom, reflectivity)| atom.reflectors(reflectivity / scale))
     }
 }

@@ -1,6 +1,6 @@
 //! Tests of the search's error under thermal noise, relative to the error of the noise alone.
 
-use super::draw::{Noise, Weighted, expected_lambda};
+use super::draw::{Noise, expected_lambda};
 use super::tests::squared_error;
 use super::*;
 use crate::maps::LogMaps;
@@ -30,10 +30,8 @@ fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
                 let reflectors = scene.reflectors();
                 let noise = Noise::Variance(snr_noise_variance(&radar, &reflectors, Decibels(snr_db))[0]);
                 // The radar can't tell y from -y.
-                let ahead = |r: &Reflector| Atom::Point { x_metres: r.x_metres, y_metres: r.y_metres.abs() };
-                let weighted = |r: &Reflector| Weighted { atom: ahead(r), reflectivity: r.reflectivity };
-                let objects: Vec<Weighted> = reflectors.iter().map(weighted).collect();
-                let known = expected_lambda(&radar, &objects, noise, &request).map;
+                let ahead = reflectors.iter().map(|r| Reflector { y_metres: r.y_metres.abs(), ..*r });
+                let known = expected_lambda(&radar, ahead, noise, &request).map;
                 let found = find(&radar, &ends, &request, &Settings::default()).unwrap();
                 told += squared_error(&target, &known);
                 searched += squared_error(&target, &found.expected(&radar, &request).map);

@@ -1,8 +1,9 @@
 //! The removal of atoms that the others don't need.
 
 use super::finish::are_loud;
-use super::grow::{Grower, tried};
+use super::grow::tried;
 use super::propose::strides::MAX_RANGES;
+use super::state::Search;
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
@@ -14,13 +15,10 @@ pub const MIN_WORTH_RATIO: f64 = 16.0;
 /// Most rounds of taking away.
 const MOST_ROUNDS: usize = 12;
 
-/// Atoms nearer than this in range are not taken away in one round: either may do for the other.
-const APART_BINS: f64 = 4.0;
+/// Atoms nearer than this in range may do for each other: they are not taken, or taken away, in one round.
+pub const APART_BINS: f64 = 4.0;
 
-/// Of the atoms that stay.
-const PRUNED_LIMITS: Limits = Limits { iterations: 20, least_gain: 1e-2, ridge: 0.0 };
-
-impl Grower<'_> {
+impl Search<'_> {
     /// `fit` without the atoms whose absence noise could hide or the rounding of the others' places, those whose place ran away, and
     /// those that only one end believes in.
     ///
@@ -36,8 +34,12 @@ impl Grower<'_> {
             let least = rounding.max(MIN_WORTH_RATIO * self.bench.gain_noise(self.radar, &fit));
             let worth = self.bench.worths(&fit);
             let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
-            let is_loud = self.are_loud(&fit);
-            let is_needless = |i: &usize| worth[*i] < least || self.ran_away(&fit.atoms[*i]) || is_loud[*i];
+            let is_loud = self.in_noise.then(|| are_loud(self.radar, self.bench, &fit));
+            let is_needless = |i: &usize| {
+                worth[*i] < least
+                    || self.ran_away(&fit.atoms[*i])
+                    || is_loud.as_ref().is_some_and(|is_loud| is_loud[*i])
+            };
             let mut order: Vec<usize> = (0..fit.atoms.len()).filter(is_needless).collect();
             order.sort_by(|a, b| worth[*a].total_cmp(&worth[*b]));
             let mut gone: Vec<usize> = Vec::new();
@@ -59,17 +61,9 @@ impl Grower<'_> {
                 gone.iter().any(|&j| distance_bins(self.radar.samples, &rows[i], &rows[j]) < 2.0 * APART_BINS)
             };
             let marked: Vec<bool> = kept.map(beside).collect();
-            fit = self.refined(fit, &marked, APART_BINS, PRUNED_LIMITS)?;
+            fit = self.refined(fit, &marked, APART_BINS, Limits::ROUGH)?;
         }
         Ok(fit)
-    }
-
-    /// Whether each atom has more energy than the samples at its range: a part of it then only cancels another.
-    fn are_loud(&self, fit: &Fit) -> Vec<bool> {
-        if !self.in_noise {
-            return vec![false; fit.atoms.len()];
-        }
-        are_loud(self.radar, self.bench, fit)
     }
 
     fn ran_away(&self, atom: &Atom) -> bool {

@@ -6,8 +6,9 @@
 //! one more explains less than it costs. What an echo costs is the price of its four numbers, a place and a complex gain, in the
 //! likelihood (P. Stoica and Y. Selén, "Model-order selection: a review of information criterion rules", IEEE Signal Process. Mag. 21, 2004).
 
-use super::grow::{Grower, LOOK_ECHOES, tried};
+use super::grow::{LOOK_ECHOES, tried};
 use super::settings::price_of_an_echo;
+use super::state::Search;
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
@@ -23,7 +24,7 @@ const MAX_SOUGHT: usize = 8;
 /// Times that every echo of a group is taken out and sought anew.
 const MAX_CYCLES: usize = 2;
 
-impl Grower<'_> {
+impl Search<'_> {
     /// `fit` with every small group of points that may hide each other sought anew, where that needs fewer or explains more.
     ///
     /// # Errors

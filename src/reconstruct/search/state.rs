@@ -1,33 +1,24 @@
 //! The input of a search, its state, and the functions that several rungs share.
 
-use super::grow::{Grower, ends_agree, tried};
+use super::grow::{ends_agree, tried};
 use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
+use super::rungs::MOST_ROUNDS;
 use super::settings::Settings;
 use super::trace::{ORDERING, Trace, decades};
 use crate::radar::Radar;
+use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
 use crate::reconstruct::fit::{Atom, Fit, Samples, Tie, Workbench};
-use crate::reconstruct::{ReconstructError, Request};
+use crate::task::Task;
 
 /// Part of the samples' energy that is left where all is found but for its exact place.
-const NEARLY_NOTHING: f64 = 1e-5;
-
-/// Rounds in which pairs that the ends don't agree on are dropped.
-const MOST_DOUBTS: usize = 3;
+pub const NEARLY_NOTHING: f64 = 1e-5;
 
 /// Gains of one pair at both ends agree within this factor.
 const MOST_UNLIKE: f64 = 1.5;
 
-/// The answer of a search, and whether it is complete.
-pub struct Answer {
-    /// The objects.
-    pub fit: Fit,
-    /// Whether nothing else stands out.
-    pub is_sure: bool,
-}
-
-/// The state of a search, which one rung leaves to the next.
+/// The state of a search, which one rung leaves to the next, and its answer.
 pub struct State {
     /// The objects found.
     pub fit: Fit,
@@ -35,27 +26,12 @@ pub struct State {
     pub is_sure: bool,
     /// Points whose tones both ends hear in what `fit` leaves; `None` where an end hears too many tones.
     pub pairs: Option<Pairs>,
-    /// Whether an echo of the samples is long in range, as a line's is.
-    pub is_long: bool,
 }
 
 impl State {
-    /// The state without any object.
-    pub fn start(search: &Search) -> Self {
-        let nothing = search.bench.solve(search.samples, Vec::new(), Tie::PerEnd, 0.0);
-        let flat = nothing.residual.flat(&search.bench.sensor);
-        let is_long = search.grower().unexplained(&flat, &nothing).is_long();
-        State { is_long, ..State::of(nothing) }
-    }
-
     /// The state with the objects of `fit`.
     pub fn of(fit: Fit) -> Self {
-        State { fit, is_sure: false, pairs: None, is_long: false }
-    }
-
-    /// Sets the state to `answer`.
-    pub fn reach(&mut self, answer: Answer) {
-        (self.fit, self.is_sure) = (answer.fit, answer.is_sure);
+        State { fit, is_sure: false, pairs: None }
     }
 }
 
@@ -69,37 +45,30 @@ pub struct Search<'a> {
     pub detector: &'a Detector,
     /// The samples to explain.
     pub samples: &'a Samples,
-    /// The request.
-    pub request: &'a Request,
+    /// Whether white noise lies beneath the samples.
+    pub in_noise: bool,
     /// Limits.
     pub settings: &'a Settings,
+    /// The task, which may be cancelled.
+    pub task: &'a Task,
     /// The record of attempts.
     pub trace: &'a Trace,
 }
 
 impl Search<'_> {
-    pub fn grower(&self) -> Grower<'_> {
-        Grower {
-            radar: self.radar,
-            bench: self.bench,
-            detector: self.detector,
-            settings: self.settings,
-            in_noise: self.request.noise.is_white(),
-            task: &self.request.task,
-            trace: Some(self.trace),
-        }
+    /// The state with the objects of `fit`, which is sure where nothing stands out of what they leave.
+    pub fn judged(&self, fit: Fit) -> State {
+        State { is_sure: self.is_explained(&fit), ..State::of(fit) }
     }
 
     /// `answer` with as many echoes as noise lets be told apart, where there is noise.
-    pub fn ordered(&self, answer: Answer) -> Result<Answer, ReconstructError> {
-        if !self.request.noise.is_white() || answer.fit.atoms.is_empty() {
+    pub fn ordered(&self, answer: State) -> Result<State, ReconstructError> {
+        if !self.in_noise || answer.fit.atoms.is_empty() {
             return Ok(answer);
         }
         self.trace.enter(ORDERING);
         self.bench.work.grant(self.settings.most_work / 2);
-        let grower = self.grower();
-        let fit = grower.pruned(grower.relaxed(answer.fit)?)?;
-        Ok(Answer { is_sure: self.is_explained(&fit), fit })
+        Ok(self.judged(self.pruned(self.relaxed(answer.fit)?)?))
     }
 
     /// `fit` brought to its end where all is there and not yet quite in its place: a map shows even what little is left.
@@ -108,18 +77,17 @@ impl Search<'_> {
             return Ok(fit);
         }
         self.bench.work.grant(self.settings.most_work / 4);
-        let grower = self.grower();
-        grower.pruned(grower.refined_where_needed(fit)?)
+        self.pruned(self.refined_where_needed(fit)?)
     }
 
     /// Records which objects of `fit` are new, and which of those `before` were exchanged.
     pub fn tell_of(&self, before: &[Atom], fit: &Fit) {
         let is_in = |atom: &Atom, list: &[Atom]| list.iter().any(|other| self.is_same(atom, other));
         for atom in before.iter().filter(|atom| !is_in(atom, &fit.atoms)) {
-            self.grower().refuse(tried(atom), 0.0, Refusal::Exchanged);
+            self.refuse(tried(atom), 0.0, Refusal::Exchanged);
         }
         for (atom, gains) in fit.atoms.iter().zip(&fit.gains).filter(|(atom, _)| !is_in(atom, before)) {
-            let gain_decades = self.grower().own_decades(fit, atom, gains);
+            let gain_decades = self.own_decades(fit, atom, gains);
             self.trace.add(tried(atom), gain_decades, Verdict::Kept, self.bench.work.done());
         }
     }
@@ -137,12 +105,7 @@ impl Search<'_> {
 
     /// Whether `fit` holds all objects, though perhaps not quite where they are.
     pub fn is_nearly_all(&self, fit: &Fit) -> bool {
-        fit.cost() <= NEARLY_NOTHING * self.energy()
-    }
-
-    /// Energy of the windowed samples.
-    pub fn energy(&self) -> f64 {
-        self.bench.without(self.samples, &[], &[]).energy.iter().sum()
+        fit.cost() <= NEARLY_NOTHING * self.bench.energy(self.samples)
     }
 
     /// Points whose tones both ends hear in what `fit` leaves; none where there are too many to tell apart.
@@ -167,29 +130,23 @@ impl Search<'_> {
         }
         atoms.truncate(self.settings.most_atoms);
         let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
-        for _ in 0..MOST_DOUBTS {
+        for _ in 0..MOST_ROUNDS {
             let (kept, unlike): (Vec<_>, Vec<_>) =
                 fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MOST_UNLIKE));
             if unlike.is_empty() {
                 break;
             }
             for (atom, gains) in unlike {
-                self.grower().refuse(tried(atom), self.grower().own_decades(&fit, atom, gains), Refusal::EndsDisagree);
+                self.refuse(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
             }
             let kept = kept.into_iter().map(|(atom, _)| *atom).collect();
             fit = self.bench.solve(self.samples, kept, Tie::PerEnd, 0.0);
         }
         if fit.cost() > known.cost() {
             let tried = Tried::Together { count: pairs.points.len() };
-            self.grower().refuse(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
+            self.refuse(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
             return Ok(known);
         }
-        let grower = self.grower();
-        if !polished || self.is_explained(&fit) { grower.pruned(fit) } else { grower.pruned(grower.polished(fit, 1)?) }
-    }
-
-    /// Whether nothing stands out of what `fit` leaves.
-    pub fn is_explained(&self, fit: &Fit) -> bool {
-        self.grower().is_explained(fit)
+        if !polished || self.is_explained(&fit) { self.pruned(fit) } else { self.pruned(self.polished(fit, 1)?) }
     }
 }

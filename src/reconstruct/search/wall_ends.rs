@@ -1,12 +1,9 @@
 //! The ends of a wall: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
 
 use super::begin::MIN_REFLECTORS;
-use super::grow::Grower;
 use super::on_wall::MOST_REFLECTORS;
+use super::state::Search;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Narrow, Samples, Spectra, Tie, Workbench, rows_of};
-
-/// Of a wall by itself.
-const ALONE: Limits = Limits { iterations: 8, least_gain: 1e-2, ridge: 0.0 };
 
 /// Reflectors beyond the best end of a wall that are tried.
 const BEYOND: usize = 8;
@@ -21,7 +18,7 @@ const MOST_WALKS: usize = 8;
 const ROOM_BINS: f64 = 12.0;
 const ROOM: f64 = 0.5;
 
-impl Grower<'_> {
+impl Search<'_> {
     /// The wall moved to its best place in `samples` and made longer, by turns, until neither helps.
     pub fn followed_to_its_ends(&self, samples: &Samples, seed: Atom) -> Fit {
         let spectra = Spectra::new(self.radar, self.bench, samples);
@@ -31,7 +28,10 @@ impl Grower<'_> {
         for _ in 0..MOST_WALKS {
             let (before, after) =
                 rayon::join(|| self.more_reflectors(&near, &wall, false), || self.more_reflectors(&near, &wall, true));
-            let Some(longer) = extended(wall.atoms[0], before, after).filter(|_| before + after > 0) else { break };
+            if before + after == 0 {
+                break;
+            }
+            let Some(longer) = resized(wall.atoms[0], -(before as i64), -(after as i64)) else { break };
             let explained = near.energy - wall.cost();
             let wider = self.near(&spectra, &longer);
             let trial = wider.moved(longer, wall.gains[0]);
@@ -40,15 +40,14 @@ impl Grower<'_> {
             }
             (near, wall) = (wider, trial);
         }
-        let (mut atom, mut gains) = (wall.atoms[0], wall.gains[0]);
-        let shorter = trimmed(&near, atom);
-        if shorter != atom {
-            let trial = near.moved(shorter, gains);
+        let shorter = trimmed(&near, wall.atoms[0]);
+        if shorter != wall.atoms[0] {
+            let trial = near.moved(shorter, wall.gains[0]);
             if trial.cost() < wall.cost() {
-                (atom, gains) = (trial.atoms[0], trial.gains[0]);
+                wall = trial;
             }
         }
-        self.bench.refine(samples, vec![atom], vec![gains], Tie::PerEnd, ALONE)
+        self.bench.refine(samples, wall.atoms, wall.gains, Tie::PerEnd, Limits::ROUGH)
     }
 
     /// The range bins in which `wall` is followed.
@@ -74,7 +73,7 @@ impl Grower<'_> {
 impl Narrow<'_> {
     /// The wall moved to its best place from where its gains may be these.
     fn moved(&self, wall: Atom, gains: Gains) -> Fit {
-        self.bench.refine(&self.samples, vec![wall], vec![gains], Tie::PerEnd, ALONE)
+        self.bench.refine(&self.samples, vec![wall], vec![gains], Tie::PerEnd, Limits::ROUGH)
     }
 }
 
@@ -82,10 +81,10 @@ impl Narrow<'_> {
 fn trimmed(near: &Narrow, mut seed: Atom) -> Atom {
     for _ in 0..MOST_TRIMS {
         let wall = near.bench.solve_alone(&near.samples, seed);
-        let fewer =
+        let (first, last) =
             rayon::join(|| fewer_reflectors(&near.bench, &wall, false), || fewer_reflectors(&near.bench, &wall, true));
-        match shortened(seed, fewer.into()) {
-            Some(shorter) if fewer != (0, 0) => seed = shorter,
+        match resized(seed, first as i64, last as i64) {
+            Some(shorter) if first + last > 0 => seed = shorter,
             _ => break,
         }
     }
@@ -118,18 +117,11 @@ fn how_many(bench: &Workbench, wall: &Fit, gains: &[Gains], places: impl Iterato
     best
 }
 
-/// `wall` with this many reflectors more before its first and after its last.
-fn extended(wall: Atom, before: usize, after: usize) -> Option<Atom> {
-    let Atom::Segment { dx_metres, dy_metres, count, .. } = wall else { return None };
-    let [x_metres, y_metres] = wall.position_metres(-(before as f64));
-    let count = count + before + after;
-    (count <= MOST_REFLECTORS).then_some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
-}
-
-/// `wall` without this many reflectors at its first and at its last end.
-fn shortened(wall: Atom, [first, last]: [usize; 2]) -> Option<Atom> {
+/// `wall` without this many reflectors at its first and at its last end; with more of them where the numbers are negative.
+fn resized(wall: Atom, first: i64, last: i64) -> Option<Atom> {
     let Atom::Segment { dx_metres, dy_metres, count, .. } = wall else { return None };
     let [x_metres, y_metres] = wall.position_metres(first as f64);
-    let count = count.checked_sub(first + last).filter(|count| *count >= MIN_REFLECTORS)?;
-    Some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
+    let count = usize::try_from(count as i64 - first - last).ok()?;
+    let is_wall = (MIN_REFLECTORS..=MOST_REFLECTORS).contains(&count);
+    is_wall.then_some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
 }

@@ -3,14 +3,13 @@
 //! From such a point the beams tell whether echoes go on in a direction that walls mostly have. There every step that may be meant is tried
 //! over the first few reflectors, and the best are followed as rows over two points are.
 
-use super::phased::{Heard, PhasedBeams, Presence, Row};
-use super::strides::{FIRST, MOST_STEP_METRES, Start, Stride, best_of_each, pitches_metres, summits};
-use super::unexplained::Unexplained;
-use crate::reconstruct::fit::{Atom, Fit};
-use crate::signal::simd::{Kernel, Simd};
+use super::super::begin::MIN_REFLECTORS;
+use super::phased::{PhasedBeams, Presence, Row};
+use super::strides::{MOST_STEP_METRES, Start, best_of_each, pitches_metres, summits};
+use crate::reconstruct::fit::Atom;
 use crate::task::Task;
 use rayon::prelude::*;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Range bins over which echoes must go on, and beyond which it no longer matters.
 const BINS: [u32; 2] = [20, 100];
@@ -23,13 +22,6 @@ const LEAST_EVEN: f64 = 0.02;
 
 /// Most directions of all points that are looked into.
 const MOST_LOOKS: usize = 4;
-
-/// Looks whose directions differ by less than this, radians, and that pass each other within this distance, metres, go into one wall.
-const ONE_LINE_RADIANS: f64 = 0.045;
-const ONE_LINE_METRES: f64 = 1.0;
-
-/// How much echoes behind a point speak against its being an edge, as a part of those ahead of it.
-const BEHIND: f64 = 0.5;
 
 /// Radians by which a wall may deviate from its direction.
 const WITHIN_RADIANS: f64 = 0.01;
@@ -44,74 +36,44 @@ const PITCH_WAVELENGTHS: f64 = 0.5;
 /// Rows of one look that are tried over twice as many reflectors, and those that are followed.
 const KEPT_ROWS: [usize; 2] = [40, 4];
 
-/// Points, those first on which the ends agree best, that a wall may begin at alone.
-const MOST_EDGES: usize = 24;
-
 /// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
 const LEAST_FROM_EDGE: usize = 24;
 
-/// Directions this near to each other, radians, are one.
-const ONE_DIRECTION: f64 = 0.005;
+/// Directions that walls mostly have, radians from the array's axis: along it and across it.
+const DIRECTIONS_RADIANS: [f64; 4] = [0.0, FRAC_PI_2, PI, -FRAC_PI_2];
 
-/// Lines from one point alone that may be among what is left, the most promising first.
-pub fn edges(left: &Unexplained) -> Vec<Atom> {
-    let points = left.points_within_range(MOST_EDGES);
-    let rows = rows_from_edges(left.beams(), &points, &directions(left.found), left.task);
-    rows.into_iter().map(|row| row.atom).filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
-}
-
-/// Rows that begin at one of `points` (x, y; metres) and lead in about one of the directions (radians from the array's axis), best
-/// first; one for each point at most.
-fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], directions_radians: &[f64], task: &Task) -> Vec<Stride> {
+/// Rows that begin at one of `points` (x, y; metres) and lead about along or across the array's axis, best first; one for each point at most.
+pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Atom> {
     let strongest = beams.strongest();
-    let along = |first: usize, radians: f64| {
-        going_on(|place| beams.presence(&strongest, place), beams.bin_metres(), points[first], radians)
-    };
-    let look = |first: usize, &radians: &f64| {
-        let ahead = along(first, radians)?;
-        let score = ahead - BEHIND * along(first, radians + PI).unwrap_or(0.0);
+    let look = |first: usize, radians: f64| {
+        let presence = |place| beams.presence(&strongest, place);
+        let score = going_on(presence, beams.bin_metres(), points[first], radians)?;
         Some(Look { first, radians, score })
     };
     let mut looks: Vec<Look> = (0..points.len())
         .into_par_iter()
-        .flat_map_iter(|first| directions_radians.iter().filter_map(move |radians| look(first, radians)))
+        .flat_map_iter(|first| DIRECTIONS_RADIANS.into_iter().filter_map(move |radians| look(first, radians)))
         .collect();
     looks.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let mut kept: Vec<Look> = Vec::with_capacity(MOST_LOOKS);
-    for look in looks {
-        if kept.len() < MOST_LOOKS && !kept.iter().any(|other| are_along_one_line(points, &look, other)) {
-            kept.push(look);
-        }
-    }
+    looks.truncate(MOST_LOOKS);
     let rows_of = |look: &Look| {
-        let fan = Fan::new(beams, points[look.first], look.radians);
-        Simd::chosen().run(Scan { beams, fan: &fan })
+        let (rows, lengths) = fan(beams, points[look.first], look.radians);
+        let parts = beams.parts_adding_up(&rows, MIN_REFLECTORS);
+        let kept: Vec<Row> = summits(&parts, lengths, KEPT_ROWS[0]).into_iter().map(|at| rows[at]).collect();
+        let parts = beams.parts_adding_up(&kept, 2 * MIN_REFLECTORS);
+        let mut longer: Vec<(f64, Row)> = parts.into_iter().zip(kept).collect();
+        longer.sort_by(|a, b| b.0.total_cmp(&a.0));
+        longer.truncate(KEPT_ROWS[1]);
+        longer
     };
-    let starts: Vec<Start> = kept
+    let starts: Vec<Start> = looks
         .par_iter()
         .filter(|_| !task.is_cancelled())
-        .flat_map_iter(|look| rows_of(look).into_iter().map(|row| Start { first: look.first, row }))
+        .flat_map_iter(|look| rows_of(look).into_iter().map(|(_, row)| Start { first: look.first, row }))
         .collect();
-    tracing::debug!(looks = kept.len(), starts = starts.len(), "edges");
-    best_of_each(beams, starts, task)
-}
-
-/// Directions that walls mostly have: along and across the array's axis and the walls that are known.
-fn directions(fit: &Fit) -> Vec<f64> {
-    let of_atom = |atom: &Atom| match atom {
-        Atom::Segment { dx_metres, dy_metres, .. } => Some(dy_metres.atan2(*dx_metres)),
-        Atom::Point { .. } => None,
-    };
-    let mut directions: Vec<f64> = Vec::new();
-    for known in std::iter::once(0.0).chain(fit.atoms.iter().filter_map(of_atom)) {
-        for radians in (0..4).map(|k| (known + f64::from(k) * FRAC_PI_2).rem_euclid(TAU)) {
-            let is_near = |other: &f64| (radians - other + PI).rem_euclid(TAU) - PI;
-            if !directions.iter().any(|other| is_near(other).abs() < ONE_DIRECTION) {
-                directions.push(radians);
-            }
-        }
-    }
-    directions
+    tracing::debug!(looks = looks.len(), starts = starts.len(), "edges");
+    let rows = best_of_each(beams, starts, task).into_iter();
+    rows.filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
 }
 
 /// Clarity and length of the echoes from `from` on in a direction; `None` where they soon end.
@@ -140,79 +102,25 @@ struct Look {
     score: f64,
 }
 
-/// Whether two looks go along about one line in one direction: into one wall, from different reflectors of it.
-fn are_along_one_line(points: &[[f64; 2]], a: &Look, b: &Look) -> bool {
-    let (sin, cos) = a.radians.sin_cos();
-    let apart = [0, 1].map(|axis| points[a.first][axis] - points[b.first][axis]);
-    (a.radians - b.radians).cos() > ONE_LINE_RADIANS.cos() && (apart[0] * sin - apart[1] * cos).abs() < ONE_LINE_METRES
-}
-
-/// Rows from one point in about one direction: step by step longer, and turned to both sides.
-struct Fan {
-    from_metres: [f64; 2],
-    length_pitch_metres: f64,
-    lengths: usize,
-    /// Directions turned from one side to the other (x, y).
-    directions: Vec<[f64; 2]>,
-}
-
-impl Fan {
-    fn new(beams: &PhasedBeams, from_metres: [f64; 2], radians: f64) -> Self {
-        let [along, across] = pitches_metres(beams, from_metres, MOST_STEP_METRES, PITCH_WAVELENGTHS);
-        let range = from_metres[0].hypot(from_metres[1]).max(0.1);
-        let (sin, cos) = radians.sin_cos();
-        let by_sight = ((cos * from_metres[0] + sin * from_metres[1]) / range).abs();
-        let by_side = (1.0 - by_sight * by_sight).max(0.0).sqrt();
-        let length_pitch_metres = (by_sight / along + by_side / across).recip();
-        // A turn moves the ends of middling steps by the pitch across them.
-        let turn_pitch_radians = (by_sight / across + by_side / along).recip() / (0.5 * MOST_STEP_METRES);
-        let turns = (WITHIN_RADIANS / turn_pitch_radians).ceil() as i32;
-        let direction = |turn: i32| {
-            let (sin, cos) = (radians + f64::from(turn) * turn_pitch_radians).sin_cos();
-            [cos, sin]
-        };
-        Fan {
-            from_metres,
-            length_pitch_metres,
-            lengths: ((MOST_STEP_METRES - LEAST_STEP_METRES) / length_pitch_metres) as usize + 1,
-            directions: (-turns..=turns).map(direction).collect(),
-        }
-    }
-
-    /// Row number `at`, turn after turn of one length after the other.
-    fn row(&self, at: usize) -> Row {
-        let metres = LEAST_STEP_METRES + (at / self.directions.len()) as f64 * self.length_pitch_metres;
-        let step_metres = self.directions[at % self.directions.len()].map(|v| metres * v);
-        Row { first_metres: self.from_metres, step_metres }
-    }
-}
-
-/// All rows of a fan tried over their first few reflectors, and the best over some more.
-struct Scan<'a> {
-    beams: &'a PhasedBeams,
-    fan: &'a Fan,
-}
-
-impl Kernel for Scan<'_> {
-    type Output = Vec<Row>;
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) -> Self::Output {
-        let Scan { beams, fan } = self;
-        let mut heard = [Heard::default(); 2 * FIRST];
-        let mut parts = vec![0.0; fan.lengths * fan.directions.len()];
-        for (at, part) in parts.iter_mut().enumerate() {
-            *part = beams.part_adding_up::<FMA>(&fan.row(at), &mut heard[..FIRST]);
-        }
-        let mut longer: Vec<(f64, Row)> = Vec::with_capacity(KEPT_ROWS[0]);
-        for at in summits(&parts, fan.lengths, KEPT_ROWS[0]) {
-            let row = fan.row(at);
-            longer.push((beams.part_adding_up::<FMA>(&row, &mut heard), row));
-        }
-        longer.sort_by(|a, b| b.0.total_cmp(&a.0));
-        longer.truncate(KEPT_ROWS[1]);
-        longer.into_iter().map(|(_, row)| row).collect()
-    }
+/// Rows from one point in about one direction, turned from one side to the other, length after length; and the number of lengths.
+fn fan(beams: &PhasedBeams, from_metres: [f64; 2], radians: f64) -> (Vec<Row>, usize) {
+    let [along, across] = pitches_metres(beams, from_metres, MOST_STEP_METRES, PITCH_WAVELENGTHS);
+    let range = from_metres[0].hypot(from_metres[1]).max(0.1);
+    let (sin, cos) = radians.sin_cos();
+    let by_sight = ((cos * from_metres[0] + sin * from_metres[1]) / range).abs();
+    let by_side = (1.0 - by_sight * by_sight).max(0.0).sqrt();
+    let length_pitch_metres = (by_sight / along + by_side / across).recip();
+    // A turn moves the ends of middling steps by the pitch across them.
+    let turn_pitch_radians = (by_sight / across + by_side / along).recip() / (0.5 * MOST_STEP_METRES);
+    let turns = (WITHIN_RADIANS / turn_pitch_radians).ceil() as i32;
+    let lengths = ((MOST_STEP_METRES - LEAST_STEP_METRES) / length_pitch_metres) as usize + 1;
+    let row = |(length, turn): (usize, i32)| {
+        let metres = LEAST_STEP_METRES + length as f64 * length_pitch_metres;
+        let (sin, cos) = (radians + f64::from(turn) * turn_pitch_radians).sin_cos();
+        Row { first_metres: from_metres, step_metres: [metres * cos, metres * sin] }
+    };
+    let all = (0..lengths).flat_map(|length| (-turns..=turns).map(move |turn| (length, turn)));
+    (all.map(row).collect(), lengths)
 }
 
 #[cfg(test)]
@@ -232,14 +140,13 @@ mod tests {
         let flat = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
         let last = [wall.x_metres, wall.y_start_metres + 89.0 * wall.spacing_metres];
         let points = [[point.x_metres, point.y_metres], last];
-        let directions = [0.0, 1.0, 2.0, 3.0].map(|k| k * FRAC_PI_2);
         let beams = PhasedBeams::new(&radar, &flat);
-        let rows = rows_from_edges(&beams, &points, &directions, &Task::default());
-        let best = rows.first().expect("a row").atom;
+        let rows = rows_from_edges(&beams, &points, &Task::default());
+        let best = *rows.first().expect("a row");
         let [first, second] = [0.0, 1.0].map(|i| best.position_metres(i));
         assert!((first[0] - last[0]).hypot(first[1] - last[1]) < 0.1, "{best:?}");
         assert!((second[1] - first[1] + wall.spacing_metres).abs() < 1e-3 && best.reflector_count() > 40, "{best:?}");
         // Nothing goes on from a point that stands alone.
-        assert!(rows_from_edges(&beams, &points[..1], &directions, &Task::default()).is_empty());
+        assert!(rows_from_edges(&beams, &points[..1], &Task::default()).is_empty());
     }
 }

@@ -61,7 +61,7 @@ impl Kernel for Steer<'_> {
     }
 }
 
-/// Mean power that white noise of `variance` a sample leaves in a cell of [`end_beams`].
+/// Mean power that white noise of `variance` a sample leaves in a cell of [`end_beams`], and in a range bin of all of an end's elements together.
 pub fn beam_noise_power(radar: &Radar, variance: f64) -> f64 {
     let window: f64 = radar.window.weights(radar.samples).iter().map(|w| w * w).sum();
     variance * window / radar.samples as f64 * radar.end_elements as f64

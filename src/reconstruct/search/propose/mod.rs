@@ -2,10 +2,8 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `unexplained` | the residual, as sources use it |
 //! | `view` | the range and the direction of a place from an end |
 //! | `end_beams` | each end's plain beams |
-//! | `registered` | both ends' beams on a common grid |
 //! | `peaks` | points where a residual stands out, both ends registered |
 //! | `tones` | ranges from one element's chirp |
 //! | `pairs` | points that both ends' tones agree on |
@@ -19,9 +17,7 @@ pub mod end_beams;
 pub mod pairs;
 pub mod peaks;
 pub mod phased;
-mod registered;
 pub mod runs;
 pub mod strides;
 mod tones;
-pub mod unexplained;
 pub mod view;

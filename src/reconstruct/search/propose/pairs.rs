@@ -25,9 +25,6 @@ const SEARCH_BINS: f64 = 2.0;
 /// Standard deviations of noise that are allowed.
 const DEVIATIONS: f64 = 4.0;
 
-/// Steps from what a pair of antennas measures to what one antenna would: each leaves a small part of the difference.
-const AS_ONE_ROUNDS: usize = 4;
-
 /// A tone is alone where no other is heard within this many range bins.
 const ALONE_BINS: f64 = 3.0;
 
@@ -41,11 +38,9 @@ const MOST_GUESSES: usize = 2;
 /// allowed, from what does for the place within: the array is too small to see curvature there.
 const ALIKE_ERRORS: f64 = 1.0;
 
-/// Most rounds in which directions and the tones of the neighbouring element are brought together.
+/// Rounds in which directions and the tones of the neighbouring element are brought together, and in which the ranges of a pair of antennas become
+/// those of one: each leaves a small part of the difference.
 const ROUNDS: usize = 4;
-
-/// A round that changes no cosine by more than this is the last.
-const SETTLED: f64 = 0.1 * COS;
 
 /// A tone of one end.
 #[derive(Debug, Clone, Copy)]
@@ -135,7 +130,7 @@ impl Listener {
             let more = self.more_than_one_antenna(self.place_metres(seen.range_metres, seen.cos.clamp(-1.0, 1.0)));
             Seen { range_metres: range_metres - more.range_metres, cos: cos - more.cos }
         };
-        (0..AS_ONE_ROUNDS).fold(measured, |seen, _| nearer(seen))
+        (0..ROUNDS).fold(measured, |seen, _| nearer(seen))
     }
 }
 
@@ -223,7 +218,7 @@ fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: 
             let before = std::mem::replace(cos, (nearer_metres / step_metres).clamp(-1.0, 1.0));
             changed = changed.max((*cos - before).abs());
         }
-        if changed < SETTLED {
+        if changed < 0.1 * COS {
             break;
         }
     }

@@ -1,11 +1,12 @@
-//! Peaks of a residual: both ends' beams on the polar grid of the array's centre.
+//! Peaks of a residual: both ends' beams on the polar grid of the array's centre. A reflector has different ranges and angles at the ends, so each
+//! cell looks up its own range and angle at each end.
 //!
 //! Magnitudes are multiplied, not amplitudes added, since the phase between the ends changes with every column of the full map; a peak of one
 //! end alone is a ghost.
 
-use super::end_beams::{BEAMS_PER_ELEMENT, end_beams};
-use super::registered::Registered;
-use crate::radar::Radar;
+use super::end_beams::{BEAMS_PER_ELEMENT, beam_of_cos, end_beams};
+use super::view::View;
+use crate::radar::{End, Radar};
 use crate::reconstruct::fit::Rows;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -23,20 +24,12 @@ const EDGE_BINS: f64 = 1.0;
 /// Fewest cells of the common grid that are worth a task of their own.
 const LEAST_CELLS: usize = 4096;
 
-/// A place with a peak.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Candidate {
-    /// Position along the array.
-    pub x_metres: f64,
-    /// Position ahead of the array, at least 0.
-    pub y_metres: f64,
-    /// Product of both ends' magnitudes: the power of one end's beam where both are alike.
-    pub power: f64,
-}
-
 /// A search for peaks on the common grid.
 pub struct Detector {
-    grid: Registered,
+    /// Centre (x, y) of every cell, metres, range after range; one wrap beyond the maximum range included.
+    places_metres: Vec<[f64; 2]>,
+    /// `[beam * range bins + range bin]` of every cell, for each end.
+    cells: [Vec<u32>; 2],
     beams: usize,
     bins: usize,
 }
@@ -60,27 +53,46 @@ impl Detector {
     /// The detector for the ends of `radar`.
     fn new(radar: &Radar) -> Self {
         let (beams, columns) = (BEAMS_PER_ELEMENT * radar.end_elements, COLUMNS_PER_ELEMENT * radar.end_elements);
-        Detector { grid: Registered::new(radar, beams, columns), beams, bins: radar.samples }
+        let (bins, bin_metres) = (radar.samples, radar.range_resolution_metres());
+        let place = |i: usize| {
+            let range = (i / columns) as f64 * bin_metres;
+            let cos = ((i % columns) as f64 + 0.5) / columns as f64 * 2.0 - 1.0;
+            [range * cos, range * (1.0 - cos * cos).sqrt()]
+        };
+        let places_metres: Vec<[f64; 2]> = (0..2 * bins * columns).map(place).collect();
+        let cells = End::BOTH.map(|end| {
+            let view = View::of(radar, end);
+            let cell = |place: &[f64; 2]| {
+                let (range, cos) = view.of_place(*place, 1e-9);
+                let row = (range / bin_metres).round() as usize % bins;
+                (beam_of_cos(cos, beams) * bins + row) as u32
+            };
+            places_metres.iter().map(cell).collect()
+        });
+        Detector { places_metres, cells, beams, bins }
     }
 
-    /// Up to `most` places whose power exceeds `least`, strongest first, none of which may be a side lobe of a stronger one.
+    /// The range bin of cell `i` at an end.
+    fn bin(&self, end: usize, i: u32) -> usize {
+        self.cells[end][i as usize] as usize % self.bins
+    }
+
+    /// Up to `most` places (x, y; metres) whose power exceeds `least`, strongest first, none of which may be a side lobe of a stronger one.
     /// `residual` is not windowed.
-    pub fn peaks(&self, radar: &Radar, residual: &[Complex64], least: f64, most: usize) -> Vec<Candidate> {
+    pub fn peaks(&self, radar: &Radar, residual: &[Complex64], least: f64, most: usize) -> Vec<[f64; 2]> {
         let powers = self.powers(radar, residual);
         let strong = |i: u32| Some((powers.of(i), i)).filter(|(p, _)| f64::from(*p) > least);
         let mut strong: Vec<(f32, u32)> = self.cells().filter_map(strong).collect();
-        let mut found: Vec<Candidate> = Vec::new();
+        let mut found = Vec::new();
         let mut next = strongest(strong.iter().copied());
         while let Some((power, i)) = next {
-            let (power, i) = (f64::from(power), i as usize);
-            let [x_metres, y_metres] = self.grid.places_metres[i];
-            found.push(Candidate { x_metres, y_metres, power });
+            let power = f64::from(power);
+            found.push(self.places_metres[i as usize]);
             if found.len() == most {
                 break;
             }
-            let [first, last] = &self.grid.bins;
-            let [near, far] = [first, last].map(|bins| self.side_lobes(bins[i] as usize));
-            let lobe = |i: u32| near[first[i as usize] as usize] * far[last[i as usize] as usize];
+            let [near, far] = [0, 1].map(|end| self.side_lobes(self.bin(end, i)));
+            let lobe = |i: u32| near[self.bin(0, i)] * far[self.bin(1, i)];
             strong.retain(|&(other, i)| f64::from(other) > power * lobe(i));
             next = strongest(strong.iter().copied());
         }
@@ -97,30 +109,21 @@ impl Detector {
         };
         let near = |end: usize| (0..self.bins as u32).map(|bin| is_within(end, bin)).collect::<Vec<bool>>();
         let [first, last] = [0, 1].map(near);
-        let is_near = |i: &u32| {
-            let [a, b] = &self.grid.bins;
-            first[a[*i as usize] as usize] && last[b[*i as usize] as usize]
-        };
+        let is_near = |i: &u32| first[self.bin(0, *i)] && last[self.bin(1, *i)];
         let cells: Vec<(f32, u32)> = self.cells().filter(is_near).map(|i| (powers.of(i), i)).collect();
-        strongest(cells.into_iter()).map(|(_, i)| self.grid.places_metres[i as usize])
-    }
-
-    /// Whether the power exceeds `least` anywhere.
-    pub fn stands_out(&self, radar: &Radar, residual: &[Complex64], least: f64) -> bool {
-        let powers = self.powers(radar, residual);
-        self.cells().any(|i| f64::from(powers.of(i)) > least)
+        strongest(cells.into_iter()).map(|(_, i)| self.places_metres[i as usize])
     }
 
     /// All cells of the common grid.
     fn cells(&self) -> impl IndexedParallelIterator<Item = u32> {
-        (0..self.grid.places_metres.len() as u32).into_par_iter().with_min_len(LEAST_CELLS)
+        (0..self.places_metres.len() as u32).into_par_iter().with_min_len(LEAST_CELLS)
     }
 
     /// The powers of `residual` in the cells.
     fn powers(&self, radar: &Radar, residual: &[Complex64]) -> Powers<'_> {
         let magnitudes = end_beams(radar, residual, self.beams)
             .map(|beams| beams.into_par_iter().map(|v| v.norm_sqr().sqrt() as f32).collect());
-        Powers { cells: &self.grid.cells, magnitudes }
+        Powers { cells: &self.cells, magnitudes }
     }
 
     /// Largest amplitude of a reflector in range bin `own` in every other bin at one end, relative to its own.
@@ -168,12 +171,11 @@ mod tests {
         let detector = Detector::of(&radar);
         let found = detector.peaks(&radar, &flat, 0.0, 2);
         let [first, second] = found[..] else { panic!("{found:?}") };
-        assert!((first.x_metres - 3.0).hypot(first.y_metres - 11.0) < 0.3, "{first:?}");
-        assert!(
-            (second.x_metres + 9.0).hypot(second.y_metres - 20.0) < 0.5 && second.power < first.power,
-            "{second:?}"
-        );
-        assert!(detector.stands_out(&radar, &flat, 0.999 * first.power));
-        assert!(!detector.stands_out(&radar, &flat, 1.001 * first.power));
+        assert!((first[0] - 3.0).hypot(first[1] - 11.0) < 0.3, "{first:?}");
+        assert!((second[0] + 9.0).hypot(second[1] - 20.0) < 0.5, "{second:?}");
+        let powers = detector.powers(&radar, &flat);
+        let highest = detector.cells().map(|i| f64::from(powers.of(i))).reduce(|| 0.0, f64::max);
+        assert_eq!(detector.peaks(&radar, &flat, 0.999 * highest, 1), [first]);
+        assert!(detector.peaks(&radar, &flat, 1.001 * highest, 1).is_empty());
     }
 }

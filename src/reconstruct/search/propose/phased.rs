@@ -6,7 +6,7 @@
 use super::end_beams::{beam_of_cos, end_beams};
 use super::view::View;
 use crate::radar::{End, Radar};
-use crate::signal::simd::{LANES_F64 as W, Lanes, phasor};
+use crate::signal::simd::{Kernel, LANES_F64 as W, Lanes, Simd, phasor};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -124,9 +124,14 @@ impl PhasedBeams {
         self.bins_per_metre.recip()
     }
 
+    /// Coherent part of the power at the places of each of `rows`, over `count` reflectors of one gain.
+    pub fn parts_adding_up(&self, rows: &[Row], count: usize) -> Vec<f64> {
+        Simd::chosen().run(PartsAddingUp { beams: self, rows, count })
+    }
+
     /// Coherent part of the power at the places of `row`, one for each of `heard`, under one gain for the row.
     #[inline(always)]
-    pub fn part_adding_up<const FMA: bool>(&self, row: &Row, heard: &mut [Heard]) -> f64 {
+    fn part_adding_up<const FMA: bool>(&self, row: &Row, heard: &mut [Heard]) -> f64 {
         if row.place_metres((heard.len() - 1) as f64)[1] <= 0.0 {
             return 0.0;
         }
@@ -168,6 +173,27 @@ impl PhasedBeams {
                 *heard = Heard { weighted: value * phase * amplitude, weight: amplitude * amplitude };
             }
         }
+    }
+}
+
+/// Kernel of [`PhasedBeams::parts_adding_up`].
+struct PartsAddingUp<'a> {
+    beams: &'a PhasedBeams,
+    rows: &'a [Row],
+    count: usize,
+}
+
+impl Kernel for PartsAddingUp<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> Self::Output {
+        let mut heard = vec![Heard::default(); self.count];
+        let mut parts = Vec::with_capacity(self.rows.len());
+        for row in self.rows {
+            parts.push(self.beams.part_adding_up::<FMA>(row, &mut heard));
+        }
+        parts
     }
 }
 

@@ -1,12 +1,13 @@
 //! The number of successive range bins with an echo.
 
+use super::end_beams::beam_noise_power;
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
 
 /// Power of an echo in a range bin, over that of the noise.
-const ABOVE_NOISE: f64 = 4.0;
+pub const ABOVE_NOISE: f64 = 4.0;
 
 /// Weakest echo, over the strongest, after scaling by the 1/R^4 law of power.
 const WEAKEST: f64 = 1e-6;
@@ -21,9 +22,7 @@ pub const LONG_RUN_BINS: usize = 18;
 /// stands out of noise of `noise_variance`, and lies at most 60 dB below the strongest when ranges are evened out.
 pub fn longest_run_bins(radar: &Radar, residual: &[Complex64], noise_variance: f64) -> usize {
     let ends = TwoEnds::of_flat(radar, residual);
-    let weights = radar.window.weights(radar.samples);
-    let window = weights.iter().map(|w| w * w).sum::<f64>() / radar.samples as f64;
-    let noise = window * radar.end_elements as f64 * noise_variance;
+    let noise = beam_noise_power(radar, noise_variance);
     let run_of = |end: End| {
         let profiles = channels_range_transform(radar, ends.end(end).view()).profiles;
         let power = |bin: usize| profiles.column(bin).iter().map(Complex64::norm_sqr).sum::<f64>();

@@ -4,8 +4,8 @@
 //! are moved to where all their echoes add up, over more and more reflectors: the longer the row, the finer it is known, and the fewer
 //! wrong ones go along.
 
+use super::super::begin::MIN_REFLECTORS;
 use super::phased::{AddedUp, Heard, PhasedBeams, Row, added_up};
-use super::unexplained::Unexplained;
 use crate::reconstruct::fit::{Atom, damped_step};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
@@ -22,9 +22,6 @@ pub const LEAST_STEP_METRES: f64 = 0.02;
 
 /// Neighbours of a point that its row may lead over.
 const NEIGHBOURS: usize = 8;
-
-/// Reflectors of the first glance.
-pub const FIRST: usize = 8;
 
 /// Steps of the grid around a pair to each side, along the line of sight and across.
 const REACH: [i32; 2] = [7, 9];
@@ -60,33 +57,22 @@ pub const MAX_RANGES: f64 = 2.5;
 /// A row that adds up to less than this part of the most it did has passed its end.
 const PASSED: f64 = 0.4;
 
-/// A row that the beams may hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stride {
-    /// The row.
-    pub atom: Atom,
-    /// Reflectors whose echoes add up, more or less.
-    pub weight: f64,
-}
-
-/// Lines over two neighbouring points that may be among what is left, the most promising first.
-pub fn strides(left: &Unexplained) -> Vec<Atom> {
-    rows_over_pairs(left.beams(), left.points_metres, left.task).into_iter().map(|row| row.atom).collect()
-}
-
 /// Rows from one of `points` (x, y; metres) over another, best first; one for each first point at most.
-fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Stride> {
-    let pairs = (0..points.len()).flat_map(|i| neighbours(points, i).map(move |j| (i, j)));
-    let mut grids: Vec<Grid> = pairs.map(|(i, j)| Grid::new(beams, i, points[i], points[j])).collect();
-    grids.par_iter_mut().for_each(|grid| {
-        if !task.is_cancelled() {
-            grid.rows = Simd::chosen().run(Glance { beams, grid });
-        }
-    });
-    grids.sort_by(|a, b| b.best().total_cmp(&a.best()));
+pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Atom> {
+    let neighbours_of = |i: usize| neighbours(points, i).map(move |j| (i, j));
+    let pairs: Vec<(usize, usize)> = (0..points.len()).flat_map(neighbours_of).collect();
+    // The best rows of every pair, with the part of the beams' power that adds up in each.
+    let glance = |&(first, over): &(usize, usize)| {
+        let rows = if task.is_cancelled() { Vec::new() } else { grid(beams, points[first], points[over]) };
+        let parts = beams.parts_adding_up(&rows, MIN_REFLECTORS);
+        let best = summits(&parts, (2 * REACH[0] + 1) as usize, KEPT_STEPS).into_iter();
+        best.map(|at| (parts[at], Start { first, row: rows[at] })).collect::<Vec<_>>()
+    };
+    let mut grids: Vec<Vec<(f64, Start)>> = pairs.par_iter().map(glance).collect();
+    let best = |grid: &[(f64, Start)]| grid.first().map_or(0.0, |(part, _)| *part);
+    grids.sort_by(|a, b| best(b).total_cmp(&best(a)));
     grids.truncate(MOST_GRIDS);
-    let starts = grids.iter().flat_map(|grid| grid.rows.iter().map(|(row, _)| Start { first: grid.first, row: *row }));
-    best_of_each(beams, starts.collect(), task)
+    best_of_each(beams, grids.into_iter().flatten().map(|(_, start)| start).collect(), task)
 }
 
 /// A row of a few reflectors, to be followed.
@@ -101,9 +87,9 @@ pub struct Start {
 /// The rows as far as their echoes add up, best first; one for each first point at most.
 ///
 /// All are followed over more and more reflectors, those ever fewer that add up best: every length takes about as long as the last.
-pub fn best_of_each(beams: &PhasedBeams, starts: Vec<Start>, task: &Task) -> Vec<Stride> {
+pub fn best_of_each(beams: &PhasedBeams, starts: Vec<Start>, task: &Task) -> Vec<Atom> {
     let mut rows: Vec<Followed> = starts.into_iter().map(Followed::new).collect();
-    let mut count = FIRST;
+    let mut count = MIN_REFLECTORS;
     while count <= MOST_REFLECTORS && !task.is_cancelled() {
         let most = MOST_FOLLOWED / count;
         rows.sort_by(|a, b| b.part.total_cmp(&a.part));
@@ -111,11 +97,12 @@ pub fn best_of_each(beams: &PhasedBeams, starts: Vec<Start>, task: &Task) -> Vec
         rows.iter_mut().skip(most).for_each(|row| row.part = 0.0);
         count = (count as f64 * GROWTH) as usize + 1;
     }
-    let mut found: Vec<(usize, Stride)> = rows.iter().filter_map(|row| Some((row.start.first, row.best?))).collect();
-    found.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
+    let mut found: Vec<(usize, (f64, Atom))> =
+        rows.iter().filter_map(|row| Some((row.start.first, row.best?))).collect();
+    found.sort_by(|a, b| b.1.0.total_cmp(&a.1.0));
     let mut taken = BTreeSet::new();
     found.retain(|(first, _)| taken.insert(*first));
-    found.into_iter().map(|(_, stride)| stride).collect()
+    found.into_iter().map(|(_, (_, atom))| atom).collect()
 }
 
 /// The nearest points that may be next to point `i` in a row.
@@ -129,42 +116,19 @@ fn neighbours(points: &[[f64; 2]], i: usize) -> impl Iterator<Item = usize> {
     near.into_iter().take(NEIGHBOURS).map(|(_, j)| j)
 }
 
-/// Steps from one point over about another.
-struct Grid {
-    /// Number of the first point.
-    first: usize,
-    middle: Row,
-    /// One step of the grid along the line of sight, and one across (x, y), metres.
-    along: [f64; 2],
-    across: [f64; 2],
-    /// The best rows with the part of the beams' power that adds up in each.
-    rows: Vec<(Row, f64)>,
-}
-
-impl Grid {
-    fn new(beams: &PhasedBeams, first: usize, from: [f64; 2], over: [f64; 2]) -> Self {
-        let step = [over[0] - from[0], over[1] - from[1]];
-        let range = from[0].hypot(from[1]).max(0.1);
-        let sight = [from[0] / range, from[1] / range];
-        let [along, across] = pitches_metres(beams, from, step[0].hypot(step[1]), PITCH_WAVELENGTHS);
-        Grid {
-            first,
-            middle: Row { first_metres: from, step_metres: step },
-            along: sight.map(|v| v * along),
-            across: [-sight[1] * across, sight[0] * across],
-            rows: Vec::new(),
-        }
-    }
-
-    fn at(&self, i: i32, j: i32) -> Row {
+/// Rows from one point over about another: by steps along the line of sight, and for each of these by steps across.
+fn grid(beams: &PhasedBeams, from: [f64; 2], over: [f64; 2]) -> Vec<Row> {
+    let step = [over[0] - from[0], over[1] - from[1]];
+    let range = from[0].hypot(from[1]).max(0.1);
+    let sight = [from[0] / range, from[1] / range];
+    let [along, across] = pitches_metres(beams, from, step[0].hypot(step[1]), PITCH_WAVELENGTHS);
+    let (along, across) = (sight.map(|v| v * along), [-sight[1] * across, sight[0] * across]);
+    let row = |i: i32, j: i32| {
         let [i, j] = [i, j].map(f64::from);
-        let step = [0, 1].map(|axis| self.middle.step_metres[axis] + i * self.along[axis] + j * self.across[axis]);
-        Row { step_metres: step, ..self.middle }
-    }
-
-    fn best(&self) -> f64 {
-        self.rows.first().map_or(0.0, |(_, part)| *part)
-    }
+        Row { first_metres: from, step_metres: [0, 1].map(|axis| step[axis] + i * along[axis] + j * across[axis]) }
+    };
+    let [far, wide] = REACH;
+    (-far..=far).flat_map(|i| (-wide..=wide).map(move |j| (i, j))).map(|(i, j)| row(i, j)).collect()
 }
 
 /// Steps of a grid over the first few reflectors, for rows of about this step, so that neighbours differ by so many wavelengths over all of
@@ -173,34 +137,11 @@ pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64, wav
     let range = from[0].hypot(from[1]).max(0.1);
     let between = (beams.views[1].centre_metres - beams.views[0].centre_metres).abs().max(1e-3);
     let wavelength = beams.turns_per_metre.abs().recip();
-    let last = (FIRST - 1) as f64;
+    let last = (MIN_REFLECTORS - 1) as f64;
     // By the range itself, by its difference between the ends, by the row's curvature.
     let along = wavelengths * wavelength / last;
     let curved = wavelengths * wavelength * range / (step_metres * last * last);
     [along, (along * range / between).min(curved)]
-}
-
-/// Kernel that tries all steps of a grid over the first few reflectors.
-struct Glance<'a> {
-    beams: &'a PhasedBeams,
-    grid: &'a Grid,
-}
-
-impl Kernel for Glance<'_> {
-    type Output = Vec<(Row, f64)>;
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) -> Self::Output {
-        let [rows, columns] = REACH.map(|reach| (2 * reach + 1) as usize);
-        let mut parts = vec![0.0; rows * columns];
-        let mut heard = [Heard::default(); FIRST];
-        for (at, part) in parts.iter_mut().enumerate() {
-            let row = self.grid.at((at / columns) as i32 - REACH[0], (at % columns) as i32 - REACH[1]);
-            *part = self.beams.part_adding_up::<FMA>(&row, &mut heard);
-        }
-        let row = |at: usize| self.grid.at((at / columns) as i32 - REACH[0], (at % columns) as i32 - REACH[1]);
-        summits(&parts, rows, KEPT_STEPS).into_iter().map(|at| (row(at), parts[at])).collect()
-    }
 }
 
 /// The `most` highest of those places of a grid of so many `rows` that no neighbour exceeds, best first.
@@ -224,7 +165,8 @@ struct Followed {
     /// Part of the power at its places that adds up; 0 where it has passed its end.
     part: f64,
     most: f64,
-    best: Option<Stride>,
+    /// Number of reflectors whose echoes add up, more or less, at the length at which most adds up, and the row of that length.
+    best: Option<(f64, Atom)>,
 }
 
 impl Followed {
@@ -238,51 +180,33 @@ impl Followed {
             return;
         }
         self.part = 0.0;
-        let Some(moved) = climbed(beams, self.start.row, count) else { return };
-        self.start.row = moved.row;
-        if moved.added < PASSED * self.most {
+        let Some((row, slope)) = climbed(beams, self.start.row, count) else { return };
+        self.start.row = row;
+        if slope.added < PASSED * self.most {
             return;
         }
-        self.part = moved.part();
-        if moved.added > self.most {
-            self.most = moved.added;
-            self.best = Some(moved.stride(count));
+        self.part = slope.added / f64::max(slope.all, f64::MIN_POSITIVE);
+        if slope.added > self.most {
+            self.most = slope.added;
+            let ([x_metres, y_metres], [dx_metres, dy_metres]) = (row.first_metres, row.step_metres);
+            let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
+            self.best = Some((self.part * count as f64, atom));
         }
-    }
-}
-
-/// A row at the largest sum of its echoes.
-struct Climbed {
-    row: Row,
-    added: f64,
-    all: f64,
-}
-
-impl Climbed {
-    /// Part of the power at its places that adds up.
-    fn part(&self) -> f64 {
-        self.added / f64::max(self.all, f64::MIN_POSITIVE)
-    }
-
-    /// The row's first `count` reflectors, over which it was moved.
-    fn stride(&self, count: usize) -> Stride {
-        let [x_metres, y_metres] = self.row.first_metres;
-        let [dx_metres, dy_metres] = self.row.step_metres;
-        let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
-        Stride { atom, weight: self.part() * count as f64 }
     }
 }
 
 /// Derivatives of the echoes' phases, and their products.
 struct Slope {
+    /// The part of the power at the places that adds up.
     added: f64,
+    /// All power there.
     all: f64,
     gradient: [f64; 4],
     hessian: [[f64; 4]; 4],
 }
 
 /// `row` moved so that the echoes of its first `count` reflectors add up to most; `None` where it leaves what is heard.
-fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbed> {
+fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<(Row, Slope)> {
     let mut slope = slope(beams, &row, count)?;
     let mut damping = 1e-2;
     for _ in 0..MOVES {
@@ -305,7 +229,7 @@ fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<Climbed> {
             None => damping *= 10.0,
         }
     }
-    Some(Climbed { row, added: slope.added, all: slope.all })
+    Some((row, slope))
 }
 
 /// Gauss-Newton equations of the phases against that of their sum, weighted by how much each adds to it; `None` where the row leaves what is heard.
@@ -380,7 +304,7 @@ mod tests {
     fn rows_that_ran_away_are_not_followed() {
         let radar = Radar::default();
         let beams = PhasedBeams::new(&radar, &vec![Complex64::ONE; 2 * radar.end_elements * radar.samples]);
-        let follow = |step_metres| climbed(&beams, Row { first_metres: [1.0, 5.0], step_metres }, FIRST);
+        let follow = |step_metres| climbed(&beams, Row { first_metres: [1.0, 5.0], step_metres }, MIN_REFLECTORS);
         assert!(follow([0.0, 0.1]).is_some());
         for step_metres in [[0.0, 1e300], [1e30, 0.0], [f64::NAN, 0.1], [f64::INFINITY, 0.0], [0.0, -1.0]] {
             assert!(follow(step_metres).is_none(), "{step_metres:?}");

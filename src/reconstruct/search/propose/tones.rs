@@ -6,7 +6,6 @@
 //! Halko, P. G. Martinsson, J. A. Tropp, "Finding structure with randomness", 2011), which costs little where the tones are few.
 
 use crate::signal::floor::unit_noise;
-use crate::signal::split::STRIDE;
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 use num_complex::Complex64;
@@ -135,14 +134,7 @@ pub fn gains_of_tones(chirp: &[Complex64], tones: &[Tone]) -> Vec<Complex64> {
     let middle = (samples - 1.0) / 2.0;
     let at =
         |tone: &Tone, n: f64| Complex64::from_polar((tone.growth * n).exp(), TAU * (tone.bins * n / samples).fract());
-    // Split as `signal::split` does: hardly any phasor is evaluated from its phase.
-    let rows: Vec<Vec<Complex64>> = tones
-        .iter()
-        .map(|tone| (0..chirp.len().div_ceil(STRIDE)).map(|row| at(tone, (row * STRIDE) as f64 - middle)).collect())
-        .collect();
-    let within: Vec<Vec<Complex64>> =
-        tones.iter().map(|tone| (0..STRIDE).map(|n| at(tone, n as f64)).collect()).collect();
-    let columns = Mat::from_fn(chirp.len(), tones.len(), |n, l| rows[l][n / STRIDE] * within[l][n % STRIDE]);
+    let columns = Mat::from_fn(chirp.len(), tones.len(), |n, l| at(&tones[l], n as f64 - middle));
     let gains = columns.qr().solve_lstsq(Mat::from_fn(chirp.len(), 1, |n, _| chirp[n]));
     (0..tones.len()).map(|l| gains[(l, 0)]).collect()
 }

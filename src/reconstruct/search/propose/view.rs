@@ -5,6 +5,7 @@
 //! and the last: the phases of an end's elements contain no more.
 
 use crate::radar::{End, Pair, Radar};
+use crate::signal::path::PairBlocks;
 use crate::signal::simd::Lanes;
 
 /// One end's view.
@@ -48,9 +49,7 @@ impl View {
     pub fn range_metres<const W: usize>(&self, dx: Lanes<f64, W>, y: Lanes<f64, W>) -> Lanes<f64, W> {
         match &self.pairs {
             None => (dx * dx + y * y).sqrt(),
-            Some(ViewOfPairs { middle: [a, b], .. }) => {
-                (range_of_pair(a, dx, y) + range_of_pair(b, dx, y)) * Lanes::splat(0.5)
-            }
+            Some(ViewOfPairs { middle: [a, b], .. }) => (range_for(a, dx, y) + range_for(b, dx, y)) * Lanes::splat(0.5),
         }
     }
 
@@ -65,7 +64,7 @@ impl View {
         match &self.pairs {
             None => dx * inverse,
             Some(ViewOfPairs { first, last, length_metres, .. }) => {
-                let nearer = range_of_pair(first, dx, y) - range_of_pair(last, dx, y);
+                let nearer = range_for(first, dx, y) - range_for(last, dx, y);
                 (nearer * Lanes::splat(length_metres.recip())).map(|cos| cos.clamp(-1.0, 1.0))
             }
         }
@@ -94,13 +93,10 @@ impl View {
     }
 }
 
+/// Ranges of places for a pair.
 #[inline(always)]
-fn range_of_pair<const W: usize>(pair: &Pair, dx: Lanes<f64, W>, y: Lanes<f64, W>) -> Lanes<f64, W> {
-    let [there, back] = pair.places_metres().map(|[antenna_x, antenna_y]| {
-        let (dx, ahead) = (dx + Lanes::splat(-antenna_x), y - Lanes::splat(antenna_y));
-        (dx * dx + ahead * ahead).sqrt()
-    });
-    (there + back) * Lanes::splat(0.5)
+fn range_for<const W: usize>(pair: &Pair, dx: Lanes<f64, W>, y: Lanes<f64, W>) -> Lanes<f64, W> {
+    PairBlocks::new(|_| *pair).ranges_metres(dx, y)
 }
 
 #[cfg(test)]
