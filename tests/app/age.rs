@@ -1,15 +1,8 @@
 //! The pictures on screen are of the scene on screen, or are marked as old.
 
-use crate::session::Session;
-use apertura::app::{Command, EditCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand};
-use apertura::radar::{Radar, WindowFunction};
-use apertura::reconstruct::{
-    About, Baseline, CAPON, ReconstructError, Reconstruction, Reconstructor, Request as MethodRequest,
-};
-use apertura::signal::{Floor, TwoEnds};
+use crate::session::*;
+use apertura::reconstruct::Request as MethodRequest;
 use proptest::prelude::*;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 /// A method that takes longer than an old picture may be drawn as fresh.
 struct Slow;

@@ -1,11 +1,6 @@
 //! Walls, boxes, posts and polygons in the window: added, changed while the maps follow, and listed.
 
-use crate::session::{Session, step_until};
-use apertura::app::{EditCommand, NewObject};
-use apertura::interact::{Place, SelectionMode};
-use apertura::scene::Object;
-use eframe::egui::{Event, Key, Modifiers, accesskit::Role, vec2};
-use egui_kittest::kittest::Queryable;
+use crate::session::*;
 
 /// A session with nothing in its scene.
 fn empty() -> Session {

@@ -1,19 +1,9 @@
 //! Two methods on one scene: flipped, read off cell by cell, and the verdicts on every object.
 
-use crate::session::{Session, step_until};
-use apertura::app::{Compare, DocumentCommand, Layout, MapKind, Panel, ViewCommand, WindowCommand};
-use apertura::evaluate::trial::Trial;
-use apertura::maps::{LogMaps, Normalisation, RangeAngleMap};
-use apertura::radar::Radar;
-use apertura::reconstruct::{About, Baseline, CAPON, ReconstructError, Reconstruction, Reconstructor, Request};
-use apertura::scene::generate::Kind;
-use apertura::signal::{Floor, TwoEnds, simulate};
-use eframe::egui::{Key, Modifiers, vec2};
+use crate::session::*;
+use apertura::app::{Compare, Layout};
+use apertura::maps::{LogMaps, RangeAngleMap};
 use egui_kittest::Node;
-use egui_kittest::kittest::{NodeT, Queryable};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::time::{Duration, Instant};
 
 fn with_capon() -> Session {
     Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)])

@@ -1,15 +1,7 @@
 //! Detection at a constant false-alarm rate in the window.
 
-use crate::session::Session;
-use apertura::app::{DocumentCommand, MapKind, Panel, ViewCommand, WindowCommand};
-use apertura::evaluate::trial::Trial;
-use apertura::maps::Normalisation;
+use crate::session::*;
 use apertura::maps::cfar::{Cfar, Statistic};
-use apertura::reconstruct::{Baseline, Request};
-use apertura::signal::Floor;
-use eframe::egui::{Shape, vec2};
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
 
 const CELLS: Cfar = Cfar { statistic: Statistic::CellAveraging, guard: [2, 2], training: [4, 6], false_alarm: 1e-3 };
 

@@ -1,16 +1,9 @@
 //! The document under undo, saving, a kill and a restart.
 
-use crate::session::{Session, harness, step_until};
-use apertura::app::{DocumentCommand, EditCommand, NewObject, RadarCommand, WindowCommand};
-use apertura::interact::Document;
-use apertura::radar::{Carrier, Radar, WindowFunction};
-use apertura::reconstruct::Baseline;
-use apertura::scene::file::{self, SceneFile};
-use apertura::scene::{Object, Scene, presets};
-use eframe::egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
-use egui_kittest::kittest::Queryable;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use crate::session::*;
+use apertura::scene::file::SceneFile;
+use apertura::scene::{file, presets};
+use eframe::egui::{ViewportCommand, ViewportEvent, ViewportId};
 
 fn undo(s: &mut Session) {
     s.press(Modifiers::COMMAND, Key::Z);

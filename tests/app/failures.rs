@@ -1,19 +1,10 @@
 //! Rows of an evaluation in the window: tried, sorted, filtered, opened, dragged, made worse, kept, and there again after a restart.
 
-use crate::session::{Session, step_until};
-use apertura::app::{
-    Command, EditCommand, FailureChoice, Panel, RowsCommand, SearchChoice, ViewCommand, WindowCommand,
-};
-use apertura::evaluate::rows::{Row, read_rows, write_rows};
+use crate::session::*;
+use apertura::app::SearchChoice;
+use apertura::evaluate::rows::{Row, write_rows};
 use apertura::evaluate::sets::Folder;
 use apertura::evaluate::worsen::{Aim, WorseningMeasure};
-use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
-use apertura::scene::Scene;
-use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
-use apertura::signal::Floor;
-use eframe::egui::{Key, Modifiers, vec2};
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
 
 fn methods() -> Vec<Arc<dyn Reconstructor>> {
     vec![Arc::new(Baseline), Arc::new(CAPON)]

@@ -1,20 +1,8 @@
 //! Figures on screen are those of the command line, bit for bit, after anything that the window showed before.
 
-use crate::session::{Session, harness, step_until};
-use apertura::app::{DocumentCommand, EditCommand, NewObject};
-use apertura::evaluate::rows::read_rows;
-use apertura::evaluate::trial::Trial;
-use apertura::interact::Document;
-use apertura::maps::Normalisation;
-use apertura::radar::Radar;
+use crate::session::*;
+use apertura::reconstruct::Hybrid;
 use apertura::reconstruct::search::Settings;
-use apertura::reconstruct::{About, Baseline, Hybrid, ReconstructError, Reconstruction, Reconstructor, Request};
-use apertura::scene::generate::Kind;
-use apertura::signal::{Floor, TwoEnds};
-use eframe::egui::vec2;
-use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 const SCENE: &str = "noise_seed = 12\n\n[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\
                      [[object]]\nkind = \"point\"\nx_metres = 3.0\ny_metres = 12.0\n\n\

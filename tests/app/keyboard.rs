@@ -1,11 +1,6 @@
 //! Everything can be reached and done without a pointer.
 
-use crate::session::Session;
-use apertura::app::EditCommand;
-use apertura::interact::SelectionMode;
-use eframe::egui::accesskit::Role;
-use eframe::egui::{Event, Key, Modifiers};
-use egui_kittest::kittest::{NodeT, Queryable};
+use crate::session::*;
 use std::collections::BTreeMap;
 
 /// Whether a person uses this element. A button on an object's handle stands for the arrow keys and the inspector.

@@ -1,12 +1,7 @@
 //! Other elements than those of the two ends are heard.
 
-use crate::session::Session;
-use apertura::app::{EditCommand, MapKind, RadarCommand, ViewCommand};
+use crate::session::*;
 use apertura::evaluate::Target;
-use apertura::evaluate::trial::Trial;
-use apertura::radar::{LayoutKind, Radar};
-use apertura::reconstruct::{Baseline, IAA, MatchedFilter, Reconstructor, Request};
-use std::sync::Arc;
 
 fn session() -> Session {
     let methods: [Arc<dyn Reconstructor>; 3] = [Arc::new(Baseline), Arc::new(MatchedFilter::Coherent), Arc::new(IAA)];

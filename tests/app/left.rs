@@ -1,19 +1,13 @@
 //! Left in the scene is left in every map: in the thesis' convention, in the physical one, and of a recording whose file lists the elements
 //! from the right.
 
-use crate::session::{Session, harness};
-use apertura::app::{DocumentCommand, ExportCommand, MapKind, Panel, ViewCommand, WindowCommand};
+use crate::session::*;
 use apertura::files::npz::write_npz;
 use apertura::picture::{PictureFormat, Style, compose, compose_recording};
-use apertura::radar::{Convention, Radar};
-use apertura::reconstruct::{Baseline, Reconstructor};
 use apertura::recording;
-use apertura::scene::{Reflector, Scene};
-use apertura::signal::{Floor, exact, simulate};
-use eframe::egui::{ColorImage, Modifiers, OutputCommand, PointerButton, Pos2, vec2};
-use egui_kittest::kittest::Queryable;
-use std::path::Path;
-use std::sync::Arc;
+use apertura::scene::Reflector;
+use apertura::signal::exact;
+use eframe::egui::ColorImage;
 
 /// The point that must be seen on the left.
 const POINT: [f64; 2] = [-8.0, 12.0];

@@ -1,14 +1,8 @@
 //! Every lesson taken in the whole app: answered right and wrong by pointer and keyboard, challenges met by the solution that is shown.
 
-use crate::session::{Session, step_until};
-use apertura::app::{
-    DocumentCommand, EditCommand, LessonCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand,
-};
+use crate::session::*;
 use apertura::lesson::question::Answer;
 use apertura::lesson::{Cell, Guess, Lesson, MapName, Question, Stage, Step, Truth, shipped};
-use apertura::radar::Radar;
-use eframe::egui::{Event, pos2};
-use egui_kittest::kittest::Queryable;
 
 /// Whether a text stands somewhere on screen.
 fn shows(s: &Session, text: &str) -> bool {

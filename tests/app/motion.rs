@@ -1,11 +1,7 @@
 //! Objects that move: the range-Doppler map, and the time at which the scene is looked at.
 
-use crate::session::{Session, step_until};
-use apertura::app::{Command, EditCommand, Panel, RadarCommand, ViewCommand, WindowCommand};
+use crate::session::*;
 use apertura::interact::{Field, FieldChange};
-use apertura::radar::Radar;
-use eframe::egui::{Key, Modifiers, vec2};
-use std::sync::Arc;
 
 fn moving() -> Session {
     let mut s = Session::start();

@@ -1,11 +1,6 @@
 //! Names for screen readers, and the window at twice the size.
 
-use crate::session::Session;
-use apertura::app::{Command, DocumentCommand, EditCommand, MapKind, Panel, RadarCommand, WindowCommand};
-use apertura::interact::SelectionMode;
-use eframe::egui::accesskit::Role;
-use eframe::egui::{Key, Modifiers, vec2};
-use egui_kittest::kittest::{NodeT, Queryable};
+use crate::session::*;
 
 /// Whether an element of this role is used or has to be read out, so that it needs a name.
 fn has_to_be_named(role: Role) -> bool {

@@ -1,11 +1,7 @@
 //! A window as narrow as a telephone.
 
-use crate::session::{Session, harness_of};
-use apertura::reconstruct::Baseline;
-use eframe::egui::accesskit::Role;
-use eframe::egui::{Rect, vec2};
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
+use crate::session::*;
+use eframe::egui::Rect;
 
 fn narrow() -> Session {
     let folder = tempfile::tempdir().unwrap();

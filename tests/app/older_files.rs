@@ -1,14 +1,8 @@
 //! An unsaved scene and rows from a window of version 0.1.0 are there in this one. The files stand in `tests/data/program-0.1.0` and must never be
 //! rewritten.
 
-use crate::session::{Session, harness};
-use apertura::app::{Command, FailureChoice, Panel, RowsCommand, WindowCommand};
+use crate::session::*;
 use apertura::evaluate::rows::FORMAT;
-use apertura::reconstruct::Baseline;
-use apertura::scene::generate::Kind;
-use egui_kittest::kittest::Queryable;
-use std::path::Path;
-use std::sync::Arc;
 
 /// A window whose folder holds these files of the older one.
 fn session(files: &[(&str, &str)]) -> Session {

@@ -1,20 +1,10 @@
 //! Panels that are shown, and the work that is done for them and for no others.
 
-use crate::session::Session;
-use apertura::app::{
-    ChirpSettings, Command, DocumentCommand, MapKind, Panel, RadarCommand, Units, ViewCommand, WindowCommand,
-};
+use crate::session::*;
+use apertura::app::{ChirpSettings, Units};
 use apertura::engine::EngineStage;
-use apertura::maps::Normalisation;
-use apertura::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
-use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
-use apertura::scene::Object;
-use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
-use apertura::signal::Floor;
 use apertura::theory::chirp::{ChirpShape, heard};
-use eframe::egui::{Event, Key, Modifiers, Rangef, vec2};
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
+use eframe::egui::Rangef;
 
 #[test]
 fn idling_computes_nothing() {

@@ -1,14 +1,11 @@
 //! The app's panels as pictures, compared with those in `tests/snapshots`. Needs a Vulkan driver (lavapipe will do) and is skipped
 //! without one. After a change that is meant to be seen: `UPDATE_SNAPSHOTS=1 cargo test --test app pictures`.
 
-use apertura::app::{App, Command, EditCommand, Options, Panel, ViewCommand, WindowCommand};
-use apertura::reconstruct::Baseline;
+use crate::session::*;
 use eframe::egui::Theme;
+use egui_kittest::SnapshotOptions;
 use egui_kittest::wgpu::WgpuTestRenderer;
-use egui_kittest::{Harness, SnapshotOptions};
 use std::panic::catch_unwind;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 /// A radar small enough that its maps take a moment only.
 const SCENE: &str = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\

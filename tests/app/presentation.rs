@@ -1,10 +1,6 @@
 //! The presentation, and pictures for slides.
 
-use crate::session::{Session, step_until};
-use apertura::app::{ExportCommand, MapKind, Panel, WindowCommand};
-use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Shape, vec2};
-use egui_kittest::kittest::Queryable;
-use std::collections::BTreeSet;
+use crate::session::*;
 
 #[test]
 fn one_key_toggles_a_presentation() {

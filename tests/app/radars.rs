@@ -1,15 +1,10 @@
 //! Radars that the thesis never had, in the app: maps, every model-based method, lists.
 
-use crate::session::Session;
-use apertura::app::{DocumentCommand, MapKind, Panel, RadarCommand, ViewCommand, WindowCommand};
-use apertura::maps::Normalisation;
+use crate::session::*;
 use apertura::methods;
-use apertura::radar::{Carrier, Convention, Decibels, Radar, SPEED_OF_LIGHT, presets};
+use apertura::radar::{SPEED_OF_LIGHT, presets};
 use apertura::reconstruct::Family;
 use apertura::recording::Recording;
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
-use std::path::PathBuf;
 
 fn array(elements: usize, end_elements: usize, carrier_hz: f64, wavelengths: f64) -> Radar {
     let element_spacing_metres = wavelengths * SPEED_OF_LIGHT / carrier_hz;

@@ -1,20 +1,10 @@
 //! Recordings in the place of a scene: opened, looked at, explained, exported, and undone.
 
-use crate::session::{Session, step_until};
-use apertura::app::{
-    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, Way,
-    WindowCommand,
-};
-use apertura::interact::{Document, Editor, Place};
-use apertura::maps::Normalisation;
-use apertura::radar::{BuiltArray, Carrier, Decibels, ElementError, Radar, Tolerances, WindowFunction};
-use apertura::reconstruct::{Baseline, CAPON, IAA, Reconstructor};
+use crate::session::*;
+use apertura::app::Way;
+use apertura::interact::Editor;
+use apertura::radar::{BuiltArray, ElementError, Tolerances};
 use apertura::scene::{Interferer, Mirror};
-use apertura::signal::Floor;
-use eframe::egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 const CASCADE: usize = 0;
 const CHIP: usize = 1;

@@ -1,12 +1,6 @@
 //! Editing, files, and documents after a crash.
 
-use crate::session::{Session, harness};
-use apertura::app::{DocumentCommand, EditCommand, NewObject};
-use apertura::reconstruct::Baseline;
-use eframe::egui::{Event, Key, Modifiers, vec2};
-use std::path::Path;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use crate::session::*;
 
 #[test]
 fn a_drag_moves_one_object_from_its_first_pixel() {

@@ -1,13 +1,31 @@
 //! The app in a folder of its own, with a small radar.
 
-use apertura::app::{App, Command, Options};
-use apertura::reconstruct::{Baseline, Reconstructor};
-use eframe::egui::{self, Key, Modifiers, Pos2, Shape};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use std::path::Path;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+pub use apertura::app::{
+    App, Command, DocumentCommand, EditCommand, ExportCommand, FailureChoice, LessonCommand, MapKind, NewObject,
+    Options, Panel, RadarCommand, RowsCommand, ViewCommand, WindowCommand,
+};
+pub use apertura::evaluate::rows::read_rows;
+pub use apertura::evaluate::trial::Trial;
+pub use apertura::interact::{Document, Place, SelectionMode};
+pub use apertura::maps::Normalisation;
+pub use apertura::radar::{Carrier, Convention, DecibelMilliwatts, Decibels, LayoutKind, Radar, WindowFunction};
+pub use apertura::reconstruct::{
+    About, Baseline, CAPON, IAA, MatchedFilter, ReconstructError, Reconstruction, Reconstructor, Request,
+};
+pub use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+pub use apertura::scene::{Object, Scene};
+pub use apertura::signal::{Floor, TwoEnds, simulate};
+pub use eframe::egui;
+pub use eframe::egui::accesskit::Role;
+pub use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Pos2, Shape, pos2, vec2};
+pub use egui_kittest::Harness;
+pub use egui_kittest::kittest::{NodeT, Queryable};
+pub use rand::RngExt;
+pub use std::collections::BTreeSet;
+pub use std::path::{Path, PathBuf};
+pub use std::sync::Arc;
+pub use std::sync::atomic::{AtomicU32, Ordering};
+pub use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// A radar small enough that its maps take a moment only, and two points.

@@ -1,27 +1,14 @@
 //! Long work beside the window: evaluations, measurements, training logs, methods that fail.
 
-use crate::session::{Session, step_until};
-use apertura::app::{
-    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, Purpose, RadarCommand, ThresholdChoice,
-    ViewCommand, WindowCommand, WorkCommand,
-};
+use crate::session::*;
+use apertura::app::{Purpose, ThresholdChoice, WorkCommand};
 use apertura::engine::{StageOutcome, StageReport};
 use apertura::evaluate::threshold::ThresholdSearch;
 use apertura::files::npz::Npz;
-use apertura::radar::{Carrier, LayoutKind, Radar};
-use apertura::reconstruct::{About, Baseline, MatchedFilter, ReconstructError, Reconstruction, Reconstructor, Request};
-use apertura::scene::generate::Kind;
-use apertura::signal::TwoEnds;
 use apertura::task::Task;
-use eframe::egui::{self, vec2};
-use egui_kittest::kittest::Queryable;
 use ndarray::IxDyn;
 use std::cell::Cell;
-use std::collections::BTreeSet;
-use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::atomic::AtomicBool;
 
 #[test]
 fn an_evaluation_runs_beside_the_app() {

@@ -1,9 +1,7 @@
 //! `apertura bounds`, `apertura layouts` and `apertura robustness` from outside.
 
 use super::cli::program as apertura;
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use serde_json::Value;
+use crate::cli::*;
 
 fn json(arguments: &[&str]) -> Value {
     let output = apertura(arguments).output().unwrap();

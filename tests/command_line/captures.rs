@@ -1,13 +1,7 @@
 //! Raw captures on the command line: described, imported, and opened as they are.
 
-use super::cli::{apertura, folder};
-use apertura::files::npz::Npz;
-use ndarray::{Ix1, Ix2};
-use num_complex::Complex64;
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
+use crate::cli::*;
 use std::f64::consts::TAU;
-use tempfile::TempDir;
 
 const C: f64 = 299_792_458.0;
 const SAMPLES: usize = 128;

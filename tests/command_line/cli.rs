@@ -1,17 +1,28 @@
 //! The command line from outside: good input, bad input, and nothing half-written.
 
-use apertura::evaluate::campaign::Campaign;
-use apertura::evaluate::sets::SceneSet;
-use apertura::files::npz::{Npz, write_npz};
-use apertura::reconstruct::{Baseline, Request};
-use apertura::scene::generate::Kind;
-use apertura::scene::{file, npz};
-use assert_cmd::Command;
-use ndarray::{Ix1, Ix2, Ix3, array, s};
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use std::path::Path;
-use tempfile::TempDir;
+pub use apertura::evaluate::campaign::Campaign;
+pub use apertura::evaluate::rows::read_rows;
+pub use apertura::evaluate::sets::SceneSet;
+pub use apertura::files::npz::{Npz, write_npz};
+pub use apertura::maps::{LogMap, Normalisation};
+pub use apertura::radar::Radar;
+pub use apertura::reconstruct::{Baseline, Request};
+pub use apertura::scene::generate::Kind;
+use apertura::scene::npz;
+pub use apertura::scene::{Scene, file};
+pub use apertura::signal::Floor;
+pub use assert_cmd::Command;
+pub use ndarray::{Array1, Array2, Array3, Axis, Ix1, Ix2, Ix3};
+use ndarray::{array, s};
+pub use ndarray_npy::{NpzReader, NpzWriter};
+pub use num_complex::Complex64;
+pub use predicates::prelude::PredicateBooleanExt;
+pub use predicates::str::contains;
+pub use serde_json::Value;
+pub use std::collections::BTreeSet;
+pub use std::fs::File;
+pub use std::path::{Path, PathBuf};
+pub use tempfile::TempDir;
 
 /// The program in an empty folder, without a display.
 pub fn apertura(folder: &TempDir) -> Command {

@@ -2,9 +2,7 @@
 
 use super::merge::older;
 use super::rows::{apertura, figures, folder, rows, without_times};
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use tempfile::TempDir;
+use crate::cli::*;
 
 /// The program, running.
 fn begin(folder: &TempDir, arguments: &str) -> std::process::Child {

@@ -1,14 +1,8 @@
 //! `--layout`: other elements than those of the two ends are heard.
 
-use super::cli::program;
+use crate::cli::*;
 use assert_cmd::assert::Assert;
-use ndarray::{Array1, Array2, Array3, Axis};
-use ndarray_npy::{NpzReader, NpzWriter};
-use num_complex::Complex64;
-use predicates::str::contains;
-use serde_json::Value;
-use std::fs::{File, read_to_string, write};
-use std::path::{Path, PathBuf};
+use std::fs::{read_to_string, write};
 
 /// A small radar, in a file of `folder`.
 fn radar(folder: &Path) -> PathBuf {

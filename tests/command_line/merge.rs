@@ -1,10 +1,7 @@
 //! `apertura evaluate --shard` and `--merge`: rows of several runs are put together, or refused with a reason.
 
 use super::rows::{apertura, folder, json, without_times};
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use serde_json::Value;
-use tempfile::TempDir;
+use crate::cli::*;
 
 /// Rows of an older program, without their conditions: the first columns alone.
 pub fn older(folder: &TempDir, name: &str, to: &str) {

@@ -1,8 +1,6 @@
 //! Messages on arguments and files that the program can't use: the value found, the values allowed, and a remedy.
 
-use super::cli::{apertura, folder};
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
+use crate::cli::*;
 
 #[test]
 fn numbers_out_of_range_say_what_is_allowed() {

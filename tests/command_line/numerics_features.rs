@@ -3,8 +3,8 @@
 //! Cargo unites the features that all crates of a build ask for: without the features that this crate fixes, burn would give the program's
 //! matrix products other instructions than those of a build without burn, and other bits.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use crate::cli::*;
+use std::collections::BTreeMap;
 use std::process::Command;
 
 /// Crates whose kernels round: products, decompositions, transforms.

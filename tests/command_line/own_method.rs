@@ -1,14 +1,8 @@
 //! `--method-command`: a program of one's own as a method.
 
-use apertura::evaluate::rows::read_rows;
-use assert_cmd::Command;
-use ndarray::{Array2, Array3};
-use ndarray_npy::{NpzReader, ReadNpyExt, WriteNpyExt};
-use num_complex::Complex64;
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use std::fs::{self, File};
-use std::path::Path;
+use crate::cli::*;
+use ndarray_npy::{ReadNpyExt, WriteNpyExt};
+use std::fs;
 
 fn apertura(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));

@@ -1,18 +1,7 @@
 //! Recordings on the command line: maps, pictures, reconstructions, and refusals.
 
-use super::cli::{apertura, folder};
-use apertura::files::npz::{Npz, write_npz};
-use apertura::radar::Radar;
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
-use ndarray::{Array2, Axis, Ix1, Ix2, Ix3};
-use ndarray_npy::NpzReader;
-use num_complex::Complex64;
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use std::fs::File;
-use std::path::Path;
-use tempfile::TempDir;
+use crate::cli::*;
+use apertura::signal::simulate;
 
 const SHIPPED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/recordings");
 

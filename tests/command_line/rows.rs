@@ -1,24 +1,16 @@
 //! `apertura evaluate --rows` and `--scenes`: the rows, the tables printed of them, and a row's scene by hand.
 
-use super::cli;
 pub use super::cli::folder;
-use apertura::evaluate::rows::{Column, Row, read_rows};
+use crate::cli::*;
+use apertura::evaluate::rows::{Column, Row};
 use apertura::evaluate::{Estimate, squared_error};
-use apertura::files::npz::Npz;
-use apertura::maps::{LogMap, Normalisation, RangeAngleMap};
-use assert_cmd::Command;
-use ndarray::{Axis, Ix2, Ix3};
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use serde_json::Value;
-use std::path::Path;
-use tempfile::TempDir;
+use apertura::maps::RangeAngleMap;
 
 /// The method whose figures are reproduced by hand.
 const METHOD: &str = if cfg!(feature = "network") { "live" } else { "matched-filter-incoherent" };
 
 pub fn apertura(folder: &TempDir, arguments: &str) -> Command {
-    let mut command = cli::apertura(folder);
+    let mut command = crate::cli::apertura(folder);
     command.args(arguments.split_whitespace());
     command
 }

@@ -1,7 +1,7 @@
 //! `apertura worsen`: a worse scene near one that is given.
 
 use super::rows::{apertura, error_by_hand, folder};
-use apertura::scene::file;
+use crate::cli::*;
 
 #[test]
 fn worsen_writes_a_scene_as_bad_as_it_says() {

@@ -2,16 +2,12 @@
 //! path is held to the judge; the transforms are held to a sum written out; and the plain f64 formula is shown to leave the rounding floor on which
 //! the thesis' tables stand.
 
+use crate::prelude::*;
 use apertura::evaluate::Estimate;
-use apertura::maps::{Aperture, LogMap, angle_transform, range_transform};
-use apertura::radar::{End, Radar, hann};
-use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
-use apertura::scene::{Reflector, Scene};
-use apertura::signal::{BeatSignal, Floor, direct, exact, judge, simulate};
-use ndarray::Array2;
-use num_complex::Complex64;
+use apertura::radar::hann;
+use apertura::signal::{direct, exact};
 use rayon::prelude::*;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 fn test_scene(kind: Kind, number: u32) -> Scene {
     Generator::new(&Radar::default(), Reading::Program, Purpose::Test, 21).scene(kind, number)

@@ -3,14 +3,8 @@
 //! Bounds are relative to the printed values, not to our own standard errors: these grow where a result is wrong. Each bound is broken by a wrong
 //! reading of the thesis, which the controls try.
 
-use apertura::evaluate::campaign::Campaign;
-use apertura::evaluate::sets::SceneSet;
-use apertura::evaluate::tables::{PRINTED_BASELINE, Tally};
-use apertura::radar::{Radar, WindowFunction};
-use apertura::reconstruct::Baseline;
-use apertura::scene::generate::Kind;
-use apertura::signal::Floor;
-use apertura::task::Task;
+use crate::prelude::*;
+use apertura::evaluate::tables::PRINTED_BASELINE;
 
 /// Largest difference of a mean from the printed one: SE as a part of it, P_D and P_FA in percentage points.
 #[derive(Debug, Clone, Copy)]

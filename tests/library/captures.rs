@@ -1,11 +1,7 @@
 //! Raw captures, written by the physics of a stretch receiver: each is opened as it is, and its echo stands at the true place.
 
-use apertura::reconstruct::found::reconstruct_and_find;
-use apertura::reconstruct::{NoisePrior, Request};
-use apertura::recording::{FrameLoops, Recording, raw};
-use num_complex::Complex64;
-use std::f64::consts::TAU;
-use std::fs;
+use crate::prelude::*;
+use apertura::recording::{FrameLoops, raw};
 
 const C: f64 = 299_792_458.0;
 

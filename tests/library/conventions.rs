@@ -1,11 +1,7 @@
 //! Signs and sides: the place of a reflector in the maps, mirrored and folded directions, and maps of strange scenes.
 
+use crate::prelude::*;
 use apertura::evaluate::Metrics;
-use apertura::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap};
-use apertura::radar::{Carrier, Decibels, End, Radar};
-use apertura::reconstruct::{Baseline, Reconstructor, Request};
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
 use proptest::prelude::*;
 
 fn maps_of(radar: &Radar, scene: &Scene) -> LogMaps {

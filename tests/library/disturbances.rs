@@ -1,9 +1,7 @@
 //! Effects of an interferer on the maps.
 
-use apertura::maps::LogMaps;
-use apertura::radar::Radar;
-use apertura::scene::{Disturbances, Interferer, Scene};
-use apertura::signal::{Floor, simulate};
+use crate::prelude::*;
+use apertura::scene::{Disturbances, Interferer};
 
 fn radar() -> Radar {
     Radar { elements: 128, samples: 256, ..Radar::default() }

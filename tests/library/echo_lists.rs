@@ -1,11 +1,6 @@
 //! Lists of echoes on small arrays: the first echo that any method lists is the true one.
 
-use apertura::methods;
-use apertura::radar::{Convention, Decibels, Radar};
-use apertura::reconstruct::found::reconstruct_and_find;
-use apertura::reconstruct::{NoisePrior, Request};
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
+use crate::prelude::*;
 
 /// A physical radar of 77 GHz whose two ends are all of its elements, or of 86 the outer ones.
 fn radar(elements: usize) -> Radar {

@@ -1,13 +1,9 @@
 //! The numbers that lessons teach, computed again: each must stand in its lesson's text as it comes out here.
 
+use crate::prelude::*;
 use crate::taught::{lesson, physical, taught};
-use apertura::lesson::question::Answer;
-use apertura::lesson::shipped;
-use apertura::maps::{Aperture, LogMap, LogMaps};
-use apertura::radar::{Decibels, End, Polar, Radar, SPEED_OF_LIGHT, WindowFunction};
-use apertura::scene::{Object, Point, Reflector, Scene};
-use apertura::signal::{BeatSignal, Floor, simulate};
-use apertura::theory::{Consequences, Response, WindowPattern, comb_teeth};
+use apertura::radar::Polar;
+use apertura::theory::{Response, WindowPattern, comb_teeth};
 
 fn maps(radar: &Radar, scene: &Scene) -> LogMaps {
     LogMaps::of_signal(radar, &simulate(radar, scene, Floor::Exact, 0).unwrap())

@@ -1,13 +1,9 @@
 //! The numbers that the lessons on bodies teach, computed again: each must stand in its lesson's text as it comes out here.
 
+use crate::prelude::*;
 use crate::taught::{lesson, physical, taught};
-use apertura::maps::{LogMap, LogMaps};
-use apertura::radar::{End, Radar};
 use apertura::scattering::roughness::coherent;
 use apertura::scattering::{EchoKind, Wave, heard_in_the_middle};
-use apertura::scene::{Object, Point, Post, Scene, Wall};
-use apertura::signal::{Floor, simulate};
-use num_complex::Complex64;
 
 /// The scene of a lesson's step, counted from 1.
 fn scene(id: &str, step: usize) -> Scene {

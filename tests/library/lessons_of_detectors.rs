@@ -1,9 +1,9 @@
 //! The claims of the lesson on detectors, computed again.
 
+use crate::prelude::*;
 use crate::taught::{lesson, taught};
+use apertura::maps::Mask;
 use apertura::maps::cfar::Cfar;
-use apertura::maps::{LogMaps, Mask, RangeAngleMap};
-use apertura::signal::simulate;
 
 /// Cells that a detector finds in the target of a step, counted from 1, and the target's Lambda.
 fn detected(step: usize, cfar: Option<&str>) -> (Mask, RangeAngleMap) {

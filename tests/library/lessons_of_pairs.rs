@@ -1,12 +1,8 @@
 //! The numbers that the lesson on pairs of antennas teaches, computed again: each must stand in its text as it comes out here.
 
+use crate::prelude::*;
 use crate::taught::{lesson, taught};
 use apertura::lesson::Step;
-use apertura::lesson::question::Answer;
-use apertura::maps::{LogMap, LogMaps};
-use apertura::radar::Radar;
-use apertura::signal::{Floor, simulate};
-use ndarray::Array1;
 
 const PAIRS: &str = "pairs-of-antennas";
 

@@ -1,18 +1,7 @@
 //! The shipped live network on fresh scenes.
 
-use apertura::evaluate::campaign::Campaign;
-use apertura::evaluate::sets::SceneSet;
-use apertura::evaluate::tables::Tally;
-use apertura::methods;
-use apertura::radar::presets::RadarPreset;
-use apertura::radar::{Carrier, Convention, Decibels, Radar, WindowFunction};
-use apertura::reconstruct::{Baseline, Request};
-use apertura::scene::Scene;
-use apertura::scene::generate::{Kind, Purpose};
-use apertura::signal::{Floor, simulate};
-use apertura::task::Task;
+use crate::prelude::*;
 use rayon::prelude::*;
-use std::time::Duration;
 
 /// SE on a radar that is not table 3.1's.
 const OTHER_RADARS_ERROR: f64 = 900.0;

@@ -24,6 +24,7 @@ mod older_files;
 mod pairs;
 mod physical_captures;
 mod physical_convention;
+mod prelude;
 mod radars;
 mod readme;
 mod snapshot;

@@ -2,15 +2,9 @@
 //!
 //! Each measurement has a process of its own: this test program again, asked for the test called `child`.
 
-use apertura::engine::{Engine, MapRequest};
+use crate::prelude::*;
 use apertura::files::memory::{peak_resident_bytes, reset_peak_resident, resident_bytes};
-use apertura::maps::archive::write_maps;
-use apertura::methods;
-use apertura::radar::Radar;
-use apertura::reconstruct::{Fista, Reconstructor, Request};
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
-use std::process::Command;
+use apertura::reconstruct::Fista;
 
 /// Variable with the child's work: `WORK ELEMENTS SAMPLES END`.
 const CHILD_VARIABLE: &str = "APERTURA_TEST_MEMORY";

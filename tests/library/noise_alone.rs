@@ -1,14 +1,7 @@
 //! Answers of methods to samples that hold noise alone, or an echo at the edge of the radar's map.
 
+use crate::prelude::*;
 use apertura::evaluate::sets::NOISE_LEVEL;
-use apertura::evaluate::trial::Trial;
-use apertura::maps::{Normalisation, RangeAngleMap};
-use apertura::methods;
-use apertura::radar::{Decibels, Radar};
-use apertura::reconstruct::Request;
-use apertura::scene::Scene;
-use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
-use apertura::signal::Floor;
 
 /// A trial of `scene`, and the request for a method.
 fn trial(scene: &Scene, floor: Floor, normalisation: Normalisation) -> (Trial, Request) {

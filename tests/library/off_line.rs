@@ -1,22 +1,11 @@
 //! Transmitters and receivers on a bent bumper: samples compared with sums of their own, focused maps, methods, and mirrored captures.
 
 use super::pairs::with_gaps;
-use apertura::engine::{Engine, MapRequest};
+use crate::prelude::*;
 use apertura::evaluate::squared_error;
-use apertura::files::npz::write_npz;
-use apertura::maps::{LogMaps, Normalisation, RangeAngleMap};
-use apertura::methods;
-use apertura::radar::{Antennas, BuiltArray, Decibels, Radar};
-use apertura::reconstruct::found::reconstruct_and_find;
-use apertura::reconstruct::{NoisePrior, Request};
-use apertura::recording::file;
+use apertura::radar::BuiltArray;
 use apertura::scattering::Echoing;
-use apertura::scene::{Block, Object, Point, Scene, Wall};
-use apertura::signal::chirps::{chirp_elements, simulate_chirps};
-use apertura::signal::{BeatSignal, Floor, judge, simulate};
-use ndarray::{Array3, Axis, s};
-use num_complex::Complex64;
-use std::f64::consts::TAU;
+use ndarray::{Axis, s};
 
 const C: f64 = 299_792_458.0;
 

@@ -1,24 +1,8 @@
 //! Transmitters apart from receivers, compared with sums of their own: samples, maps, bounds, recordings, methods.
 
 use super::off_line::{largest_difference, sample, straight as small};
-use apertura::bounds::cramer_rao;
-use apertura::engine::{Engine, MapRequest};
-use apertura::files::npz::write_npz;
-use apertura::methods;
-use apertura::radar::{Antennas, Decibels, Layout, Radar};
-use apertura::reconstruct::found::reconstruct_and_find;
-use apertura::reconstruct::{Detection, NoisePrior, ReconstructError, Request};
-use apertura::recording::{Recording, file};
-use apertura::scene::{Object, Point, Reflector, Scene};
-use apertura::signal::chirps::{chirp_elements, simulate_chirps};
-use apertura::signal::{Floor, simulate};
-use ndarray::Array3;
-use num_complex::Complex64;
+use crate::prelude::*;
 use rand::seq::SliceRandom;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use rand_distr::StandardNormal;
-use std::f64::consts::TAU;
 
 /// The same elements, each sending and hearing by itself.
 fn monostatic(radar: &Radar) -> Radar {

@@ -1,15 +1,6 @@
 //! Captures of physical radars, written by formulas of their own, read as docs/recordings.md says: the directions found are the true ones.
 
-use apertura::files::npz::write_npz;
-use apertura::maps::{Aperture, angle_transform, range_transform};
-use apertura::methods;
-use apertura::reconstruct::found::reconstruct_and_find;
-use apertura::reconstruct::{NoisePrior, Request};
-use apertura::recording::{Recording, file};
-use ndarray::{Array2, Array3};
-use num_complex::Complex64;
-use std::f64::consts::TAU;
-use std::path::Path;
+use crate::prelude::*;
 
 const C: f64 = 299_792_458.0;
 /// Frequencies of the ramp at the first sample and their width, hertz.

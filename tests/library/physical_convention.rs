@@ -1,20 +1,6 @@
 //! The physical convention, compared with formulas of its own: phases, blobs, and places within the Cramer-Rao bound.
 
-use apertura::bounds::cramer_rao;
-use apertura::files::npz::write_npz;
-use apertura::maps::{Aperture, angle_transform, range_transform};
-use apertura::methods;
-use apertura::radar::{Convention, Layout, Radar};
-use apertura::reconstruct::{NoisePrior, Request};
-use apertura::recording::{Recording, file};
-use apertura::scene::{Reflector, Scene};
-use apertura::signal::{Floor, simulate};
-use ndarray::Array2;
-use num_complex::Complex64;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use rand_distr::StandardNormal;
-use std::f64::consts::TAU;
+use crate::prelude::*;
 
 const C: f64 = 299_792_458.0;
 const FIRST_HZ: f64 = 77e9;

@@ -1,13 +1,7 @@
 //! Every method on every valid radar: a map with its echoes in their places, or at once a refusal with its reason.
 
-use apertura::maps::{LogMaps, Normalisation};
-use apertura::methods;
-use apertura::radar::{Carrier, Decibels, Radar, SPEED_OF_LIGHT};
-use apertura::reconstruct::{Detection, ReconstructError, Request};
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
+use crate::prelude::*;
 use proptest::prelude::*;
-use std::time::{Duration, Instant};
 
 /// Methods that are trained for one radar.
 const NETWORKS: [&str; 4] = ["live", "thesis", "thesis-1", "unet"];

@@ -1,10 +1,7 @@
 //! The scene that the window opens with: a post is dragged along its ring to a wall.
 
+use crate::prelude::*;
 use apertura::evaluate::dip_between;
-use apertura::maps::{LogMaps, Normalisation};
-use apertura::radar::Radar;
-use apertura::scene::{Object, presets};
-use apertura::signal::{Floor, simulate};
 
 /// Least dip of Lambda between two blobs that count as two.
 const PARTS: f32 = 0.05;

@@ -1,7 +1,7 @@
 //! Tables in the documents are as new as the weights and the floor that they were made with.
 
-use std::path::Path;
-use std::process::{Command, Output};
+use crate::prelude::*;
+use std::process::Output;
 
 fn check(root: &Path) -> Output {
     Command::new("python3").arg(root.join("scripts/tables")).arg("--check").output().expect("python3 runs")

@@ -1,7 +1,6 @@
 //! Lessons, and the numbers that their texts must have.
 
-use apertura::lesson::{Lesson, shipped};
-use apertura::radar::{Convention, Radar};
+use crate::prelude::*;
 
 /// A lesson's file.
 pub fn text(id: &str) -> &'static str {

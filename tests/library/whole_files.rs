@@ -2,21 +2,13 @@
 //!
 //! The process that is killed is this test program again, asked for one of the tests that are called `child`.
 
-use apertura::files::npz::Npz;
+use crate::prelude::*;
 use apertura::files::{write_atomically, write_bytes};
 use apertura::interact::{Autosave, Document, Editor, Restored};
-use apertura::maps::archive::write_maps;
-use apertura::radar::Radar;
-use apertura::scene::file::{self, SceneFile};
-use apertura::scene::{Object, Point, Scene};
-use apertura::signal::{Floor, simulate};
-use ndarray::Ix1;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use std::io::{self, Read, Write};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use apertura::scene::file;
+use std::io;
+use std::io::{Read, Write};
+use std::process::Stdio;
 
 /// Variable with the child's folder.
 const FOLDER: &str = "APERTURA_TEST_FOLDER";

@@ -1,17 +1,8 @@
 //! Random actions of a hand on the window.
 
 use super::{FILES, Monkey};
-use apertura::app::{
-    Command, DocumentCommand, EditCommand, LessonCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand,
-    WindowCommand,
-};
-use apertura::maps::Normalisation;
-use apertura::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
-use apertura::signal::Floor;
-use eframe::egui::{
-    Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, pos2, vec2,
-};
-use rand::RngExt;
+use crate::session::*;
+use eframe::egui::{MouseWheelSource, MouseWheelUnit, TouchPhase, Vec2};
 use rand::seq::IndexedRandom;
 
 const POINT: &str = "[[object]]\nkind = \"point\"\nx_metres = 1.0\ny_metres = 9.0\n";

@@ -6,16 +6,10 @@
 mod hand;
 mod witness;
 
-use crate::session::{Session, harness};
-use apertura::app::{Command, DocumentCommand, Panel, WindowCommand};
+use crate::session::*;
 use apertura::files::memory::resident_bytes;
-use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
-use egui_kittest::kittest::Queryable;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use std::path::Path;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
 use witness::Witness;
 
 /// Most memory that the process may hold beyond what it held after the start: maps and history of a full-size radar, twice.

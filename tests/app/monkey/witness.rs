@@ -1,11 +1,7 @@
 //! The unsaved documents, and those that must still be there after a kill.
 
 use super::FILES;
-use apertura::app::App;
-use apertura::interact::Document;
-use apertura::scene::Scene;
-use std::path::Path;
-use std::sync::Arc;
+use crate::session::*;
 
 /// An unsaved document.
 #[derive(Clone)]

@@ -6,15 +6,10 @@ mod links;
 mod pages;
 mod shell;
 
-use super::cli::{apertura, folder};
+use crate::cli::*;
 use apertura::methods;
 use clap::error::ErrorKind;
 use pages::{Page, all, root};
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use std::collections::BTreeSet;
-use std::path::Path;
-use tempfile::TempDir;
 
 /// Options that other programs of the project and cargo have are looked for in these folders.
 const OTHER_PROGRAMS: [&str; 6] =

@@ -1,6 +1,6 @@
 //! The project's pages, taken apart: blocks of code, spans of code, and text.
 
-use std::path::{Path, PathBuf};
+use crate::cli::*;
 
 /// A page.
 pub struct Page {

@@ -6,11 +6,10 @@ pub mod allocation;
 mod mutate;
 mod readers;
 
+use crate::prelude::*;
 use allocation::most_held;
 use readers::Reader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
-use std::time::{Duration, Instant};
 
 /// Longest that any input may take.
 const MAX_READ_TIME: Duration = Duration::from_secs(1);

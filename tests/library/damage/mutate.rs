@@ -1,7 +1,7 @@
 //! Damages valid files at random, the same way for the same seed.
 
-use rand::{RngExt, SeedableRng, seq::IndexedRandom};
-use rand_chacha::ChaCha8Rng;
+use crate::prelude::*;
+use rand::seq::IndexedRandom;
 
 /// Text that readers are likely to stumble over, written over its content.
 const TOKENS: [&[u8]; 22] = [

@@ -1,19 +1,10 @@
 //! All readers of files from outside, with valid files to start from.
 
-use apertura::evaluate::campaign::Campaign;
-use apertura::evaluate::rows::{Row, read_rows, write_rows};
-use apertura::evaluate::sets::SceneSet;
-use apertura::files::npz::{Npz, write_npz};
-use apertura::lesson::{Lesson, shipped};
-use apertura::radar::{Carrier, Radar};
-use apertura::reconstruct::{Baseline, Reconstructor};
-use apertura::recording::{self, RadarProfile};
-use apertura::scene::file::{self, SceneFile};
-use apertura::scene::generate::Kind;
-use apertura::scene::{GaussianCluster, Line, Object, Point, Scene, presets};
-use ndarray::{Array1, Array2, Ix1, Ix2, Ix3};
-use num_complex::Complex64;
-use std::path::Path;
+use crate::prelude::*;
+use apertura::evaluate::rows::write_rows;
+use apertura::recording::RadarProfile;
+use apertura::scene::file;
+use ndarray::{Ix2, Ix3};
 
 pub struct Reader {
     pub name: &'static str,

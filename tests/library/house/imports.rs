@@ -1,8 +1,7 @@
 //! Imports of files and of rooms.
 
 use super::source::Source;
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use crate::prelude::*;
 
 /// A module's path, without `crate`; empty for the root.
 type Module = Vec<String>;

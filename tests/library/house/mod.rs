@@ -6,10 +6,9 @@ mod imports;
 mod names;
 mod source;
 
+use crate::prelude::*;
 use imports::{House, circles, rust_files};
 use source::Source;
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 
 /// Longest a function may be, lines.
 const LONGEST_FUNCTION: usize = 60;

@@ -2,11 +2,10 @@
 
 use super::imports::rust_files;
 use super::root;
+use crate::prelude::*;
 use proc_macro2::TokenTree;
-use std::collections::BTreeMap;
-use std::path::Path;
-use syn::visit::{self, Visit};
-use syn::{Attribute, Ident, Visibility};
+use syn::visit::Visit;
+use syn::{Attribute, Ident, Visibility, visit};
 
 /// Constants of one of these words alone lack the noun and its unit.
 const BARE_NAMES: [&str; 44] = [
