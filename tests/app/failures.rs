@@ -59,13 +59,12 @@ fn write(s: &mut Session, text: &str) {
 fn the_worst_row_can_be_found_changed_kept() {
     let mut s = tried();
     s.ask(WindowCommand::Maximise(Panel::Failures));
-    s.app.get_by_label("Squared error").click();
-    s.settle();
+    s.click("Squared error");
     let (index, row) = worst(&s);
     assert_eq!((listed(&s).len(), &listed(&s)[0]), (6, &name(&row)));
 
     write(&mut s, "method = 'capon' & objcts > 1");
-    let told = s.app.query_by_label_contains("column 20:").is_some();
+    let told = s.shows("column 20:");
     assert!(told && listed(&s).len() == 6, "a mistake is pointed at, and the rows stay");
     s.app.key_press_modifiers(Modifiers::COMMAND, Key::A);
     s.settle();
@@ -80,8 +79,7 @@ fn the_worst_row_can_be_found_changed_kept() {
     s.settle();
 
     let before = s.state().editor().document().clone();
-    s.app.get_by_label(&name(&row)).click();
-    s.settle();
+    s.click(&name(&row));
     s.ask(WindowCommand::Maximise(Panel::Failures));
     let radar = s.state().radar().clone();
     let expected = Generator::new(&radar, Reading::Program, Purpose::Test, 7).scene(Kind::Set2, row.index);
@@ -100,7 +98,7 @@ fn the_worst_row_can_be_found_changed_kept() {
     assert!(s.state().editor().is_modified() && s.state().metrics() != Some(m));
     let file = s.state().editor().document().to_file();
     s.ask(RowsCommand::KeepScene("Moved a little.".to_owned()));
-    let own = s.folder.path().join("data/scenes");
+    let own = s.path("data/scenes");
     let kept = apertura::scene::file::load(Folder::open(&own).unwrap().file(0).unwrap()).unwrap();
     assert_eq!((kept.scene.objects, kept.radar), (file.scene.objects, file.radar));
     assert_eq!(kept.scene.notes, "Moved a little.");
@@ -144,9 +142,9 @@ fn one_undo_takes_a_walk_through_rows_back() {
 fn rows_outlive_a_restart() {
     let mut s = tried();
     let rows = s.state().rows().to_vec();
-    let path = s.folder.path().join("saved.csv");
+    let path = s.path("saved.csv");
     s.ask(RowsCommand::SaveTo(path.clone()));
-    step_until(&mut s, "it is written", |s| s.folder.path().join("saved.csv").exists());
+    step_until(&mut s, "it is written", |s| s.path("saved.csv").exists());
     assert_eq!(read_rows(std::fs::File::open(&path).unwrap()).unwrap(), rows);
     s.ask(RowsCommand::Clear);
     assert!(s.state().rows().is_empty());
@@ -184,7 +182,7 @@ fn what_a_search_finds_is_one_undo_step() {
     assert!(path.len() > 1, "something near is worse");
     let (start, found) = (&path[0].metrics, &path[path.len() - 1]);
     assert!(found.metrics.squared_error > start.squared_error);
-    assert_eq!(s.state().editor().scene().objects, found.scene.objects);
+    assert_eq!(s.objects(), found.scene.objects);
     assert_eq!(s.state().metrics().unwrap().squared_error, found.metrics.squared_error);
     assert!(s.app.query_by_label_contains("baseline: SE").or(s.app.query_by_label_contains("capon: SE")).is_some());
     s.ask(EditCommand::Undo);
@@ -199,7 +197,7 @@ fn what_a_search_finds_is_one_undo_step() {
 fn keys_walk_through_ten_thousand_rows() {
     let mut s = tried();
     let row = s.state().rows()[0].clone();
-    let path = s.folder.path().join("many.csv");
+    let path = s.path("many.csv");
     // Rows of the default radar need no file of conditions beside them.
     let rows: Vec<Row> = (0..10_000).map(|index| Row { index, radar: "".into(), ..row.clone() }).collect();
     write_rows(&mut std::fs::File::create(&path).unwrap(), &rows).unwrap();

@@ -3,20 +3,10 @@
 use crate::session::*;
 use std::collections::BTreeMap;
 
-/// Whether a person uses this element. A button on an object's handle stands for the arrow keys and the inspector.
 fn is_control(role: Role, name: &str) -> bool {
-    let control = matches!(
-        role,
-        Role::Button
-            | Role::CheckBox
-            | Role::RadioButton
-            | Role::SpinButton
-            | Role::Slider
-            | Role::ComboBox
-            | Role::TextInput
-            | Role::Link
-    );
-    control && !["point ", "line ", "cluster "].iter().any(|kind| name.starts_with(kind) && name.contains(": "))
+    let is_of_an_object =
+        ["point ", "line ", "cluster "].iter().any(|kind| name.starts_with(kind) && name.contains(": "));
+    is_used(role) && !is_of_an_object
 }
 
 #[test]
@@ -78,9 +68,8 @@ fn selected(s: &Session) -> Option<usize> {
 /// A window whose first point is selected, with a menu open.
 fn with_a_menu() -> Session {
     let mut s = Session::start();
-    s.ask(EditCommand::Select(vec![0], SelectionMode::Replace));
-    s.app.get_by_label("File").click();
-    s.settle();
+    s.select(0);
+    s.click("File");
     assert!(s.app.query_by_label("Unsaved scenes").is_some(), "the menu is open");
     s
 }
@@ -124,7 +113,7 @@ fn enter_x(s: &mut Session, text: &str) {
 #[test]
 fn what_is_no_number_moves_nothing() {
     let mut s = Session::start();
-    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
+    s.select(1);
     let (place, depth) = (s.place(1), s.state().editor().history().depth());
     for text in ["nan", "1e400", "abc", "1.234,5"] {
         enter_x(&mut s, text);
@@ -137,7 +126,7 @@ fn what_is_no_number_moves_nothing() {
 #[test]
 fn keys_after_a_wrong_entry_stay_in_the_field() {
     let mut s = Session::start();
-    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
+    s.select(1);
     enter_x(&mut s, "abc");
     s.app.event(Event::Text("o".to_owned()));
     s.press(Modifiers::NONE, Key::O);
@@ -150,23 +139,23 @@ fn keys_after_a_wrong_entry_stay_in_the_field() {
 #[test]
 fn escape_in_a_field_gives_the_entry_up() {
     let mut s = Session::start();
-    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
+    s.select(1);
     enter_x(&mut s, "abc");
     s.press(Modifiers::NONE, Key::Escape);
     assert_eq!((selected(&s), s.place(1)), (Some(1), [8.0, 12.0]));
-    assert!(s.app.query_by_label_contains("Enter a number").is_none());
+    assert!(!s.shows("Enter a number"));
 }
 
 #[test]
 fn each_entry_is_one_undo_step() {
     let mut s = Session::start();
-    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
+    s.select(1);
     for text in ["-3,5", "4"] {
         enter_x(&mut s, text);
     }
     assert_eq!(s.place(1)[0], 4.0);
     for x in [-3.5, 8.0] {
-        s.press(Modifiers::COMMAND, Key::Z);
+        s.undo();
         assert_eq!(s.place(1)[0], x);
     }
 }

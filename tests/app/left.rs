@@ -50,13 +50,9 @@ fn recording(folder: &Path) {
 
 /// A session with the point before a radar of `convention`.
 fn session(convention: Convention) -> Session {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempdir().unwrap();
     scene(folder.path(), convention);
-    let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline)];
-    let app = harness(folder.path(), Some("scene.toml"), methods);
-    let mut session = Session { app, folder };
-    session.settle();
-    session
+    Session::opened(folder, Some("scene.toml"), baseline(), USUAL_SIZE)
 }
 
 /// A session with the point as each of the three shows it.
@@ -118,10 +114,7 @@ fn pointing_at_a_blob_reads_the_direction_of_its_object() {
         let at = blob(&mut s);
         s.app.hover_at(at);
         s.settle();
-        assert!(
-            s.app.query_all_by_label_contains("cos θ −0.5").next().is_some(),
-            "{name}: the pointer reads another direction"
-        );
+        assert!(s.shows("cos θ −0.5"), "{name}: the pointer reads another direction");
     }
 }
 
@@ -151,7 +144,7 @@ fn a_blob_on_the_left_is_clicked_and_dragged_as_its_object() {
 
 /// Pictures of the point as files have them.
 fn files() -> [(&'static str, Vec<u8>); 3] {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempdir().unwrap();
     recording(folder.path());
     let recording = recording::file::load(&folder.path().join("r.toml")).unwrap();
     let style = Style { floor: Floor::Exact, ..Style::default() };

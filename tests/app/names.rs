@@ -4,19 +4,7 @@ use crate::session::*;
 
 /// Whether an element of this role is used or has to be read out, so that it needs a name.
 fn has_to_be_named(role: Role) -> bool {
-    matches!(
-        role,
-        Role::Button
-            | Role::CheckBox
-            | Role::RadioButton
-            | Role::SpinButton
-            | Role::Slider
-            | Role::ComboBox
-            | Role::TextInput
-            | Role::Link
-            | Role::Image
-            | Role::Canvas
-    )
+    is_used(role) || matches!(role, Role::Image | Role::Canvas)
 }
 
 /// Controls and pictures without a name, as the window is.
@@ -101,19 +89,13 @@ fn maps_bend_into_cartesian_ones_in_half_a_second() {
     }
     assert!((20..=60).contains(&frames), "{frames} frames of a sixtieth of a second");
     s.settle();
-    s.app.get_by_label("Target: straighten into cos θ and range").click();
-    s.settle();
+    s.click("Target: straighten into cos θ and range");
     assert_eq!(s.state().settings().projection, apertura::app::Projection::RangeAngle);
 }
 
 #[test]
 fn nothing_is_cut_off_at_twice_the_size() {
-    use crate::session::harness_of;
-    let folder = tempfile::tempdir().unwrap();
-    let app =
-        harness_of(folder.path(), None, vec![std::sync::Arc::new(apertura::reconstruct::Baseline)], [720.0, 450.0]);
-    let mut s = Session { app, folder };
-    s.settle();
+    let mut s = Session::opened(tempdir().unwrap(), None, baseline(), [720.0, 450.0]);
     s.ask(Command::Window(WindowCommand::ClosePanel(Panel::Controls)));
     let cut = wider_than_their_place(&s);
     assert!(cut.is_empty(), "{cut:?}");

@@ -90,40 +90,28 @@ fn a_maximised_map_is_the_only_one_computed() {
 }
 
 #[test]
-fn the_palette_runs_a_command_by_name() {
-    let mut s = Session::start();
-    s.press(Modifiers::COMMAND, Key::K);
-    s.app.event(Event::Text("add line".to_owned()));
-    s.settle();
-    s.press(Modifiers::NONE, Key::Enter);
-    let objects = &s.state().editor().scene().objects;
-    assert!(matches!(objects.last(), Some(Object::Line(_))), "{objects:?}");
-    let _shown = s.handle("line 3: move the near end: more or fewer reflectors");
-}
-
-#[test]
-fn the_palette_knows_every_name() {
+fn the_palette_runs_every_command_by_name() {
     let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)]);
-    let by_palette = |s: &mut Session, text: &str| {
+    let mut by_palette = |text: &str| {
         s.press(Modifiers::COMMAND, Key::K);
         s.app.event(Event::Text(text.to_owned()));
         s.settle();
         s.press(Modifiers::NONE, Key::Enter);
+        (s.state().shown_method(), s.objects().len())
     };
-    assert_eq!(s.state().shown_method(), Some("baseline"));
-    by_palette(&mut s, "method capon");
-    assert_eq!(s.state().shown_method(), Some("capon"));
-    by_palette(&mut s, "preset two close");
-    assert_eq!(s.state().editor().scene().objects.len(), 2);
+    assert_eq!(by_palette("add line"), (Some("baseline"), 3));
+    assert_eq!(by_palette("method capon"), (Some("capon"), 3));
+    assert_eq!(by_palette("preset two close"), (Some("capon"), 2));
+    s.undo();
+    let _shown = s.handle("line 3: move the near end: more or fewer reflectors");
 }
 
 #[test]
 fn messages_can_be_closed() {
     let mut s = Session::start();
-    s.ask(DocumentCommand::OpenPath(s.folder.path().join("missing.toml")));
+    s.ask(DocumentCommand::OpenPath(s.path("missing.toml")));
     assert_eq!(s.state().messages(), 1);
-    s.app.get_by_label("Close this message").click();
-    s.settle();
+    s.click("Close this message");
     assert_eq!(s.state().messages(), 0);
 }
 
@@ -133,8 +121,7 @@ fn the_window_function_reaches_the_maps() {
     let (requests, painted) = s.state().work_done();
     s.app.get_by_label("hamming").scroll_to_me();
     s.settle();
-    s.app.get_by_label("hamming").click();
-    s.settle();
+    s.click("hamming");
     assert_eq!(s.state().radar().window, WindowFunction::Hamming);
     let after = s.state().work_done();
     assert!(after.0 > requests && after.1 >= painted + 6, "every map was made again");
@@ -168,9 +155,6 @@ fn phasors_follow_the_cursor() {
     let map = s.app.get_by_label("Target map").rect();
     s.app.hover_at(map.lerp_inside(vec2(0.4, 0.4)));
     s.settle();
-    if let Some(path) = std::env::var_os("PHASOR_PICTURE") {
-        s.app.render().unwrap().save(path).unwrap();
-    }
     let (moved, another) = s.state().phasor_sum().unwrap();
     assert!(moved != cell && another != sum, "{cell:?} {moved:?}");
     let asked = s.state().phasors_asked();
@@ -214,7 +198,7 @@ fn pinned_cuts_outlive_their_scene() {
     s.press(Modifiers::NONE, Key::D);
     assert_eq!(s.state().settings().units, Units::Decibels);
     s.ask(ViewCommand::UnpinAll);
-    assert!(s.app.query_by_label_contains("Unpin 1: ").is_none());
+    assert!(!s.shows("Unpin 1: "));
 }
 
 #[test]
@@ -264,12 +248,12 @@ fn undo_takes_back_everything_that_a_button_of_the_guide_did() {
         press_in_the_guide(&mut s, button);
     }
     assert_eq!((s.state().radar().window, s.state().settings().floor), (WindowFunction::Hamming, Floor::Exact));
-    s.press(Modifiers::COMMAND, Key::Z);
+    s.undo();
     assert_eq!(s.state().radar().window, WindowFunction::Rectangular);
-    s.press(Modifiers::COMMAND, Key::Z);
+    s.undo();
     assert!(Arc::ptr_eq(&scene, s.state().editor().scene()));
     assert_eq!((s.state().radar(), s.state().settings()), (&radar, &settings));
-    s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    s.redo();
     assert_eq!((s.state().radar().window, s.state().settings().floor), (WindowFunction::Rectangular, Floor::Exact));
 }
 
@@ -280,7 +264,7 @@ fn random_scenes_are_those_of_the_tables() {
     for number in [3, 4] {
         s.ask(DocumentCommand::RandomScene(Kind::Set3));
         let generator = Generator::new(s.state().radar(), Reading::Program, Purpose::Test, 7);
-        assert_eq!(s.state().editor().scene().objects, generator.scene(Kind::Set3, number).objects);
+        assert_eq!(s.objects(), generator.scene(Kind::Set3, number).objects);
     }
 }
 

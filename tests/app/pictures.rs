@@ -24,10 +24,10 @@ fn renderer() -> Option<WgpuTestRenderer> {
 /// Takes a picture of one panel that fills a small window.
 fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
     let Some(renderer) = renderer() else { return };
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempdir().unwrap();
     let scene = folder.path().join("scene.toml");
     std::fs::write(&scene, SCENE).unwrap();
-    let options = Options { scene: Some(scene), methods: vec![Arc::new(Baseline)], ..Options::default() };
+    let options = Options { scene: Some(scene), methods: baseline(), ..Options::default() };
     let mut app: Harness<'_, App> = Harness::builder()
         .with_size([560.0, 400.0])
         .renderer(renderer)

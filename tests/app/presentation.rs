@@ -105,6 +105,6 @@ fn a_blob_in_a_map_stands_for_its_reflector() {
     s.drag(from, vec2(-40.0, 20.0), 5);
     let moved = at(s.place(1));
     assert!(moved.distance(from + vec2(-40.0, 20.0)) < 2.0, "{moved} from {from}");
-    s.press(Modifiers::COMMAND, Key::Z);
+    s.undo();
     assert_eq!(s.place(1), [8.0, 12.0]);
 }

@@ -27,7 +27,7 @@ fn recorded(s: &Session, radar: &Radar) -> PathBuf {
     let scene = Scene::of_points([(0.28 * range, 0.96 * range)]);
     let recording =
         Recording::of_signal(radar.clone(), simulate(radar, &scene, Floor::Snr(Decibels(40.0)), 1).unwrap());
-    ndarray_npy::write_npy(s.folder.path().join("samples.npy"), &recording.signal().unwrap().samples).unwrap();
+    ndarray_npy::write_npy(s.path("samples.npy"), &recording.signal().unwrap().samples).unwrap();
     let Radar { carrier_hz, bandwidth_hz, element_spacing_metres, elements, end_elements, samples, carrier, .. } =
         radar;
     let carrier = if *carrier == Carrier::TwoWay { "two-way" } else { "one-way" };
@@ -37,7 +37,7 @@ fn recorded(s: &Session, radar: &Radar) -> PathBuf {
          samples = {samples}\ncarrier = \"{carrier}\"\n\
          [recording]\nfile = \"samples.npy\"\naxes = [\"element\", \"sample\"]\n"
     );
-    let path = s.folder.path().join("recorded.toml");
+    let path = s.path("recorded.toml");
     std::fs::write(&path, text).unwrap();
     path
 }
@@ -104,7 +104,7 @@ fn opened_weights_are_the_method_of_their_radar() {
     s.ask(weights());
     assert_eq!(s.state().shown_method(), Some("live-shape_reference_weights"), "{:?}", s.state().refusal());
     assert!(s.state().metrics().is_some() && s.state().pictures().contains(&MapKind::Output));
-    let damaged = s.folder.path().join("damaged.safetensors");
+    let damaged = s.path("damaged.safetensors");
     std::fs::write(&damaged, b"no weights").unwrap();
     s.ask(DocumentCommand::OpenPath(damaged));
     assert_eq!(s.state().shown_method(), Some("live-shape_reference_weights"), "what was used stays");

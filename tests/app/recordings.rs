@@ -14,10 +14,6 @@ fn with_iaa() -> Session {
     Session::with_methods(methods)
 }
 
-fn undo(s: &mut Session) {
-    s.press(Modifiers::COMMAND, Key::Z);
-}
-
 /// A recording's files in the session's folder; its path.
 fn copied(s: &Session, name: &str) -> PathBuf {
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/recordings");
@@ -25,7 +21,7 @@ fn copied(s: &Session, name: &str) -> PathBuf {
         let path = entry.unwrap().path();
         std::fs::copy(&path, s.folder.path().join(path.file_name().unwrap())).unwrap();
     }
-    s.folder.path().join(name)
+    s.path(name)
 }
 
 #[test]
@@ -50,11 +46,11 @@ fn the_scene_before_a_recording_is_one_undo_away() {
     s.ask(DocumentCommand::OpenPath(path));
     assert_eq!(s.state().editor().document().title(), "chip-8.toml");
     assert_eq!(s.state().editor().left().len(), 1, "the unsaved scene is kept");
-    undo(&mut s);
+    s.undo();
     assert_eq!(s.state().editor().document().title(), "scene.toml •");
-    assert_eq!((s.state().radar().elements, s.state().editor().scene().objects.len()), (128, 3));
+    assert_eq!((s.state().radar().elements, s.objects().len()), (128, 3));
     assert!(s.state().editor().document().recording().is_none());
-    s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    s.redo();
     assert!(s.state().editor().document().recording().is_some());
 }
 
@@ -69,10 +65,10 @@ fn reflectors_laid_over_a_recording_explain_part_of_it() {
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(at.x_metres, at.y_metres))));
     let one = s.state().explained().unwrap();
     assert!(one > 1e-3 && one < 1.0, "{one}");
-    undo(&mut s);
+    s.undo();
     assert_eq!(s.state().explained(), Some(0.0));
-    s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-    let path = s.folder.path().join("post.toml");
+    s.redo();
+    let path = s.path("post.toml");
     s.ask(DocumentCommand::SaveTo(path.clone()));
     assert_eq!(Document::read(&path).unwrap().scene().objects.len(), 1);
     assert!(s.state().editor().document().recording().is_some(), "it stays on screen");
@@ -94,7 +90,7 @@ fn what_is_laid_over_a_recording_never_replaces_it() {
     let refused = Editor::of(Document::read_recording(&path).unwrap()).save(&data).unwrap_err().to_string();
     assert!(refused.contains("chip-8.npz: holds a recording"), "{refused}");
     assert_eq!(kept(), before);
-    let post = s.folder.path().join("post.toml");
+    let post = s.path("post.toml");
     s.ask(DocumentCommand::SaveTo(post.clone()));
     assert_eq!(s.state().editor().document().title(), "post.toml");
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(-0.5, 4.0))));
@@ -104,7 +100,7 @@ fn what_is_laid_over_a_recording_never_replaces_it() {
     assert!(text.contains("recording = \"chip-8.toml\""), "{text}");
     s.ask(DocumentCommand::New);
     s.ask(DocumentCommand::OpenPath(post.clone()));
-    assert_eq!(s.state().editor().scene().objects.len(), 2);
+    assert_eq!(s.objects().len(), 2);
     assert_eq!(s.state().editor().document().recording().map(|r| r.radar.elements), Some(8));
     assert_eq!(apertura::scene::file::load(&post).unwrap().radar.elements, 8, "commands see a scene");
     // Another radar's recording explains nothing, and one that is gone is missed.
@@ -129,8 +125,8 @@ fn a_recordings_constants_cannot_be_edited() {
     s.ask(RadarCommand::SetWindow(WindowFunction::Hamming));
     assert_eq!((s.state().radar().end_elements, s.state().radar().window), (20, WindowFunction::Hamming));
     assert_eq!(s.state().shown_method(), Some("baseline"));
-    undo(&mut s);
-    undo(&mut s);
+    s.undo();
+    s.undo();
     assert_eq!(s.state().radar(), &measured);
 }
 
@@ -139,7 +135,7 @@ fn a_recording_is_exported() {
     let mut s = Session::start();
     s.ask(DocumentCommand::Recording(CHIP));
     s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0))));
-    let (maps, drawing) = (s.folder.path().join("maps.npz"), s.folder.path().join("maps.svg"));
+    let (maps, drawing) = (s.path("maps.npz"), s.path("maps.svg"));
     s.ask(ExportCommand::MapsTo(maps.clone()));
     let bitmap = drawing.with_extension("png");
     s.ask(ExportCommand::PictureTo(drawing.clone()));
@@ -160,10 +156,9 @@ fn an_overlay_comes_back_over_its_recording_after_a_kill() {
     let path = copied(&s, "chip-8.toml");
     s.ask(DocumentCommand::OpenPath(path));
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
-    let copy = s.folder.path().join("data/autosave.toml");
-    step_until(&mut s, "no autosave", |_| copy.exists());
+    s.wait_for_autosave();
     let s = s.reopened(None, vec![Arc::new(CAPON)]);
-    assert_eq!(s.state().editor().scene().objects.len(), 1);
+    assert_eq!(s.objects().len(), 1);
     assert_eq!(s.state().editor().document().recording().map(|r| r.radar.elements), Some(8));
 }
 
@@ -172,8 +167,8 @@ fn a_recording_is_opened_at_the_start() {
     let mut s = Session::start();
     let path = copied(&s, "cascade-86.toml");
     let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(s.folder.path().join("broken.toml"), text.replace("cascade-86.mat", "gone.mat")).unwrap();
-    s.ask(DocumentCommand::OpenPath(s.folder.path().join("broken.toml")));
+    std::fs::write(s.path("broken.toml"), text.replace("cascade-86.mat", "gone.mat")).unwrap();
+    s.ask(DocumentCommand::OpenPath(s.path("broken.toml")));
     assert_eq!((s.state().messages(), s.state().radar().elements), (1, 128));
     let s = s.reopened(Some("cascade-86.toml"), vec![Arc::new(CAPON)]);
     assert_eq!(s.state().radar().elements, 86);
@@ -191,7 +186,7 @@ fn disturbances_are_edits_of_the_scene() {
     s.ask(RadarCommand::SetInterferer(Some(Interferer::default())));
     s.ask(RadarCommand::SetMirror(Some(Mirror::default())));
     assert_ne!(s.state().metrics(), before);
-    let path = s.folder.path().join("disturbed.toml");
+    let path = s.path("disturbed.toml");
     s.ask(DocumentCommand::SaveTo(path.clone()));
     let saved = Document::read(&path).unwrap();
     assert_eq!(saved.scene(), s.state().editor().scene());
@@ -201,7 +196,7 @@ fn disturbances_are_edits_of_the_scene() {
     s.ask(RadarCommand::Set(Box::new(radar)));
     assert_eq!(s.state().editor().scene().disturbances.elements.elements.len(), 64);
     for _ in 0..4 {
-        undo(&mut s);
+        s.undo();
     }
     assert!(s.state().editor().scene().disturbances.is_none());
     assert_eq!(s.state().metrics(), before);
@@ -221,8 +216,7 @@ fn a_selected_point_calibrates_the_elements() {
     s.ask(WindowCommand::OpenPanel(Panel::Elements));
     s.app.get_by_label("Calibrate on this reflector").scroll_to_me();
     s.settle();
-    s.app.get_by_label("Calibrate on this reflector").click();
-    s.settle();
+    s.click("Calibrate on this reflector");
     let left = s.state().editor().scene().disturbances.elements.spread();
     assert!(left.gain.0 < 0.01 && left.phase_degrees < 0.5, "{left:?}");
 }
@@ -238,7 +232,7 @@ fn captured(s: &Session) -> PathBuf {
     let bytes: Vec<u8> = (0..2 * 4 * 4 * 64).flat_map(sample).flat_map(i16::to_le_bytes).collect();
     let cfg = "channelCfg 15 1 0\nadcCfg 2 1\nadcbufCfg -1 0 0 1 1\nprofileCfg 0 77 30 6 60 0 0 50 1 64 4000 0 0 30\n\
                chirpCfg 0 0 0 0 0 0 0 1\nframeCfg 0 0 4 0 100 1 0\n";
-    let path = s.folder.path().join("room.bin");
+    let path = s.path("room.bin");
     std::fs::write(&path, bytes).unwrap();
     std::fs::write(path.with_extension("cfg"), cfg).unwrap();
     path
@@ -258,6 +252,6 @@ fn a_capture_is_opened_and_read_another_way() {
     assert_eq!((origin(&s).frame, s.state().editor().document().title().as_str()), (1, "room.bin"));
     s.ask(DocumentCommand::ReadAnotherWay(Way::Layout(1)));
     assert_eq!(origin(&s).taken, 1);
-    undo(&mut s);
+    s.undo();
     assert_eq!(origin(&s).taken, 0);
 }

@@ -30,20 +30,8 @@ impl Monkey {
             }
             3 | 4 => self.click(),
             5 => {
-                let keys = [
-                    Key::ArrowUp,
-                    Key::ArrowLeft,
-                    Key::Delete,
-                    Key::Tab,
-                    Key::Enter,
-                    Key::Escape,
-                    Key::Backspace,
-                    Key::Space,
-                    Key::R,
-                    Key::V,
-                    Key::F1,
-                    Key::F7,
-                ];
+                use Key::{ArrowLeft, ArrowUp, Backspace, Delete, Enter, Escape, F1, F7, R, Space, Tab, V};
+                let keys = [ArrowUp, ArrowLeft, Delete, Tab, Enter, Escape, Backspace, Space, R, V, F1, F7];
                 let key = self.pick(&keys);
                 self.s.app.key_press(key);
             }
@@ -119,12 +107,12 @@ impl Monkey {
             0 => Command::Document(DocumentCommand::New),
             1..=3 => {
                 let name = self.pick(&files);
-                Command::Document(DocumentCommand::OpenPath(self.s.folder.path().join(name)))
+                Command::Document(DocumentCommand::OpenPath(self.s.path(name)))
             }
             4..=6 if named => Command::Document(DocumentCommand::Save),
             7 => {
                 let name = self.pick(&FILES);
-                Command::Document(DocumentCommand::SaveTo(self.s.folder.path().join(name)))
+                Command::Document(DocumentCommand::SaveTo(self.s.path(name)))
             }
             8 => Command::Edit(EditCommand::Undo),
             9 => Command::Edit(EditCommand::Redo),

@@ -111,10 +111,10 @@ impl Monkey {
                 std::thread::sleep(Duration::from_millis(10));
             }
         }
-        let after = tempfile::tempdir().unwrap();
+        let after = tempdir().unwrap();
         copy_at_one_moment(self.s.folder.path(), after.path());
         let asked = self.rng.random_bool(0.3).then_some("b.toml");
-        let app = harness(after.path(), asked, methods());
+        let app = harness(after.path(), asked, methods(), USUAL_SIZE);
         self.s = Session { app, folder: after };
         self.s.app.step();
         if let Err(lost) = self.witness.compare(self.s.state()) {
