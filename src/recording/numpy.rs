@@ -215,7 +215,6 @@ mod tests {
         assert!(message.contains("magic number") && message.contains("numpy.save"), "{message}");
     }
 
-    /// An `.npy` with this dictionary and no data.
     fn with_header(dictionary: &str) -> Vec<u8> {
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
         bytes.extend_from_slice(&(dictionary.len() as u16 + 1).to_le_bytes());

@@ -2,7 +2,6 @@
 
 use crate::session::*;
 
-/// A session with nothing in its scene.
 fn empty() -> Session {
     let mut s = Session::start();
     s.press(Modifiers::COMMAND, Key::A);

@@ -9,12 +9,10 @@ fn with_capon() -> Session {
     Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)])
 }
 
-/// The scene on screen, simulated as every command does.
 fn trial(s: &Session) -> Trial {
     Trial::new(s.state().radar(), s.state().editor().scene(), Floor::Thesis, Normalisation::MinMax).unwrap()
 }
 
-/// The text of a label.
 fn text_of(node: &Node<'_>) -> String {
     let node = node.accesskit_node();
     node.label().or(node.value()).unwrap_or_default()

@@ -161,17 +161,6 @@ fn a_start_with_a_file_loses_neither_file_nor_unsaved_scene() {
 }
 
 #[test]
-fn a_named_scene_comes_back_under_its_name() {
-    let mut s = Session::start();
-    s.ask(EditCommand::Add(NewObject::Point, None));
-    s.wait_for_autosave();
-    let mut s = s.reopened(None, baseline());
-    assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml •", 128));
-    s.ask(DocumentCommand::Save);
-    assert_eq!((title(&s).as_str(), points(&s.path("scene.toml"))), ("scene.toml", 3));
-}
-
-#[test]
 fn a_window_with_a_scene_not_kept_closes_at_the_second_try() {
     let folder = tempdir().unwrap();
     // A file where the folder of the autosave would be takes no files of any user.
@@ -184,7 +173,6 @@ fn a_window_with_a_scene_not_kept_closes_at_the_second_try() {
     assert!(!stays_open(&mut s), "whoever closes it again means it");
 }
 
-/// Whether the window answers that it stays open when the system asks it to close.
 fn stays_open(s: &mut Session) -> bool {
     let window = s.app.input_mut().viewports.entry(ViewportId::ROOT).or_default();
     window.events.push(ViewportEvent::Close);

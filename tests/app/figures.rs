@@ -21,7 +21,6 @@ fn on_screen(s: &Session) -> Figures {
     Figures { squared_error: m.squared_error, detection: m.detection, false_alarm: m.false_alarm }
 }
 
-/// The figures of `apertura evaluate --scenes` for one scene file.
 fn on_the_command_line(scene: &Path) -> Figures {
     let folder = tempdir().unwrap();
     std::fs::create_dir(folder.path().join("scenes")).unwrap();

@@ -20,7 +20,6 @@ fn radar(convention: Convention) -> Radar {
     table.in_convention(convention)
 }
 
-/// A scene of the point alone.
 fn scene(folder: &Path, convention: Convention) {
     let [x, y] = POINT;
     let text = format!(
@@ -48,7 +47,6 @@ fn recording(folder: &Path) {
     std::fs::write(folder.join("r.toml"), text).unwrap();
 }
 
-/// A session with the point before a radar of `convention`.
 fn session(convention: Convention) -> Session {
     let folder = tempdir().unwrap();
     scene(folder.path(), convention);
@@ -87,7 +85,6 @@ fn brightest(image: &ColorImage) -> [f64; 2] {
     [mean(&|i| i % width, width), mean(&|i| i / width, height)]
 }
 
-/// Place on screen of the target's brightest cell.
 fn blob(s: &mut Session) -> Pos2 {
     let [across, down] = brightest(&picture(s, MapKind::Target));
     let rect = s.app.get_by_label("Target map").rect();
@@ -139,10 +136,11 @@ fn a_blob_on_the_left_is_clicked_and_dragged_as_its_object() {
         assert!(s.place(0)[0] < POINT[0] - 0.5, "{convention:?}: dragged to {:?}", s.place(0));
         let off = blob(&mut s).distance(at + by);
         assert!(off < 6.0, "{convention:?}: its blob is {off} points beside the pointer");
+        s.undo();
+        assert_eq!(s.place(0), POINT);
     }
 }
 
-/// Pictures of the point as files have them.
 fn files() -> [(&'static str, Vec<u8>); 3] {
     let folder = tempdir().unwrap();
     recording(folder.path());

@@ -6,7 +6,6 @@ use apertura::lesson::question::Answer;
 use apertura::lesson::{Cell, Guess, Lesson, MapName, Question, Stage, Step, Truth, shipped};
 use apertura::maps::cfar::Cfar;
 
-/// A right guess, or a wrong one.
 fn guess(step: &Step, question: &Question, right: bool) -> Guess {
     let stage = Stage::new(&step.radar, &step.scene(), &step.view, question.needs_output()).unwrap();
     let half = step.radar.elements as f64 / 2.0;
@@ -19,7 +18,6 @@ fn guess(step: &Step, question: &Question, right: bool) -> Guess {
     }
 }
 
-/// Answers as a learner does.
 fn answer(s: &mut Session, step: &Step, question: &Question, guess: Guess) {
     match (&question.answer, guess) {
         (Answer::Click { map, .. }, Guess::Place(at)) => {
@@ -51,7 +49,6 @@ fn answer(s: &mut Session, step: &Step, question: &Question, guess: Guess) {
     s.app.step();
 }
 
-/// Takes a step: the prediction right or wrong, then the challenge.
 fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
     let (step, place) = (&lesson.steps[number], format!("{}, step {}", lesson.title, number + 1));
     s.ask(LessonCommand::Step(number));
@@ -114,7 +111,6 @@ fn begin(s: &mut Session, id: &str, step: usize) {
     s.ask(LessonCommand::Step(step - 1));
 }
 
-/// Predicts, and waits for the verdict.
 fn predict(s: &mut Session, guess: Guess, verdict: &str) {
     s.ask(LessonCommand::Predict(guess));
     step_until(s, verdict, |s| s.shows(verdict));
@@ -285,6 +281,10 @@ fn a_shared_scene_comes_with_its_view_and_time() {
     let mut s = Session::start();
     s.ask(EditCommand::SelectAll);
     s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(10.0)));
+    let seen = |s: &Session| {
+        let settings = s.state().settings();
+        (settings.projection, settings.show_theory, settings.target_eta, settings.cfar)
+    };
     let look = |s: &mut Session, eta: f32, cfar: Option<Cfar>| {
         for command in [ViewCommand::ToggleProjection, ViewCommand::ToggleTheory, ViewCommand::SetTargetEta(eta)] {
             s.ask(command);
@@ -293,15 +293,15 @@ fn a_shared_scene_comes_with_its_view_and_time() {
     };
     look(&mut s, 0.5, Some(Cfar::default()));
     s.ask(ViewCommand::SetTime(0.5));
-    let (text, shown) = (s.state().shared_text().unwrap(), s.state().settings().clone());
+    let (text, shown) = (s.state().shared_text().unwrap(), seen(&s));
     s.ask(DocumentCommand::Preset(0));
     look(&mut s, 0.9, None);
-    let other = (s.state().editor().scene().clone(), s.state().settings().clone());
+    let other = (s.state().editor().scene().clone(), seen(&s));
     s.ask(DocumentCommand::OpenShared(text));
-    assert_eq!((s.state().radar().elements, s.state().time_seconds(), s.state().settings()), (128, 0.5, &shown));
+    assert_eq!((s.state().radar().elements, s.state().time_seconds(), seen(&s)), (128, 0.5, shown));
     assert_eq!(s.state().scene_at_time().objects[0].centre_metres(), [0.0, 25.0]);
     s.ask(EditCommand::Undo);
-    assert_eq!((s.state().editor().scene(), s.state().settings()), (&other.0, &other.1));
+    assert_eq!((s.state().editor().scene().clone(), seen(&s)), other);
 }
 
 #[test]

@@ -63,8 +63,7 @@ fn captions_name_every_map_until_the_first_drag() {
     assert!(s.painted().iter().any(|t| t.starts_with("Drag a reflector")), "{:?}", s.painted());
     let at = s.handle("point 1: move");
     s.drag(at, eframe::egui::vec2(30.0, 0.0), 3);
-    assert!(!s.state().shows_captions());
-    assert!(!s.painted().iter().any(|t| t.starts_with("Target: all")));
+    assert!(!s.state().shows_captions() && !s.painted().iter().any(|t| t.starts_with("Target: all")));
     s.ask(Command::Window(WindowCommand::ToggleCaptions));
     assert!(s.state().shows_captions(), "Help brings them back");
     s.ask(Command::Edit(apertura::app::EditCommand::Select(vec![0], SelectionMode::Replace)));

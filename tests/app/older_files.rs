@@ -4,7 +4,6 @@
 use crate::session::*;
 use apertura::evaluate::rows::FORMAT;
 
-/// A window whose folder holds these files of the older one.
 fn session(files: &[(&str, &str)]) -> Session {
     let folder = tempdir().unwrap();
     std::fs::create_dir(folder.path().join("data")).unwrap();

@@ -67,10 +67,8 @@ fn hidden_panels_are_not_computed() {
     s.ask(DocumentCommand::RandomScene(Kind::Set2));
     let report = s.state().report().unwrap();
     assert!(report.ran(EngineStage::FirstMap) && report.ran(EngineStage::FullMap));
-    assert!(
-        !report.ran(EngineStage::LastMap) && !report.ran(EngineStage::Ends),
-        "nobody looks at input 1 or an output"
-    );
+    let holds = !report.ran(EngineStage::LastMap) && !report.ran(EngineStage::Ends);
+    assert!(holds, "nobody looks at input 1 or an output");
     s.ask(WindowCommand::TogglePanel(Panel::Map(MapKind::Input1)));
     assert!(s.state().pictures().contains(&MapKind::Input1));
 }
@@ -214,7 +212,6 @@ fn a_difference_is_painted_again_when_its_scale_changes() {
     }
 }
 
-/// Turns the guide's chapters until a button comes, and presses it.
 fn press_in_the_guide(s: &mut Session, name: &str) {
     use eframe::egui::accesskit::Role;
     while s.app.query_by_role_and_label(Role::Button, name).is_none() {

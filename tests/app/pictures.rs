@@ -12,7 +12,6 @@ const SCENE: &str = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8
                      [[object]]\nkind = \"point\"\nx_metres = -9.0\ny_metres = 20.0\n\n\
                      [[object]]\nkind = \"line\"\nx_metres = 8.0\ny_start_metres = 8.0\nspacing_metres = 0.5\ncount = 30\n";
 
-/// The renderer, where there is a driver for it.
 fn renderer() -> Option<WgpuTestRenderer> {
     let made = catch_unwind(WgpuTestRenderer::new);
     if made.is_err() {
@@ -21,7 +20,6 @@ fn renderer() -> Option<WgpuTestRenderer> {
     made.ok()
 }
 
-/// Takes a picture of one panel that fills a small window.
 fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
     let Some(renderer) = renderer() else { return };
     let folder = tempdir().unwrap();

@@ -92,30 +92,3 @@ fn a_double_click_adds_a_point_where_it_was() {
     assert_eq!(s.objects().len(), 3);
     assert!(s.place(2)[0] < 0.0 && (s.place(2)[1] - 20.0).abs() < 0.2);
 }
-
-#[test]
-fn a_killed_window_leaves_its_scene_to_the_next() {
-    let mut first = Session::start();
-    first.press(Modifiers::COMMAND, Key::A);
-    first.press(Modifiers::NONE, Key::Delete);
-    let copies = |folder: &Path| -> Vec<_> {
-        let files = std::fs::read_dir(folder.join("data")).unwrap().map(|f| f.unwrap().file_name());
-        let mut copies: Vec<_> = files.filter(|n| n.to_string_lossy().ends_with(".toml")).collect();
-        copies.sort();
-        copies
-    };
-    let Session { app: first, folder } = first;
-    assert_eq!(copies(folder.path()), ["autosave.toml"]);
-    let mut second = harness(folder.path(), None, baseline(), USUAL_SIZE);
-    assert!(!second.state().editor().scene().objects.is_empty(), "what an open window holds is not restored");
-    second.state_mut().ask(EditCommand::Add(NewObject::Point, None));
-    let deadline = Instant::now() + Duration::from_secs(10);
-    while copies(folder.path()) != ["autosave-2.toml", "autosave.toml"] {
-        assert!(Instant::now() < deadline, "{:?}", copies(folder.path()));
-        second.run_steps(2);
-    }
-    // Dropped without being closed, as a kill would.
-    drop(first);
-    let third = harness(folder.path(), None, baseline(), USUAL_SIZE);
-    assert!(third.state().editor().scene().objects.is_empty() && third.state().editor().is_modified());
-}

@@ -80,7 +80,6 @@ impl Session {
         }
     }
 
-    /// The window opened anew in its folder.
     pub fn reopened(self, scene: Option<&str>, methods: Methods) -> Session {
         let Session { app, folder } = self;
         drop(app);
@@ -91,17 +90,14 @@ impl Session {
         self.folder.path().join(name)
     }
 
-    /// Waits until the unsaved scene is kept.
     pub fn wait_for_autosave(&mut self) {
         step_until(self, "no autosave", |s| s.path("data/autosave.toml").exists());
     }
 
-    /// Whether a text stands in a label on screen.
     pub fn shows(&self, text: &str) -> bool {
         self.app.query_all_by_label_contains(text).next().is_some()
     }
 
-    /// Whether a text is painted.
     pub fn paints(&self, text: &str) -> bool {
         self.painted().iter().any(|painted| painted.contains(text))
     }
@@ -127,7 +123,6 @@ impl Session {
         self.ask(EditCommand::Select(vec![object], SelectionMode::Replace));
     }
 
-    /// Presses the pointer's button at a place.
     pub fn hold(&mut self, at: Pos2) {
         self.app.hover_at(at);
         self.app.step();
@@ -198,7 +193,6 @@ pub fn harness(folder: &Path, scene: Option<&str>, methods: Methods, size: [f32;
     builder.build_eframe(|creation| App::new(creation, options).unwrap())
 }
 
-/// Steps until `done`, without waiting for everything to rest.
 pub fn step_until(s: &mut Session, what: &str, done: impl Fn(&Session) -> bool) {
     let deadline = Instant::now() + Duration::from_secs(60);
     while !done(s) {

@@ -62,7 +62,6 @@ fn run_times_arrive_while_they_are_measured() {
     assert!(s.state().run_time_rows() > 0, "what was measured stays");
 }
 
-/// A file dropped on the window.
 #[derive(Debug)]
 struct Dropped(std::path::PathBuf);
 

@@ -4,7 +4,6 @@ use super::merge::older;
 use super::rows::{apertura, figures, folder, rows, without_times};
 use crate::cli::*;
 
-/// The program, running.
 fn begin(folder: &TempDir, arguments: &str) -> std::process::Child {
     std::process::Command::new(env!("CARGO_BIN_EXE_apertura"))
         .current_dir(folder)

@@ -63,15 +63,6 @@ fn what_is_no_archive_of_samples_is_named() {
 }
 
 #[test]
-fn one_scene_is_no_plural() {
-    let folder = folder();
-    let run = |arguments: &str| apertura(&folder).args(arguments.split(' ')).assert().success();
-    run("scenes --set 1 --count 1 -o a").stdout(contains("wrote 1 scene of set 1 to a"));
-    run("scenes --set 1 --count 2 -o a").stdout(contains("wrote 2 scenes of set 1 to a"));
-    run("evaluate --set 1 --count 1").stdout(contains("1 scene a set,"));
-}
-
-#[test]
 fn the_folder_of_one_scene_is_made() {
     let folder = folder();
     let run = |output: &str| {

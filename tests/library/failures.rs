@@ -6,7 +6,6 @@ use Fault::{Ghost, Merged, Missed, WrongTooth};
 use apertura::evaluate::failure::Fate;
 use apertura::scene::presets::Preset;
 
-/// A kind of failure of a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Fault {
     Missed,

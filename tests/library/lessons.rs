@@ -15,7 +15,6 @@ fn maps_of_step(id: &str, step: usize) -> LogMaps {
     maps(&lesson.steps[step - 1].radar, &lesson.steps[step - 1].scene())
 }
 
-/// Decibels of a cell below the map's peak.
 fn below_peak(map: &LogMap, bin: usize, column: usize) -> f64 {
     20.0 * (map.decades()[[bin, column]] - map.max())
 }
@@ -38,12 +37,10 @@ fn peak(map: &LogMap) -> (usize, usize) {
     map.decades().indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0
 }
 
-/// Mean power of a map's cells.
 fn mean_power(map: &LogMap) -> f64 {
     map.decades().iter().map(|d| 10f64.powf(2.0 * d)).sum::<f64>() / map.decades().len() as f64
 }
 
-/// Decibels of a ratio of powers.
 fn db(ratio: f64) -> f64 {
     10.0 * ratio.log10()
 }

@@ -34,23 +34,9 @@ fn the_antennas_are_as_many_as_the_lesson_says() {
     let lesson = lesson(PAIRS);
     let radar = lesson.steps[0].radar.clone();
     let antennas = radar.antennas.as_ref().unwrap();
-    let extent_centimetres = |x: &[f64]| 100.0 * (x[x.len() - 1] - x[0]);
-    taught(
-        PAIRS,
-        &format!(
-            "{} transmitters on {:.0} cm",
-            antennas.transmitter_x_metres().len(),
-            extent_centimetres(antennas.transmitter_x_metres())
-        ),
-    );
-    taught(
-        PAIRS,
-        &format!(
-            "{} receivers on {:.0} cm",
-            antennas.receiver_x_metres().len(),
-            extent_centimetres(antennas.receiver_x_metres())
-        ),
-    );
+    for (what, x) in [("transmitters", antennas.transmitter_x_metres()), ("receivers", antennas.receiver_x_metres())] {
+        taught(PAIRS, &format!("{} {what} on {:.0} cm", x.len(), 100.0 * (x[x.len() - 1] - x[0])));
+    }
     taught(PAIRS, &format!("fill a line of {:.0} cm", 100.0 * radar.aperture_metres()));
     assert_eq!(right_option(&lesson.steps[0]), radar.elements.to_string());
 }

@@ -3,7 +3,6 @@
 use crate::prelude::*;
 use rayon::prelude::*;
 
-/// SE on a radar that is not table 3.1's.
 const OTHER_RADARS_ERROR: f64 = 900.0;
 
 fn tally(kind: Kind, count: u32) -> Tally {

@@ -5,7 +5,6 @@ mod baseline_tables;
 mod captures;
 mod conventions;
 mod damage;
-mod disturbances;
 mod echo_lists;
 mod failures;
 mod house;

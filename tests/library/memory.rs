@@ -56,7 +56,6 @@ fn child() {
     }
 }
 
-/// Most bytes that `work` for `radar` held; `None` where the system reports no peaks.
 fn held(work: &str, radar: &Radar) -> Option<u64> {
     let mut child = Command::new(std::env::current_exe().unwrap());
     child.args(["--exact", "memory::child", "--ignored", "--nocapture"]);
@@ -67,7 +66,6 @@ fn held(work: &str, radar: &Radar) -> Option<u64> {
     said.lines().find_map(|l| l.strip_prefix("held ")?.parse().ok())
 }
 
-/// Compares the memory of `work` with its bound, and with `least` bytes: a measurement that sees no memory proves nothing.
 fn check(work: &str, radar: &Radar, least: u64) {
     let Some(held) = held(work, radar) else {
         assert_ne!(std::env::consts::OS, "linux", "{work}: the peak was not told");

@@ -3,7 +3,6 @@
 use crate::prelude::*;
 use apertura::evaluate::sets::NOISE_LEVEL;
 
-/// A trial of `scene`, and the request for a method.
 fn trial(scene: &Scene, floor: Floor, normalisation: Normalisation) -> (Trial, Request) {
     let request = Request { noise: floor.into(), normalisation, ..Request::default() };
     (Trial::new(&Radar::default(), scene, floor, normalisation).unwrap(), request)

@@ -158,10 +158,8 @@ fn rows_of_format_1_are_read_with_all_that_they_say() {
     assert_eq!(keys, scenes.concat());
     for row in &rows {
         assert_eq!((row.version, &*row.program, row.seed), (Some(1), "0.1.0", 4));
-        assert_eq!(
-            (row.purpose, row.reading, row.carrier),
-            (Some(Purpose::Test), Some(Reading::Program), Some(Carrier::OneWay))
-        );
+        let expected = (Some(Purpose::Test), Some(Reading::Program), Some(Carrier::OneWay));
+        assert_eq!((row.purpose, row.reading, row.carrier), expected);
         assert_eq!((row.normalisation, &*row.radar, &*row.scenes), (Some(Normalisation::MinMax), "", ""));
         assert_eq!(row.floor == Some(Floor::Thesis), row.set != "noise");
         assert_eq!(row.echoes.is_some(), row.set == "bodies");

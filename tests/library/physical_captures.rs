@@ -19,7 +19,6 @@ const DEGREES_OF_PAIRS: f64 = 0.6;
 /// Largest error of the map's peak between two columns, columns.
 const COLUMNS: f64 = 0.25;
 
-/// Sign, ramp and carrier of a capture.
 #[derive(Debug, Clone, Copy)]
 struct Made {
     /// 1 or -1: all phases.
@@ -65,7 +64,6 @@ fn wavelength() -> f64 {
     C / (FIRST_HZ + BANDWIDTH_HZ / 2.0)
 }
 
-/// Every element sends and hears by itself, a quarter of a wavelength from the next.
 fn monostatic(made: Made, folder: &Path) -> Recording {
     let spacing = wavelength() / 4.0;
     let x = |n: usize| (n as f64 - (ELEMENTS as f64 - 1.0) / 2.0) * spacing;
@@ -110,7 +108,6 @@ fn peak_cos(recording: &Recording, range_metres: f64) -> f64 {
     radar.cos_of_blob(radar.cos_of_column(top as f64 + off))
 }
 
-/// The worst errors of the map's peaks in columns and of iaa's directions in degrees.
 fn errors(recording: &Recording) -> (f64, f64) {
     let radar = &recording.radar;
     let method = methods::by_name("iaa").unwrap_or_else(|e| panic!("{e}"));

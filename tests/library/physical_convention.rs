@@ -53,29 +53,6 @@ fn a_sample_has_the_phase_of_its_frequency_over_the_whole_path() {
     }
 }
 
-/// cos(theta) of the strongest column, between columns by the power around it.
-fn peak_cos(radar: &Radar, scene: &Scene, bin: f64) -> f64 {
-    let signal = simulate(radar, scene, Floor::Exact, 0).unwrap();
-    let map = angle_transform(radar, &range_transform(radar, &signal), Aperture::Full).cells;
-    let row = map.row(bin.round() as usize);
-    let top = (0..ELEMENTS).max_by(|a, b| row[*a].norm().total_cmp(&row[*b].norm())).unwrap();
-    let level = |i: usize| row[i % ELEMENTS].norm().ln();
-    let (before, here, after) = (level(top + ELEMENTS - 1), level(top), level(top + 1));
-    radar.cos_of_column(top as f64 + 0.5 * (before - after) / (before - 2.0 * here + after))
-}
-
-#[test]
-fn physical_blobs_stand_farther_from_broadside() {
-    let (range, cos) = (12.0f64, 0.6f64);
-    let scene = Scene::of_points([(range * cos, range * (1.0 - cos * cos).sqrt())]);
-    for (convention, expected) in [(Convention::Thesis, 1.0 - 1.0 / 77.0), (Convention::Physical, 1.0 + 0.5 / 77.0)] {
-        let radar = Radar { bandwidth_hz: BANDWIDTH_HZ, ..radar() }.in_convention(convention);
-        let seen = peak_cos(&radar, &scene, radar.bin_of_range(range)) / cos;
-        assert!((seen - expected).abs() < 0.2 * (expected - 1.0).abs(), "{convention:?}: {seen}, expected {expected}");
-        assert!((radar.squint() - expected).abs() < 2e-4, "{convention:?}");
-    }
-}
-
 /// A capture of `points` in noise, in an `.npz` with the TOML beside it; the noise's standard deviation is `sigma`.
 fn captured(points: &[[f64; 2]], sigma: f64, rng: &mut ChaCha8Rng) -> Recording {
     let folder = tempfile::tempdir().unwrap();

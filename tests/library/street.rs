@@ -28,15 +28,6 @@ fn blobs_at(degrees: f64) -> [usize; 3] {
 }
 
 #[test]
-fn the_wall_reaches_over_the_range_of_the_post() {
-    let scene = presets::default_scene().scene;
-    let ranges = scene.objects[0].reflectors().into_iter().map(|r| r.x_metres.hypot(r.y_metres));
-    let (near, far) = ranges.fold((f64::INFINITY, 0.0f64), |(near, far), range| (near.min(range), far.max(range)));
-    let [x, y] = scene.objects[3].centre_metres();
-    assert!(near + 0.5 < x.hypot(y) && x.hypot(y) < far - 0.5, "{near} to {far} m");
-}
-
-#[test]
 fn a_drag_along_the_ring_merges_post_and_wall_in_inputs() {
     assert_eq!(blobs_at(5.4), [2, 2, 2], "as the scene opens");
     for degrees in [26.0, 28.0] {

@@ -10,9 +10,7 @@ use std::io;
 use std::io::{Read, Write};
 use std::process::Stdio;
 
-/// Variable with the child's folder.
 const FOLDER: &str = "APERTURA_TEST_FOLDER";
-/// Number of times that each child is killed.
 const KILLS: u64 = 12;
 
 /// A scene whose name is its number of points, so that a part of it is found out.
@@ -21,7 +19,6 @@ fn numbered(number: usize) -> SceneFile {
     SceneFile { scene: Scene { name: number.to_string(), ..scene }, ..SceneFile::default() }
 }
 
-/// The number of a scene that is whole.
 fn number_of(scene: &Scene) -> usize {
     let number = scene.name.parse().expect("a number");
     assert_eq!(scene.objects.len(), number, "the scene is not whole");
@@ -94,7 +91,6 @@ fn a_kill_while_saving_leaves_the_old_file_or_the_new_one() {
     assert!(number_of(&file::load(&path).unwrap().scene) > 0);
 }
 
-/// Edits one document for ever, and leaves an unsaved one behind now and then.
 #[test]
 #[ignore = "the child of the test below"]
 fn child_autosaves() {
@@ -169,7 +165,6 @@ fn a_kill_while_exporting_leaves_a_whole_archive() {
     }
 }
 
-/// Saves a scene that does not fit, and prints the outcome.
 #[test]
 #[ignore = "the child of the test below"]
 fn child_saves_too_much() {

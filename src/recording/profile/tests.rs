@@ -30,8 +30,7 @@ fn a_profile_is_read_in_si_units() {
     assert_eq!(profile.chirp_transmitters, [1, 4]);
     assert!((profile.bandwidth_hz() - 70e12 * 8.0 / 5.209e6).abs() < 1.0);
     let middle = 77e9 + 70e12 * (7e-6 + 4.0 / 5.209e6);
-    assert!((profile.carrier_hz() - middle).abs() < 1.0);
-    assert!((profile.chirp_interval_seconds - 486.14e-6).abs() < 1e-9);
+    assert!((profile.carrier_hz() - middle).abs() < 1.0 && (profile.chirp_interval_seconds - 486.14e-6).abs() < 1e-9);
 }
 
 #[test]

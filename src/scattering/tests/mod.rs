@@ -19,7 +19,6 @@ fn samples(radar: &Radar, echoes: &[PathEcho]) -> Vec<Complex64> {
     SAMPLES.iter().map(sample).collect()
 }
 
-/// Largest difference over the largest reference.
 fn worst(found: &[Complex64], expected: &[Complex64]) -> f64 {
     let peak = expected.iter().map(|v| v.norm()).fold(0.0, f64::max);
     found.iter().zip(expected).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / peak

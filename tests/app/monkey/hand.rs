@@ -20,7 +20,6 @@ impl Monkey {
         vec2(self.rng.random_range(-120.0..120.0), self.rng.random_range(-120.0..120.0))
     }
 
-    /// One random action.
     pub fn act(&mut self) {
         match self.rng.random_range(0..14) {
             0 | 1 => self.drag(),

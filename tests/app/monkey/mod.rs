@@ -124,7 +124,6 @@ impl Monkey {
     }
 }
 
-/// Names, sizes and times of every file below `folder`.
 fn listing(folder: &Path) -> Vec<(std::path::PathBuf, u64, Option<std::time::SystemTime>)> {
     let mut list = Vec::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -138,7 +137,6 @@ fn listing(folder: &Path) -> Vec<(std::path::PathBuf, u64, Option<std::time::Sys
     list
 }
 
-/// Copies a folder in which a thread may be writing, as it was at one moment.
 fn copy_at_one_moment(from: &Path, to: &Path) {
     loop {
         let before = listing(from);

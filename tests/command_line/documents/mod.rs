@@ -68,7 +68,6 @@ fn every_command_of_the_pages_is_one_of_the_programs() {
     assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
 }
 
-/// Every long option of the program.
 fn options() -> BTreeSet<String> {
     let command = apertura::commands::command();
     let all = command.get_subcommands().chain([&command]).flat_map(|c| c.get_arguments());

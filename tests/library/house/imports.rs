@@ -9,7 +9,6 @@ type Module = Vec<String>;
 /// Most names that a path is followed through; `use a::a` would lead round for ever.
 const MAX_IMPORT_DEPTH: usize = 8;
 
-/// One file of `src`.
 struct File {
     module: Module,
     source: Source,
@@ -17,15 +16,12 @@ struct File {
     test: bool,
 }
 
-/// Every file of `src`.
 pub struct House {
     files: BTreeMap<PathBuf, File>,
     modules: BTreeMap<Module, PathBuf>,
 }
 
 impl House {
-    /// Reads `src`.
-    ///
     /// Imports of tests count where `with_tests`. A file that passes on what its children define (`pub use`) doesn't import it:
     /// its importers import the child.
     pub fn read(src: &Path, with_tests: bool) -> House {
@@ -111,7 +107,6 @@ impl House {
         self.modules.get(&at).cloned()
     }
 
-    /// Start of a path: its module, and the rest of the path.
     fn start<'a>(&self, module: &[String], path: &'a [String], depth: usize) -> Option<(Module, &'a [String])> {
         let (first, mut rest) = path.split_first().filter(|_| depth <= MAX_IMPORT_DEPTH)?;
         let mut at = module.to_vec();
@@ -160,7 +155,6 @@ pub fn circles<T: Ord + Clone>(imports: &BTreeMap<T, BTreeSet<T>>) -> Vec<BTreeS
     groups.into_iter().collect()
 }
 
-/// All `.rs` files below a folder.
 pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
