@@ -246,17 +246,14 @@ fn bad_input_leaves_no_file() {
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("good.toml", TWO_POINTS);
     write("syntax.toml", "[[object]\n");
-    write("key.toml", "[[object]]\nkind = \"point\"\nx_metres = 1\nz_metres = 2\n");
-    write("nan.toml", "[[object]]\nkind = \"point\"\nx_metres = 1\ny_metres = nan\n");
-    write(
-        "element.toml",
-        "[radar]\nelements = 7\nend_elements = 3\n[[object]]\nkind = \"point\"\nx_metres = 0\ny_metres = 0\n",
-    );
+    let point = "[[object]]\nkind = \"point\"\nx_metres = 1\n";
+    write("key.toml", &format!("{point}z_metres = 2\n"));
+    write("nan.toml", &format!("{point}y_metres = nan\n"));
+    let on_element = point.replace('1', "0") + "y_metres = 0\n";
+    write("element.toml", &format!("[radar]\nelements = 7\nend_elements = 3\n{on_element}"));
     write("large.toml", "[radar]\nelements = 65536\nsamples = 65536\n");
-    write(
-        "crowd.toml",
-        "[[object]]\nkind = \"line\"\nx_metres = 1\ny_start_metres = 1\nspacing_metres = 1\ncount = 1000000000000\n",
-    );
+    let line = point.replace("point", "line") + "y_start_metres = 1\nspacing_metres = 1\n";
+    write("crowd.toml", &format!("{line}count = 1000000000000\n"));
     write("text.npz", "not an archive");
     write("scene.yaml", TWO_POINTS);
     let archive = |name: &str, keys: &[(&str, ndarray::ArrayD<f64>)]| {

@@ -22,7 +22,6 @@ mod off_line;
 mod older_files;
 mod pairs;
 mod physical_captures;
-mod physical_convention;
 mod prelude;
 mod radars;
 mod readme;

@@ -1,9 +1,7 @@
 use super::*;
-use crate::maps::Normalisation;
-use crate::maps::RangeAngleMap;
+use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
-use crate::reconstruct::ReconstructError;
-use crate::reconstruct::{About, Reconstruction};
+use crate::reconstruct::{About, ReconstructError, Reconstruction};
 use crate::signal::TwoEnds;
 
 fn radar() -> Radar {

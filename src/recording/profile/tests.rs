@@ -1,6 +1,4 @@
-use super::error::MOST_CHIRPS;
 use super::*;
-use proptest::prelude::*;
 
 /// Two transmitters, four receivers, eight samples, two loops.
 pub const CFG: &str = "% a small radar
@@ -149,21 +147,4 @@ fn one_sub_frame_of_several_is_chosen() {
     assert!(first.notes[0].contains("2 sub-frames"));
     let message = RadarProfile::of_sub_frame(&advanced, Some(2)).unwrap_err().to_string();
     assert!(message.contains("sub_frame = 0 to 1"), "{message}");
-}
-
-proptest! {
-    #[test]
-    fn mutated_text_is_read_or_refused(at in 0usize..CFG.len(), character in "\\PC", cut in 0usize..40) {
-        let mut text = CFG.to_owned();
-        text.replace_range(at..=at, &character);
-        text.truncate(text.floor_char_boundary(text.len() - cut));
-        if let Ok(profile) = RadarProfile::parse(&text) {
-            prop_assert!(profile.samples <= MOST_SAMPLES && profile.chirp_transmitters.len() <= MOST_CHIRPS);
-        }
-    }
-
-    #[test]
-    fn any_bytes_are_read_or_refused(bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
-        let _any = RadarProfile::parse(&lines::text_of(&bytes));
-    }
 }

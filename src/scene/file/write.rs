@@ -114,23 +114,6 @@ mod tests {
     }
 
     #[test]
-    fn the_physical_convention_is_written_by_its_name() {
-        let radar = Radar { elements: 64, ..Radar::default() }.in_convention(Convention::Physical);
-        let file = SceneFile { radar, ..scene() };
-        let text = to_toml(&file).unwrap();
-        assert!(text.contains("convention = \"physical\"") && !text.contains("spacing_metres = 0.000"), "{text}");
-        assert_eq!(from_toml(&text).unwrap(), file);
-    }
-
-    #[test]
-    fn antennas_are_written_in_place_of_the_elements_they_make() {
-        let file = SceneFile { radar: Radar::default().of_pairs(3, 4).unwrap(), ..scene() };
-        let text = to_toml(&file).unwrap();
-        assert!(text.contains("receiver_x_metres") && !text.contains("elements = 12"), "{text}");
-        assert_eq!(from_toml(&text).unwrap(), file);
-    }
-
-    #[test]
     fn an_empty_file_is_an_empty_scene() {
         assert_eq!(from_toml("").unwrap(), SceneFile::default());
         assert_eq!(from_toml(&to_toml(&SceneFile::default()).unwrap()).unwrap(), SceneFile::default());

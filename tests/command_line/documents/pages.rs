@@ -64,13 +64,7 @@ pub fn all() -> Vec<Page> {
     names.retain(|path| path.extension().is_some_and(|e| e == "md"));
     names.sort();
     let docs = names.iter().map(|path| path.strip_prefix(root()).unwrap().to_str().unwrap().to_owned());
-    let others = [
-        "README.md",
-        "CONTRIBUTING.md",
-        "ARCHITECTURE.md",
-        "assets/guide.md",
-        "python/README.md",
-        "training/README.md",
-    ];
-    others.map(str::to_owned).into_iter().chain(docs).map(|name| Page::read(&name)).collect()
+    let others =
+        "README.md CONTRIBUTING.md ARCHITECTURE.md assets/guide.md python/README.md training/README.md".split(' ');
+    others.map(str::to_owned).chain(docs).map(|name| Page::read(&name)).collect()
 }

@@ -38,13 +38,14 @@ fn written(folder: &Path, name: &str, bytes: &[u8]) -> PathBuf {
     folder.join(name)
 }
 
+/// A file of version 0.1.0.
+fn older(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/program-0.1.0").join(name)
+}
+
+/// Points, a line, a cluster and disturbances.
 fn scene() -> SceneFile {
-    let line = Line { reflectivity: 0.5, direction_degrees: 30.0, ..Line::vertical(1.0, 2.0, 0.1, 75) };
-    let cluster = GaussianCluster { seed: 9, ..GaussianCluster::new([-5.0, 20.0], [1.0, 0.5], 40) };
-    let objects = vec![Object::Point(Point::new(1.0, 2.0)), Object::Line(line), Object::Gaussian(cluster)];
-    let (name, notes) = ("All \"three\"".to_owned(), "First.\nSecond.".to_owned());
-    let scene = Scene { name, notes, noise_seed: 5, objects, ..Scene::default() };
-    SceneFile { scene, radar: Radar { carrier: Carrier::TwoWay, elements: 64, samples: 128, ..Radar::default() } }
+    file::load(&older("scene-thesis.toml")).unwrap()
 }
 
 fn scenes() -> Reader {
@@ -168,23 +169,11 @@ fn profiles() -> Reader {
 fn tables_of_rows() -> Reader {
     let campaign = Campaign::default();
     let empty = campaign.empty_rows(&[SceneSet::Generated(Kind::Set1)], &[&Baseline as &dyn Reconstructor]).unwrap();
-    let made = Row { index: 3, ..empty[0][0].clone() };
-    let row = |index: u32, figure: Option<f64>| Row {
-        set: "a \"set\", quoted".into(),
-        index,
-        seed: u64::from(index) << 60,
-        eta: 0.5,
-        squared_error: 321.25,
-        detection: figure,
-        milliseconds: 1.5,
-        reflectors: 77,
-        nearest_pair_bins: figure,
-        found: figure.map(|_| 2),
-        doubt: figure,
-        ..made.clone()
-    };
-    let mut table = Vec::new();
-    write_rows(&mut table, &[row(0, None), row(1, Some(1e-3)), row(2, Some(0.75)), made.clone()]).unwrap();
+    let mut made = Vec::new();
+    write_rows(&mut made, &empty[0][..3]).unwrap();
+    let mut files =
+        ["rows.csv", "rows-cfar.csv", "rows-folder.csv"].map(|name| fs::read(older(name)).unwrap()).to_vec();
+    files.push(made);
     let read = |_: &Path, bytes: &[u8]| {
         let rows = read_rows(bytes).map_err(|e| e.to_string())?;
         let mut again = Vec::new();
@@ -192,7 +181,7 @@ fn tables_of_rows() -> Reader {
         assert_eq!(read_rows(again.as_slice()).unwrap(), rows);
         Ok(())
     };
-    Reader { name: "rows", files: vec![table], read, bound: [1 << 20, 256], slow: 1 }
+    Reader { name: "rows", files, read, bound: [1 << 20, 256], slow: 1 }
 }
 
 fn lessons() -> Reader {
