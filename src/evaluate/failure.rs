@@ -272,7 +272,6 @@ mod tests {
     use crate::signal::{Floor, simulate};
     use ndarray::Array2;
 
-    /// A target with the footprints of its objects.
     fn seen(objects: Vec<Object>) -> (RangeAngleMap, Footprints) {
         let (radar, scene) = (Radar::default(), Scene { objects, ..Scene::default() });
         let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
@@ -291,7 +290,6 @@ mod tests {
         RangeAngleMap { lambda }
     }
 
-    /// Sets the cells of one object and their surroundings to 0.
     fn without(map: &RangeAngleMap, cells: &[CellIndex]) -> RangeAngleMap {
         let mut map = map.clone();
         for &[r, c] in cells {

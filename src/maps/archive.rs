@@ -297,7 +297,6 @@ mod tests {
         Radar { carrier: Carrier::TwoWay, chirp_seconds: 1e-4, window, budget, ..counts }
     }
 
-    /// An archive of one reflector at (0, 0.5) m before `radar`.
     fn archive(radar: &Radar) -> (tempfile::TempDir, Npz) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("maps.npz");

@@ -61,7 +61,6 @@ mod tests {
     use ndarray::Array2;
     use proptest::prelude::*;
 
-    /// Logarithm of two Gaussian lobes, the second lower.
     fn lobes(places: [(f64, f64); 2], lower: f64) -> Array2<f64> {
         let near = |d: f64, len: f64| (d + len * 1.5).rem_euclid(len) - len / 2.0;
         Array2::from_shape_fn((32, 48), |(bin, column)| {

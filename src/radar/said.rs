@@ -255,12 +255,6 @@ mod tests {
                 Radar { elements: 77, chirp_seconds: 1e-4, budget, ..Radar::default() }.in_convention(convention);
             assert_eq!(read(&toml::to_string(&radar).unwrap()).unwrap(), radar);
         }
-        let physical = toml::to_string(&Radar::default().in_convention(Convention::Physical)).unwrap();
-        assert!(physical.contains("convention = \"physical\"") && !physical.contains("spacing_metres"), "{physical}");
-        let pairs = Radar::default().of_pairs(3, 4).unwrap();
-        let text = toml::to_string(&pairs).unwrap();
-        assert!(text.contains("receiver_x_metres") && !text.contains("elements = 12"), "{text}");
-        assert_eq!(read(&text).unwrap(), pairs);
         let several = Radar { chirps: 128, chirp_interval_seconds: 3e-5, ..Radar::default() };
         assert_eq!(read(&toml::to_string(&several).unwrap()).unwrap(), several);
         assert!(!toml::to_string(&several.of_one_chirp()).unwrap().contains("chirp") && read("chirps = -1").is_err());

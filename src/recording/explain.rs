@@ -158,7 +158,6 @@ mod tests {
         Radar { elements: 64, end_elements: 6, samples: 96, ..Radar::default() }
     }
 
-    /// Three points, everything turned and amplified as a real receiver would.
     fn recorded() -> Recording {
         let scene = Scene::of_points([(0.0, 3.0), (1.5, 4.0), (-2.0, 5.0)]);
         let mut signal = simulate(&radar(), &scene, Floor::Exact, 0).unwrap();

@@ -219,7 +219,6 @@ mod tests {
 
     const SEPARATE_PAIR: Pair = Pair::on_line(-0.4, 0.7);
 
-    /// Antennas on a bumper that is bent.
     const BENT: Pair = Pair {
         transmitter_y_metres: -0.06,
         receiver_y_metres: 0.11,
@@ -235,7 +234,6 @@ mod tests {
         Reflector { x_metres, y_metres, reflectivity: 0.7 }
     }
 
-    /// A radar of elements that leave half of the power 30 degrees off broadside.
     fn narrow() -> Radar {
         let budget = LinkBudget { half_power_width_degrees: Some(60.0), ..LinkBudget::default() };
         Radar { budget: Some(budget), ..Radar::default() }

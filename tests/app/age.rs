@@ -3,7 +3,6 @@
 use crate::session::*;
 use proptest::prelude::*;
 
-/// Panels that draw something derived from the scene.
 fn panels() -> Vec<Panel> {
     use MapKind::{Difference, Input0, Output, OutputAbove, Target};
     use Panel::{Bounds, Chirp, Compare, Cuts, Elements, Found, Phasors, RangeDoppler, Roc, Scene, Several, Values};
@@ -11,7 +10,6 @@ fn panels() -> Vec<Panel> {
     [Output, Output, OutputAbove, Target, Input0, Difference].map(Panel::Map).into_iter().chain(others).collect()
 }
 
-/// A user's command, at random, with anything shown and any number of times.
 fn action() -> impl Strategy<Value = Command> {
     let window = prop_oneof![Just(WindowFunction::Hann), Just(WindowFunction::Hamming)];
     let floor = prop_oneof![Just(Floor::Thesis), Just(Floor::Exact)];

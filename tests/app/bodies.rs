@@ -30,7 +30,7 @@ fn the_maps_follow_the_sliders_of_radius_and_roughness() {
     let mut s = empty();
     s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(0.0, 12.0))));
     s.select(0);
-    let depth = s.state().editor().history().depth();
+    let depth = s.editor().history().depth();
     for (name, value) in [
         ("radius slider", (|o| if let Object::Post(p) = o { p.radius_metres } else { f64::NAN }) as fn(&Object) -> f64),
         ("roughness slider", |o| if let Object::Post(p) = o { p.roughness_millimetres } else { f64::NAN }),
@@ -52,7 +52,7 @@ fn the_maps_follow_the_sliders_of_radius_and_roughness() {
         assert!(during.windows(2).all(|w| w[0] <= w[1]) && during[0] < during[9], "{name}: {during:?}");
         assert!(value(&last(&s)) > before, "{name}");
     }
-    assert_eq!(s.state().editor().history().depth(), depth + 2, "each slide is one step");
+    assert_eq!(s.editor().history().depth(), depth + 2, "each slide is one step");
 }
 
 #[test]

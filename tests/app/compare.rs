@@ -10,7 +10,7 @@ fn with_capon() -> Session {
 }
 
 fn trial(s: &Session) -> Trial {
-    Trial::new(s.state().radar(), s.state().editor().scene(), Floor::Thesis, Normalisation::MinMax).unwrap()
+    Trial::new(s.state().radar(), s.editor().scene(), Floor::Thesis, Normalisation::MinMax).unwrap()
 }
 
 fn text_of(node: &Node<'_>) -> String {
@@ -103,7 +103,7 @@ fn the_table_of_values_has_what_the_maps_have_under_the_pointer() {
     s.ask(WindowCommand::OpenPanel(Panel::Compare));
     s.ask(WindowCommand::OpenPanel(Panel::Values));
     s.ask(WindowCommand::Maximise(Panel::Values));
-    let (radar, scene) = (s.state().radar().clone(), s.state().editor().scene().clone());
+    let (radar, scene) = (s.state().radar().clone(), s.editor().scene().clone());
     let text = text_of(&s.app.get_by_label_contains("range bin "));
     let mut numbers = text.split(|c: char| !c.is_ascii_digit()).filter(|part| !part.is_empty());
     let (bin, column): (usize, usize) =

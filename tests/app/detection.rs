@@ -18,7 +18,7 @@ fn cells_and_rates_on_screen_are_those_of_the_library() {
     assert_eq!(s.state().detected(), ([None, None], None), "a detector that is off finds nothing");
     let global = s.state().metrics().unwrap();
     s.ask(ViewCommand::SetCfar(Some(CELLS)));
-    let scene = s.state().editor().scene().clone();
+    let scene = s.editor().scene().clone();
     let trial = Trial::new(s.state().radar(), &scene, Floor::Thesis, Normalisation::MinMax).unwrap();
     let answer = trial.ask(&Baseline, &Request::default()).unwrap();
     for statistic in Statistic::ALL {

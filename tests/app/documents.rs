@@ -6,7 +6,7 @@ use apertura::scene::{file, presets};
 use eframe::egui::{ViewportCommand, ViewportEvent, ViewportId};
 
 fn title(s: &Session) -> String {
-    s.state().editor().document().title()
+    s.editor().document().title()
 }
 
 /// A file of `points` reflectors before a radar of 64 elements.
@@ -29,9 +29,9 @@ fn each_scene_is_saved_into_its_own_file() {
     let (a, b) = (s.path("scene.toml"), write(&s, "b.toml", 5));
     s.ask(EditCommand::Add(NewObject::Point, None));
     s.ask(DocumentCommand::OpenPath(b.clone()));
-    assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("b.toml", 64));
+    assert_eq!((title(&s).as_str(), s.editor().radar().elements), ("b.toml", 64));
     s.undo();
-    assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml •", 128));
+    assert_eq!((title(&s).as_str(), s.editor().radar().elements), ("scene.toml •", 128));
     s.ask(DocumentCommand::Save);
     assert_eq!((title(&s).as_str(), points(&a), points(&b)), ("scene.toml", 3, 5));
 }
@@ -40,7 +40,7 @@ fn each_scene_is_saved_into_its_own_file() {
 fn new_and_presets_keep_the_radar_unless_they_have_one() {
     let mut s = Session::start();
     s.ask(DocumentCommand::New);
-    assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("untitled", 128));
+    assert_eq!((title(&s).as_str(), s.editor().radar().elements), ("untitled", 128));
     s.undo();
     let preset = |id: &str| {
         let index = presets::ALL.iter().position(|preset| preset.id == id).unwrap();
@@ -48,11 +48,11 @@ fn new_and_presets_keep_the_radar_unless_they_have_one() {
     };
     for (id, elements) in [("four-reflectors", 128), ("failure-live-wrong-tooth", Radar::default().elements)] {
         s.ask(preset(id));
-        assert_eq!(s.state().editor().radar().elements, elements, "{id}");
+        assert_eq!(s.editor().radar().elements, elements, "{id}");
         s.undo();
     }
     s.undo();
-    assert_eq!((title(&s).as_str(), s.state().editor().radar().elements), ("scene.toml", 128));
+    assert_eq!((title(&s).as_str(), s.editor().radar().elements), ("scene.toml", 128));
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn a_start_with_a_file_loses_neither_file_nor_unsaved_scene() {
     let mut s = Session::start();
     let b = write(&s, "b.toml", 5);
     s.ask(EditCommand::Add(NewObject::Point, None));
-    let unsaved = s.state().editor().scene().clone();
+    let unsaved = s.editor().scene().clone();
     s.wait_for_autosave();
     let Session { app, folder } = s;
     drop(app);
@@ -148,16 +148,16 @@ fn a_start_with_a_file_loses_neither_file_nor_unsaved_scene() {
         let mut s = Session { app, folder: tempdir().unwrap() };
         s.settle();
         assert_eq!(title(&s), "b.toml");
-        assert_eq!(s.state().editor().left().len(), 1);
-        assert_eq!(s.state().editor().left()[0].scene(), &unsaved);
+        assert_eq!(s.editor().left().len(), 1);
+        assert_eq!(s.editor().left()[0].scene(), &unsaved);
     }
     let mut s = Session::opened(folder, Some("b.toml"), baseline(), USUAL_SIZE);
-    assert_eq!((s.state().editor().left()[0].title().as_str(), points(&b)), ("scene.toml •", 5));
+    assert_eq!((s.editor().left()[0].title().as_str(), points(&b)), ("scene.toml •", 5));
     for label in ["File", "Unsaved scenes", "scene.toml (3 objects)", "Bring back"] {
         s.click(label);
     }
     assert_eq!((title(&s).as_str(), s.objects().len()), ("scene.toml •", 3));
-    assert!(s.state().editor().left().is_empty(), "b.toml was not touched");
+    assert!(s.editor().left().is_empty(), "b.toml was not touched");
 }
 
 #[test]

@@ -10,7 +10,6 @@ fn methods() -> Vec<Arc<dyn Reconstructor>> {
     vec![Arc::new(Baseline), Arc::new(CAPON)]
 }
 
-/// A window with six rows: three scenes by two methods.
 fn tried() -> Session {
     let mut s = Session::with_methods(methods());
     s.ask_and_wait(Command::Rows(RowsCommand::Try(choice(vec![Kind::Set2], false))));
@@ -26,7 +25,6 @@ fn name(row: &Row) -> String {
     format!("set {}, scene {}, {}", row.set, row.index, row.method)
 }
 
-/// Names of the rows in sight, from top to bottom.
 fn listed(s: &Session) -> Vec<String> {
     let mut rows: Vec<(f32, String)> = s
         .state()
@@ -78,12 +76,12 @@ fn the_worst_row_can_be_found_changed_kept() {
     s.app.key_press(Key::Delete);
     s.settle();
 
-    let before = s.state().editor().document().clone();
+    let before = s.editor().document().clone();
     s.click(&name(&row));
     s.ask(WindowCommand::Maximise(Panel::Failures));
     let radar = s.state().radar().clone();
     let expected = Generator::new(&radar, Reading::Program, Purpose::Test, 7).scene(Kind::Set2, row.index);
-    assert_eq!((s.state().opened_row(), &**s.state().editor().scene()), (Some(index), &expected));
+    assert_eq!((s.state().opened_row(), &**s.editor().scene()), (Some(index), &expected));
     let m = s.state().metrics().unwrap();
     assert_eq!(s.state().shown_method(), Some(if row.method == "capon" { "capon" } else { "baseline" }));
     assert_eq!((m.squared_error, m.detection, m.false_alarm), (row.squared_error, row.detection, row.false_alarm));
@@ -95,8 +93,8 @@ fn the_worst_row_can_be_found_changed_kept() {
 
     let at = s.handle("point 1: move");
     s.drag(at, vec2(25.0, 10.0), 5);
-    assert!(s.state().editor().is_modified() && s.state().metrics() != Some(m));
-    let file = s.state().editor().document().to_file();
+    assert!(s.editor().is_modified() && s.state().metrics() != Some(m));
+    let file = s.editor().document().to_file();
     s.ask(RowsCommand::KeepScene("Moved a little.".to_owned()));
     let own = s.path("data/scenes");
     let kept = apertura::scene::file::load(Folder::open(&own).unwrap().file(0).unwrap()).unwrap();
@@ -107,13 +105,13 @@ fn the_worst_row_can_be_found_changed_kept() {
 
     s.ask(EditCommand::Undo);
     s.ask(EditCommand::Undo);
-    assert_eq!(s.state().editor().document().id(), before.id(), "the scene from before the row");
+    assert_eq!(s.editor().document().id(), before.id(), "the scene from before the row");
 }
 
 #[test]
 fn one_undo_takes_a_walk_through_rows_back() {
     let mut s = tried();
-    let before = (s.state().editor().document().id(), s.state().settings().method.clone());
+    let before = (s.editor().document().id(), s.state().settings().method.clone());
     s.ask(ViewCommand::SetFloor(Floor::Exact));
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     let mut last = None;
@@ -132,9 +130,9 @@ fn one_undo_takes_a_walk_through_rows_back() {
         assert_eq!(s.state().settings().floor, Floor::Thesis, "as the rows were made");
         last = s.state().metrics();
     }
-    assert!(last.is_some() && s.state().editor().left().is_empty(), "a walk leaves nothing behind");
+    assert!(last.is_some() && s.editor().left().is_empty(), "a walk leaves nothing behind");
     s.ask(EditCommand::Undo);
-    let after = (s.state().editor().document().id(), s.state().settings().method.clone());
+    let after = (s.editor().document().id(), s.state().settings().method.clone());
     assert_eq!((after, s.state().settings().floor), (before, Floor::Exact));
 }
 
@@ -174,7 +172,7 @@ fn what_a_search_finds_is_one_undo_step() {
     let best = rows.min_by(|a, b| a.1.squared_error.total_cmp(&b.1.squared_error)).unwrap().0;
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     s.ask(RowsCommand::Show(best));
-    let before = s.state().editor().scene().clone();
+    let before = s.editor().scene().clone();
     let choice =
         SearchChoice { aim: Aim::Worsen, measure: WorseningMeasure::SquaredError, within_metres: 2.0, tries: 48 };
     s.ask_and_wait(Command::Rows(RowsCommand::Search(choice)));
@@ -186,7 +184,7 @@ fn what_a_search_finds_is_one_undo_step() {
     assert_eq!(s.state().metrics().unwrap().squared_error, found.metrics.squared_error);
     assert!(s.app.query_by_label_contains("baseline: SE").or(s.app.query_by_label_contains("capon: SE")).is_some());
     s.ask(EditCommand::Undo);
-    assert_eq!(s.state().editor().scene(), &before);
+    assert_eq!(s.editor().scene(), &before);
     s.app.state_mut().ask(RowsCommand::Search(SearchChoice { tries: 100_000, ..choice }));
     step_until(&mut s, "it starts", |s| s.state().is_at_work());
     s.ask(RowsCommand::CancelSearch);
@@ -211,7 +209,7 @@ fn keys_walk_through_ten_thousand_rows() {
     }
     assert!((Some(8)..Some(100)).contains(&s.state().opened_row()), "{:?}", s.state().opened_row());
     s.press(Modifiers::NONE, Key::End);
-    let (last, scene) = (s.state().opened_row(), Scene::clone(s.state().editor().scene()));
+    let (last, scene) = (s.state().opened_row(), Scene::clone(s.editor().scene()));
     let generator = Generator::new(s.state().radar(), Reading::Program, Purpose::Test, 7);
     assert_eq!((last, scene), (Some(9_999), generator.scene(Kind::Set2, 9_999)));
 }

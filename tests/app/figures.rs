@@ -56,13 +56,13 @@ fn one_scene_has_one_set_of_figures() {
     s.drag(at, vec2(25.0, -9.0), 20);
     let moved = s.path("moved.toml");
     Document::read(&s.path("figures.toml")).expect("it is still there");
-    let scene = s.state().editor().document().to_file();
+    let scene = s.editor().document().to_file();
     apertura::scene::file::save(&moved, &scene).unwrap();
     let expected = on_the_command_line(&moved);
     assert_eq!(on_screen(&s), expected, "after a drag");
     s.wait_for_autosave();
     let s = s.reopened(None, baseline());
-    assert_eq!(**s.state().editor().scene(), scene.scene);
+    assert_eq!(**s.editor().scene(), scene.scene);
     assert_eq!(on_screen(&s), expected, "after a restore");
 }
 
@@ -77,7 +77,7 @@ fn the_noise_belongs_to_the_scene() {
     assert_eq!(Document::read(&path).unwrap().scene().noise_seed, 7);
     assert_eq!(on_screen(&s), on_the_command_line(&path));
     s.ask(EditCommand::Undo);
-    assert_eq!((s.state().editor().scene().noise_seed, on_screen(&s)), (0, before));
+    assert_eq!((s.editor().scene().noise_seed, on_screen(&s)), (0, before));
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn at_rest_the_answer_is_that_from_scratch() {
     s.app.drop_at(at + vec2(18.0, 6.0));
     s.settle();
     assert_eq!(count(0), scratch + 1);
-    let trial = Trial::new(s.state().radar(), s.state().editor().scene(), Floor::Thesis, Normalisation::MinMax);
+    let trial = Trial::new(s.state().radar(), s.editor().scene(), Floor::Thesis, Normalisation::MinMax);
     let answer = trial.unwrap().ask(hybrid.as_ref(), &Request::default()).unwrap();
     assert_eq!(s.state().metrics(), Some(answer.metrics));
 }

@@ -22,7 +22,7 @@ fn methods_hear_the_layout_that_was_chosen() {
     assert_eq!((s.state().shown_method(), s.state().messages()), (Some("iaa"), 1));
     let pictures = s.state().pictures();
     assert!(pictures.contains(&MapKind::Input0) && !pictures.contains(&MapKind::Input1), "{pictures:?}");
-    let (radar, scene, view) = (s.state().radar(), s.state().editor().scene(), &s.state().settings().view);
+    let (radar, scene, view) = (s.state().radar(), s.editor().scene(), &s.state().settings().view);
     let layout = nested().numbers(radar).unwrap();
     let (floor, normalisation) = (view.floor, view.normalisation);
     let trial = Trial::against(Target::Measured, Some(&layout), radar, scene, floor, normalisation).unwrap();

@@ -2,7 +2,6 @@
 //! from the right.
 
 use crate::session::*;
-use apertura::files::npz::write_npz;
 use apertura::picture::{PictureFormat, Style, compose, compose_recording};
 use apertura::recording;
 use apertura::scene::Reflector;
@@ -30,21 +29,13 @@ fn scene(folder: &Path, convention: Convention) {
     std::fs::write(folder.join("scene.toml"), text).unwrap();
 }
 
-/// A physical radar's recording of the point, its last element first.
-fn recording(folder: &Path) {
+fn recording(folder: &Path) -> PathBuf {
     let radar = radar(Convention::Physical);
     let [x_metres, y_metres] = POINT;
     let mut samples = exact::beat_signal(&radar, &[Reflector { x_metres, y_metres, reflectivity: 1.0 }]).samples;
     samples.invert_axis(ndarray::Axis(0));
-    write_npz(&folder.join("r.npz"), |out| out.add("a", &samples)).unwrap();
-    let text = format!(
-        "format = 2\n[radar]\ncarrier = \"two-way\"\ncarrier_hz = 77e9\nbandwidth_hz = 2.5e8\n\
-         element_spacing_metres = {:?}\nelements = 128\nend_elements = 12\nsamples = 64\n\
-         [recording]\nfile = \"r.npz\"\narray = \"a\"\naxes = [\"element\", \"sample\"]\n\
-         carrier_at = \"first-sample\"\nbeat_sign = \"+\"\nreverse_elements = true\n",
-        radar.element_spacing_metres
-    );
-    std::fs::write(folder.join("r.toml"), text).unwrap();
+    let signs = "carrier_at = \"first-sample\"\nbeat_sign = \"+\"\nreverse_elements = true\n";
+    write_recording(folder, &radar, &samples, ["format = 2\n", signs])
 }
 
 fn session(convention: Convention) -> Session {
@@ -53,17 +44,14 @@ fn session(convention: Convention) -> Session {
     Session::opened(folder, Some("scene.toml"), baseline(), USUAL_SIZE)
 }
 
-/// A session with the point as each of the three shows it.
 fn sessions() -> [(&'static str, Session); 3] {
     let mut recorded = session(Convention::Thesis);
-    recording(recorded.folder.path());
-    let path = recorded.folder.path().join("r.toml");
+    let path = recording(recorded.folder.path());
     recorded.ask(DocumentCommand::OpenPath(path));
     assert!(recorded.state().editor().document().recording().is_some());
     [("thesis", session(Convention::Thesis)), ("physical", session(Convention::Physical)), ("recording", recorded)]
 }
 
-/// The picture of a map, the farthest range on top.
 fn picture(s: &mut Session, kind: MapKind) -> Arc<ColorImage> {
     s.ask(WindowCommand::OpenPanel(Panel::Map(kind)));
     s.app.state_mut().ask(ExportCommand::CopyMap(kind));
@@ -127,7 +115,7 @@ fn a_blob_on_the_left_is_clicked_and_dragged_as_its_object() {
             s.app.step();
         }
         s.settle();
-        assert_eq!(s.state().editor().selection().single(), Some(0), "{convention:?}");
+        assert_eq!(s.editor().selection().single(), Some(0), "{convention:?}");
         crate::session::step_until(&mut s, "no longer a double click", |s| {
             s.app.ctx.input(|i| i.pointer.time_since_last_click() > 1.0)
         });
@@ -143,8 +131,7 @@ fn a_blob_on_the_left_is_clicked_and_dragged_as_its_object() {
 
 fn files() -> [(&'static str, Vec<u8>); 3] {
     let folder = tempdir().unwrap();
-    recording(folder.path());
-    let recording = recording::file::load(&folder.path().join("r.toml")).unwrap();
+    let recording = recording::file::load(&recording(folder.path())).unwrap();
     let style = Style { floor: Floor::Exact, ..Style::default() };
     let of_scene = |convention| {
         let (radar, scene) = (radar(convention), Scene::of_points([POINT.into()]));

@@ -52,7 +52,7 @@ fn answer(s: &mut Session, step: &Step, question: &Question, guess: Guess) {
 fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
     let (step, place) = (&lesson.steps[number], format!("{}, step {}", lesson.title, number + 1));
     s.ask(LessonCommand::Step(number));
-    assert!(s.state().editor().scene().notes.is_empty(), "{place}: notes tell what is asked for");
+    assert!(s.editor().scene().notes.is_empty(), "{place}: notes tell what is asked for");
     if let Some(question) = &step.predict {
         assert!(!s.shows("Correct: "), "{place}");
         answer(s, step, question, guess(step, question, right));
@@ -296,12 +296,12 @@ fn a_shared_scene_comes_with_its_view_and_time() {
     let (text, shown) = (s.state().shared_text().unwrap(), seen(&s));
     s.ask(DocumentCommand::Preset(0));
     look(&mut s, 0.9, None);
-    let other = (s.state().editor().scene().clone(), seen(&s));
+    let other = (s.editor().scene().clone(), seen(&s));
     s.ask(DocumentCommand::OpenShared(text));
     assert_eq!((s.state().radar().elements, s.state().time_seconds(), seen(&s)), (128, 0.5, shown));
     assert_eq!(s.state().scene_at_time().objects[0].centre_metres(), [0.0, 25.0]);
     s.ask(EditCommand::Undo);
-    assert_eq!((s.state().editor().scene().clone(), seen(&s)), other);
+    assert_eq!((s.editor().scene().clone(), seen(&s)), other);
 }
 
 #[test]

@@ -36,15 +36,15 @@ fn a_closed_range_doppler_map_or_one_chirp_costs_nothing() {
 #[test]
 fn maps_follow_time_but_the_document_stays() {
     let mut s = moving();
-    let document = s.state().editor().scene().clone();
+    let document = s.editor().scene().clone();
     let (requested, _) = s.state().work_done();
     let at = s.handle("point 1: move");
     s.ask(ViewCommand::SetTime(0.5));
-    assert!(Arc::ptr_eq(s.state().editor().scene(), &document) && s.state().work_done().0 > requested);
+    assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().work_done().0 > requested);
     assert_eq!(s.state().scene_at_time().objects[0].centre_metres(), [0.0, 25.0]);
     // A press in the scene goes back; the next drag edits.
     s.drag(at, vec2(30.0, 0.0), 3);
-    assert!(Arc::ptr_eq(s.state().editor().scene(), &document) && s.state().time_seconds() == 0.0);
+    assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().time_seconds() == 0.0);
     s.ask(ViewCommand::SetTime(0.5));
     s.ask(EditCommand::Nudge { dx_metres: 1.0, dy_metres: 0.0 });
     assert_eq!((s.place(0), s.state().time_seconds()), ([1.0, 20.0], 0.0));

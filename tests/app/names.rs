@@ -7,7 +7,6 @@ fn has_to_be_named(role: Role) -> bool {
     is_used(role) || matches!(role, Role::Image | Role::Canvas)
 }
 
-/// Controls and pictures without a name, as the window is.
 fn nameless(s: &Session, what: &str) -> Vec<String> {
     let nodes = s.app.root().children_recursive().map(|node| node.accesskit_node()).collect::<Vec<_>>();
     let named = nodes.iter().filter(|n| has_to_be_named(n.role()));

@@ -17,10 +17,10 @@ fn session(files: &[(&str, &str)]) -> Session {
 #[test]
 fn an_unsaved_scene_comes_back() {
     let s = session(&[("autosave.toml", "autosave.toml")]);
-    let scene = s.state().editor().scene();
+    let scene = s.editor().scene();
     assert_eq!((scene.name.as_str(), scene.objects.len()), ("Worse than Every \"kind\"", 4));
     assert_eq!((s.state().radar().elements, s.state().radar().bandwidth_hz), (64, 1.5e9));
-    assert!(s.state().editor().is_modified());
+    assert!(s.editor().is_modified());
     assert_eq!(s.place(0), [-1.1145950794045416, 4.968054565416139]);
 }
 

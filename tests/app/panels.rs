@@ -105,21 +105,10 @@ fn the_palette_runs_every_command_by_name() {
 }
 
 #[test]
-fn messages_can_be_closed() {
-    let mut s = Session::start();
-    s.ask(DocumentCommand::OpenPath(s.path("missing.toml")));
-    assert_eq!(s.state().messages(), 1);
-    s.click("Close this message");
-    assert_eq!(s.state().messages(), 0);
-}
-
-#[test]
 fn the_window_function_reaches_the_maps() {
     let mut s = Session::start();
     let (requests, painted) = s.state().work_done();
-    s.app.get_by_label("hamming").scroll_to_me();
-    s.settle();
-    s.click("hamming");
+    s.find_and_click("hamming");
     assert_eq!(s.state().radar().window, WindowFunction::Hamming);
     let after = s.state().work_done();
     assert!(after.0 > requests && after.1 >= painted + 6, "every map was made again");
@@ -169,7 +158,7 @@ fn the_beat_on_screen_is_that_of_the_strongest_echo() {
     s.ask(WindowCommand::OpenPanel(Panel::Chirp));
     let bin = |s: &Session| {
         let chirp = ChirpShape::of(s.state().radar());
-        let echoes = heard(s.state().radar(), s.state().editor().scene(), s.state().settings().chirp.element);
+        let echoes = heard(s.state().radar(), s.editor().scene(), s.state().settings().chirp.element);
         let strongest = echoes.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
         chirp.range_bin(chirp.beat_hz(strongest.range_metres))
     };
@@ -230,7 +219,7 @@ fn every_button_of_the_guide_leaves_a_working_app() {
     s.ask(WindowCommand::Maximise(Panel::Guide));
     press_in_the_guide(&mut s, "Two-way");
     assert_eq!(s.state().radar().carrier, Carrier::TwoWay);
-    assert_eq!(s.state().editor().scene().name, "Four reflectors");
+    assert_eq!(s.editor().scene().name, "Four reflectors");
     assert_eq!(s.state().messages(), 0);
 }
 
@@ -239,7 +228,7 @@ fn undo_takes_back_everything_that_a_button_of_the_guide_did() {
     let mut s = Session::start();
     s.ask(ViewCommand::SetFloor(Floor::Snr(Decibels(30.0))));
     let (scene, radar, settings) =
-        (s.state().editor().scene().clone(), s.state().radar().clone(), s.state().settings().clone());
+        (s.editor().scene().clone(), s.state().radar().clone(), s.state().settings().clone());
     s.ask(WindowCommand::Maximise(Panel::Guide));
     for button in ["No window", "Hamming"] {
         press_in_the_guide(&mut s, button);
@@ -248,7 +237,7 @@ fn undo_takes_back_everything_that_a_button_of_the_guide_did() {
     s.undo();
     assert_eq!(s.state().radar().window, WindowFunction::Rectangular);
     s.undo();
-    assert!(Arc::ptr_eq(&scene, s.state().editor().scene()));
+    assert!(Arc::ptr_eq(&scene, s.editor().scene()));
     assert_eq!((s.state().radar(), s.state().settings()), (&radar, &settings));
     s.redo();
     assert_eq!((s.state().radar().window, s.state().settings().floor), (WindowFunction::Rectangular, Floor::Exact));

@@ -7,7 +7,6 @@ use egui_kittest::SnapshotOptions;
 use egui_kittest::wgpu::WgpuTestRenderer;
 use std::panic::catch_unwind;
 
-/// A radar small enough that its maps take a moment only.
 const SCENE: &str = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\
                      [[object]]\nkind = \"point\"\nx_metres = -9.0\ny_metres = 20.0\n\n\
                      [[object]]\nkind = \"line\"\nx_metres = 8.0\ny_start_metres = 8.0\nspacing_metres = 0.5\ncount = 30\n";
@@ -49,22 +48,9 @@ fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
 }
 
 #[test]
-fn the_scene_in_light() {
-    compare("scene-light", Theme::Light, Panel::Scene, vec![Command::Edit(EditCommand::SelectAll)]);
-}
-
-#[test]
-fn the_target_in_dark() {
-    use apertura::app::MapKind;
-    compare(
-        "target-dark",
-        Theme::Dark,
-        Panel::Map(MapKind::Target),
-        vec![Command::View(ViewCommand::ToggleReflectors)],
-    );
-}
-
-#[test]
-fn the_guide_in_light() {
+fn panels_look_as_in_their_pictures() {
+    let target = Panel::Map(MapKind::Target);
+    compare("scene-light", Theme::Light, Panel::Scene, vec![EditCommand::SelectAll.into()]);
+    compare("target-dark", Theme::Dark, target, vec![ViewCommand::ToggleReflectors.into()]);
     compare("guide-light", Theme::Light, Panel::Guide, vec![]);
 }

@@ -4,7 +4,6 @@ use crate::session::*;
 use apertura::methods;
 use apertura::radar::{SPEED_OF_LIGHT, presets};
 use apertura::reconstruct::Family;
-use apertura::recording::Recording;
 
 fn array(elements: usize, end_elements: usize, carrier_hz: f64, wavelengths: f64) -> Radar {
     let element_spacing_metres = wavelengths * SPEED_OF_LIGHT / carrier_hz;
@@ -21,25 +20,11 @@ fn radars() -> [(&'static str, Radar); 5] {
     ]
 }
 
-/// Files of a recording that `radar` made of one point; the path of its TOML.
 fn recorded(s: &Session, radar: &Radar) -> PathBuf {
     let range = 0.5 * radar.max_range_metres();
     let scene = Scene::of_points([(0.28 * range, 0.96 * range)]);
-    let recording =
-        Recording::of_signal(radar.clone(), simulate(radar, &scene, Floor::Snr(Decibels(40.0)), 1).unwrap());
-    ndarray_npy::write_npy(s.path("samples.npy"), &recording.signal().unwrap().samples).unwrap();
-    let Radar { carrier_hz, bandwidth_hz, element_spacing_metres, elements, end_elements, samples, carrier, .. } =
-        radar;
-    let carrier = if *carrier == Carrier::TwoWay { "two-way" } else { "one-way" };
-    let text = format!(
-        "[radar]\ncarrier_hz = {carrier_hz:?}\nbandwidth_hz = {bandwidth_hz:?}\n\
-         element_spacing_metres = {element_spacing_metres:?}\nelements = {elements}\nend_elements = {end_elements}\n\
-         samples = {samples}\ncarrier = \"{carrier}\"\n\
-         [recording]\nfile = \"samples.npy\"\naxes = [\"element\", \"sample\"]\n"
-    );
-    let path = s.path("recorded.toml");
-    std::fs::write(&path, text).unwrap();
-    path
+    let heard = simulate(radar, &scene, Floor::Snr(Decibels(40.0)), 1).unwrap();
+    write_recording(s.folder.path(), radar, &heard.samples, ["", ""])
 }
 
 #[test]

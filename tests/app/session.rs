@@ -6,7 +6,7 @@ pub use apertura::app::{
 };
 pub use apertura::evaluate::rows::read_rows;
 pub use apertura::evaluate::trial::Trial;
-pub use apertura::interact::{Document, Place, SelectionMode};
+pub use apertura::interact::{Document, Editor, Place, SelectionMode};
 pub use apertura::maps::Normalisation;
 pub use apertura::radar::{Carrier, Convention, DecibelMilliwatts, Decibels, LayoutKind, Radar, WindowFunction};
 pub use apertura::reconstruct::{
@@ -20,6 +20,8 @@ pub use eframe::egui::accesskit::Role;
 pub use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Pos2, Shape, pos2, vec2};
 pub use egui_kittest::Harness;
 pub use egui_kittest::kittest::{NodeT, Queryable};
+pub use ndarray::Array2;
+pub use num_complex::Complex64;
 pub use rand::RngExt;
 pub use std::collections::BTreeSet;
 pub use std::path::{Path, PathBuf};
@@ -28,7 +30,6 @@ pub use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::SeqCst};
 pub use std::time::{Duration, Instant};
 pub use tempfile::{TempDir, tempdir};
 
-/// A radar small enough that its maps take a moment only, and two points.
 const SCENE: &str = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\
                      [[object]]\nkind = \"point\"\nx_metres = 0.0\ny_metres = 20.0\n\n\
                      [[object]]\nkind = \"point\"\nx_metres = 8.0\ny_metres = 12.0\n";
@@ -107,6 +108,12 @@ impl Session {
         self.settle();
     }
 
+    pub fn find_and_click(&mut self, label: &str) {
+        self.app.get_by_label(label).scroll_to_me();
+        self.settle();
+        self.click(label);
+    }
+
     pub fn undo(&mut self) {
         self.press(Modifiers::COMMAND, Key::Z);
     }
@@ -115,8 +122,12 @@ impl Session {
         self.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     }
 
+    pub fn editor(&self) -> &Editor {
+        self.state().editor()
+    }
+
     pub fn objects(&self) -> &[Object] {
-        &self.state().editor().scene().objects
+        &self.editor().scene().objects
     }
 
     pub fn select(&mut self, object: usize) {
@@ -239,8 +250,21 @@ impl Reconstructor for Stub {
     }
 }
 
-/// Whether an element of this role is there to be used.
 pub fn is_used(role: Role) -> bool {
     use Role::*;
     matches!(role, Button | CheckBox | RadioButton | SpinButton | Slider | ComboBox | TextInput | Link)
+}
+
+/// Writes samples with a text that says which radar they are of, between `head` and `tail`; the text's path.
+pub fn write_recording(folder: &Path, radar: &Radar, heard: &Array2<Complex64>, [head, tail]: [&str; 2]) -> PathBuf {
+    ndarray_npy::write_npy(folder.join("recorded.npy"), heard).unwrap();
+    let Radar { carrier_hz, bandwidth_hz, element_spacing_metres, elements, end_elements, samples, .. } = radar;
+    let carrier = if radar.carrier == Carrier::TwoWay { "two-way" } else { "one-way" };
+    let text = format!(
+        "{head}[radar]\ncarrier = \"{carrier}\"\ncarrier_hz = {carrier_hz:?}\nbandwidth_hz = {bandwidth_hz:?}\n\
+         element_spacing_metres = {element_spacing_metres:?}\nelements = {elements}\nend_elements = {end_elements}\n\
+         samples = {samples}\n[recording]\nfile = \"recorded.npy\"\naxes = [\"element\", \"sample\"]\n{tail}"
+    );
+    std::fs::write(folder.join("recorded.toml"), text).unwrap();
+    folder.join("recorded.toml")
 }

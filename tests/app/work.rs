@@ -155,9 +155,9 @@ fn nothing_found_in_one_scene_is_marked_over_the_next() {
     s.ask(ViewCommand::ToggleFound);
     s.ask(WindowCommand::OpenPanel(Panel::Found));
     assert!(!s.state().marked_found().is_empty());
-    let before = s.state().editor().document().id();
+    let before = s.editor().document().id();
     s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
-    step_until(&mut s, "another scene is on screen", |s| s.state().editor().document().id() != before);
+    step_until(&mut s, "another scene is on screen", |s| s.editor().document().id() != before);
     assert!(s.state().marked_found().is_empty() && s.state().found().is_none());
     s.settle();
     assert!(!s.state().marked_found().is_empty());

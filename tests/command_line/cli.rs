@@ -38,6 +38,13 @@ pub fn program(arguments: &[&str]) -> Command {
     command
 }
 
+/// The program in a folder, with the arguments of a line.
+pub fn call(folder: &TempDir, arguments: &str) -> Command {
+    let mut command = apertura(folder);
+    command.args(arguments.split_whitespace());
+    command
+}
+
 pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
@@ -102,7 +109,7 @@ fn the_environment_picks_the_instructions_or_is_refused() {
 fn maps_have_the_layout_of_the_authors_program() {
     let folder = folder();
     std::fs::write(folder.path().join("scene.toml"), TWO_POINTS).unwrap();
-    apertura(&folder).args(["maps", "scene.toml", "-o", "maps.npz"]).assert().success().stdout(contains("maps.npz"));
+    call(&folder, "maps scene.toml -o maps.npz").assert().success().stdout(contains("maps.npz"));
     let mut found = Npz::open(&folder.path().join("maps.npz")).unwrap();
     assert_eq!(found.reals::<Ix1>("all_point_x").unwrap(), array![3.0, -4.0]);
     assert_eq!(found.reals::<Ix1>("all_point_y").unwrap(), array![12.0, 20.0]);
@@ -122,7 +129,7 @@ fn maps_have_the_layout_of_the_authors_program() {
     }
     assert!(!found.has("output"), "no method was asked for");
     // The written archive is a scene again.
-    apertura(&folder).args(["maps", "maps.npz", "-o", "again.npz"]).assert().success();
+    call(&folder, "maps maps.npz -o again.npz").assert().success();
     let again = Npz::open(&folder.path().join("again.npz")).unwrap().reals::<Ix3>("polar_full").unwrap();
     assert_eq!(again, full);
 }
@@ -159,7 +166,7 @@ fn a_start_without_display_draws_the_scene_that_was_asked_for() {
     // A radar of another shape, which the default method doesn't take.
     std::fs::write(folder.path().join("s.toml"), format!("[radar]\nelements = 128\n{TWO_POINTS}")).unwrap();
     apertura(&folder).arg("s.toml").assert().success();
-    apertura(&folder).args(["maps", "s.toml", "-o", "s.png"]).assert().success();
+    call(&folder, "maps s.toml -o s.png").assert().success();
     assert_eq!(names(folder.path()), ["apertura.png", "s.png", "s.toml"]);
 }
 
@@ -186,10 +193,7 @@ fn scenes_are_the_same_for_the_same_seed_in_both_formats() {
 fn evaluate_prints_the_documented_object() {
     let (folder, start) = (folder(), std::time::Instant::now());
     let run = || {
-        let out = apertura(&folder)
-            .args(["evaluate", "--method", "baseline", "--set", "1", "--count", "2", "--seed", "3", "--json"])
-            .assert()
-            .success();
+        let out = call(&folder, "evaluate --method baseline --set 1 --count 2 --seed 3 --json").assert().success();
         serde_json::from_slice::<serde_json::Value>(&out.get_output().stdout).unwrap()
     };
     let (first, second) = (run(), run());
@@ -232,8 +236,7 @@ fn detection_by_hand(false_alarm: f64, above: f32) -> f64 {
 #[test]
 fn evaluate_shows_ours_beside_the_printed() {
     let folder = folder();
-    apertura(&folder)
-        .args(["evaluate", "--set", "2", "--count", "2"])
+    call(&folder, "evaluate --set 2 --count 2")
         .assert()
         .success()
         .stdout(contains("Table 4.2").and(contains("11334.99")).and(contains("1341.22")).and(contains("baseline")))

@@ -44,8 +44,8 @@ fn what_is_no_archive_of_samples_is_named() {
         command.assert().failure()
     };
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
-    apertura(&folder).args(["scenes", "--set", "2", "--index", "0", "-o", "s.toml"]).assert().success();
-    apertura(&folder).args(["scenes", "--set", "2", "--index", "0", "-o", "s.npz"]).assert().success();
+    call(&folder, "scenes --set 2 --index 0 -o s.toml").assert().success();
+    call(&folder, "scenes --set 2 --index 0 -o s.npz").assert().success();
     for scene in ["s.toml", "s.npz"] {
         let advice = format!("`apertura maps {scene} -o IN.npz` computes them");
         run(scene).stderr(contains(format!("{scene} is a scene")).and(contains(advice)));
@@ -58,8 +58,8 @@ fn what_is_no_archive_of_samples_is_named() {
     run("half.npz").stderr(contains("half.npz"));
     run("missing.npz").stderr(contains("missing.npz").and(contains("No such file")));
     // The advice is followed.
-    apertura(&folder).args(["maps", "s.toml", "-o", "in.npz"]).assert().success();
-    apertura(&folder).args(["reconstruct", "in.npz", "-o", "out.npz", "--method", "baseline"]).assert().success();
+    call(&folder, "maps s.toml -o in.npz").assert().success();
+    call(&folder, "reconstruct in.npz -o out.npz --method baseline").assert().success();
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn files_of_a_later_version_say_so() {
     }
     assert!(!folder.path().join("x.png").exists());
     write("s.toml", "format = 1\n\n[[object]]\nkind = \"point\"\nx_metres = 0.0\ny_metres = 9.0\n");
-    apertura(&folder).args(["maps", "s.toml", "-o", "x.png"]).assert().success();
+    call(&folder, "maps s.toml -o x.png").assert().success();
 }
 
 #[cfg(target_os = "linux")]

@@ -55,14 +55,15 @@ fn what_reflectors_leave_unexplained_is_a_map() {
     .unwrap();
     let near = "[[object]]\nkind = \"point\"\nx_metres = 0\ny_metres = 2\n";
     std::fs::write(folder.path().join("near.toml"), near).unwrap();
-    let mut command = apertura(&folder);
-    command.args(["maps", "r.toml", "--explain", "near.toml", "-o", "left.npz"]);
-    command.assert().success().stdout(contains("near.toml explains 8"));
+    call(&folder, "maps r.toml --explain near.toml -o left.npz")
+        .assert()
+        .success()
+        .stdout(contains("near.toml explains 8"));
     let mut maps = Npz::open(&folder.path().join("left.npz")).unwrap();
     let full = maps.reals::<Ix3>("polar_full").unwrap();
     let ((_, bin, _), _) = full.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
     assert!((41..=43).contains(&bin), "the other one, at 3.16 m: {bin}");
-    apertura(&folder).args(["maps", "near.toml", "--explain", "near.toml", "-o", "x.npz"]).assert().failure();
+    call(&folder, "maps near.toml --explain near.toml -o x.npz").assert().failure();
 }
 
 #[test]
@@ -71,8 +72,7 @@ fn a_recording_that_cannot_be_read_is_told() {
     let toml = std::fs::read_to_string(format!("{SHIPPED}/chip-8.toml")).unwrap();
     std::fs::write(folder.path().join("r.toml"), &toml).unwrap();
     let told = |part: &'static str| {
-        let mut command = apertura(&folder);
-        command.args(["maps", "r.toml", "-o", "m.npz"]).assert().failure().stdout("").stderr(contains(part));
+        call(&folder, "maps r.toml -o m.npz").assert().failure().stdout("").stderr(contains(part));
     };
     told("chip-8.npz: No such file");
     std::fs::copy(format!("{SHIPPED}/chip-8.npz"), folder.path().join("chip-8.npz")).unwrap();
@@ -98,8 +98,7 @@ fn samples_of_another_radar_are_told() {
     .unwrap();
     let run = |radar: &str| {
         std::fs::write(folder.path().join("radar.toml"), radar).unwrap();
-        let mut command = apertura(&folder);
-        command.args(["reconstruct", "in.npz", "--radar", "radar.toml", "-o", "o.npz", "--method", "bartlett"]).assert()
+        call(&folder, "reconstruct in.npz --radar radar.toml -o o.npz --method bartlett").assert()
     };
     let shapes = contains("\"sub0\" has shape [64, 12]; expected [128, 12]").and(contains("--radar says"));
     run("[radar]\nsamples = 128\n").failure().stderr(shapes);

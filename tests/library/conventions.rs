@@ -15,7 +15,6 @@ fn peak(map: &LogMap) -> [usize; 2] {
     [index.0, index.1]
 }
 
-/// Distance of two columns around the circle of columns.
 fn columns_apart(radar: &Radar, a: f64, b: f64) -> f64 {
     let n = radar.elements as f64;
     let d = (a - b).rem_euclid(n);

@@ -19,7 +19,6 @@ fn below_peak(map: &LogMap, bin: usize, column: usize) -> f64 {
     20.0 * (map.decades()[[bin, column]] - map.max())
 }
 
-/// The largest of some cells, in decibels below the map's peak.
 fn highest(map: &LogMap, bins: std::ops::Range<usize>, columns: std::ops::Range<usize>) -> f64 {
     let cells = bins.flat_map(|bin| columns.clone().map(move |column| (bin, column)));
     cells.map(|(bin, column)| below_peak(map, bin, column)).fold(f64::NEG_INFINITY, f64::max)

@@ -27,7 +27,6 @@ fn is_as_good_on_every_set_as_when_it_was_trained() {
     }
 }
 
-/// Radars of as many elements and samples that are not that of table 3.1.
 fn other_radars() -> [(&'static str, Radar); 3] {
     let radar = Radar::default;
     [

@@ -28,7 +28,6 @@ fn times(ends: &TwoEnds, gain: f64) -> TwoEnds {
     TwoEnds { first: ends.first.mapv(|v| v * gain), last: ends.last.mapv(|v| v * gain) }
 }
 
-/// Runs `method` and holds its answer to shape, finiteness, range and time.
 fn run(method: &dyn Reconstructor, ends: &TwoEnds, what: &str) -> Reconstruction {
     let start = Instant::now();
     let name = method.name();

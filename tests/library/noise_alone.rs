@@ -27,7 +27,6 @@ fn no_method_alarms_on_noise_alone() {
     }
 }
 
-/// The squared error of the constant map that is nearest to a target.
 fn of_the_best_constant(target: &RangeAngleMap) -> f64 {
     let cells = target.lambda.len() as f64;
     let mean = target.lambda.iter().map(|v| f64::from(*v)).sum::<f64>() / cells;

@@ -112,7 +112,6 @@ fn found(method: &str, recording: &Recording) -> Vec<Detection> {
     reconstruct_and_find(method.as_ref(), &recording.radar, &recording.two_ends(), &request).unwrap().1
 }
 
-/// A radar whose pairs are far apart at the ranges of its points.
 fn near_radar() -> Radar {
     Radar { end_elements: 16, ..small(6, 16) }
 }

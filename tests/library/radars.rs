@@ -13,7 +13,6 @@ fn array(elements: usize, end_elements: usize, carrier_hz: f64, wavelengths: f64
     Radar { elements, end_elements, carrier_hz, element_spacing_metres, samples: 128, ..Radar::default() }
 }
 
-/// Radars that are not table 3.1's.
 fn radars() -> Vec<(&'static str, Radar)> {
     let half = 0.5;
     vec![

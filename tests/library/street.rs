@@ -35,11 +35,3 @@ fn a_drag_along_the_ring_merges_post_and_wall_in_inputs() {
     }
     assert_eq!(blobs_at(31.0), [1, 1, 1], "24 columns before the wall");
 }
-
-#[test]
-fn two_points_close_in_range_stand_two_bins_apart() {
-    let scene = presets::Preset::by_id("two-close-in-range").unwrap().load().unwrap().scene;
-    let ranges: Vec<f64> = scene.reflectors().iter().map(|r| r.x_metres.hypot(r.y_metres)).collect();
-    let bins = (ranges[1] - ranges[0]) / Radar::default().range_resolution_metres();
-    assert!((bins - 2.0).abs() < 0.1, "{bins} bins");
-}

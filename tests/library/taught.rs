@@ -10,7 +10,6 @@ pub fn lesson(id: &str) -> Lesson {
     Lesson::from_toml(text(id)).unwrap()
 }
 
-/// Holds a lesson to a number as its text has it.
 pub fn taught(id: &str, number: &str) {
     assert!(text(id).contains(number), "{id} does not say \"{number}\"");
 }

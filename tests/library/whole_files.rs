@@ -35,13 +35,11 @@ fn folder_of_child() -> Option<PathBuf> {
     std::env::var_os(FOLDER).map(PathBuf::from)
 }
 
-/// Tells the parent process that everything up to `number` is safe.
 fn safe(number: usize) {
     let mut out = io::stdout();
     let _nobody_listens = writeln!(out, "safe {number}").and_then(|()| out.flush());
 }
 
-/// Starts the child, kills it at a random moment once it has begun, and returns the last number it called safe.
 fn kill(name: &str, folder: &Path, rng: &mut ChaCha8Rng) -> usize {
     let mut process = child(name, folder).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("a child");
     let begun = folder.join("begun");
@@ -111,7 +109,6 @@ fn child_autosaves() {
     }
 }
 
-/// The largest number of all that came back; all must be whole.
 fn latest(restored: &Restored) -> Option<usize> {
     assert!(restored.problems.is_empty(), "{:?}", restored.problems);
     restored.left.iter().chain(&restored.on_screen).map(|d| number_of(d.scene())).max()

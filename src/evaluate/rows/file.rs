@@ -170,7 +170,6 @@ mod tests {
         read_rows(text.as_bytes()).unwrap_err().to_string()
     }
 
-    /// The table with its columns in another order, or without some of them.
     fn with_columns(table: &str, names: &[&str]) -> String {
         let mut reader = csv::Reader::from_reader(table.as_bytes());
         let header = reader.headers().unwrap().clone();

@@ -155,7 +155,6 @@ pub(super) mod tests {
         bytes
     }
 
-    /// The largest difference between the engine's answer and burn's, and burn's answer.
     fn difference(bytes: &[u8], size: [usize; 2], buffers: &mut Buffers) -> (f32, Vec<f32>) {
         let [rows, columns] = size;
         let input = numbers(4 * rows * columns, 3);

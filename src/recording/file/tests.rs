@@ -16,7 +16,6 @@ end_elements = 3
 samples = 4
 ";
 
-/// The number that stands for a sample of an element.
 fn code(element: usize, sample: usize) -> Complex64 {
     Complex64::new(element as f64 + 1.0, sample as f64)
 }

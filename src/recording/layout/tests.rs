@@ -23,7 +23,6 @@ fn noise(mut seed: u32, size: f64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Eight chirps of three receivers that see two echoes, over a little noise.
 fn chirps() -> Vec<Vec<Complex64>> {
     seen(300.0)
 }
@@ -132,14 +131,6 @@ fn headers_before_chirps_are_found() {
     let found = found(written(&right, &chirps()), Some(&profile("lvdsStreamCfg -1 1 1 1\n")));
     assert_eq!(found.best().layout, right);
     assert!(found.notes.iter().any(|n| n.contains("header of 64 bytes: 8 were found")), "{:?}", found.notes);
-}
-
-#[test]
-fn real_samples_are_told_from_complex_ones() {
-    let right = layout(Words::Int16, Parts::Real, false, ReceiverOrder::OneAfterAnother);
-    let bytes = written(&right, &chirps());
-    let found = found(bytes, Some(&profile("adcCfg 2 0\n")));
-    assert_eq!(found.best().layout, right, "{:#?}", found.sentences());
 }
 
 fn packets(bytes: &[u8], lost: &[usize]) -> Vec<u8> {

@@ -114,6 +114,20 @@ mod tests {
     }
 
     #[test]
+    fn a_convention_and_antennas_stand_for_what_follows_from_them() {
+        let physical = Radar { elements: 64, ..Radar::default() }.in_convention(Convention::Physical);
+        for (radar, said, follows) in [
+            (physical, "convention = \"physical\"", "spacing_metres = 0.000"),
+            (Radar::default().of_pairs(3, 4).unwrap(), "receiver_x_metres", "elements = 12"),
+        ] {
+            let file = SceneFile { radar, ..scene() };
+            let text = to_toml(&file).unwrap();
+            assert!(text.contains(said) && !text.contains(follows), "{text}");
+            assert_eq!(from_toml(&text).unwrap(), file, "{said}");
+        }
+    }
+
+    #[test]
     fn an_empty_file_is_an_empty_scene() {
         assert_eq!(from_toml("").unwrap(), SceneFile::default());
         assert_eq!(from_toml(&to_toml(&SceneFile::default()).unwrap()).unwrap(), SceneFile::default());

@@ -87,7 +87,6 @@ impl Monkey {
         }
     }
 
-    /// Checks that take too long for every step: memory, failure messages, whole files.
     fn inspect(&mut self, memory_at_first: u64) {
         let held = resident_bytes().unwrap_or(0);
         assert!(held < memory_at_first + MOST_MORE_BYTES, "{held} bytes are held after {} steps", self.steps);
@@ -98,7 +97,6 @@ impl Monkey {
         witness::files_are_whole(self.s.folder.path(), self.s.state());
     }
 
-    /// Kills the window and starts another, which finds the files on disk at this moment alone.
     fn kill(&mut self) {
         self.kills += 1;
         if self.rng.random_bool(0.5) {

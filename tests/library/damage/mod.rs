@@ -33,7 +33,6 @@ fn trial(reader: &Reader, scratch: &Path, number: u64, bytes: &[u8]) -> Result<(
     Err(format!("took {fastest:?}"))
 }
 
-/// Tries `count` damaged files on every reader, or on the one called `only`; a failing input is kept.
 fn try_all(count: u64, only: Option<&str>) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let readers: Vec<Reader> = readers::all().into_iter().filter(|r| only.is_none_or(|name| r.name == name)).collect();
@@ -70,7 +69,6 @@ fn damaged_files_fail_within_bounds() {
     try_all(2_000, None);
 }
 
-/// `DAMAGED=1000000` tries a million of each, `READER=scene` only that reader.
 #[test]
 #[ignore = "long: hundreds of thousands of inputs"]
 fn many_damaged_files_fail_within_bounds() {

@@ -10,7 +10,6 @@ const TOKENS: &[u8] =
 
 const MAX_LENGTH: usize = 1 << 17;
 
-/// Input `number` made of `files`: one of them, damaged in 1 to 8 places.
 pub fn damaged(files: &[Vec<u8>], number: u64) -> Vec<u8> {
     let mut rng = ChaCha8Rng::seed_from_u64(number);
     let mut bytes = files.choose(&mut rng).cloned().unwrap_or_default();

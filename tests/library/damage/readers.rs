@@ -111,7 +111,6 @@ fn archives() -> Reader {
     Reader { name: "npz", files, read, bound: [1 << 20, 64], slow: 1 }
 }
 
-/// The recordings that come with the program: data file, its bytes, text.
 const RECORDINGS: [(&str, &[u8], &str); 2] = [
     (
         "chip-8.npz",

@@ -41,7 +41,6 @@ impl House {
         House { files, modules }
     }
 
-    /// Imports of every file: file to files.
     pub fn imports(&self) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
         let of = |file: &File| {
             let own = file.source.uses.iter().filter(|u| !u.public).map(|u| u.path.clone());

@@ -14,7 +14,6 @@ pub struct Use {
     pub path: Path,
     /// The name in this file; "*" for a glob.
     pub name: String,
-    /// Whether other files may import it from here.
     pub public: bool,
 }
 
