@@ -103,8 +103,7 @@ mod tests {
         let map = RangeAngleMap {
             lambda: array![[1.0f32, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 1.0, 0.0]],
         };
-        assert_eq!(blobs(&map, 0.5), 2);
-        assert_eq!(blobs(&map, 1.0), 0);
+        assert_eq!((blobs(&map, 0.5), blobs(&map, 1.0)), (2, 0));
         let found = Blobs::of(&map.above(0.5));
         assert_eq!(found.labels[[0, 0]], found.labels[[1, 1]]);
         assert_eq!(found.most_of(&[[3, 1], [3, 2], [0, 0], [2, 2]]), Some(found.labels[[3, 1]]));

@@ -71,10 +71,8 @@ mod tests {
         }
         let endfire = Polar { range_metres: 5.0, cos_theta: 3.0 };
         let at = moved(&radar, 0.0, Place::new(0.0, 5.0), radar.blob_of(0.0, 0.0, 5.0), endfire);
-        assert!(
-            (at.x_metres - 5.0).abs() < 1e-12 && at.y_metres.abs() < 1e-12,
-            "no farther than along the array: {at:?}"
-        );
+        let holds = (at.x_metres - 5.0).abs() < 1e-12 && at.y_metres.abs() < 1e-12;
+        assert!(holds, "no farther than along the array: {at:?}");
     }
 
     #[test]

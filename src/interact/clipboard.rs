@@ -39,17 +39,6 @@ pub fn from_text(text: &str, radar: &Radar) -> Result<Vec<Object>, PasteError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{GaussianCluster, Line, Point};
-
-    #[test]
-    fn every_kind_round_trips() {
-        let objects = vec![
-            Object::Point(Point { reflectivity: 2.0, ..Point::new(0.1, 1.0 / 3.0) }),
-            Object::Line(Line { reflectivity: 0.5, ..Line::vertical(2.0, 5.0, 0.1, 3) }),
-            Object::Gaussian(GaussianCluster { seed: 3, ..GaussianCluster::new([0.0, 10.0], [1.0, 2.0], 5) }),
-        ];
-        assert_eq!(from_text(&to_text(objects.clone()), &Radar::default()).unwrap(), objects);
-    }
 
     #[test]
     fn bad_text_is_told() {

@@ -312,15 +312,8 @@ mod tests {
         let of = |objects: &[&Object]| shared(objects.iter().copied(), Coordinates::Cartesian);
         let fields = of(&[&line, &cluster()]);
         let named: Vec<_> = fields.iter().map(|f| (f.field, f.is_same)).collect();
-        let expected = [
-            Field::X,
-            Field::Y,
-            Field::Count,
-            Field::Reflectivity,
-            Field::CrossSection,
-            Field::VelocityX,
-            Field::VelocityY,
-        ];
+        use Field::{Count, CrossSection, Reflectivity, VelocityX, VelocityY, X, Y};
+        let expected = [X, Y, Count, Reflectivity, CrossSection, VelocityX, VelocityY];
         assert_eq!(named, expected.map(|field| (field, true)));
         let fields = of(&[&point, &line]);
         assert_eq!(fields[1], SharedField { field: Field::Y, first: 1.0, is_same: false });

@@ -94,8 +94,7 @@ mod tests {
     fn targets_reach_at_least_eight_points() {
         let hit = |x: f64| test(&scene(), &Selection::default(), Place::new(x, 10.0), 0.1).map(|h| h.object);
         assert_eq!(hit(-0.8), Some(0), "8 points away is a hit");
-        assert_eq!(hit(1.2), None);
-        assert_eq!(hit(2.9), Some(1));
+        assert_eq!((hit(1.2), hit(2.9)), (None, Some(1)));
     }
 
     #[test]

@@ -120,7 +120,6 @@ mod tests {
         Radar { elements: 32, end_elements: 8, samples: 16, focus_off_line: true, ..Radar::default() }
     }
 
-    /// Elements from -5 to +3 mm off the line, in no order.
     fn scattered(radar: &Radar) -> BuiltArray {
         let of = |n: usize| ElementError { forward_millimetres: (n * 7 % 9) as f64 - 5.0, ..ElementError::default() };
         BuiltArray { elements: (0..radar.elements).map(of).collect() }

@@ -61,7 +61,6 @@ mod tests {
     use ndarray::Array2;
     use proptest::prelude::*;
 
-    /// Logarithm of two Gaussian lobes, the second lower.
     fn lobes(places: [(f64, f64); 2], lower: f64) -> Array2<f64> {
         let near = |d: f64, len: f64| (d + len * 1.5).rem_euclid(len) - len / 2.0;
         Array2::from_shape_fn((32, 48), |(bin, column)| {
@@ -105,8 +104,7 @@ mod tests {
             let map = Array2::from_shape_vec((6, 10), values).unwrap();
             let strongest = map.iter().copied().fold(f64::MIN, f64::max);
             let found = peaks(map.view(), 100.0, 60);
-            prop_assert!(found[0].value >= strongest);
-            prop_assert!(found.windows(2).all(|w| w[0].value >= w[1].value));
+            prop_assert!(found[0].value >= strongest && found.windows(2).all(|w| w[0].value >= w[1].value));
         }
     }
 }

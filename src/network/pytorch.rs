@@ -175,30 +175,4 @@ mod tests {
         assert_eq!(found.tensor(name, shape).unwrap(), shipped.tensor(name, shape).unwrap());
         assert!(found.shape("model.up.upconv.0.0.weight").is_none(), "the weights that are not averaged are left out");
     }
-
-    #[test]
-    fn what_holds_no_state_is_told() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("empty.pt");
-        fs::write(&path, b"\x80\x02}X\x05\x00\x00\x00epochK\x03s.").unwrap();
-        let message = read_weights(&path).unwrap_err().to_string();
-        assert!(message.contains("it holds no tensors; expected a state_dict"), "{message}");
-        crate::files::npz::write_npz(&path, |out| out.add("sub0", &ndarray::arr1(&[1.0]))).unwrap();
-        let message = read_weights(&path).unwrap_err().to_string();
-        assert!(message.contains("it is a NumPy archive (.npz)"), "{message}");
-    }
-
-    #[test]
-    fn damage_is_told() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("cut.pt");
-        let whole = fs::read(CHECKPOINT).unwrap();
-        fs::write(&path, &whole[..whole.len() / 2]).unwrap();
-        let message = read_weights(&path).unwrap_err().to_string();
-        assert!(message.contains("cut.pt is not a PyTorch checkpoint"), "{message}");
-        fs::write(&path, b"neither one nor the other").unwrap();
-        let bytes = read_weights(&path).unwrap();
-        assert!(matches!(WeightFile::parse("x", &bytes), Err(WeightsError::NotSafetensors { .. })));
-        assert!(matches!(read_weights(&folder.path().join("none.pt")), Err(WeightsError::File { .. })));
-    }
 }

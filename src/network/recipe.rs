@@ -240,8 +240,7 @@ mod tests {
         let two = Recipe::shipped("experiment-2").unwrap().unwrap();
         assert_eq!((two.batch, two.epochs, two.loss), (32, 100, TrainingLoss::NormalisedSquare));
         assert_eq!(two.training_scenes().len(), 8000);
-        assert!((two.learning_rate(25) - 0.1 * 0.64).abs() < 1e-12);
-        assert!(Recipe::shipped("nonsense").is_none());
+        assert!((two.learning_rate(25) - 0.1 * 0.64).abs() < 1e-12 && Recipe::shipped("nonsense").is_none());
     }
 
     #[test]

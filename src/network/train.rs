@@ -250,8 +250,7 @@ mod tests {
         run.checkpoint_every = Duration::ZERO;
         let error = train::<Thesis>(&recipe, &config, &run, false, |_| {}).unwrap_err();
         let TrainError::NotFinite { step, .. } = error else { panic!("{error}") };
-        assert!(step >= 1);
-        assert!(folder.path().join("checkpoint").join(checkpoint::MODEL).exists());
+        assert!(step >= 1 && folder.path().join("checkpoint").join(checkpoint::MODEL).exists());
     }
 
     #[test]

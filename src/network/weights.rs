@@ -330,16 +330,6 @@ mod tests {
     }
 
     #[test]
-    fn renaming_round_trips() {
-        let file = WeightFile::parse("test", WEIGHTS).unwrap();
-        let there = file.renamed(|n| format!("x.{n}")).unwrap();
-        let there = WeightFile::parse("there", &there).unwrap();
-        let back = there.renamed(|n| n.trim_start_matches("x.").to_owned()).unwrap();
-        load(&back, [4, 6, 8, 10]).unwrap();
-        assert_eq!(WeightFile::parse("back", &back).unwrap().provenance, file.provenance);
-    }
-
-    #[test]
     fn weights_without_a_radar_were_trained_for_table_3_1() {
         assert_eq!(Provenance::default().domain("w").unwrap(), Domain::Radar(Box::default()));
     }

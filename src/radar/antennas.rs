@@ -342,24 +342,16 @@ mod tests {
         let antennas = Antennas::new(&[0.0, 1.0], &[0.0, 0.2, 0.4]).unwrap();
         assert_eq!((antennas.pairs().len(), antennas.gaps(), antennas.left_out()), (8, 2, 0));
         assert!((antennas.spacing_metres() - 0.1).abs() < 1e-12);
+        let twice = Antennas::new(&[0.0, 0.4], &[0.0, 0.2, 0.4, 0.6]).unwrap();
+        assert_eq!((twice.pairs().len(), twice.gaps(), twice.left_out()), (6, 0, 2));
+        assert_eq!(twice.pairs()[2], Some([0, 2]), "of pairs at one place the first counts");
+        let apart = Antennas::new(&[0.0, 10.0], &[0.0, 4.0, 10.0]).unwrap();
+        assert_eq!((apart.spacing_metres(), apart.pairs().len()), (1.0, 11), "distances of two and three spacings");
+        assert_eq!(apart.pairs().iter().flatten().count() + apart.left_out(), 6);
         let radar = Radar::default().with_antennas(antennas);
         radar.validate().unwrap();
         assert_eq!([2, 3, 4, 5, 8].map(|n| radar.is_gap(n)), [false, true, true, false, false]);
         assert_eq!(radar.pair(3), Pair::at(radar.element_x_metres(3)));
-    }
-
-    #[test]
-    fn distances_of_two_with_three_spacings_make_one_line() {
-        let antennas = Antennas::new(&[0.0, 10.0], &[0.0, 4.0, 10.0]).unwrap();
-        assert_eq!((antennas.spacing_metres(), antennas.pairs().len()), (1.0, 11));
-        assert_eq!(antennas.pairs().iter().flatten().count() + antennas.left_out(), 6);
-    }
-
-    #[test]
-    fn of_pairs_at_one_place_the_first_counts() {
-        let antennas = Antennas::new(&[0.0, 0.4], &[0.0, 0.2, 0.4, 0.6]).unwrap();
-        assert_eq!((antennas.pairs().len(), antennas.gaps(), antennas.left_out()), (6, 0, 2));
-        assert_eq!(antennas.pairs()[2], Some([0, 2]));
     }
 
     #[test]

@@ -83,10 +83,8 @@ mod tests {
             assert!((radar.apparent_velocity_metres_per_second(velocity) / most - apparent).abs() < 1e-12);
         }
         let edge = radar.velocity_of_column_metres_per_second(0.0);
-        assert!(
-            (edge / most + 1.0).abs() < 1e-12,
-            "the first column is that of the unambiguous velocity towards the radar"
-        );
+        let holds = (edge / most + 1.0).abs() < 1e-12;
+        assert!(holds, "the first column is that of the unambiguous velocity towards the radar");
         assert_eq!(radar.velocity_of_column_metres_per_second(64.0), 0.0);
     }
 

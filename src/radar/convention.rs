@@ -109,13 +109,4 @@ mod tests {
         let as_spaced = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
         assert!(as_spaced.fold_period_cos() < 1.0);
     }
-
-    #[test]
-    fn conventions_have_names() {
-        for convention in Convention::ALL {
-            assert_eq!(Convention::by_name(convention.name()), Some(convention));
-            assert_eq!(Convention::from(convention.carrier()), convention);
-        }
-        assert_eq!(Convention::by_name("two-way"), None);
-    }
 }

@@ -374,14 +374,6 @@ mod tests {
     }
 
     #[test]
-    fn responses_follow_the_errors() {
-        let off = ElementError { gain: Decibels(20.0), phase_degrees: 90.0, ..Default::default() };
-        assert!((off.response() - Complex64::new(0.0, 10.0)).norm() < 1e-12);
-        assert_eq!(ElementError { dead: true, ..off }.response(), Complex64::default());
-        assert_eq!(BuiltArray::default().element(5).response(), Complex64::from(1.0));
-    }
-
-    #[test]
     fn what_was_estimated_is_taken_off() {
         let radar = Radar { elements: 16, ..Radar::default() };
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 100.0, position_millimetres: 0.0 };

@@ -183,15 +183,8 @@ mod tests {
     #[test]
     fn every_layout_has_its_name() {
         let radar = Radar::default();
-        for (name, elements) in [
-            ("full", 1024),
-            ("two-ends", 24),
-            ("one-end", 12),
-            ("random=24:7", 24),
-            ("mimo=3x4", 12),
-            ("nested=12x78", 90),
-            ("0-3 9", 5),
-        ] {
+        let of_24 = [("two-ends", 24), ("random=24:7", 24), ("one-end", 12), ("mimo=3x4", 12)];
+        for (name, elements) in of_24.into_iter().chain([("full", 1024), ("nested=12x78", 90), ("0-3 9", 5)]) {
             let kind: LayoutKind = name.parse().unwrap();
             assert_eq!(kind.to_string(), name);
             assert_eq!(kind.layout(&radar).unwrap().len(), elements);
@@ -225,23 +218,8 @@ mod tests {
 
     #[test]
     fn other_names_are_refused() {
-        for name in [
-            "",
-            "fulll",
-            "random",
-            "random=x",
-            "random=3:y",
-            "mimo=3",
-            "mimo=0x4",
-            "mimo=3x65",
-            "none=3",
-            "nested=3",
-            "coprime=0x3",
-            "thinned=0",
-            "3-1",
-            "1 x",
-            "0-99999999",
-        ] {
+        let names = "|fulll|random|random=x|random=3:y|mimo=3|mimo=0x4|mimo=3x65|none=3|nested=3|coprime=0x3|thinned=0|3-1|1 x|0-99999999";
+        for name in names.split('|') {
             let error = name.parse::<LayoutKind>().unwrap_err().to_string();
             assert!(error.contains(&format!("\"{name}\"")) && error.contains("two-ends"), "{error}");
         }

@@ -43,6 +43,7 @@ mod tests {
         assert!((radar.cos_of_blob(blob.cos_theta) + 0.832).abs() < 1e-12);
         assert_eq!(radar.cos_of_blob(1.0), 1.0, "no reflector's blob is there");
         let two_way = Radar { carrier: Carrier::TwoWay, ..radar };
-        assert!((two_way.squint() - 1.013).abs() < 1e-3);
+        assert!((two_way.squint() - (1.0 + 1.0 / 77.0 * 511.0 / 512.0)).abs() < 1e-12);
+        assert!((Radar::default().squint() - (1.0 - 2.0 / 77.0 * 511.0 / 512.0)).abs() < 1e-12);
     }
 }

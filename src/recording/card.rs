@@ -138,7 +138,6 @@ pub(crate) mod tests {
     const FRAME: usize = 40_000;
     const DATA: usize = 1456;
 
-    /// The packets that a card sends of these bytes.
     pub fn sent(bytes: &[u8]) -> Vec<Vec<u8>> {
         let packet = |(n, data): (usize, &[u8])| {
             [&(n as u32 + 1).to_le_bytes(), &((n * DATA) as u64).to_le_bytes()[..6], data].concat()
@@ -203,7 +202,6 @@ pub(crate) mod tests {
         assert!(summary.sentence().starts_with("5 frames of 137 packets"), "{}", summary.sentence());
     }
 
-    /// Memory of this process, MiB, where the system tells it.
     fn resident_mib() -> f64 {
         let told = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
         told.split(' ').nth(1).and_then(|pages| pages.parse::<f64>().ok()).map_or(0.0, |pages| pages / 256.0)

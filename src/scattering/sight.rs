@@ -175,9 +175,7 @@ fn hull(mut places: Vec<V>) -> Vec<V> {
 mod tests {
     use super::*;
     use crate::radar::ElementError;
-    use crate::scattering::{AntennaPlaces, Scatterer};
-    use crate::scene::{Block, Point, Polygon, Post, Wall};
-    use proptest::prelude::*;
+    use crate::scene::{Block, Point, Post, Wall};
 
     #[test]
     fn a_hull_has_the_outermost_places_alone() {
@@ -185,52 +183,6 @@ mod tests {
         let expected = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(V::from);
         assert_eq!(hull(places.map(V::from).to_vec()), expected);
         assert_eq!(hull(vec![V(1.0, 2.0); 5]), [V(1.0, 2.0)]);
-    }
-
-    fn body(kind: u8, x: f64, y: f64, angle: f64, size: f64) -> Object {
-        match kind {
-            0 => Object::Wall(Wall::new(x, y, 3.0 * size, angle)),
-            1 => Object::Box(Block::new([x, y], [2.0 * size, size], angle)),
-            2 => Object::Post(Post::new(x, y, 0.3 * size)),
-            3 => Object::Polygon(Polygon::new(vec![
-                [x, y],
-                [x + size, y],
-                [x + 0.4 * size, y + 0.3 * size],
-                [x, y + size],
-            ])),
-            _ => Object::Point(Point::new(x, y)),
-        }
-    }
-
-    fn echoes(
-        radar: &Radar,
-        object: &Object,
-        hidden_by: &[Object],
-        antennas: &AntennaPlaces,
-    ) -> Vec<crate::scattering::PathEcho> {
-        let mut out = Vec::new();
-        Scatterer::new(radar, object, hidden_by).echoes(antennas, &mut out);
-        out
-    }
-
-    proptest! {
-        #[test]
-        fn what_is_left_out_changes_no_bit(
-            (kind, x, y, angle, size) in (0u8..5, -15.0..15.0f64, 2.0..30.0f64, 0.0..180.0f64, 0.2..3.0f64),
-            (other, u, v, turn, width) in (0u8..4, -15.0..15.0f64, 1.0..30.0f64, 0.0..180.0f64, 0.2..3.0f64),
-        ) {
-            let radar = Radar::default();
-            let (object, screen) = (body(kind, x, y, angle, size), body(other, u, v, turn, width));
-            let array = Array::of(&radar, &BuiltArray::default());
-            let shape = screen.body().unwrap().shape();
-            if !array.ways_to(&object).may_pass(&array.screen(&shape)) {
-                for n in [0, 100, 511, 800, 1023] {
-                    let antennas = AntennaPlaces::from(radar.pair(n));
-                    let (free, behind) = (echoes(&radar, &object, &[], &antennas), echoes(&radar, &object, std::slice::from_ref(&screen), &antennas));
-                    prop_assert_eq!(free, behind);
-                }
-            }
-        }
     }
 
     #[test]

@@ -116,8 +116,7 @@ mod tests {
     fn it_begins_at_one_half() {
         assert!((transition(0.0) - 0.5).norm() < 1e-10);
         let far = EIGHTH_TURN.conj() / (2.0 * PI.sqrt() * 1e3);
-        assert!((transition(1e3) / far - 1.0).norm() < 1e-6);
-        assert!((passing(0.0) - 0.5).norm() < 1e-10);
+        assert!((transition(1e3) / far - 1.0).norm() < 1e-6 && (passing(0.0) - 0.5).norm() < 1e-10);
         assert!((passing(-30.0) - 1.0).norm() < 0.011 && passing(30.0).norm() < 0.011);
     }
 }

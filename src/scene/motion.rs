@@ -106,10 +106,8 @@ mod tests {
                 *object.velocity_mut()[1] = bad;
                 let scene = Scene { objects: vec![object.clone()], ..Scene::default() };
                 let told = scene.validate(&Radar::default()).unwrap_err().to_string();
-                assert!(
-                    told.contains("velocity_y_metres_per_second") && told.contains("-10000 to 10000 m/s"),
-                    "{told}"
-                );
+                let holds = told.contains("velocity_y_metres_per_second") && told.contains("-10000 to 10000 m/s");
+                assert!(holds, "{told}");
             }
         }
     }

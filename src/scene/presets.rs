@@ -86,7 +86,6 @@ pub fn default_scene() -> SceneFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Object;
     use std::collections::HashSet;
 
     #[test]
@@ -110,16 +109,5 @@ mod tests {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes");
         let files = std::fs::read_dir(folder).unwrap().count();
         assert_eq!(files, ALL.len(), "files in {folder}");
-    }
-
-    #[test]
-    fn the_tenth_of_a_radian_is_one() {
-        let of = |id| match Preset::by_id(id).unwrap().load().unwrap().scene.objects.as_slice() {
-            [Object::Point(p)] => (p.x_metres.hypot(p.y_metres), p.x_metres.atan2(p.y_metres)),
-            other => panic!("{other:?}"),
-        };
-        let (ahead, off) = (of("one-at-20-m"), of("one-at-20-m-a-tenth-of-a-radian-off"));
-        assert!((ahead.0 - 20.0).abs() < 1e-12 && (off.0 - 20.0).abs() < 1e-12);
-        assert!((off.1 - ahead.1 - 0.1).abs() < 1e-12);
     }
 }

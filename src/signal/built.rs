@@ -69,7 +69,7 @@ pub fn apply_responses(array: &BuiltArray, signal: &mut BeatSignal) {
 mod tests {
     use super::*;
     use crate::radar::{Decibels, ElementError, LinkBudget};
-    use crate::scene::{Object, Reflector, Wall};
+    use crate::scene::{Disturbances, Mirror, Object, Point, Post, Reflector, Wall};
     use crate::signal::simulate;
 
     fn small() -> Radar {
@@ -105,24 +105,14 @@ mod tests {
             let ideal = simulate(&radar, &plain, floor, 3).unwrap();
             assert_eq!(simulate(&radar, &scene, floor, 3).unwrap(), ideal, "a list of ideal elements disturbs nothing");
         }
-        scene.disturbances.mirror = Some(crate::scene::Mirror::default());
+        scene.disturbances.mirror = Some(Mirror::default());
         let mirrored = simulate(&radar, &scene, Floor::Exact, 3).unwrap();
         let ghosts = Scene::of_points([]);
         assert_eq!(simulate(&radar, &ghosts, Floor::Exact, 3).unwrap().peak(), 0.0);
-        let explicit = Scene {
-            objects: scene
-                .echoing(&radar)
-                .into_iter()
-                .map(|r| {
-                    let Reflector { x_metres, y_metres, reflectivity } = r;
-                    crate::scene::Object::Point(crate::scene::Point {
-                        reflectivity,
-                        ..crate::scene::Point::new(x_metres, y_metres)
-                    })
-                })
-                .collect(),
-            ..Scene::default()
-        };
+        let point =
+            |r: Reflector| Object::Point(Point { reflectivity: r.reflectivity, ..Point::new(r.x_metres, r.y_metres) });
+        let objects = scene.echoing(&radar).into_iter().map(point).collect();
+        let explicit = Scene { objects, ..Scene::default() };
         assert_eq!(explicit.objects.len(), 5, "three ghosts of the point before the wall, none of that behind it");
         assert_eq!(simulate(&radar, &explicit, Floor::Exact, 3).unwrap(), mirrored);
         scene.disturbances.elements.elements[5].dead = true;
@@ -160,8 +150,8 @@ mod tests {
         let pattern = narrow.pattern().unwrap();
         let x = isotropic.element_x_metres(7);
         // The nearest part of a post lies towards its centre.
-        let post = Object::Post(crate::scene::Post::new(6.0, 8.0, 0.2));
-        let mirror = crate::scene::Mirror { x_metres: -4.0, ..Default::default() };
+        let post = Object::Post(Post::new(6.0, 8.0, 0.2));
+        let mirror = Mirror { x_metres: -4.0, ..Default::default() };
         let mut scene = Scene { objects: vec![post], ..Scene::default() };
         let kept = |scene: &Scene| {
             let heard = |radar| simulate(radar, scene, Floor::Exact, 0).unwrap().samples[[7, 0]];
@@ -172,7 +162,7 @@ mod tests {
         assert!((own / all - expected).norm() < 1e-9, "{}: {expected}", own / all);
         // The mirror's image stands at x = -14. A weak mirror's echoes go there one way and come back the other.
         let mut ghosts = |reflection| {
-            scene.disturbances.mirror = Some(crate::scene::Mirror { reflection, ..mirror });
+            scene.disturbances.mirror = Some(Mirror { reflection, ..mirror });
             kept(&scene)
         };
         let (with, without) = (ghosts(1e-3), ghosts(0.0));
@@ -195,10 +185,10 @@ mod tests {
         assert!((&built.samples.row(8) - &ideal.samples.row(8)).iter().all(|v| v.norm() < 1e-12));
         assert!((&built.samples.row(7) - &ideal.samples.row(7)).iter().any(|v| v.norm() > 1e-6));
         // A mirror beside a body adds what its image echoes.
-        let mut mirrored = Scene { disturbances: crate::scene::Disturbances::default(), ..scene.clone() };
-        mirrored.disturbances.mirror = Some(crate::scene::Mirror::default());
+        let mut mirrored = Scene { disturbances: Disturbances::default(), ..scene.clone() };
+        mirrored.disturbances.mirror = Some(Mirror::default());
         let with = simulate(&radar, &mirrored, Floor::Exact, 3).unwrap();
-        mirrored.disturbances.mirror = Some(crate::scene::Mirror { reflection: 0.0, ..Default::default() });
+        mirrored.disturbances.mirror = Some(Mirror { reflection: 0.0, ..Default::default() });
         let without = simulate(&radar, &mirrored, Floor::Exact, 3).unwrap();
         let differs =
             |other: &BeatSignal| (&other.samples - &ideal.samples).iter().fold(0.0f64, |m, v| m.max(v.norm()));

@@ -254,7 +254,6 @@ mod tests {
     use ndarray::{Array1, Array2};
     use num_complex::Complex64;
 
-    /// Windowed range profiles, one element after the other.
     fn profiles_of(radar: &Radar, mut samples: Array2<Complex64>) -> Array2<Complex64> {
         let scale = (radar.samples as f64).sqrt().recip();
         let window = radar.window.weights(radar.samples);

@@ -232,7 +232,6 @@ mod tests {
 
     const SEPARATE_PAIR: Pair = Pair::on_line(-0.4, 0.7);
 
-    /// Antennas on a bumper that is bent.
     const BENT: Pair = Pair {
         transmitter_y_metres: -0.06,
         receiver_y_metres: 0.11,
@@ -248,7 +247,6 @@ mod tests {
         Reflector { x_metres, y_metres, reflectivity: 0.7 }
     }
 
-    /// A radar of elements that leave half of the power 30 degrees off broadside.
     fn narrow() -> Radar {
         let budget = LinkBudget { half_power_width_degrees: Some(60.0), ..LinkBudget::default() };
         Radar { budget: Some(budget), ..Radar::default() }
@@ -266,10 +264,8 @@ mod tests {
                 let power = (there * back).powf(exponent);
                 let samples = |radar: &Radar| EchoModel::new(radar).echo(pair, &r).sample(77);
                 let kept = samples(&narrow) / samples(&isotropic);
-                assert!(
-                    (kept.norm_sqr() / power - 1.0).abs() < 1e-9 && kept.im.abs() < 1e-12,
-                    "{r:?}: {kept}, {power}"
-                );
+                let holds = (kept.norm_sqr() / power - 1.0).abs() < 1e-9 && kept.im.abs() < 1e-12;
+                assert!(holds, "{r:?}: {kept}, {power}");
                 let judged = judge::pair_signal(&narrow, &[r], pair)[77];
                 assert!((judged - samples(&narrow)).norm() < 1e-13 * judged.norm(), "{r:?}");
             }
@@ -289,22 +285,6 @@ mod tests {
                     }
                 }
             }
-        }
-    }
-
-    #[test]
-    fn swapping_transmitter_and_receiver_changes_nothing() {
-        let radar = Radar::default();
-        let model = EchoModel::new(&radar);
-        let r = point(2.0, 11.0);
-        for pair in [SEPARATE_PAIR, BENT] {
-            let swapped = Pair {
-                transmitter_x_metres: pair.receiver_x_metres,
-                receiver_x_metres: pair.transmitter_x_metres,
-                transmitter_y_metres: pair.receiver_y_metres,
-                receiver_y_metres: pair.transmitter_y_metres,
-            };
-            assert_eq!(model.echo(pair, &r), model.echo(swapped, &r));
         }
     }
 

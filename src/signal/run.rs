@@ -97,7 +97,6 @@ mod tests {
         }
     }
 
-    /// A street of bodies, some hidden by others.
     fn bodies() -> Scene {
         let objects = vec![
             Object::Wall(Wall { roughness_millimetres: 0.4, ..Wall::new(-3.0, 20.0, 2.0, 10.0) }),

@@ -191,7 +191,6 @@ pub(super) mod tests {
         })
     }
 
-    /// Magnitudes of the simulated map, `[bins, columns]`.
     pub fn simulated(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Array2<f64> {
         let profiles = range_transform(radar, &exact::beat_signal(radar, &[*reflector]));
         angle_transform(radar, &profiles, aperture).cells.mapv(Complex64::norm)
@@ -222,7 +221,6 @@ pub(super) mod tests {
         column: Vec<f64>,
     }
 
-    /// The row and the column through a place, from the simulated samples alone.
     fn simulated_through(radar: &Radar, reflector: &Reflector, aperture: Aperture, at: MapPlace) -> Cross {
         let signal = exact::beat_signal(radar, &[*reflector]).samples;
         let turned = |weights: Vec<f64>, turns: f64| -> Vec<Complex64> {
@@ -244,7 +242,6 @@ pub(super) mod tests {
         }
     }
 
-    /// A circle of magnitudes, seen from one of them.
     struct Around<'a> {
         cells: &'a [f64],
         from: usize,

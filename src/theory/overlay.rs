@@ -52,27 +52,3 @@ fn teeth(radar: &Radar, reflector: &Reflector) -> Vec<MapPlace> {
     };
     comb_teeth(radar, place, TEETH_DRAWN).into_iter().map(cell).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::radar::End;
-
-    #[test]
-    fn an_overlay_gathers_what_each_formula_says() {
-        let radar = Radar { elements: 128, samples: 64, ..Radar::default() };
-        let reflector = Reflector { x_metres: 1.0, y_metres: 6.0, reflectivity: 1.0 };
-        let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
-        assert_eq!(Some(overlay.blob), Blob::of(&radar, &reflector, Aperture::Full));
-        assert_eq!(overlay.teeth.len(), 2 * TEETH_DRAWN);
-        let max = radar.max_range_metres();
-        let range = 37f64.sqrt();
-        let expected: Vec<f64> = [range - max, range + max].into_iter().filter(|r| *r > 0.0).collect();
-        assert!(overlay.place.range_metres > max, "it wraps");
-        assert!((overlay.wrap_partners_metres[0] - expected[0]).abs() < 1e-9, "{:?}", overlay.wrap_partners_metres);
-        let end = Overlay::of(&radar, &reflector, Aperture::End(End::First)).unwrap();
-        assert!(end.place.cos_theta > overlay.place.cos_theta, "the left end sees it further to the right");
-        assert!(end.blob.columns[0] > overlay.blob.columns[0]);
-        assert_eq!(Overlay::of(&radar, &Reflector { reflectivity: 0.0, ..reflector }, Aperture::Full), None);
-    }
-}

@@ -27,21 +27,3 @@ pub(super) fn cell_seen_from(radar: &Radar, x_metres: f64, y_metres: f64, elemen
         column: radar.column_of_cos(polar.cos_theta * radar.squint()),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::radar::Carrier;
-
-    #[test]
-    fn table_3_1_squints_by_bandwidth_over_carrier() {
-        let radar = Radar::default();
-        assert!((radar.squint() - (1.0 - 2.0 / 77.0 * 511.0 / 512.0)).abs() < 1e-12);
-        let two_way = Radar { carrier: Carrier::TwoWay, ..radar.clone() };
-        assert!((two_way.squint() - (1.0 + 1.0 / 77.0 * 511.0 / 512.0)).abs() < 1e-12);
-        // Seen on the program's maps: a reflector at cos(theta) = -0.832 has its blob at -0.81.
-        let (cos, range) = (-0.832f64, 20.0);
-        let blob = blob_cell(&radar, range * cos, range * (1.0 - cos * cos).sqrt(), Aperture::Full);
-        assert!((radar.cos_of_column(blob.column) + 0.8105).abs() < 1e-3, "{blob:?}");
-    }
-}

@@ -1,61 +1,15 @@
 //! The pictures on screen are of the scene on screen, or are marked as old.
 
-use crate::session::Session;
-use apertura::app::{Command, EditCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand};
-use apertura::radar::{Radar, WindowFunction};
-use apertura::reconstruct::{
-    About, Baseline, CAPON, ReconstructError, Reconstruction, Reconstructor, Request as MethodRequest,
-};
-use apertura::signal::{Floor, TwoEnds};
+use crate::session::*;
 use proptest::prelude::*;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
 
-/// A method that takes longer than an old picture may be drawn as fresh.
-struct Slow;
-
-impl Reconstructor for Slow {
-    fn about(&self) -> About {
-        About { name: "slow", description: "takes its time", told: "", eta: 0.5 }
-    }
-    fn estimate(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &MethodRequest,
-    ) -> Result<Reconstruction, ReconstructError> {
-        let began = Instant::now();
-        while began.elapsed() < Duration::from_millis(900) {
-            request.task.check()?;
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        Baseline.reconstruct(radar, ends, request)
-    }
+fn panels() -> Vec<Panel> {
+    use MapKind::{Difference, Input0, Output, OutputAbove, Target};
+    use Panel::{Bounds, Chirp, Compare, Cuts, Elements, Found, Phasors, RangeDoppler, Roc, Scene, Several, Values};
+    let others = [Cuts, Bounds, Phasors, Chirp, RangeDoppler, Several, Values, Scene, Elements, Roc, Compare, Found];
+    [Output, Output, OutputAbove, Target, Input0, Difference].map(Panel::Map).into_iter().chain(others).collect()
 }
 
-/// Panels that draw something derived from the scene.
-const PANELS: [Panel; 18] = [
-    Panel::Map(MapKind::Output),
-    Panel::Map(MapKind::Output),
-    Panel::Map(MapKind::OutputAbove),
-    Panel::Map(MapKind::Target),
-    Panel::Map(MapKind::Input0),
-    Panel::Map(MapKind::Difference),
-    Panel::Cuts,
-    Panel::Bounds,
-    Panel::Phasors,
-    Panel::Chirp,
-    Panel::RangeDoppler,
-    Panel::Several,
-    Panel::Values,
-    Panel::Scene,
-    Panel::Elements,
-    Panel::Roc,
-    Panel::Compare,
-    Panel::Found,
-];
-
-/// A user's command, at random, with anything shown and any number of times.
 fn action() -> impl Strategy<Value = Command> {
     let window = prop_oneof![Just(WindowFunction::Hann), Just(WindowFunction::Hamming)];
     let floor = prop_oneof![Just(Floor::Thesis), Just(Floor::Exact)];
@@ -69,8 +23,8 @@ fn action() -> impl Strategy<Value = Command> {
         1 => Just(EditCommand::SelectAll.into()),
         1 => window.prop_map(|window| RadarCommand::SetWindow(window).into()),
         1 => floor.prop_map(|floor| ViewCommand::SetFloor(floor).into()),
-        6 => (0..PANELS.len()).prop_map(|i| WindowCommand::TogglePanel(PANELS[i]).into()),
-        2 => (0..3usize).prop_map(|i| ViewCommand::Method(["baseline", "capon", "slow"][i]).into()),
+        6 => prop::sample::select(panels()).prop_map(|panel| WindowCommand::TogglePanel(panel).into()),
+        2 => (0..3usize).prop_map(|i| ViewCommand::Method(["baseline", "capon", "stub"][i]).into()),
         1 => Just(ViewCommand::ToggleFound.into()),
         1 => Just(ViewCommand::ToggleKinds.into()),
         1 => Just(ViewCommand::ToggleTheory.into()),
@@ -87,7 +41,7 @@ proptest! {
     fn nothing_older_than_the_scene_is_drawn_as_fresh(
         actions in prop::collection::vec((action(), 0u32..4), 8..20),
     ) {
-        let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON), Arc::new(Slow)]);
+        let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON), Arc::new(Stub::slow(900))]);
         s.ask(EditCommand::SelectAll);
         for (action, then) in actions {
             let told = format!("after {action:?}");

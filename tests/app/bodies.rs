@@ -1,13 +1,7 @@
 //! Walls, boxes, posts and polygons in the window: added, changed while the maps follow, and listed.
 
-use crate::session::{Session, step_until};
-use apertura::app::{EditCommand, NewObject};
-use apertura::interact::{Place, SelectionMode};
-use apertura::scene::Object;
-use eframe::egui::{Event, Key, Modifiers, accesskit::Role, vec2};
-use egui_kittest::kittest::Queryable;
+use crate::session::*;
 
-/// A session with nothing in its scene.
 fn empty() -> Session {
     let mut s = Session::start();
     s.press(Modifiers::COMMAND, Key::A);
@@ -16,7 +10,7 @@ fn empty() -> Session {
 }
 
 fn last(s: &Session) -> Object {
-    s.state().editor().scene().objects.last().cloned().unwrap()
+    s.objects().last().cloned().unwrap()
 }
 
 #[test]
@@ -24,30 +18,19 @@ fn every_kind_of_body_is_added_by_a_button() {
     let mut s = empty();
     for (label, noun) in [("+ Wall", "wall"), ("+ Box", "box"), ("+ Post", "post"), ("+ Polygon", "polygon")] {
         let (_, painted) = s.state().work_done();
-        s.app.get_by_label(label).click();
-        s.settle();
+        s.click(label);
         assert_eq!(last(&s).noun(), noun);
         assert!(s.state().work_done().1 > painted, "the maps show the {noun}");
     }
-    assert_eq!(s.state().editor().scene().objects.len(), 4);
-}
-
-#[test]
-fn the_palette_adds_a_body_by_name() {
-    let mut s = empty();
-    s.press(Modifiers::COMMAND, Key::K);
-    s.app.event(Event::Text("add polygon".to_owned()));
-    s.settle();
-    s.press(Modifiers::NONE, Key::Enter);
-    assert_eq!(last(&s).noun(), "polygon");
+    assert_eq!(s.objects().len(), 4);
 }
 
 #[test]
 fn the_maps_follow_the_sliders_of_radius_and_roughness() {
     let mut s = empty();
     s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(0.0, 12.0))));
-    s.ask(EditCommand::Select(vec![0], SelectionMode::Replace));
-    let depth = s.state().editor().history().depth();
+    s.select(0);
+    let depth = s.editor().history().depth();
     for (name, value) in [
         ("radius slider", (|o| if let Object::Post(p) = o { p.radius_metres } else { f64::NAN }) as fn(&Object) -> f64),
         ("roughness slider", |o| if let Object::Post(p) = o { p.roughness_millimetres } else { f64::NAN }),
@@ -56,10 +39,7 @@ fn the_maps_follow_the_sliders_of_radius_and_roughness() {
         let (_, painted) = s.state().work_done();
         let slider = s.app.get_by_role_and_label(Role::Slider, name).rect();
         let middle = slider.center();
-        s.app.hover_at(middle);
-        s.app.step();
-        s.app.drag_at(middle);
-        s.app.step();
+        s.hold(middle);
         let mut during = Vec::new();
         for step in 1..=10 {
             s.app.hover_at(middle + vec2(2.0 * step as f32, 0.0));
@@ -72,7 +52,7 @@ fn the_maps_follow_the_sliders_of_radius_and_roughness() {
         assert!(during.windows(2).all(|w| w[0] <= w[1]) && during[0] < during[9], "{name}: {during:?}");
         assert!(value(&last(&s)) > before, "{name}");
     }
-    assert_eq!(s.state().editor().history().depth(), depth + 2, "each slide is one step");
+    assert_eq!(s.editor().history().depth(), depth + 2, "each slide is one step");
 }
 
 #[test]
@@ -100,5 +80,5 @@ fn the_status_bar_names_the_echo_under_the_pointer() {
     over(&mut s, "post 1: move", vec2(0.0, 0.0));
     let _told = s.app.get_by_label_contains("post of post 1");
     over(&mut s, "wall 2: move", vec2(0.0, 80.0));
-    assert!(s.app.query_by_label_contains("glint of wall 2").is_none(), "nothing echoes there");
+    assert!(!s.shows("glint of wall 2"), "nothing echoes there");
 }

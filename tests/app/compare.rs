@@ -1,30 +1,18 @@
 //! Two methods on one scene: flipped, read off cell by cell, and the verdicts on every object.
 
-use crate::session::{Session, step_until};
-use apertura::app::{Compare, DocumentCommand, Layout, MapKind, Panel, ViewCommand, WindowCommand};
-use apertura::evaluate::trial::Trial;
-use apertura::maps::{LogMaps, Normalisation, RangeAngleMap};
-use apertura::radar::Radar;
-use apertura::reconstruct::{About, Baseline, CAPON, ReconstructError, Reconstruction, Reconstructor, Request};
-use apertura::scene::generate::Kind;
-use apertura::signal::{Floor, TwoEnds, simulate};
-use eframe::egui::{Key, Modifiers, vec2};
+use crate::session::*;
+use apertura::app::{Compare, Layout};
+use apertura::maps::{LogMaps, RangeAngleMap};
 use egui_kittest::Node;
-use egui_kittest::kittest::{NodeT, Queryable};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::time::{Duration, Instant};
 
 fn with_capon() -> Session {
     Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)])
 }
 
-/// The scene on screen, simulated as every command does.
 fn trial(s: &Session) -> Trial {
-    Trial::new(s.state().radar(), s.state().editor().scene(), Floor::Thesis, Normalisation::MinMax).unwrap()
+    Trial::new(s.state().radar(), s.editor().scene(), Floor::Thesis, Normalisation::MinMax).unwrap()
 }
 
-/// The text of a label.
 fn text_of(node: &Node<'_>) -> String {
     let node = node.accesskit_node();
     node.label().or(node.value()).unwrap_or_default()
@@ -55,68 +43,36 @@ fn the_second_outputs_figures_are_those_of_the_command_line() {
     assert_eq!(s.state().second_metrics(), s.state().metrics(), "the same method twice");
 }
 
-/// A method of a set duration, which counts the maps that it finished.
-struct Slow {
-    finished: Arc<AtomicU32>,
-    milliseconds: Arc<AtomicU32>,
-}
-
-impl Reconstructor for Slow {
-    fn about(&self) -> About {
-        About { name: "slow", description: "takes its time", told: "", eta: 0.5 }
-    }
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let began = Instant::now();
-        while began.elapsed() < Duration::from_millis(self.milliseconds.load(Ordering::SeqCst).into()) {
-            request.task.check()?;
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        self.finished.fetch_add(1, Ordering::SeqCst);
-        Baseline.reconstruct(radar, ends, request)
-    }
-}
-
 #[test]
 fn the_second_method_works_only_while_the_panel_is_open() {
-    let (finished, milliseconds) = (Arc::<AtomicU32>::default(), Arc::<AtomicU32>::default());
-    let slow = Slow { finished: finished.clone(), milliseconds: milliseconds.clone() };
-    let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(slow)]);
+    let second = Stub::default();
+    let finished = || second.answers.load(SeqCst);
+    let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(second.clone())]);
     s.ask(DocumentCommand::RandomScene(Kind::Set1));
-    assert_eq!(finished.load(Ordering::SeqCst), 0);
+    assert_eq!(finished(), 0);
     s.ask(WindowCommand::Maximise(Panel::Compare));
-    assert_eq!(finished.load(Ordering::SeqCst), 1);
-    assert!(s.app.query_by_label_contains("(updating)").is_none());
+    assert_eq!(finished(), 1);
+    assert!(!s.shows("(updating)"));
 
-    milliseconds.store(900, Ordering::SeqCst);
+    second.milliseconds.store(900, SeqCst);
     s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
     step_until(&mut s, "the second output is told to be old", |s| {
-        s.app.query_all_by_label_contains("(updating)").any(|node| text_of(&node).starts_with("slow"))
+        s.app.query_all_by_label_contains("(updating)").any(|node| text_of(&node).starts_with("stub"))
     });
     s.settle();
-    assert!(s.app.query_by_label_contains("(updating)").is_none());
-    let before = finished.load(Ordering::SeqCst);
+    assert!(!s.shows("(updating)"));
+    let before = finished();
     s.ask(WindowCommand::Maximise(Panel::Compare));
     s.ask(DocumentCommand::RandomScene(Kind::Set1));
-    assert_eq!(finished.load(Ordering::SeqCst), before, "the panel is out of sight");
-}
-
-/// A method that refuses every radar.
-struct Refuses;
-
-impl Reconstructor for Refuses {
-    fn about(&self) -> About {
-        About { name: "refuses", description: "works with nothing", told: "", eta: 0.5 }
-    }
-    fn estimate(&self, _: &Radar, _: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
-        Err(ReconstructError::Unusable { method: "refuses", reason: "it never works".into() })
-    }
+    assert_eq!(finished(), before, "the panel is out of sight");
 }
 
 #[test]
 fn a_second_method_that_refuses_leaves_the_first() {
-    let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(Refuses)]);
+    let mut s =
+        Session::with_methods(vec![Arc::new(Baseline), Arc::new(Stub { refuses: Some(|_| true), ..Stub::default() })]);
     s.ask(WindowCommand::Maximise(Panel::Compare));
-    assert!(s.app.query_all_by_label_contains("it never works").next().is_some());
+    assert!(s.shows("made for other radars"));
     assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
     assert!(!s.state().pictures().contains(&MapKind::Second));
 }
@@ -147,7 +103,7 @@ fn the_table_of_values_has_what_the_maps_have_under_the_pointer() {
     s.ask(WindowCommand::OpenPanel(Panel::Compare));
     s.ask(WindowCommand::OpenPanel(Panel::Values));
     s.ask(WindowCommand::Maximise(Panel::Values));
-    let (radar, scene) = (s.state().radar().clone(), s.state().editor().scene().clone());
+    let (radar, scene) = (s.state().radar().clone(), s.editor().scene().clone());
     let text = text_of(&s.app.get_by_label_contains("range bin "));
     let mut numbers = text.split(|c: char| !c.is_ascii_digit()).filter(|part| !part.is_empty());
     let (bin, column): (usize, usize) =
@@ -183,7 +139,7 @@ fn marks_of_failure_are_those_of_the_evaluation() {
         let trial = trial(&s);
         let answer = trial.ask(&Baseline, &Request { noise: Floor::Thesis.into(), ..Request::default() }).unwrap();
         assert_eq!(s.state().failures(), Some(&trial.failures(&answer)), "round {round}");
-        assert!(s.app.query_all_by_label_contains("Legend: hit, rim, false alarm, miss, ").next().is_some());
+        assert!(s.shows("Legend: hit, rim, false alarm, miss, "));
         let at = s.handle("point 2: move");
         s.drag(at, vec2(-20.0, 15.0), 5);
     }

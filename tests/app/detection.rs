@@ -1,20 +1,12 @@
 //! Detection at a constant false-alarm rate in the window.
 
-use crate::session::Session;
-use apertura::app::{DocumentCommand, MapKind, Panel, ViewCommand, WindowCommand};
-use apertura::evaluate::trial::Trial;
-use apertura::maps::Normalisation;
+use crate::session::*;
 use apertura::maps::cfar::{Cfar, Statistic};
-use apertura::reconstruct::{Baseline, Request};
-use apertura::signal::Floor;
-use eframe::egui::{Shape, vec2};
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
 
 const CELLS: Cfar = Cfar { statistic: Statistic::CellAveraging, guard: [2, 2], training: [4, 6], false_alarm: 1e-3 };
 
 fn session() -> Session {
-    let mut s = Session::with_methods(vec![Arc::new(Baseline)]);
+    let mut s = Session::with_methods(baseline());
     s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::TargetAbove)));
     s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::OutputAbove)));
     s
@@ -26,7 +18,7 @@ fn cells_and_rates_on_screen_are_those_of_the_library() {
     assert_eq!(s.state().detected(), ([None, None], None), "a detector that is off finds nothing");
     let global = s.state().metrics().unwrap();
     s.ask(ViewCommand::SetCfar(Some(CELLS)));
-    let scene = s.state().editor().scene().clone();
+    let scene = s.editor().scene().clone();
     let trial = Trial::new(s.state().radar(), &scene, Floor::Thesis, Normalisation::MinMax).unwrap();
     let answer = trial.ask(&Baseline, &Request::default()).unwrap();
     for statistic in Statistic::ALL {
@@ -40,9 +32,6 @@ fn cells_and_rates_on_screen_are_those_of_the_library() {
         let ([target, output], error) = s.state().detected();
         assert!(target > Some(0) && output > Some(0) && error.is_none(), "{target:?} {output:?} {error:?}");
     }
-    if let Some(path) = std::env::var_os("CFAR_PICTURE") {
-        s.app.render().unwrap().save(path).unwrap();
-    }
     s.ask(ViewCommand::Detect(None));
     assert_eq!((s.state().metrics(), s.state().detected().0), (Some(global), [None, None]));
 }
@@ -53,21 +42,9 @@ fn a_detector_that_can_not_work_says_why() {
     s.ask(ViewCommand::SetCfar(Some(Cfar { training: [0, 500], ..CELLS })));
     let said = s.state().detected().1.unwrap().to_owned();
     assert!(said.starts_with("Guard and training cells span 1005 columns"), "{said}");
-    assert!(s.app.query_all_by_label_contains("Guard and training cells span").next().is_some());
+    assert!(s.shows("Guard and training cells span"));
     s.ask(ViewCommand::SetCfar(Some(CELLS)));
     assert_eq!(s.state().detected().1, None);
-}
-
-#[test]
-fn a_shared_view_has_its_detector_until_it_is_undone() {
-    let mut s = session();
-    s.ask(ViewCommand::SetCfar(Some(CELLS)));
-    let text = s.state().shared_text().unwrap();
-    s.ask(ViewCommand::Detect(None));
-    s.ask(DocumentCommand::OpenShared(text));
-    assert_eq!(s.state().settings().cfar, Some(CELLS));
-    s.ask(apertura::app::EditCommand::Undo);
-    assert_eq!(s.state().settings().cfar, None);
 }
 
 #[test]

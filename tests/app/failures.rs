@@ -1,25 +1,15 @@
 //! Rows of an evaluation in the window: tried, sorted, filtered, opened, dragged, made worse, kept, and there again after a restart.
 
-use crate::session::{Session, step_until};
-use apertura::app::{
-    Command, EditCommand, FailureChoice, Panel, RowsCommand, SearchChoice, ViewCommand, WindowCommand,
-};
-use apertura::evaluate::rows::{Row, read_rows, write_rows};
+use crate::session::*;
+use apertura::app::SearchChoice;
+use apertura::evaluate::rows::{Row, write_rows};
 use apertura::evaluate::sets::Folder;
 use apertura::evaluate::worsen::{Aim, WorseningMeasure};
-use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
-use apertura::scene::Scene;
-use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
-use apertura::signal::Floor;
-use eframe::egui::{Key, Modifiers, vec2};
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
 
 fn methods() -> Vec<Arc<dyn Reconstructor>> {
     vec![Arc::new(Baseline), Arc::new(CAPON)]
 }
 
-/// A window with six rows: three scenes by two methods.
 fn tried() -> Session {
     let mut s = Session::with_methods(methods());
     s.ask_and_wait(Command::Rows(RowsCommand::Try(choice(vec![Kind::Set2], false))));
@@ -35,7 +25,6 @@ fn name(row: &Row) -> String {
     format!("set {}, scene {}, {}", row.set, row.index, row.method)
 }
 
-/// Names of the rows in sight, from top to bottom.
 fn listed(s: &Session) -> Vec<String> {
     let mut rows: Vec<(f32, String)> = s
         .state()
@@ -68,13 +57,12 @@ fn write(s: &mut Session, text: &str) {
 fn the_worst_row_can_be_found_changed_kept() {
     let mut s = tried();
     s.ask(WindowCommand::Maximise(Panel::Failures));
-    s.app.get_by_label("Squared error").click();
-    s.settle();
+    s.click("Squared error");
     let (index, row) = worst(&s);
     assert_eq!((listed(&s).len(), &listed(&s)[0]), (6, &name(&row)));
 
     write(&mut s, "method = 'capon' & objcts > 1");
-    let told = s.app.query_by_label_contains("column 20:").is_some();
+    let told = s.shows("column 20:");
     assert!(told && listed(&s).len() == 6, "a mistake is pointed at, and the rows stay");
     s.app.key_press_modifiers(Modifiers::COMMAND, Key::A);
     s.settle();
@@ -88,13 +76,12 @@ fn the_worst_row_can_be_found_changed_kept() {
     s.app.key_press(Key::Delete);
     s.settle();
 
-    let before = s.state().editor().document().clone();
-    s.app.get_by_label(&name(&row)).click();
-    s.settle();
+    let before = s.editor().document().clone();
+    s.click(&name(&row));
     s.ask(WindowCommand::Maximise(Panel::Failures));
     let radar = s.state().radar().clone();
     let expected = Generator::new(&radar, Reading::Program, Purpose::Test, 7).scene(Kind::Set2, row.index);
-    assert_eq!((s.state().opened_row(), &**s.state().editor().scene()), (Some(index), &expected));
+    assert_eq!((s.state().opened_row(), &**s.editor().scene()), (Some(index), &expected));
     let m = s.state().metrics().unwrap();
     assert_eq!(s.state().shown_method(), Some(if row.method == "capon" { "capon" } else { "baseline" }));
     assert_eq!((m.squared_error, m.detection, m.false_alarm), (row.squared_error, row.detection, row.false_alarm));
@@ -106,10 +93,10 @@ fn the_worst_row_can_be_found_changed_kept() {
 
     let at = s.handle("point 1: move");
     s.drag(at, vec2(25.0, 10.0), 5);
-    assert!(s.state().editor().is_modified() && s.state().metrics() != Some(m));
-    let file = s.state().editor().document().to_file();
+    assert!(s.editor().is_modified() && s.state().metrics() != Some(m));
+    let file = s.editor().document().to_file();
     s.ask(RowsCommand::KeepScene("Moved a little.".to_owned()));
-    let own = s.folder.path().join("data/scenes");
+    let own = s.path("data/scenes");
     let kept = apertura::scene::file::load(Folder::open(&own).unwrap().file(0).unwrap()).unwrap();
     assert_eq!((kept.scene.objects, kept.radar), (file.scene.objects, file.radar));
     assert_eq!(kept.scene.notes, "Moved a little.");
@@ -118,13 +105,13 @@ fn the_worst_row_can_be_found_changed_kept() {
 
     s.ask(EditCommand::Undo);
     s.ask(EditCommand::Undo);
-    assert_eq!(s.state().editor().document().id(), before.id(), "the scene from before the row");
+    assert_eq!(s.editor().document().id(), before.id(), "the scene from before the row");
 }
 
 #[test]
 fn one_undo_takes_a_walk_through_rows_back() {
     let mut s = tried();
-    let before = (s.state().editor().document().id(), s.state().settings().method.clone());
+    let before = (s.editor().document().id(), s.state().settings().method.clone());
     s.ask(ViewCommand::SetFloor(Floor::Exact));
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     let mut last = None;
@@ -143,9 +130,9 @@ fn one_undo_takes_a_walk_through_rows_back() {
         assert_eq!(s.state().settings().floor, Floor::Thesis, "as the rows were made");
         last = s.state().metrics();
     }
-    assert!(last.is_some() && s.state().editor().left().is_empty(), "a walk leaves nothing behind");
+    assert!(last.is_some() && s.editor().left().is_empty(), "a walk leaves nothing behind");
     s.ask(EditCommand::Undo);
-    let after = (s.state().editor().document().id(), s.state().settings().method.clone());
+    let after = (s.editor().document().id(), s.state().settings().method.clone());
     assert_eq!((after, s.state().settings().floor), (before, Floor::Exact));
 }
 
@@ -153,9 +140,9 @@ fn one_undo_takes_a_walk_through_rows_back() {
 fn rows_outlive_a_restart() {
     let mut s = tried();
     let rows = s.state().rows().to_vec();
-    let path = s.folder.path().join("saved.csv");
+    let path = s.path("saved.csv");
     s.ask(RowsCommand::SaveTo(path.clone()));
-    step_until(&mut s, "it is written", |s| s.folder.path().join("saved.csv").exists());
+    step_until(&mut s, "it is written", |s| s.path("saved.csv").exists());
     assert_eq!(read_rows(std::fs::File::open(&path).unwrap()).unwrap(), rows);
     s.ask(RowsCommand::Clear);
     assert!(s.state().rows().is_empty());
@@ -185,7 +172,7 @@ fn what_a_search_finds_is_one_undo_step() {
     let best = rows.min_by(|a, b| a.1.squared_error.total_cmp(&b.1.squared_error)).unwrap().0;
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     s.ask(RowsCommand::Show(best));
-    let before = s.state().editor().scene().clone();
+    let before = s.editor().scene().clone();
     let choice =
         SearchChoice { aim: Aim::Worsen, measure: WorseningMeasure::SquaredError, within_metres: 2.0, tries: 48 };
     s.ask_and_wait(Command::Rows(RowsCommand::Search(choice)));
@@ -193,11 +180,11 @@ fn what_a_search_finds_is_one_undo_step() {
     assert!(path.len() > 1, "something near is worse");
     let (start, found) = (&path[0].metrics, &path[path.len() - 1]);
     assert!(found.metrics.squared_error > start.squared_error);
-    assert_eq!(s.state().editor().scene().objects, found.scene.objects);
+    assert_eq!(s.objects(), found.scene.objects);
     assert_eq!(s.state().metrics().unwrap().squared_error, found.metrics.squared_error);
     assert!(s.app.query_by_label_contains("baseline: SE").or(s.app.query_by_label_contains("capon: SE")).is_some());
     s.ask(EditCommand::Undo);
-    assert_eq!(s.state().editor().scene(), &before);
+    assert_eq!(s.editor().scene(), &before);
     s.app.state_mut().ask(RowsCommand::Search(SearchChoice { tries: 100_000, ..choice }));
     step_until(&mut s, "it starts", |s| s.state().is_at_work());
     s.ask(RowsCommand::CancelSearch);
@@ -208,7 +195,7 @@ fn what_a_search_finds_is_one_undo_step() {
 fn keys_walk_through_ten_thousand_rows() {
     let mut s = tried();
     let row = s.state().rows()[0].clone();
-    let path = s.folder.path().join("many.csv");
+    let path = s.path("many.csv");
     // Rows of the default radar need no file of conditions beside them.
     let rows: Vec<Row> = (0..10_000).map(|index| Row { index, radar: "".into(), ..row.clone() }).collect();
     write_rows(&mut std::fs::File::create(&path).unwrap(), &rows).unwrap();
@@ -222,7 +209,7 @@ fn keys_walk_through_ten_thousand_rows() {
     }
     assert!((Some(8)..Some(100)).contains(&s.state().opened_row()), "{:?}", s.state().opened_row());
     s.press(Modifiers::NONE, Key::End);
-    let (last, scene) = (s.state().opened_row(), Scene::clone(s.state().editor().scene()));
+    let (last, scene) = (s.state().opened_row(), Scene::clone(s.editor().scene()));
     let generator = Generator::new(s.state().radar(), Reading::Program, Purpose::Test, 7);
     assert_eq!((last, scene), (Some(9_999), generator.scene(Kind::Set2, 9_999)));
 }

@@ -1,20 +1,8 @@
 //! Figures on screen are those of the command line, bit for bit, after anything that the window showed before.
 
-use crate::session::{Session, harness, step_until};
-use apertura::app::{DocumentCommand, EditCommand, NewObject};
-use apertura::evaluate::rows::read_rows;
-use apertura::evaluate::trial::Trial;
-use apertura::interact::Document;
-use apertura::maps::Normalisation;
-use apertura::radar::Radar;
+use crate::session::*;
+use apertura::reconstruct::Hybrid;
 use apertura::reconstruct::search::Settings;
-use apertura::reconstruct::{About, Baseline, Hybrid, ReconstructError, Reconstruction, Reconstructor, Request};
-use apertura::scene::generate::Kind;
-use apertura::signal::{Floor, TwoEnds};
-use eframe::egui::vec2;
-use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 const SCENE: &str = "noise_seed = 12\n\n[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\
                      [[object]]\nkind = \"point\"\nx_metres = 3.0\ny_metres = 12.0\n\n\
@@ -33,9 +21,8 @@ fn on_screen(s: &Session) -> Figures {
     Figures { squared_error: m.squared_error, detection: m.detection, false_alarm: m.false_alarm }
 }
 
-/// The figures of `apertura evaluate --scenes` for one scene file.
 fn on_the_command_line(scene: &Path) -> Figures {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempdir().unwrap();
     std::fs::create_dir(folder.path().join("scenes")).unwrap();
     std::fs::copy(scene, folder.path().join("scenes/scene.toml")).unwrap();
     let mut program = assert_cmd::Command::new(env!("CARGO_BIN_EXE_apertura"));
@@ -49,12 +36,12 @@ fn on_the_command_line(scene: &Path) -> Figures {
 #[test]
 fn one_scene_has_one_set_of_figures() {
     let mut s = Session::start();
-    let file = s.folder.path().join("figures.toml");
+    let file = s.path("figures.toml");
     std::fs::write(&file, SCENE).unwrap();
     let expected = on_the_command_line(&file);
 
-    let app = harness(s.folder.path(), Some("figures.toml"), vec![Arc::new(Baseline)]);
-    let mut fresh = Session { app, folder: tempfile::tempdir().unwrap() };
+    let app = harness(s.folder.path(), Some("figures.toml"), baseline(), USUAL_SIZE);
+    let mut fresh = Session { app, folder: tempdir().unwrap() };
     fresh.settle();
     assert_eq!(on_screen(&fresh), expected, "after a fresh start");
     drop(fresh);
@@ -67,17 +54,15 @@ fn one_scene_has_one_set_of_figures() {
 
     let at = s.handle("point 2: move");
     s.drag(at, vec2(25.0, -9.0), 20);
-    let moved = s.folder.path().join("moved.toml");
-    Document::read(&s.folder.path().join("figures.toml")).expect("it is still there");
-    let scene = s.state().editor().document().to_file();
+    let moved = s.path("moved.toml");
+    Document::read(&s.path("figures.toml")).expect("it is still there");
+    let scene = s.editor().document().to_file();
     apertura::scene::file::save(&moved, &scene).unwrap();
     let expected = on_the_command_line(&moved);
     assert_eq!(on_screen(&s), expected, "after a drag");
-
-    let copy = s.folder.path().join("data/autosave.toml");
-    step_until(&mut s, "no autosave", |_| copy.exists());
-    let s = s.reopened(None, vec![Arc::new(Baseline)]);
-    assert_eq!(**s.state().editor().scene(), scene.scene);
+    s.wait_for_autosave();
+    let s = s.reopened(None, baseline());
+    assert_eq!(**s.editor().scene(), scene.scene);
     assert_eq!(on_screen(&s), expected, "after a restore");
 }
 
@@ -88,34 +73,21 @@ fn the_noise_belongs_to_the_scene() {
     s.ask(EditCommand::SetNoiseSeed(7));
     assert_ne!(on_screen(&s), before);
     s.ask(DocumentCommand::Save);
-    let path = s.folder.path().join("scene.toml");
+    let path = s.path("scene.toml");
     assert_eq!(Document::read(&path).unwrap().scene().noise_seed, 7);
     assert_eq!(on_screen(&s), on_the_command_line(&path));
     s.ask(EditCommand::Undo);
-    assert_eq!((s.state().editor().scene().noise_seed, on_screen(&s)), (0, before));
-}
-
-/// A method that counts its calls.
-struct Counted(Arc<AtomicU32>);
-
-impl Reconstructor for Counted {
-    fn about(&self) -> About {
-        About { name: "counted", description: "counts", told: "", eta: 0.5 }
-    }
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        self.0.fetch_add(1, Ordering::SeqCst);
-        Baseline.reconstruct(radar, ends, request)
-    }
+    assert_eq!((s.editor().scene().noise_seed, on_screen(&s)), (0, before));
 }
 
 #[test]
 fn a_scene_that_comes_to_rest_is_not_reconstructed_again() {
-    let asked = Arc::new(AtomicU32::new(0));
-    let mut s = Session::with_methods(vec![Arc::new(Counted(asked.clone()))]);
-    assert_eq!(asked.load(Ordering::SeqCst), 1);
+    let method = Stub::default();
+    let mut s = Session::with_methods(vec![Arc::new(method.clone())]);
+    assert_eq!(method.answers.load(SeqCst), 1);
     let before = on_screen(&s);
     s.ask(EditCommand::Add(NewObject::Point, None));
-    assert_eq!(asked.load(Ordering::SeqCst), 2);
+    assert_eq!(method.answers.load(SeqCst), 2);
     assert_ne!(on_screen(&s), before);
     assert!(s.state().is_settled() && !s.state().output_is_outdated());
 }
@@ -131,7 +103,7 @@ impl Reconstructor for Watched {
         self.method.about()
     }
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        self.asked[usize::from(request.may_follow)].fetch_add(1, Ordering::SeqCst);
+        self.asked[usize::from(request.may_follow)].fetch_add(1, SeqCst);
         self.method.estimate(radar, ends, request)
     }
     fn following(&self) -> Option<Arc<dyn Reconstructor>> {
@@ -142,7 +114,7 @@ impl Reconstructor for Watched {
 #[test]
 fn at_rest_the_answer_is_that_from_scratch() {
     let asked = Arc::new([AtomicU32::new(0), AtomicU32::new(0)]);
-    let count = |i: usize| asked[i].load(Ordering::SeqCst);
+    let count = |i: usize| asked[i].load(SeqCst);
     // Work enough for two points.
     let few = Settings { most_work: 1000, ..Settings::default() };
     let hybrid = Arc::new(Hybrid::new(Arc::new(Baseline)).with_settings(few));
@@ -150,10 +122,7 @@ fn at_rest_the_answer_is_that_from_scratch() {
     let scratch = count(0);
     assert!(scratch > 0);
     let at = s.handle("point 1: move");
-    s.app.hover_at(at);
-    s.app.step();
-    s.app.drag_at(at);
-    s.app.step();
+    s.hold(at);
     for i in 1..=3 {
         let followed = count(1);
         s.app.hover_at(at + vec2(6.0, 2.0) * i as f32);
@@ -163,7 +132,7 @@ fn at_rest_the_answer_is_that_from_scratch() {
     s.app.drop_at(at + vec2(18.0, 6.0));
     s.settle();
     assert_eq!(count(0), scratch + 1);
-    let trial = Trial::new(s.state().radar(), s.state().editor().scene(), Floor::Thesis, Normalisation::MinMax);
+    let trial = Trial::new(s.state().radar(), s.editor().scene(), Floor::Thesis, Normalisation::MinMax);
     let answer = trial.unwrap().ask(hybrid.as_ref(), &Request::default()).unwrap();
     assert_eq!(s.state().metrics(), Some(answer.metrics));
 }

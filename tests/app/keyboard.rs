@@ -1,27 +1,12 @@
 //! Everything can be reached and done without a pointer.
 
-use crate::session::Session;
-use apertura::app::EditCommand;
-use apertura::interact::SelectionMode;
-use eframe::egui::accesskit::Role;
-use eframe::egui::{Event, Key, Modifiers};
-use egui_kittest::kittest::{NodeT, Queryable};
+use crate::session::*;
 use std::collections::BTreeMap;
 
-/// Whether a person uses this element. A button on an object's handle stands for the arrow keys and the inspector.
 fn is_control(role: Role, name: &str) -> bool {
-    let control = matches!(
-        role,
-        Role::Button
-            | Role::CheckBox
-            | Role::RadioButton
-            | Role::SpinButton
-            | Role::Slider
-            | Role::ComboBox
-            | Role::TextInput
-            | Role::Link
-    );
-    control && !["point ", "line ", "cluster "].iter().any(|kind| name.starts_with(kind) && name.contains(": "))
+    let is_of_an_object =
+        ["point ", "line ", "cluster "].iter().any(|kind| name.starts_with(kind) && name.contains(": "));
+    is_used(role) && !is_of_an_object
 }
 
 #[test]
@@ -55,7 +40,7 @@ fn tab_comes_to_every_control_in_the_window() {
 #[test]
 fn objects_are_reached_by_the_keyboard() {
     let mut s = Session::start();
-    let selected = |s: &Session| s.state().editor().selection().single();
+    let selected = |s: &Session| s.editor().selection().single();
     s.press(Modifiers::NONE, Key::O);
     assert_eq!(selected(&s), Some(0));
     s.press(Modifiers::NONE, Key::O);
@@ -77,15 +62,13 @@ fn objects_are_reached_by_the_keyboard() {
 }
 
 fn selected(s: &Session) -> Option<usize> {
-    s.state().editor().selection().single()
+    s.editor().selection().single()
 }
 
-/// A window whose first point is selected, with a menu open.
 fn with_a_menu() -> Session {
     let mut s = Session::start();
-    s.ask(EditCommand::Select(vec![0], SelectionMode::Replace));
-    s.app.get_by_label("File").click();
-    s.settle();
+    s.select(0);
+    s.click("File");
     assert!(s.app.query_by_label("Unsaved scenes").is_some(), "the menu is open");
     s
 }
@@ -102,7 +85,7 @@ fn escape_closes_a_menu_before_anything_else() {
 #[test]
 fn keys_do_not_reach_the_scene_behind_a_menu() {
     let mut s = with_a_menu();
-    let (scene, place) = (s.state().editor().scene().clone(), s.place(0));
+    let (scene, place) = (s.editor().scene().clone(), s.place(0));
     for (modifiers, key) in [
         (Modifiers::NONE, Key::Delete),
         (Modifiers::NONE, Key::P),
@@ -113,7 +96,13 @@ fn keys_do_not_reach_the_scene_behind_a_menu() {
         s.press(modifiers, key);
     }
     assert_eq!((selected(&s), s.place(0)), (Some(0), place));
-    assert!(std::sync::Arc::ptr_eq(s.state().editor().scene(), &scene), "nothing was added or deleted");
+    assert!(std::sync::Arc::ptr_eq(s.editor().scene(), &scene), "nothing was added or deleted");
+}
+
+fn with_second() -> Session {
+    let mut s = Session::start();
+    s.select(1);
+    s
 }
 
 /// Types into the field for x of the selected object, and ends the entry with Enter.
@@ -128,50 +117,39 @@ fn enter_x(s: &mut Session, text: &str) {
 
 #[test]
 fn what_is_no_number_moves_nothing() {
-    let mut s = Session::start();
-    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
-    let (place, depth) = (s.place(1), s.state().editor().history().depth());
+    let mut s = with_second();
+    let (place, depth) = (s.place(1), s.editor().history().depth());
     for text in ["nan", "1e400", "abc", "1.234,5"] {
         enter_x(&mut s, text);
-        assert_eq!((s.place(1), s.state().editor().history().depth()), (place, depth), "{text}");
+        assert_eq!((s.place(1), s.editor().history().depth()), (place, depth), "{text}");
         let told = s.app.query_by_label_contains("Enter a number from −10000 to 10000 m.");
         assert!(told.is_some(), "{text}");
     }
 }
 
 #[test]
-fn keys_after_a_wrong_entry_stay_in_the_field() {
-    let mut s = Session::start();
-    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
+fn keys_after_a_wrong_entry_stay_in_the_field_until_escape() {
+    let mut s = with_second();
     enter_x(&mut s, "abc");
     s.app.event(Event::Text("o".to_owned()));
     s.press(Modifiers::NONE, Key::O);
     assert_eq!(selected(&s), Some(1));
     let field = s.app.get_by_role_and_label(Role::SpinButton, "x");
-    assert!(field.is_focused());
-    assert_eq!(field.value().as_deref(), Some("abco"));
-}
-
-#[test]
-fn escape_in_a_field_gives_the_entry_up() {
-    let mut s = Session::start();
-    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
-    enter_x(&mut s, "abc");
+    assert_eq!((field.is_focused(), field.value().as_deref()), (true, Some("abco")));
     s.press(Modifiers::NONE, Key::Escape);
-    assert_eq!((selected(&s), s.place(1)), (Some(1), [8.0, 12.0]));
-    assert!(s.app.query_by_label_contains("Enter a number").is_none());
+    assert_eq!((selected(&s), s.place(1)), (Some(1), [8.0, 12.0]), "the entry is given up");
+    assert!(!s.shows("Enter a number"));
 }
 
 #[test]
 fn each_entry_is_one_undo_step() {
-    let mut s = Session::start();
-    s.ask(EditCommand::Select(vec![1], SelectionMode::Replace));
+    let mut s = with_second();
     for text in ["-3,5", "4"] {
         enter_x(&mut s, text);
     }
     assert_eq!(s.place(1)[0], 4.0);
     for x in [-3.5, 8.0] {
-        s.press(Modifiers::COMMAND, Key::Z);
+        s.undo();
         assert_eq!(s.place(1)[0], x);
     }
 }

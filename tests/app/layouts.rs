@@ -1,12 +1,7 @@
 //! Other elements than those of the two ends are heard.
 
-use crate::session::Session;
-use apertura::app::{EditCommand, MapKind, RadarCommand, ViewCommand};
+use crate::session::*;
 use apertura::evaluate::Target;
-use apertura::evaluate::trial::Trial;
-use apertura::radar::{LayoutKind, Radar};
-use apertura::reconstruct::{Baseline, IAA, MatchedFilter, Reconstructor, Request};
-use std::sync::Arc;
 
 fn session() -> Session {
     let methods: [Arc<dyn Reconstructor>; 3] = [Arc::new(Baseline), Arc::new(MatchedFilter::Coherent), Arc::new(IAA)];
@@ -27,7 +22,7 @@ fn methods_hear_the_layout_that_was_chosen() {
     assert_eq!((s.state().shown_method(), s.state().messages()), (Some("iaa"), 1));
     let pictures = s.state().pictures();
     assert!(pictures.contains(&MapKind::Input0) && !pictures.contains(&MapKind::Input1), "{pictures:?}");
-    let (radar, scene, view) = (s.state().radar(), s.state().editor().scene(), &s.state().settings().view);
+    let (radar, scene, view) = (s.state().radar(), s.editor().scene(), &s.state().settings().view);
     let layout = nested().numbers(radar).unwrap();
     let (floor, normalisation) = (view.floor, view.normalisation);
     let trial = Trial::against(Target::Measured, Some(&layout), radar, scene, floor, normalisation).unwrap();

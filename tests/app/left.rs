@@ -1,19 +1,12 @@
 //! Left in the scene is left in every map: in the thesis' convention, in the physical one, and of a recording whose file lists the elements
 //! from the right.
 
-use crate::session::{Session, harness};
-use apertura::app::{DocumentCommand, ExportCommand, MapKind, Panel, ViewCommand, WindowCommand};
-use apertura::files::npz::write_npz;
+use crate::session::*;
 use apertura::picture::{PictureFormat, Style, compose, compose_recording};
-use apertura::radar::{Convention, Radar};
-use apertura::reconstruct::{Baseline, Reconstructor};
 use apertura::recording;
-use apertura::scene::{Reflector, Scene};
-use apertura::signal::{Floor, exact, simulate};
-use eframe::egui::{ColorImage, Modifiers, OutputCommand, PointerButton, Pos2, vec2};
-use egui_kittest::kittest::Queryable;
-use std::path::Path;
-use std::sync::Arc;
+use apertura::scene::Reflector;
+use apertura::signal::exact;
+use eframe::egui::ColorImage;
 
 /// The point that must be seen on the left.
 const POINT: [f64; 2] = [-8.0, 12.0];
@@ -26,7 +19,6 @@ fn radar(convention: Convention) -> Radar {
     table.in_convention(convention)
 }
 
-/// A scene of the point alone.
 fn scene(folder: &Path, convention: Convention) {
     let [x, y] = POINT;
     let text = format!(
@@ -37,45 +29,29 @@ fn scene(folder: &Path, convention: Convention) {
     std::fs::write(folder.join("scene.toml"), text).unwrap();
 }
 
-/// A physical radar's recording of the point, its last element first.
-fn recording(folder: &Path) {
+fn recording(folder: &Path) -> PathBuf {
     let radar = radar(Convention::Physical);
     let [x_metres, y_metres] = POINT;
     let mut samples = exact::beat_signal(&radar, &[Reflector { x_metres, y_metres, reflectivity: 1.0 }]).samples;
     samples.invert_axis(ndarray::Axis(0));
-    write_npz(&folder.join("r.npz"), |out| out.add("a", &samples)).unwrap();
-    let text = format!(
-        "format = 2\n[radar]\ncarrier = \"two-way\"\ncarrier_hz = 77e9\nbandwidth_hz = 2.5e8\n\
-         element_spacing_metres = {:?}\nelements = 128\nend_elements = 12\nsamples = 64\n\
-         [recording]\nfile = \"r.npz\"\narray = \"a\"\naxes = [\"element\", \"sample\"]\n\
-         carrier_at = \"first-sample\"\nbeat_sign = \"+\"\nreverse_elements = true\n",
-        radar.element_spacing_metres
-    );
-    std::fs::write(folder.join("r.toml"), text).unwrap();
+    let signs = "carrier_at = \"first-sample\"\nbeat_sign = \"+\"\nreverse_elements = true\n";
+    write_recording(folder, &radar, &samples, ["format = 2\n", signs])
 }
 
-/// A session with the point before a radar of `convention`.
 fn session(convention: Convention) -> Session {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempdir().unwrap();
     scene(folder.path(), convention);
-    let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline)];
-    let app = harness(folder.path(), Some("scene.toml"), methods);
-    let mut session = Session { app, folder };
-    session.settle();
-    session
+    Session::opened(folder, Some("scene.toml"), baseline(), USUAL_SIZE)
 }
 
-/// A session with the point as each of the three shows it.
 fn sessions() -> [(&'static str, Session); 3] {
     let mut recorded = session(Convention::Thesis);
-    recording(recorded.folder.path());
-    let path = recorded.folder.path().join("r.toml");
+    let path = recording(recorded.folder.path());
     recorded.ask(DocumentCommand::OpenPath(path));
     assert!(recorded.state().editor().document().recording().is_some());
     [("thesis", session(Convention::Thesis)), ("physical", session(Convention::Physical)), ("recording", recorded)]
 }
 
-/// The picture of a map, the farthest range on top.
 fn picture(s: &mut Session, kind: MapKind) -> Arc<ColorImage> {
     s.ask(WindowCommand::OpenPanel(Panel::Map(kind)));
     s.app.state_mut().ask(ExportCommand::CopyMap(kind));
@@ -97,7 +73,6 @@ fn brightest(image: &ColorImage) -> [f64; 2] {
     [mean(&|i| i % width, width), mean(&|i| i / width, height)]
 }
 
-/// Place on screen of the target's brightest cell.
 fn blob(s: &mut Session) -> Pos2 {
     let [across, down] = brightest(&picture(s, MapKind::Target));
     let rect = s.app.get_by_label("Target map").rect();
@@ -124,10 +99,7 @@ fn pointing_at_a_blob_reads_the_direction_of_its_object() {
         let at = blob(&mut s);
         s.app.hover_at(at);
         s.settle();
-        assert!(
-            s.app.query_all_by_label_contains("cos θ −0.5").next().is_some(),
-            "{name}: the pointer reads another direction"
-        );
+        assert!(s.shows("cos θ −0.5"), "{name}: the pointer reads another direction");
     }
 }
 
@@ -143,7 +115,7 @@ fn a_blob_on_the_left_is_clicked_and_dragged_as_its_object() {
             s.app.step();
         }
         s.settle();
-        assert_eq!(s.state().editor().selection().single(), Some(0), "{convention:?}");
+        assert_eq!(s.editor().selection().single(), Some(0), "{convention:?}");
         crate::session::step_until(&mut s, "no longer a double click", |s| {
             s.app.ctx.input(|i| i.pointer.time_since_last_click() > 1.0)
         });
@@ -152,14 +124,14 @@ fn a_blob_on_the_left_is_clicked_and_dragged_as_its_object() {
         assert!(s.place(0)[0] < POINT[0] - 0.5, "{convention:?}: dragged to {:?}", s.place(0));
         let off = blob(&mut s).distance(at + by);
         assert!(off < 6.0, "{convention:?}: its blob is {off} points beside the pointer");
+        s.undo();
+        assert_eq!(s.place(0), POINT);
     }
 }
 
-/// Pictures of the point as files have them.
 fn files() -> [(&'static str, Vec<u8>); 3] {
-    let folder = tempfile::tempdir().unwrap();
-    recording(folder.path());
-    let recording = recording::file::load(&folder.path().join("r.toml")).unwrap();
+    let folder = tempdir().unwrap();
+    let recording = recording::file::load(&recording(folder.path())).unwrap();
     let style = Style { floor: Floor::Exact, ..Style::default() };
     let of_scene = |convention| {
         let (radar, scene) = (radar(convention), Scene::of_points([POINT.into()]));

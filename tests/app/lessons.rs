@@ -1,21 +1,11 @@
 //! Every lesson taken in the whole app: answered right and wrong by pointer and keyboard, challenges met by the solution that is shown.
 
-use crate::session::{Session, step_until};
-use apertura::app::{
-    DocumentCommand, EditCommand, LessonCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, WindowCommand,
-};
+use crate::session::*;
+use apertura::interact::{Field, FieldChange};
 use apertura::lesson::question::Answer;
 use apertura::lesson::{Cell, Guess, Lesson, MapName, Question, Stage, Step, Truth, shipped};
-use apertura::radar::Radar;
-use eframe::egui::{Event, pos2};
-use egui_kittest::kittest::Queryable;
+use apertura::maps::cfar::Cfar;
 
-/// Whether a text stands somewhere on screen.
-fn shows(s: &Session, text: &str) -> bool {
-    s.app.query_all_by_label_contains(text).next().is_some()
-}
-
-/// A right guess, or a wrong one.
 fn guess(step: &Step, question: &Question, right: bool) -> Guess {
     let stage = Stage::new(&step.radar, &step.scene(), &step.view, question.needs_output()).unwrap();
     let half = step.radar.elements as f64 / 2.0;
@@ -28,7 +18,6 @@ fn guess(step: &Step, question: &Question, right: bool) -> Guess {
     }
 }
 
-/// Answers as a learner does.
 fn answer(s: &mut Session, step: &Step, question: &Question, guess: Guess) {
     match (&question.answer, guess) {
         (Answer::Click { map, .. }, Guess::Place(at)) => {
@@ -42,10 +31,7 @@ fn answer(s: &mut Session, step: &Step, question: &Question, guess: Guess) {
             let across = (at.column + 0.5) / step.radar.elements as f64;
             let up = (at.bin + 0.5) / step.radar.samples as f64;
             let to = pos2(rect.left() + across as f32 * rect.width(), rect.bottom() - up as f32 * rect.height());
-            s.app.hover_at(to);
-            s.app.step();
-            s.app.drag_at(to);
-            s.app.step();
+            s.hold(to);
             s.app.drop_at(to);
             s.app.step();
         }
@@ -63,29 +49,28 @@ fn answer(s: &mut Session, step: &Step, question: &Question, guess: Guess) {
     s.app.step();
 }
 
-/// Takes a step: the prediction right or wrong, then the challenge.
 fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
     let (step, place) = (&lesson.steps[number], format!("{}, step {}", lesson.title, number + 1));
     s.ask(LessonCommand::Step(number));
-    assert!(s.state().editor().scene().notes.is_empty(), "{place}: notes tell what is asked for");
+    assert!(s.editor().scene().notes.is_empty(), "{place}: notes tell what is asked for");
     if let Some(question) = &step.predict {
-        assert!(!shows(s, "Correct: "), "{place}");
+        assert!(!s.shows("Correct: "), "{place}");
         answer(s, step, question, guess(step, question, right));
         let verdict = if right { "Correct: " } else { "Not quite: " };
-        step_until(s, &format!("{place}: {verdict}"), |s| shows(s, verdict));
+        step_until(s, &format!("{place}: {verdict}"), |s| s.shows(verdict));
         let sentence = if right { &question.right } else { &question.wrong };
-        assert!(shows(s, sentence), "{place}: {sentence}");
+        assert!(s.shows(sentence), "{place}: {sentence}");
     }
     if step.challenge.is_some() {
-        step_until(s, &format!("{place}: a solution is offered"), |s| shows(s, "Show a solution"));
-        step_until(s, &format!("{place}: it is measured"), |s| !shows(s, "measuring…"));
-        assert!(!shows(s, "Solved. "), "{place}: met before anything is done");
+        step_until(s, &format!("{place}: a solution is offered"), |s| s.shows("Show a solution"));
+        step_until(s, &format!("{place}: it is measured"), |s| !s.shows("measuring…"));
+        assert!(!s.shows("Solved. "), "{place}: met before anything is done");
         s.app.get_by_label("Show a solution").scroll_to_me();
         (0..3).for_each(|_| s.app.step());
         s.app.get_by_label("Show a solution").click();
-        step_until(s, &format!("{place}: it counts as unsolved"), |s| shows(s, "counts as unsolved"));
+        step_until(s, &format!("{place}: it counts as unsolved"), |s| s.shows("counts as unsolved"));
         step_until(s, &format!("{place}: met"), |s| {
-            shows(s, "(now ") && !shows(s, "not met yet") && !shows(s, "measuring…")
+            s.shows("(now ") && !s.shows("not met yet") && !s.shows("measuring…")
         });
     }
 }
@@ -100,10 +85,10 @@ fn take_all(right: impl Fn(usize, usize) -> bool) {
             take(&mut s, &lesson, number, right(index, number));
         }
     }
-    let before = s.state().arrangement().is_open(apertura::app::Panel::Controls);
+    let before = s.state().arrangement().is_open(Panel::Controls);
     s.ask(LessonCommand::Leave);
-    s.press(eframe::egui::Modifiers::NONE, eframe::egui::Key::Escape);
-    assert!(!before && s.state().arrangement().is_open(apertura::app::Panel::Controls), "the panels are back");
+    s.press(Modifiers::NONE, Key::Escape);
+    assert!(!before && s.state().arrangement().is_open(Panel::Controls), "the panels are back");
     assert_eq!(s.state().radar().elements, 128, "and so is the scene");
 }
 
@@ -126,37 +111,30 @@ fn begin(s: &mut Session, id: &str, step: usize) {
     s.ask(LessonCommand::Step(step - 1));
 }
 
-/// Predicts, and waits for the verdict.
 fn predict(s: &mut Session, guess: Guess, verdict: &str) {
     s.ask(LessonCommand::Predict(guess));
-    step_until(s, verdict, |s| shows(s, verdict));
+    step_until(s, verdict, |s| s.shows(verdict));
     s.settle();
 }
 
 #[test]
 fn no_panel_answers_a_question_before_the_learner_does() {
     let mut s = Session::start();
+    begin(&mut s, "range-and-bandwidth", 1);
+    assert!(s.paints("range, m"), "a question about a place leaves the axes");
     begin(&mut s, "range-and-bandwidth", 3);
     for panel in [Panel::Inspector, Panel::Radar] {
         s.ask(WindowCommand::OpenPanel(panel));
     }
-    let tells = |s: &Session, text: &str| s.painted().iter().any(|t| t.contains(text));
     // The question itself says "maximum range": the Radar panel would say how much.
     for answer in ["range, m", "maximum range 5", "511.67 m", "500 m"] {
-        assert!(!tells(&s, answer), "{answer}: {:?}", s.painted());
+        assert!(!s.paints(answer), "{answer}: {:?}", s.painted());
     }
-    assert!(tells(&s, "Hidden until you have predicted."));
+    assert!(s.paints("Hidden until you have predicted."));
     predict(&mut s, Guess::Number(512.0), "Correct: ");
     for told in ["range, m", "maximum range 5"] {
-        assert!(tells(&s, told), "{told}: {:?}", s.painted());
+        assert!(s.paints(told), "{told}: {:?}", s.painted());
     }
-}
-
-#[test]
-fn a_question_about_a_place_leaves_the_axes() {
-    let mut s = Session::start();
-    begin(&mut s, "range-and-bandwidth", 1);
-    assert!(s.painted().iter().any(|t| t == "range, m"));
 }
 
 #[test]
@@ -165,9 +143,9 @@ fn the_number_of_blobs_is_not_told_while_maps_are_hidden() {
     begin(&mut s, "what-a-network-can-know", 1);
     s.ask(ViewCommand::Method("baseline"));
     s.ask(WindowCommand::OpenPanel(Panel::Controls));
-    assert!(!shows(&s, " in the target, "));
+    assert!(!s.shows(" in the target, "));
     predict(&mut s, Guess::Choice(1), "Correct: ");
-    step_until(&mut s, "figures come with the maps", |s| shows(s, " in the target, "));
+    step_until(&mut s, "figures come with the maps", |s| s.shows(" in the target, "));
 }
 
 #[test]
@@ -175,12 +153,10 @@ fn going_back_keeps_the_verdict() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 4);
     predict(&mut s, Guess::Choice(1), "Not quite: the answer is “It stays”.");
-    s.app.get_by_label("Previous").click();
-    s.settle();
-    assert!(!shows(&s, "Not quite"));
-    s.app.get_by_label("Next").click();
-    s.settle();
-    assert!(shows(&s, "Not quite") && shows(&s, "the right answer"));
+    s.click("Previous");
+    assert!(!s.shows("Not quite"));
+    s.click("Next");
+    assert!(s.shows("Not quite") && s.shows("the right answer"));
 }
 
 #[test]
@@ -202,16 +178,15 @@ fn a_shown_solution_is_unsolved_until_the_step_is_begun_again() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 5);
     let is_met = |s: &Session| s.state().progress().record("range-and-bandwidth", 4).challenge_met;
-    let measured = |s: &Session| shows(s, "(now ") && !shows(s, "not met yet");
+    let measured = |s: &Session| s.shows("(now ") && !s.shows("not met yet");
     s.ask(LessonCommand::ShowSolution);
     step_until(&mut s, "the solution is measured", measured);
-    assert!(!is_met(&s) && shows(&s, "counts as unsolved"));
-    s.app.get_by_label("Start this step again").click();
-    s.settle();
-    step_until(&mut s, "the step is as it was", |s| shows(s, "not met yet"));
+    assert!(!is_met(&s) && s.shows("counts as unsolved"));
+    s.click("Start this step again");
+    step_until(&mut s, "the step is as it was", |s| s.shows("not met yet"));
     let radar = Radar { bandwidth_hz: 0.95e9, ..s.state().radar().clone() };
     s.ask(RadarCommand::Set(Box::new(radar)));
-    step_until(&mut s, "it is solved", |s| shows(s, "Solved. "));
+    step_until(&mut s, "it is solved", |s| s.shows("Solved. "));
     assert!(is_met(&s));
 }
 
@@ -225,7 +200,7 @@ fn lessons_close_the_panels_that_they_do_not_use() {
         assert!(!is_open(&s, kind), "{kind:?}");
     }
     assert!(!s.state().arrangement().is_open(Panel::Roc) && is_open(&s, MapKind::Target));
-    assert!(!shows(&s, "Reconstruction"));
+    assert!(!s.shows("Reconstruction"));
     begin(&mut s, "the-floor", 1);
     assert!(is_open(&s, MapKind::TargetAbove) && !is_open(&s, MapKind::Output));
     begin(&mut s, "what-a-network-can-know", 1);
@@ -238,7 +213,7 @@ fn lessons_close_the_panels_that_they_do_not_use() {
 #[test]
 fn undo_stops_at_the_scene_of_the_step() {
     let mut s = Session::start();
-    let objects = |s: &Session| s.state().editor().scene().objects.len();
+    let objects = |s: &Session| s.objects().len();
     begin(&mut s, "range-and-bandwidth", 1);
     let of_step = objects(&s);
     s.ask(EditCommand::Add(NewObject::Point, None));
@@ -274,15 +249,15 @@ fn the_end_of_a_lesson_gives_the_zoom_back() {
 fn a_lesson_file_whose_solution_fails_is_refused() {
     let mut s = Session::start();
     let good = shipped::ALL.iter().find(|file| file.id == "range-and-bandwidth").unwrap().toml;
-    let path = s.folder.path().join("lesson.toml");
+    let path = s.path("lesson.toml");
     std::fs::write(&path, good.replace("bandwidth_hz = 0.95e9", "bandwidth_hz = 0.21e9")).unwrap();
     s.ask(LessonCommand::OpenFile(path.clone()));
-    assert!(shows(&s, "the solution does not meet the challenge") && shows(&s, "lesson.toml: line "));
-    assert!(!shows(&s, "Step 1 of 5"));
+    assert!(s.shows("the solution does not meet the challenge") && s.shows("lesson.toml: line "));
+    assert!(!s.shows("Step 1 of 5"));
     s.ask(WindowCommand::CloseMessages);
     std::fs::write(&path, good).unwrap();
     s.ask(LessonCommand::OpenFile(path));
-    assert!(shows(&s, "Step 1 of 5") && s.state().messages() == 0);
+    assert!(s.shows("Step 1 of 5") && s.state().messages() == 0);
 }
 
 #[test]
@@ -295,44 +270,50 @@ fn a_lesson_is_shared_at_its_step() {
     s.ask(LessonCommand::Leave);
     assert_eq!(s.state().radar().elements, 128);
     s.ask(EditCommand::PasteText(text));
-    assert!(shows(&s, "Step 3 of 5"));
+    assert!(s.shows("Step 3 of 5"));
     assert_eq!(*s.state().radar(), radar);
     s.ask(EditCommand::PasteText("apertura:1:damaged".to_owned()));
-    assert!(shows(&s, "copy all of it again"));
+    assert!(s.shows("copy all of it again"));
 }
 
 #[test]
-fn a_shared_scene_comes_with_its_view() {
+fn a_shared_scene_comes_with_its_view_and_time() {
     let mut s = Session::start();
-    s.ask(ViewCommand::ToggleProjection);
-    s.ask(ViewCommand::ToggleTheory);
-    s.ask(ViewCommand::SetTargetEta(0.5));
-    let text = s.state().shared_text().unwrap();
+    s.ask(EditCommand::SelectAll);
+    s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(10.0)));
+    let seen = |s: &Session| {
+        let settings = s.state().settings();
+        (settings.projection, settings.show_theory, settings.target_eta, settings.cfar)
+    };
+    let look = |s: &mut Session, eta: f32, cfar: Option<Cfar>| {
+        for command in [ViewCommand::ToggleProjection, ViewCommand::ToggleTheory, ViewCommand::SetTargetEta(eta)] {
+            s.ask(command);
+        }
+        s.ask(ViewCommand::SetCfar(cfar));
+    };
+    look(&mut s, 0.5, Some(Cfar::default()));
+    s.ask(ViewCommand::SetTime(0.5));
+    let (text, shown) = (s.state().shared_text().unwrap(), seen(&s));
     s.ask(DocumentCommand::Preset(0));
-    s.ask(ViewCommand::ToggleProjection);
-    s.ask(ViewCommand::ToggleTheory);
-    s.ask(ViewCommand::SetTargetEta(0.9));
-    let other = s.state().editor().scene().clone();
+    look(&mut s, 0.9, None);
+    let other = (s.editor().scene().clone(), seen(&s));
     s.ask(DocumentCommand::OpenShared(text));
-    assert_eq!(s.state().radar().elements, 128);
-    assert_eq!(s.state().settings().projection, apertura::app::Projection::Cartesian);
-    assert!(s.state().settings().show_theory && s.state().settings().target_eta == 0.5);
+    assert_eq!((s.state().radar().elements, s.state().time_seconds(), seen(&s)), (128, 0.5, shown));
+    assert_eq!(s.state().scene_at_time().objects[0].centre_metres(), [0.0, 25.0]);
     s.ask(EditCommand::Undo);
-    assert_eq!(s.state().editor().scene(), &other);
-    assert_eq!(s.state().settings().target_eta, 0.9);
+    assert_eq!((s.editor().scene().clone(), seen(&s)), other);
 }
 
 #[test]
 fn hidden_tools_compute_nothing() {
     let mut s = Session::start();
     s.ask(ViewCommand::ToggleTheory);
-    s.ask(WindowCommand::OpenPanel(apertura::app::Panel::Several));
+    s.ask(WindowCommand::OpenPanel(Panel::Several));
     step_until(&mut s, "all four windows are there", |s| s.state().several_maps_made() == 4);
-    s.app.get_by_label("window: rectangular").click();
-    s.settle();
-    assert_eq!(s.state().radar().window, apertura::radar::WindowFunction::Rectangular);
-    s.press(eframe::egui::Modifiers::COMMAND, eframe::egui::Key::Z);
-    assert_eq!(s.state().radar().window, apertura::radar::WindowFunction::Hann);
+    s.click("window: rectangular");
+    assert_eq!(s.state().radar().window, WindowFunction::Rectangular);
+    s.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(s.state().radar().window, WindowFunction::Hann);
 }
 
 #[test]
@@ -363,7 +344,7 @@ fn a_challenge_shows_its_control_and_where_it_happens() {
     assert!(s.state().arrangement().shown().contains(&Panel::Radar), "{:?}", s.state().arrangement().shown());
     let part = s.state().views().1.range_angle;
     assert!(part.high.y - part.low.y < 0.1, "the two points alone: {part:?}");
-    step_until(&mut s, "it is measured", |s| shows(s, "A dip of at least 0.06 between the two in the target"));
+    step_until(&mut s, "it is measured", |s| s.shows("A dip of at least 0.06 between the two in the target"));
     let radar = Radar { bandwidth_hz: 0.95e9, ..s.state().radar().clone() };
     s.ask(RadarCommand::Set(Box::new(radar)));
     let followed = s.state().views().1.range_angle;
@@ -377,11 +358,7 @@ fn a_challenge_shows_its_control_and_where_it_happens() {
 #[test]
 fn the_question_is_in_view_on_a_projector() {
     for size in [[1440.0, 900.0], [1024.0, 640.0]] {
-        let folder = tempfile::tempdir().unwrap();
-        let methods: Vec<std::sync::Arc<dyn apertura::reconstruct::Reconstructor>> =
-            vec![std::sync::Arc::new(apertura::reconstruct::Baseline)];
-        let app = crate::session::harness_of(folder.path(), None, methods, size);
-        let mut s = Session { app, folder };
+        let mut s = Session::opened(tempdir().unwrap(), None, baseline(), size);
         s.ask(LessonCommand::Present);
         for (id, step) in [("range-and-bandwidth", 1), ("which-points-a-car-is", 4), ("folding-and-wrapping", 4)] {
             begin(&mut s, id, step);

@@ -1,11 +1,7 @@
 //! Objects that move: the range-Doppler map, and the time at which the scene is looked at.
 
-use crate::session::{Session, step_until};
-use apertura::app::{Command, EditCommand, Panel, RadarCommand, ViewCommand, WindowCommand};
+use crate::session::*;
 use apertura::interact::{Field, FieldChange};
-use apertura::radar::Radar;
-use eframe::egui::{Key, Modifiers, vec2};
-use std::sync::Arc;
 
 fn moving() -> Session {
     let mut s = Session::start();
@@ -24,10 +20,10 @@ fn a_closed_range_doppler_map_or_one_chirp_costs_nothing() {
     let (_, column) = s.state().doppler_peak().expect("a map");
     let velocity = radar.velocity_of_column_metres_per_second(column as f64);
     // The nearer of the two is the louder one.
-    let expected = s.state().editor().scene().objects[1].radial_velocity_metres_per_second();
+    let expected = s.objects()[1].radial_velocity_metres_per_second();
     assert!((velocity - expected).abs() < 0.6 * radar.velocity_resolution_metres_per_second(), "{velocity}");
     let asked = s.state().dopplers_asked();
-    s.press(Modifiers::COMMAND, Key::Z);
+    s.undo();
     assert_eq!((s.state().radar().chirps, s.state().dopplers_asked()), (1, asked), "chirps are undone");
     s.ask(RadarCommand::Set(Box::new(radar)));
     assert_eq!(s.state().radar().chirps, 64);
@@ -40,29 +36,18 @@ fn a_closed_range_doppler_map_or_one_chirp_costs_nothing() {
 #[test]
 fn maps_follow_time_but_the_document_stays() {
     let mut s = moving();
-    let document = s.state().editor().scene().clone();
+    let document = s.editor().scene().clone();
     let (requested, _) = s.state().work_done();
     let at = s.handle("point 1: move");
     s.ask(ViewCommand::SetTime(0.5));
-    assert!(Arc::ptr_eq(s.state().editor().scene(), &document) && s.state().work_done().0 > requested);
+    assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().work_done().0 > requested);
     assert_eq!(s.state().scene_at_time().objects[0].centre_metres(), [0.0, 25.0]);
     // A press in the scene goes back; the next drag edits.
     s.drag(at, vec2(30.0, 0.0), 3);
-    assert!(Arc::ptr_eq(s.state().editor().scene(), &document) && s.state().time_seconds() == 0.0);
+    assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().time_seconds() == 0.0);
     s.ask(ViewCommand::SetTime(0.5));
     s.ask(EditCommand::Nudge { dx_metres: 1.0, dy_metres: 0.0 });
     assert_eq!((s.place(0), s.state().time_seconds()), ([1.0, 20.0], 0.0));
-}
-
-#[test]
-fn a_shared_text_opens_at_the_time_on_screen() {
-    let mut s = moving();
-    s.ask(ViewCommand::SetTime(0.5));
-    let text = s.state().shared_text().unwrap();
-    s.ask(ViewCommand::SetTime(0.0));
-    s.ask(EditCommand::PasteText(text));
-    assert_eq!(s.state().time_seconds(), 0.5);
-    assert_eq!(s.state().scene_at_time().objects[0].centre_metres(), [0.0, 25.0]);
 }
 
 #[test]

@@ -1,30 +1,12 @@
 //! Names for screen readers, and the window at twice the size.
 
-use crate::session::Session;
-use apertura::app::{Command, DocumentCommand, EditCommand, MapKind, Panel, RadarCommand, WindowCommand};
-use apertura::interact::SelectionMode;
-use eframe::egui::accesskit::Role;
-use eframe::egui::{Key, Modifiers, vec2};
-use egui_kittest::kittest::{NodeT, Queryable};
+use crate::session::*;
 
 /// Whether an element of this role is used or has to be read out, so that it needs a name.
 fn has_to_be_named(role: Role) -> bool {
-    matches!(
-        role,
-        Role::Button
-            | Role::CheckBox
-            | Role::RadioButton
-            | Role::SpinButton
-            | Role::Slider
-            | Role::ComboBox
-            | Role::TextInput
-            | Role::Link
-            | Role::Image
-            | Role::Canvas
-    )
+    is_used(role) || matches!(role, Role::Image | Role::Canvas)
 }
 
-/// Controls and pictures without a name, as the window is.
 fn nameless(s: &Session, what: &str) -> Vec<String> {
     let nodes = s.app.root().children_recursive().map(|node| node.accesskit_node()).collect::<Vec<_>>();
     let named = nodes.iter().filter(|n| has_to_be_named(n.role()));
@@ -80,8 +62,7 @@ fn captions_name_every_map_until_the_first_drag() {
     assert!(s.painted().iter().any(|t| t.starts_with("Drag a reflector")), "{:?}", s.painted());
     let at = s.handle("point 1: move");
     s.drag(at, eframe::egui::vec2(30.0, 0.0), 3);
-    assert!(!s.state().shows_captions());
-    assert!(!s.painted().iter().any(|t| t.starts_with("Target: all")));
+    assert!(!s.state().shows_captions() && !s.painted().iter().any(|t| t.starts_with("Target: all")));
     s.ask(Command::Window(WindowCommand::ToggleCaptions));
     assert!(s.state().shows_captions(), "Help brings them back");
     s.ask(Command::Edit(apertura::app::EditCommand::Select(vec![0], SelectionMode::Replace)));
@@ -106,19 +87,13 @@ fn maps_bend_into_cartesian_ones_in_half_a_second() {
     }
     assert!((20..=60).contains(&frames), "{frames} frames of a sixtieth of a second");
     s.settle();
-    s.app.get_by_label("Target: straighten into cos θ and range").click();
-    s.settle();
+    s.click("Target: straighten into cos θ and range");
     assert_eq!(s.state().settings().projection, apertura::app::Projection::RangeAngle);
 }
 
 #[test]
 fn nothing_is_cut_off_at_twice_the_size() {
-    use crate::session::harness_of;
-    let folder = tempfile::tempdir().unwrap();
-    let app =
-        harness_of(folder.path(), None, vec![std::sync::Arc::new(apertura::reconstruct::Baseline)], [720.0, 450.0]);
-    let mut s = Session { app, folder };
-    s.settle();
+    let mut s = Session::opened(tempdir().unwrap(), None, baseline(), [720.0, 450.0]);
     s.ask(Command::Window(WindowCommand::ClosePanel(Panel::Controls)));
     let cut = wider_than_their_place(&s);
     assert!(cut.is_empty(), "{cut:?}");

@@ -1,21 +1,14 @@
 //! A window as narrow as a telephone.
 
-use crate::session::{Session, harness_of};
-use apertura::reconstruct::Baseline;
-use eframe::egui::accesskit::Role;
-use eframe::egui::{Rect, vec2};
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
+use crate::session::*;
+use eframe::egui::Rect;
 
 fn narrow() -> Session {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempdir().unwrap();
     let scene = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\
                  [[object]]\nkind = \"point\"\nx_metres = 0.0\ny_metres = 20.0\n";
     std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
-    let app = harness_of(folder.path(), Some("scene.toml"), vec![Arc::new(Baseline)], [390.0, 844.0]);
-    let mut session = Session { app, folder };
-    session.settle();
-    session
+    Session::opened(folder, Some("scene.toml"), baseline(), [390.0, 844.0])
 }
 
 #[test]

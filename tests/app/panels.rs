@@ -1,20 +1,10 @@
 //! Panels that are shown, and the work that is done for them and for no others.
 
-use crate::session::Session;
-use apertura::app::{
-    ChirpSettings, Command, DocumentCommand, MapKind, Panel, RadarCommand, Units, ViewCommand, WindowCommand,
-};
+use crate::session::*;
+use apertura::app::{ChirpSettings, Units};
 use apertura::engine::EngineStage;
-use apertura::maps::Normalisation;
-use apertura::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
-use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
-use apertura::scene::Object;
-use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
-use apertura::signal::Floor;
 use apertura::theory::chirp::{ChirpShape, heard};
-use eframe::egui::{Event, Key, Modifiers, Rangef, vec2};
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
+use eframe::egui::Rangef;
 
 #[test]
 fn idling_computes_nothing() {
@@ -77,10 +67,8 @@ fn hidden_panels_are_not_computed() {
     s.ask(DocumentCommand::RandomScene(Kind::Set2));
     let report = s.state().report().unwrap();
     assert!(report.ran(EngineStage::FirstMap) && report.ran(EngineStage::FullMap));
-    assert!(
-        !report.ran(EngineStage::LastMap) && !report.ran(EngineStage::Ends),
-        "nobody looks at input 1 or an output"
-    );
+    let holds = !report.ran(EngineStage::LastMap) && !report.ran(EngineStage::Ends);
+    assert!(holds, "nobody looks at input 1 or an output");
     s.ask(WindowCommand::TogglePanel(Panel::Map(MapKind::Input1)));
     assert!(s.state().pictures().contains(&MapKind::Input1));
 }
@@ -100,51 +88,27 @@ fn a_maximised_map_is_the_only_one_computed() {
 }
 
 #[test]
-fn the_palette_runs_a_command_by_name() {
-    let mut s = Session::start();
-    s.press(Modifiers::COMMAND, Key::K);
-    s.app.event(Event::Text("add line".to_owned()));
-    s.settle();
-    s.press(Modifiers::NONE, Key::Enter);
-    let objects = &s.state().editor().scene().objects;
-    assert!(matches!(objects.last(), Some(Object::Line(_))), "{objects:?}");
-    let _shown = s.handle("line 3: move the near end: more or fewer reflectors");
-}
-
-#[test]
-fn the_palette_knows_every_name() {
+fn the_palette_runs_every_command_by_name() {
     let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)]);
-    let by_palette = |s: &mut Session, text: &str| {
+    let mut by_palette = |text: &str| {
         s.press(Modifiers::COMMAND, Key::K);
         s.app.event(Event::Text(text.to_owned()));
         s.settle();
         s.press(Modifiers::NONE, Key::Enter);
+        (s.state().shown_method(), s.objects().len())
     };
-    assert_eq!(s.state().shown_method(), Some("baseline"));
-    by_palette(&mut s, "method capon");
-    assert_eq!(s.state().shown_method(), Some("capon"));
-    by_palette(&mut s, "preset two close");
-    assert_eq!(s.state().editor().scene().objects.len(), 2);
-}
-
-#[test]
-fn messages_can_be_closed() {
-    let mut s = Session::start();
-    s.ask(DocumentCommand::OpenPath(s.folder.path().join("missing.toml")));
-    assert_eq!(s.state().messages(), 1);
-    s.app.get_by_label("Close this message").click();
-    s.settle();
-    assert_eq!(s.state().messages(), 0);
+    assert_eq!(by_palette("add line"), (Some("baseline"), 3));
+    assert_eq!(by_palette("method capon"), (Some("capon"), 3));
+    assert_eq!(by_palette("preset two close"), (Some("capon"), 2));
+    s.undo();
+    let _shown = s.handle("line 3: move the near end: more or fewer reflectors");
 }
 
 #[test]
 fn the_window_function_reaches_the_maps() {
     let mut s = Session::start();
     let (requests, painted) = s.state().work_done();
-    s.app.get_by_label("hamming").scroll_to_me();
-    s.settle();
-    s.app.get_by_label("hamming").click();
-    s.settle();
+    s.find_and_click("hamming");
     assert_eq!(s.state().radar().window, WindowFunction::Hamming);
     let after = s.state().work_done();
     assert!(after.0 > requests && after.1 >= painted + 6, "every map was made again");
@@ -178,9 +142,6 @@ fn phasors_follow_the_cursor() {
     let map = s.app.get_by_label("Target map").rect();
     s.app.hover_at(map.lerp_inside(vec2(0.4, 0.4)));
     s.settle();
-    if let Some(path) = std::env::var_os("PHASOR_PICTURE") {
-        s.app.render().unwrap().save(path).unwrap();
-    }
     let (moved, another) = s.state().phasor_sum().unwrap();
     assert!(moved != cell && another != sum, "{cell:?} {moved:?}");
     let asked = s.state().phasors_asked();
@@ -197,7 +158,7 @@ fn the_beat_on_screen_is_that_of_the_strongest_echo() {
     s.ask(WindowCommand::OpenPanel(Panel::Chirp));
     let bin = |s: &Session| {
         let chirp = ChirpShape::of(s.state().radar());
-        let echoes = heard(s.state().radar(), s.state().editor().scene(), s.state().settings().chirp.element);
+        let echoes = heard(s.state().radar(), s.editor().scene(), s.state().settings().chirp.element);
         let strongest = echoes.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
         chirp.range_bin(chirp.beat_hz(strongest.range_metres))
     };
@@ -224,7 +185,7 @@ fn pinned_cuts_outlive_their_scene() {
     s.press(Modifiers::NONE, Key::D);
     assert_eq!(s.state().settings().units, Units::Decibels);
     s.ask(ViewCommand::UnpinAll);
-    assert!(s.app.query_by_label_contains("Unpin 1: ").is_none());
+    assert!(!s.shows("Unpin 1: "));
 }
 
 #[test]
@@ -240,7 +201,6 @@ fn a_difference_is_painted_again_when_its_scale_changes() {
     }
 }
 
-/// Turns the guide's chapters until a button comes, and presses it.
 fn press_in_the_guide(s: &mut Session, name: &str) {
     use eframe::egui::accesskit::Role;
     while s.app.query_by_role_and_label(Role::Button, name).is_none() {
@@ -259,7 +219,7 @@ fn every_button_of_the_guide_leaves_a_working_app() {
     s.ask(WindowCommand::Maximise(Panel::Guide));
     press_in_the_guide(&mut s, "Two-way");
     assert_eq!(s.state().radar().carrier, Carrier::TwoWay);
-    assert_eq!(s.state().editor().scene().name, "Four reflectors");
+    assert_eq!(s.editor().scene().name, "Four reflectors");
     assert_eq!(s.state().messages(), 0);
 }
 
@@ -268,18 +228,18 @@ fn undo_takes_back_everything_that_a_button_of_the_guide_did() {
     let mut s = Session::start();
     s.ask(ViewCommand::SetFloor(Floor::Snr(Decibels(30.0))));
     let (scene, radar, settings) =
-        (s.state().editor().scene().clone(), s.state().radar().clone(), s.state().settings().clone());
+        (s.editor().scene().clone(), s.state().radar().clone(), s.state().settings().clone());
     s.ask(WindowCommand::Maximise(Panel::Guide));
     for button in ["No window", "Hamming"] {
         press_in_the_guide(&mut s, button);
     }
     assert_eq!((s.state().radar().window, s.state().settings().floor), (WindowFunction::Hamming, Floor::Exact));
-    s.press(Modifiers::COMMAND, Key::Z);
+    s.undo();
     assert_eq!(s.state().radar().window, WindowFunction::Rectangular);
-    s.press(Modifiers::COMMAND, Key::Z);
-    assert!(Arc::ptr_eq(&scene, s.state().editor().scene()));
+    s.undo();
+    assert!(Arc::ptr_eq(&scene, s.editor().scene()));
     assert_eq!((s.state().radar(), s.state().settings()), (&radar, &settings));
-    s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    s.redo();
     assert_eq!((s.state().radar().window, s.state().settings().floor), (WindowFunction::Rectangular, Floor::Exact));
 }
 
@@ -290,7 +250,7 @@ fn random_scenes_are_those_of_the_tables() {
     for number in [3, 4] {
         s.ask(DocumentCommand::RandomScene(Kind::Set3));
         let generator = Generator::new(s.state().radar(), Reading::Program, Purpose::Test, 7);
-        assert_eq!(s.state().editor().scene().objects, generator.scene(Kind::Set3, number).objects);
+        assert_eq!(s.objects(), generator.scene(Kind::Set3, number).objects);
     }
 }
 

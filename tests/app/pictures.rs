@@ -1,21 +1,16 @@
 //! The app's panels as pictures, compared with those in `tests/snapshots`. Needs a Vulkan driver (lavapipe will do) and is skipped
 //! without one. After a change that is meant to be seen: `UPDATE_SNAPSHOTS=1 cargo test --test app pictures`.
 
-use apertura::app::{App, Command, EditCommand, Options, Panel, ViewCommand, WindowCommand};
-use apertura::reconstruct::Baseline;
+use crate::session::*;
 use eframe::egui::Theme;
+use egui_kittest::SnapshotOptions;
 use egui_kittest::wgpu::WgpuTestRenderer;
-use egui_kittest::{Harness, SnapshotOptions};
 use std::panic::catch_unwind;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
 
-/// A radar small enough that its maps take a moment only.
 const SCENE: &str = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\
                      [[object]]\nkind = \"point\"\nx_metres = -9.0\ny_metres = 20.0\n\n\
                      [[object]]\nkind = \"line\"\nx_metres = 8.0\ny_start_metres = 8.0\nspacing_metres = 0.5\ncount = 30\n";
 
-/// The renderer, where there is a driver for it.
 fn renderer() -> Option<WgpuTestRenderer> {
     let made = catch_unwind(WgpuTestRenderer::new);
     if made.is_err() {
@@ -24,13 +19,12 @@ fn renderer() -> Option<WgpuTestRenderer> {
     made.ok()
 }
 
-/// Takes a picture of one panel that fills a small window.
 fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
     let Some(renderer) = renderer() else { return };
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempdir().unwrap();
     let scene = folder.path().join("scene.toml");
     std::fs::write(&scene, SCENE).unwrap();
-    let options = Options { scene: Some(scene), methods: vec![Arc::new(Baseline)], ..Options::default() };
+    let options = Options { scene: Some(scene), methods: baseline(), ..Options::default() };
     let mut app: Harness<'_, App> = Harness::builder()
         .with_size([560.0, 400.0])
         .renderer(renderer)
@@ -54,22 +48,9 @@ fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
 }
 
 #[test]
-fn the_scene_in_light() {
-    compare("scene-light", Theme::Light, Panel::Scene, vec![Command::Edit(EditCommand::SelectAll)]);
-}
-
-#[test]
-fn the_target_in_dark() {
-    use apertura::app::MapKind;
-    compare(
-        "target-dark",
-        Theme::Dark,
-        Panel::Map(MapKind::Target),
-        vec![Command::View(ViewCommand::ToggleReflectors)],
-    );
-}
-
-#[test]
-fn the_guide_in_light() {
+fn panels_look_as_in_their_pictures() {
+    let target = Panel::Map(MapKind::Target);
+    compare("scene-light", Theme::Light, Panel::Scene, vec![EditCommand::SelectAll.into()]);
+    compare("target-dark", Theme::Dark, target, vec![ViewCommand::ToggleReflectors.into()]);
     compare("guide-light", Theme::Light, Panel::Guide, vec![]);
 }

@@ -1,10 +1,6 @@
 //! The presentation, and pictures for slides.
 
-use crate::session::{Session, step_until};
-use apertura::app::{ExportCommand, MapKind, Panel, WindowCommand};
-use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Shape, vec2};
-use egui_kittest::kittest::Queryable;
-use std::collections::BTreeSet;
+use crate::session::*;
 
 #[test]
 fn one_key_toggles_a_presentation() {
@@ -82,33 +78,4 @@ fn a_map_is_copied_upright_a_pixel_a_cell() {
     let before = s.state().messages();
     s.ask(ExportCommand::CopyMap(MapKind::Target));
     assert_eq!(s.state().messages(), before + 1, "a map that isn't drawn is no picture: that is told");
-}
-
-#[test]
-fn a_blob_in_a_map_stands_for_its_reflector() {
-    let mut s = Session::start();
-    let rect = s.app.get_by_label("Target map").rect();
-    let radar = s.state().radar().clone();
-    let at = |place: [f64; 2]| {
-        let blob = radar.blob_of(0.0, place[0], place[1]);
-        let across = radar.across_of_column(radar.column_of_cos(blob.cos_theta));
-        let up = (radar.bin_of_range(blob.range_metres) + 0.5) / radar.samples as f64;
-        rect.left_bottom() + vec2(rect.width() * across as f32, -rect.height() * up as f32)
-    };
-    let from = at(s.place(1));
-    for pressed in [true, false] {
-        s.app.hover_at(from);
-        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-        s.app.event(Event::PointerButton { pos: from, button, pressed, modifiers });
-        s.app.step();
-    }
-    s.settle();
-    assert_eq!(s.state().editor().selection().single(), Some(1));
-    step_until(&mut s, "no longer a double click", |s| s.app.ctx.input(|i| i.pointer.time_since_last_click() > 1.0));
-    assert!(rect.contains(from), "it is grasped in the map");
-    s.drag(from, vec2(-40.0, 20.0), 5);
-    let moved = at(s.place(1));
-    assert!(moved.distance(from + vec2(-40.0, 20.0)) < 2.0, "{moved} from {from}");
-    s.press(Modifiers::COMMAND, Key::Z);
-    assert_eq!(s.place(1), [8.0, 12.0]);
 }

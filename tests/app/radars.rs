@@ -1,15 +1,9 @@
 //! Radars that the thesis never had, in the app: maps, every model-based method, lists.
 
-use crate::session::Session;
-use apertura::app::{DocumentCommand, MapKind, Panel, RadarCommand, ViewCommand, WindowCommand};
-use apertura::maps::Normalisation;
+use crate::session::*;
 use apertura::methods;
-use apertura::radar::{Carrier, Convention, Decibels, Radar, SPEED_OF_LIGHT, presets};
+use apertura::radar::{SPEED_OF_LIGHT, presets};
 use apertura::reconstruct::Family;
-use apertura::recording::Recording;
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
-use std::path::PathBuf;
 
 fn array(elements: usize, end_elements: usize, carrier_hz: f64, wavelengths: f64) -> Radar {
     let element_spacing_metres = wavelengths * SPEED_OF_LIGHT / carrier_hz;
@@ -26,25 +20,11 @@ fn radars() -> [(&'static str, Radar); 5] {
     ]
 }
 
-/// Files of a recording that `radar` made of one point; the path of its TOML.
 fn recorded(s: &Session, radar: &Radar) -> PathBuf {
     let range = 0.5 * radar.max_range_metres();
     let scene = Scene::of_points([(0.28 * range, 0.96 * range)]);
-    let recording =
-        Recording::of_signal(radar.clone(), simulate(radar, &scene, Floor::Snr(Decibels(40.0)), 1).unwrap());
-    ndarray_npy::write_npy(s.folder.path().join("samples.npy"), &recording.signal().unwrap().samples).unwrap();
-    let Radar { carrier_hz, bandwidth_hz, element_spacing_metres, elements, end_elements, samples, carrier, .. } =
-        radar;
-    let carrier = if *carrier == Carrier::TwoWay { "two-way" } else { "one-way" };
-    let text = format!(
-        "[radar]\ncarrier_hz = {carrier_hz:?}\nbandwidth_hz = {bandwidth_hz:?}\n\
-         element_spacing_metres = {element_spacing_metres:?}\nelements = {elements}\nend_elements = {end_elements}\n\
-         samples = {samples}\ncarrier = \"{carrier}\"\n\
-         [recording]\nfile = \"samples.npy\"\naxes = [\"element\", \"sample\"]\n"
-    );
-    let path = s.folder.path().join("recorded.toml");
-    std::fs::write(&path, text).unwrap();
-    path
+    let heard = simulate(radar, &scene, Floor::Snr(Decibels(40.0)), 1).unwrap();
+    write_recording(s.folder.path(), radar, &heard.samples, ["", ""])
 }
 
 #[test]
@@ -109,7 +89,7 @@ fn opened_weights_are_the_method_of_their_radar() {
     s.ask(weights());
     assert_eq!(s.state().shown_method(), Some("live-shape_reference_weights"), "{:?}", s.state().refusal());
     assert!(s.state().metrics().is_some() && s.state().pictures().contains(&MapKind::Output));
-    let damaged = s.folder.path().join("damaged.safetensors");
+    let damaged = s.path("damaged.safetensors");
     std::fs::write(&damaged, b"no weights").unwrap();
     s.ask(DocumentCommand::OpenPath(damaged));
     assert_eq!(s.state().shown_method(), Some("live-shape_reference_weights"), "what was used stays");

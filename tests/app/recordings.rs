@@ -1,20 +1,9 @@
 //! Recordings in the place of a scene: opened, looked at, explained, exported, and undone.
 
-use crate::session::{Session, step_until};
-use apertura::app::{
-    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand, Way,
-    WindowCommand,
-};
-use apertura::interact::{Document, Editor, Place};
-use apertura::maps::Normalisation;
-use apertura::radar::{BuiltArray, Carrier, Decibels, ElementError, Radar, Tolerances, WindowFunction};
-use apertura::reconstruct::{Baseline, CAPON, IAA, Reconstructor};
+use crate::session::*;
+use apertura::app::Way;
+use apertura::radar::{BuiltArray, ElementError, Tolerances};
 use apertura::scene::{Interferer, Mirror};
-use apertura::signal::Floor;
-use eframe::egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 const CASCADE: usize = 0;
 const CHIP: usize = 1;
@@ -24,32 +13,13 @@ fn with_iaa() -> Session {
     Session::with_methods(methods)
 }
 
-fn undo(s: &mut Session) {
-    s.press(Modifiers::COMMAND, Key::Z);
-}
-
-/// A recording's files in the session's folder; its path.
 fn copied(s: &Session, name: &str) -> PathBuf {
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/recordings");
     for entry in std::fs::read_dir(from).unwrap() {
         let path = entry.unwrap().path();
         std::fs::copy(&path, s.folder.path().join(path.file_name().unwrap())).unwrap();
     }
-    s.folder.path().join(name)
-}
-
-#[test]
-fn a_snapshot_lists_both_directions() {
-    let mut s = with_iaa();
-    s.ask(DocumentCommand::Recording(CASCADE));
-    assert_eq!((s.state().radar().elements, s.state().radar().samples), (86, 1));
-    assert!(s.state().pictures().contains(&MapKind::Target) && s.state().pictures().contains(&MapKind::Output));
-    let found = s.state().found().expect("the list is in front");
-    let degrees: Vec<f64> = found.iter().take(2).map(|d| d.cos_theta.asin().to_degrees()).collect();
-    for expected in [0.0, 6.96] {
-        assert!(degrees.iter().any(|d| (d - expected).abs() < 0.1), "{degrees:?}");
-    }
-    assert!(s.state().metrics().is_some(), "the output is compared with what all elements see");
+    s.path(name)
 }
 
 #[test]
@@ -58,14 +28,14 @@ fn the_scene_before_a_recording_is_one_undo_away() {
     s.ask(EditCommand::Add(NewObject::Point, None));
     let path = copied(&s, "chip-8.toml");
     s.ask(DocumentCommand::OpenPath(path));
-    assert_eq!(s.state().editor().document().title(), "chip-8.toml");
-    assert_eq!(s.state().editor().left().len(), 1, "the unsaved scene is kept");
-    undo(&mut s);
-    assert_eq!(s.state().editor().document().title(), "scene.toml •");
-    assert_eq!((s.state().radar().elements, s.state().editor().scene().objects.len()), (128, 3));
-    assert!(s.state().editor().document().recording().is_none());
-    s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-    assert!(s.state().editor().document().recording().is_some());
+    assert_eq!(s.editor().document().title(), "chip-8.toml");
+    assert_eq!(s.editor().left().len(), 1, "the unsaved scene is kept");
+    s.undo();
+    assert_eq!(s.editor().document().title(), "scene.toml •");
+    assert_eq!((s.state().radar().elements, s.objects().len()), (128, 3));
+    assert!(s.editor().document().recording().is_none());
+    s.redo();
+    assert!(s.editor().document().recording().is_some());
 }
 
 #[test]
@@ -79,13 +49,13 @@ fn reflectors_laid_over_a_recording_explain_part_of_it() {
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(at.x_metres, at.y_metres))));
     let one = s.state().explained().unwrap();
     assert!(one > 1e-3 && one < 1.0, "{one}");
-    undo(&mut s);
+    s.undo();
     assert_eq!(s.state().explained(), Some(0.0));
-    s.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-    let path = s.folder.path().join("post.toml");
+    s.redo();
+    let path = s.path("post.toml");
     s.ask(DocumentCommand::SaveTo(path.clone()));
     assert_eq!(Document::read(&path).unwrap().scene().objects.len(), 1);
-    assert!(s.state().editor().document().recording().is_some(), "it stays on screen");
+    assert!(s.editor().document().recording().is_some(), "it stays on screen");
 }
 
 #[test]
@@ -100,22 +70,22 @@ fn what_is_laid_over_a_recording_never_replaces_it() {
     assert_eq!(s.state().messages(), 1, "told that there is nothing to save, and not asked for a file");
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
     s.ask(DocumentCommand::SaveTo(path.clone()));
-    assert!(s.state().messages() == 2 && s.state().editor().is_modified());
+    assert!(s.state().messages() == 2 && s.editor().is_modified());
     let refused = Editor::of(Document::read_recording(&path).unwrap()).save(&data).unwrap_err().to_string();
     assert!(refused.contains("chip-8.npz: holds a recording"), "{refused}");
     assert_eq!(kept(), before);
-    let post = s.folder.path().join("post.toml");
+    let post = s.path("post.toml");
     s.ask(DocumentCommand::SaveTo(post.clone()));
-    assert_eq!(s.state().editor().document().title(), "post.toml");
+    assert_eq!(s.editor().document().title(), "post.toml");
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(-0.5, 4.0))));
     s.press(Modifiers::COMMAND, Key::S);
-    assert_eq!(s.state().editor().document().title(), "post.toml");
+    assert_eq!(s.editor().document().title(), "post.toml");
     let text = std::fs::read_to_string(&post).unwrap();
     assert!(text.contains("recording = \"chip-8.toml\""), "{text}");
     s.ask(DocumentCommand::New);
     s.ask(DocumentCommand::OpenPath(post.clone()));
-    assert_eq!(s.state().editor().scene().objects.len(), 2);
-    assert_eq!(s.state().editor().document().recording().map(|r| r.radar.elements), Some(8));
+    assert_eq!(s.objects().len(), 2);
+    assert_eq!(s.editor().document().recording().map(|r| r.radar.elements), Some(8));
     assert_eq!(apertura::scene::file::load(&post).unwrap().radar.elements, 8, "commands see a scene");
     // Another radar's recording explains nothing, and one that is gone is missed.
     std::fs::write(&post, text.replace("chip-8.toml", "cascade-86.toml")).unwrap();
@@ -139,8 +109,8 @@ fn a_recordings_constants_cannot_be_edited() {
     s.ask(RadarCommand::SetWindow(WindowFunction::Hamming));
     assert_eq!((s.state().radar().end_elements, s.state().radar().window), (20, WindowFunction::Hamming));
     assert_eq!(s.state().shown_method(), Some("baseline"));
-    undo(&mut s);
-    undo(&mut s);
+    s.undo();
+    s.undo();
     assert_eq!(s.state().radar(), &measured);
 }
 
@@ -149,7 +119,7 @@ fn a_recording_is_exported() {
     let mut s = Session::start();
     s.ask(DocumentCommand::Recording(CHIP));
     s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0))));
-    let (maps, drawing) = (s.folder.path().join("maps.npz"), s.folder.path().join("maps.svg"));
+    let (maps, drawing) = (s.path("maps.npz"), s.path("maps.svg"));
     s.ask(ExportCommand::MapsTo(maps.clone()));
     let bitmap = drawing.with_extension("png");
     s.ask(ExportCommand::PictureTo(drawing.clone()));
@@ -170,11 +140,10 @@ fn an_overlay_comes_back_over_its_recording_after_a_kill() {
     let path = copied(&s, "chip-8.toml");
     s.ask(DocumentCommand::OpenPath(path));
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
-    let copy = s.folder.path().join("data/autosave.toml");
-    step_until(&mut s, "no autosave", |_| copy.exists());
+    s.wait_for_autosave();
     let s = s.reopened(None, vec![Arc::new(CAPON)]);
-    assert_eq!(s.state().editor().scene().objects.len(), 1);
-    assert_eq!(s.state().editor().document().recording().map(|r| r.radar.elements), Some(8));
+    assert_eq!(s.objects().len(), 1);
+    assert_eq!(s.editor().document().recording().map(|r| r.radar.elements), Some(8));
 }
 
 #[test]
@@ -182,8 +151,8 @@ fn a_recording_is_opened_at_the_start() {
     let mut s = Session::start();
     let path = copied(&s, "cascade-86.toml");
     let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(s.folder.path().join("broken.toml"), text.replace("cascade-86.mat", "gone.mat")).unwrap();
-    s.ask(DocumentCommand::OpenPath(s.folder.path().join("broken.toml")));
+    std::fs::write(s.path("broken.toml"), text.replace("cascade-86.mat", "gone.mat")).unwrap();
+    s.ask(DocumentCommand::OpenPath(s.path("broken.toml")));
     assert_eq!((s.state().messages(), s.state().radar().elements), (1, 128));
     let s = s.reopened(Some("cascade-86.toml"), vec![Arc::new(CAPON)]);
     assert_eq!(s.state().radar().elements, 86);
@@ -201,19 +170,19 @@ fn disturbances_are_edits_of_the_scene() {
     s.ask(RadarCommand::SetInterferer(Some(Interferer::default())));
     s.ask(RadarCommand::SetMirror(Some(Mirror::default())));
     assert_ne!(s.state().metrics(), before);
-    let path = s.folder.path().join("disturbed.toml");
+    let path = s.path("disturbed.toml");
     s.ask(DocumentCommand::SaveTo(path.clone()));
     let saved = Document::read(&path).unwrap();
-    assert_eq!(saved.scene(), s.state().editor().scene());
+    assert_eq!(saved.scene(), s.editor().scene());
     assert!(saved.scene().disturbances.elements.elements[3].dead);
     // Fewer elements keep the errors of those that stay.
     let radar = Radar { elements: 64, ..s.state().radar().clone() };
     s.ask(RadarCommand::Set(Box::new(radar)));
-    assert_eq!(s.state().editor().scene().disturbances.elements.elements.len(), 64);
+    assert_eq!(s.editor().scene().disturbances.elements.elements.len(), 64);
     for _ in 0..4 {
-        undo(&mut s);
+        s.undo();
     }
-    assert!(s.state().editor().scene().disturbances.is_none());
+    assert!(s.editor().scene().disturbances.is_none());
     assert_eq!(s.state().metrics(), before);
 }
 
@@ -229,11 +198,8 @@ fn a_selected_point_calibrates_the_elements() {
     s.ask(EditCommand::Delete);
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(1.0, 12.0))));
     s.ask(WindowCommand::OpenPanel(Panel::Elements));
-    s.app.get_by_label("Calibrate on this reflector").scroll_to_me();
-    s.settle();
-    s.app.get_by_label("Calibrate on this reflector").click();
-    s.settle();
-    let left = s.state().editor().scene().disturbances.elements.spread();
+    s.find_and_click("Calibrate on this reflector");
+    let left = s.editor().scene().disturbances.elements.spread();
     assert!(left.gain.0 < 0.01 && left.phase_degrees < 0.5, "{left:?}");
 }
 
@@ -248,7 +214,7 @@ fn captured(s: &Session) -> PathBuf {
     let bytes: Vec<u8> = (0..2 * 4 * 4 * 64).flat_map(sample).flat_map(i16::to_le_bytes).collect();
     let cfg = "channelCfg 15 1 0\nadcCfg 2 1\nadcbufCfg -1 0 0 1 1\nprofileCfg 0 77 30 6 60 0 0 50 1 64 4000 0 0 30\n\
                chirpCfg 0 0 0 0 0 0 0 1\nframeCfg 0 0 4 0 100 1 0\n";
-    let path = s.folder.path().join("room.bin");
+    let path = s.path("room.bin");
     std::fs::write(&path, bytes).unwrap();
     std::fs::write(path.with_extension("cfg"), cfg).unwrap();
     path
@@ -260,14 +226,14 @@ fn a_capture_is_opened_and_read_another_way() {
     let path = captured(&s);
     s.ask(DocumentCommand::OpenPath(path));
     assert!(s.state().arrangement().is_open(Panel::Recording));
-    let origin = |s: &Session| s.state().editor().document().recording().unwrap().origin.clone().unwrap();
+    let origin = |s: &Session| s.editor().document().recording().unwrap().origin.clone().unwrap();
     assert_eq!((origin(&s).frames, origin(&s).taken, s.state().radar().elements), (2, 0, 4));
     s.ask(WindowCommand::OpenPanel(Panel::RangeDoppler));
     assert_eq!(s.state().doppler_peak(), Some((11, 2)), "four loops, at rest");
     s.ask(DocumentCommand::ReadAnotherWay(Way::Frame(1)));
-    assert_eq!((origin(&s).frame, s.state().editor().document().title().as_str()), (1, "room.bin"));
+    assert_eq!((origin(&s).frame, s.editor().document().title().as_str()), (1, "room.bin"));
     s.ask(DocumentCommand::ReadAnotherWay(Way::Layout(1)));
     assert_eq!(origin(&s).taken, 1);
-    undo(&mut s);
+    s.undo();
     assert_eq!(origin(&s).taken, 0);
 }

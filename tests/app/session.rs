@@ -1,19 +1,46 @@
 //! The app in a folder of its own, with a small radar.
 
-use apertura::app::{App, Command, Options};
-use apertura::reconstruct::{Baseline, Reconstructor};
-use eframe::egui::{self, Key, Modifiers, Pos2, Shape};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use std::path::Path;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
-use tempfile::TempDir;
+pub use apertura::app::{
+    App, Command, DocumentCommand, EditCommand, ExportCommand, FailureChoice, LessonCommand, MapKind, NewObject,
+    Options, Panel, RadarCommand, RowsCommand, ViewCommand, WindowCommand,
+};
+pub use apertura::evaluate::rows::read_rows;
+pub use apertura::evaluate::trial::Trial;
+pub use apertura::interact::{Document, Editor, Place, SelectionMode};
+pub use apertura::maps::Normalisation;
+pub use apertura::radar::{Carrier, Convention, DecibelMilliwatts, Decibels, LayoutKind, Radar, WindowFunction};
+pub use apertura::reconstruct::{
+    About, Baseline, CAPON, IAA, MatchedFilter, ReconstructError, Reconstruction, Reconstructor, Request,
+};
+pub use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
+pub use apertura::scene::{Object, Scene};
+pub use apertura::signal::{Floor, TwoEnds, simulate};
+pub use eframe::egui;
+pub use eframe::egui::accesskit::Role;
+pub use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Pos2, Shape, pos2, vec2};
+pub use egui_kittest::Harness;
+pub use egui_kittest::kittest::{NodeT, Queryable};
+pub use ndarray::Array2;
+pub use num_complex::Complex64;
+pub use rand::RngExt;
+pub use std::collections::BTreeSet;
+pub use std::path::{Path, PathBuf};
+pub use std::sync::Arc;
+pub use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::SeqCst};
+pub use std::time::{Duration, Instant};
+pub use tempfile::{TempDir, tempdir};
 
-/// A radar small enough that its maps take a moment only, and two points.
 const SCENE: &str = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n\n\
                      [[object]]\nkind = \"point\"\nx_metres = 0.0\ny_metres = 20.0\n\n\
                      [[object]]\nkind = \"point\"\nx_metres = 8.0\ny_metres = 12.0\n";
+
+pub const USUAL_SIZE: [f32; 2] = [1440.0, 900.0];
+
+pub type Methods = Vec<Arc<dyn Reconstructor>>;
+
+pub fn baseline() -> Methods {
+    vec![Arc::new(Baseline)]
+}
 
 pub struct Session {
     pub app: Harness<'static, App>,
@@ -22,14 +49,18 @@ pub struct Session {
 
 impl Session {
     pub fn start() -> Session {
-        Session::with_methods(vec![Arc::new(Baseline)])
+        Session::with_methods(baseline())
     }
 
-    pub fn with_methods(methods: Vec<Arc<dyn Reconstructor>>) -> Session {
-        let folder = tempfile::tempdir().unwrap();
+    pub fn with_methods(methods: Methods) -> Session {
+        let folder = tempdir().unwrap();
         std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
-        let app = harness(folder.path(), Some("scene.toml"), methods);
-        let mut session = Session { app, folder };
+        Session::opened(folder, Some("scene.toml"), methods, USUAL_SIZE)
+    }
+
+    /// A window in a folder, on one of its files or on the autosave.
+    pub fn opened(folder: TempDir, scene: Option<&str>, methods: Methods, size: [f32; 2]) -> Session {
+        let mut session = Session { app: harness(folder.path(), scene, methods, size), folder };
         session.settle();
         session
     }
@@ -50,14 +81,64 @@ impl Session {
         }
     }
 
-    /// The window opened anew in its folder, on one of its files or on the autosave.
-    pub fn reopened(self, scene: Option<&str>, methods: Vec<Arc<dyn Reconstructor>>) -> Session {
+    pub fn reopened(self, scene: Option<&str>, methods: Methods) -> Session {
         let Session { app, folder } = self;
         drop(app);
-        let app = harness(folder.path(), scene, methods);
-        let mut session = Session { app, folder };
-        session.settle();
-        session
+        Session::opened(folder, scene, methods, USUAL_SIZE)
+    }
+
+    pub fn path(&self, name: impl AsRef<Path>) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn wait_for_autosave(&mut self) {
+        step_until(self, "no autosave", |s| s.path("data/autosave.toml").exists());
+    }
+
+    pub fn shows(&self, text: &str) -> bool {
+        self.app.query_all_by_label_contains(text).next().is_some()
+    }
+
+    pub fn paints(&self, text: &str) -> bool {
+        self.painted().iter().any(|painted| painted.contains(text))
+    }
+
+    pub fn click(&mut self, label: &str) {
+        self.app.get_by_label(label).click();
+        self.settle();
+    }
+
+    pub fn find_and_click(&mut self, label: &str) {
+        self.app.get_by_label(label).scroll_to_me();
+        self.settle();
+        self.click(label);
+    }
+
+    pub fn undo(&mut self) {
+        self.press(Modifiers::COMMAND, Key::Z);
+    }
+
+    pub fn redo(&mut self) {
+        self.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    }
+
+    pub fn editor(&self) -> &Editor {
+        self.state().editor()
+    }
+
+    pub fn objects(&self) -> &[Object] {
+        &self.editor().scene().objects
+    }
+
+    pub fn select(&mut self, object: usize) {
+        self.ask(EditCommand::Select(vec![object], SelectionMode::Replace));
+    }
+
+    pub fn hold(&mut self, at: Pos2) {
+        self.app.hover_at(at);
+        self.app.step();
+        self.app.drag_at(at);
+        self.app.step();
     }
 
     /// Every text of the last frame, those without a screen reader's node included.
@@ -101,10 +182,7 @@ impl Session {
     }
 
     pub fn drag(&mut self, from: Pos2, by: egui::Vec2, steps: u32) {
-        self.app.hover_at(from);
-        self.app.step();
-        self.app.drag_at(from);
-        self.app.step();
+        self.hold(from);
         for i in 1..=steps {
             self.app.hover_at(from + by * (i as f32 / steps as f32));
             self.app.step();
@@ -114,17 +192,7 @@ impl Session {
     }
 }
 
-pub fn harness(folder: &Path, scene: Option<&str>, methods: Vec<Arc<dyn Reconstructor>>) -> Harness<'static, App> {
-    harness_of(folder, scene, methods, [1440.0, 900.0])
-}
-
-/// A window of another size.
-pub fn harness_of(
-    folder: &Path,
-    scene: Option<&str>,
-    methods: Vec<Arc<dyn Reconstructor>>,
-    size: [f32; 2],
-) -> Harness<'static, App> {
+pub fn harness(folder: &Path, scene: Option<&str>, methods: Methods, size: [f32; 2]) -> Harness<'static, App> {
     let options = Options {
         scene: scene.map(|s| folder.join(s)),
         methods,
@@ -132,13 +200,10 @@ pub fn harness_of(
         own_dialogs: true,
         ..Options::default()
     };
-    Harness::builder()
-        .with_size(size)
-        .with_step_dt(1.0 / 60.0)
-        .build_eframe(|creation| App::new(creation, options).unwrap())
+    let builder = Harness::builder().with_size(size).with_step_dt(1.0 / 60.0);
+    builder.build_eframe(|creation| App::new(creation, options).unwrap())
 }
 
-/// Steps until `done`, without waiting for everything to rest.
 pub fn step_until(s: &mut Session, what: &str, done: impl Fn(&Session) -> bool) {
     let deadline = Instant::now() + Duration::from_secs(60);
     while !done(s) {
@@ -146,4 +211,60 @@ pub fn step_until(s: &mut Session, what: &str, done: impl Fn(&Session) -> bool) 
         s.app.step();
         std::thread::sleep(Duration::from_millis(5));
     }
+}
+
+/// A method that answers as the baseline does, some milliseconds later, and panics or refuses radars as it is told.
+#[derive(Clone, Default)]
+pub struct Stub {
+    pub milliseconds: Arc<AtomicU32>,
+    pub answers: Arc<AtomicU32>,
+    pub panics: Arc<AtomicBool>,
+    pub refuses: Option<fn(&Radar) -> bool>,
+}
+
+impl Stub {
+    pub fn slow(milliseconds: u32) -> Stub {
+        Stub { milliseconds: Arc::new(milliseconds.into()), ..Stub::default() }
+    }
+}
+
+impl Reconstructor for Stub {
+    fn about(&self) -> About {
+        About { name: "stub", description: "does as it is told", told: "", eta: 0.5 }
+    }
+    fn knows_pairs(&self) -> bool {
+        true
+    }
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+        assert!(!self.panics.load(SeqCst), "on demand");
+        if self.refuses.is_some_and(|refuses| refuses(radar)) {
+            return Err(ReconstructError::Unusable { method: "stub", reason: "made for other radars".into() });
+        }
+        let began = Instant::now();
+        while began.elapsed() < Duration::from_millis(self.milliseconds.load(SeqCst).into()) {
+            request.task.check()?;
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        self.answers.fetch_add(1, SeqCst);
+        Baseline.estimate(radar, ends, request)
+    }
+}
+
+pub fn is_used(role: Role) -> bool {
+    use Role::*;
+    matches!(role, Button | CheckBox | RadioButton | SpinButton | Slider | ComboBox | TextInput | Link)
+}
+
+/// Writes samples with a text that says which radar they are of, between `head` and `tail`; the text's path.
+pub fn write_recording(folder: &Path, radar: &Radar, heard: &Array2<Complex64>, [head, tail]: [&str; 2]) -> PathBuf {
+    ndarray_npy::write_npy(folder.join("recorded.npy"), heard).unwrap();
+    let Radar { carrier_hz, bandwidth_hz, element_spacing_metres, elements, end_elements, samples, .. } = radar;
+    let carrier = if radar.carrier == Carrier::TwoWay { "two-way" } else { "one-way" };
+    let text = format!(
+        "{head}[radar]\ncarrier = \"{carrier}\"\ncarrier_hz = {carrier_hz:?}\nbandwidth_hz = {bandwidth_hz:?}\n\
+         element_spacing_metres = {element_spacing_metres:?}\nelements = {elements}\nend_elements = {end_elements}\n\
+         samples = {samples}\n[recording]\nfile = \"recorded.npy\"\naxes = [\"element\", \"sample\"]\n{tail}"
+    );
+    std::fs::write(folder.join("recorded.toml"), text).unwrap();
+    folder.join("recorded.toml")
 }

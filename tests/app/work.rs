@@ -1,27 +1,13 @@
 //! Long work beside the window: evaluations, measurements, training logs, methods that fail.
 
-use crate::session::{Session, step_until};
-use apertura::app::{
-    DocumentCommand, EditCommand, ExportCommand, MapKind, NewObject, Panel, Purpose, RadarCommand, ThresholdChoice,
-    ViewCommand, WindowCommand, WorkCommand,
-};
+use crate::session::*;
+use apertura::app::{Purpose, ThresholdChoice, WorkCommand};
 use apertura::engine::{StageOutcome, StageReport};
 use apertura::evaluate::threshold::ThresholdSearch;
 use apertura::files::npz::Npz;
-use apertura::radar::{Carrier, LayoutKind, Radar};
-use apertura::reconstruct::{About, Baseline, MatchedFilter, ReconstructError, Reconstruction, Reconstructor, Request};
-use apertura::scene::generate::Kind;
-use apertura::signal::TwoEnds;
 use apertura::task::Task;
-use eframe::egui::{self, vec2};
-use egui_kittest::kittest::Queryable;
 use ndarray::IxDyn;
 use std::cell::Cell;
-use std::collections::BTreeSet;
-use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::time::{Duration, Instant};
 
 #[test]
 fn an_evaluation_runs_beside_the_app() {
@@ -34,7 +20,7 @@ fn an_evaluation_runs_beside_the_app() {
     s.app.get_by_label("Cancel").click();
     step_until(&mut s, "it ends", |s| !s.state().is_at_work());
     s.settle();
-    assert!(s.app.query_by_label_contains("cancelled").is_some());
+    assert!(s.shows("cancelled"));
 }
 
 #[test]
@@ -55,7 +41,7 @@ fn a_false_alarm_rate_sets_the_threshold() {
     let expected = (exact * 1000.0).ceil() / 1000.0;
     let set = |s: &Session| s.state().settings().method_eta.get("baseline").copied();
     assert_eq!(set(&s), Some(expected), "rounded up to three decimals");
-    assert!(s.app.query_by_label_contains("at most 40 % false alarms on average").is_some());
+    assert!(s.shows("at most 40 % false alarms on average"));
     s.app.state_mut().ask(WorkCommand::FindThreshold(choice(100_000)));
     step_until(&mut s, "it starts", |s| s.state().is_at_work());
     s.app.state_mut().ask(WorkCommand::CancelThreshold);
@@ -76,7 +62,6 @@ fn run_times_arrive_while_they_are_measured() {
     assert!(s.state().run_time_rows() > 0, "what was measured stays");
 }
 
-/// A file dropped on the window.
 #[derive(Debug)]
 struct Dropped(std::path::PathBuf);
 
@@ -93,7 +78,7 @@ impl egui::DroppedFile for Dropped {
 #[test]
 fn a_training_log_is_followed() {
     let mut s = Session::start();
-    let log = s.folder.path().join("log.csv");
+    let log = s.path("log.csv");
     std::fs::write(&log, "step,loss\n1,4.25\n").unwrap();
     s.app.input_mut().dropped_files.push(Arc::new(Dropped(log.clone())));
     let shows = |text: &'static str| move |s: &Session| s.app.query_all_by_label(text).next().is_some();
@@ -101,96 +86,46 @@ fn a_training_log_is_followed() {
     std::fs::write(&log, "step,loss\n1,4.25\n2,3.5\n").unwrap();
     step_until(&mut s, "it grew", shows("3.5000e0"));
     std::fs::write(&log, "step,loss\n1,none\n").unwrap();
-    step_until(&mut s, "it is told", |s| s.app.query_by_label_contains("line 2").is_some());
-}
-
-/// A method that panics until it is told not to.
-struct Fragile(Arc<AtomicBool>);
-
-impl Reconstructor for Fragile {
-    fn about(&self) -> About {
-        About { name: "fragile", description: "fails on demand", told: "nothing", eta: 0.5 }
-    }
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        assert!(!self.0.load(Ordering::SeqCst), "on demand");
-        Baseline.estimate(radar, ends, request)
-    }
+    step_until(&mut s, "it is told", |s| s.shows("line 2"));
 }
 
 #[test]
 fn a_method_that_panics_is_a_message() {
-    let fails = Arc::new(AtomicBool::new(true));
-    let mut s = Session::with_methods(vec![Arc::new(Fragile(fails.clone()))]);
+    let method = Stub { panics: Arc::new(true.into()), ..Stub::default() };
+    let mut s = Session::with_methods(vec![Arc::new(method.clone())]);
     assert_eq!(s.state().messages(), 1);
     assert!(!s.state().pictures().contains(&MapKind::Output));
     assert!(s.state().pictures().contains(&MapKind::Target), "the maps go on");
-    fails.store(false, Ordering::SeqCst);
+    method.panics.store(false, SeqCst);
     s.ask(DocumentCommand::RandomScene(Kind::Set1));
     assert!(s.state().pictures().contains(&MapKind::Output), "and so does the method");
 }
 
-/// A method that works only where the carrier counts one way, like a network.
-struct Trained;
-
-impl Reconstructor for Trained {
-    fn about(&self) -> About {
-        About { name: "trained", description: "knows one radar", told: "", eta: 0.5 }
-    }
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        if radar.carrier == Carrier::TwoWay {
-            return Err(ReconstructError::Unusable { method: "trained", reason: "trained on one-way carriers".into() });
-        }
-        Baseline.reconstruct(radar, ends, request)
-    }
-}
-
 #[test]
 fn a_method_that_refuses_leaves_no_old_output() {
-    let mut s = Session::with_methods(vec![Arc::new(Trained), Arc::new(Baseline)]);
+    let one_way = Stub { refuses: Some(|radar| radar.carrier == Carrier::TwoWay), ..Stub::default() };
+    let mut s = Session::with_methods(vec![Arc::new(one_way), Arc::new(Baseline)]);
     assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
     s.ask(RadarCommand::SetCarrier(Carrier::TwoWay));
     assert_eq!(s.state().shown_method(), None);
     assert!(!s.state().pictures().iter().any(|kind| kind.needs_output()), "{:?}", s.state().pictures());
     assert_eq!(s.state().metrics(), None, "no figures beside no output");
-    assert!(s.app.query_all_by_label_contains("trained on one-way carriers").count() > 0, "and it says why");
+    assert!(s.app.query_all_by_label_contains("made for other radars").count() > 0, "and it says why");
     s.app.get_all_by_label("Use baseline").next().unwrap().click();
     s.settle();
     assert_eq!(s.state().shown_method(), Some("baseline"));
     assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
 }
 
-/// A method that takes 1.2 s, and counts the maps that it finished.
-struct Slow(Arc<AtomicU32>);
-
-impl Reconstructor for Slow {
-    fn about(&self) -> About {
-        About { name: "slow", description: "takes its time", told: "", eta: 0.5 }
-    }
-    fn knows_pairs(&self) -> bool {
-        true
-    }
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let began = Instant::now();
-        while began.elapsed() < Duration::from_millis(1200) {
-            request.task.check()?;
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        self.0.fetch_add(1, Ordering::SeqCst);
-        Baseline.reconstruct(radar, ends, request)
-    }
-}
-
 #[test]
 fn figures_are_of_one_pair_of_maps() {
-    let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
+    let mut s = Session::with_methods(vec![Arc::new(Stub::slow(1200))]);
     let before = s.state().metrics().unwrap();
     assert!(!s.state().output_is_outdated());
     s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
     let target = s.state().report().unwrap().total;
     step_until(&mut s, "the maps are new", |s| s.state().report().unwrap().total != target);
-    step_until(&mut s, "the output is told to be old", |s| {
-        s.app.query_all_by_label_contains("(updating)").next().is_some()
-    });
+    step_until(&mut s, "the output is told to be old", |s| s.shows("(updating)"));
     assert!(s.state().output_is_outdated());
     assert_eq!(s.state().metrics(), Some(before), "the figures are those of the output that is shown");
     s.settle();
@@ -200,7 +135,7 @@ fn figures_are_of_one_pair_of_maps() {
 /// The list and the crosses are of the recording before: nothing of them stands while the next is computed.
 #[test]
 fn nothing_found_in_one_recording_is_listed_over_the_next() {
-    let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
+    let mut s = Session::with_methods(vec![Arc::new(Stub::slow(1200))]);
     s.ask(DocumentCommand::Recording(0));
     assert!(s.state().found().is_some_and(|found| !found.is_empty()) && !s.state().marked_found().is_empty());
     s.app.state_mut().ask(DocumentCommand::Recording(1));
@@ -216,13 +151,13 @@ fn nothing_found_in_one_recording_is_listed_over_the_next() {
 
 #[test]
 fn nothing_found_in_one_scene_is_marked_over_the_next() {
-    let mut s = Session::with_methods(vec![Arc::new(Slow(Arc::default()))]);
+    let mut s = Session::with_methods(vec![Arc::new(Stub::slow(1200))]);
     s.ask(ViewCommand::ToggleFound);
     s.ask(WindowCommand::OpenPanel(Panel::Found));
     assert!(!s.state().marked_found().is_empty());
-    let before = s.state().editor().document().id();
+    let before = s.editor().document().id();
     s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
-    step_until(&mut s, "another scene is on screen", |s| s.state().editor().document().id() != before);
+    step_until(&mut s, "another scene is on screen", |s| s.editor().document().id() != before);
     assert!(s.state().marked_found().is_empty() && s.state().found().is_none());
     s.settle();
     assert!(!s.state().marked_found().is_empty());
@@ -230,15 +165,13 @@ fn nothing_found_in_one_scene_is_marked_over_the_next() {
 
 #[test]
 fn a_drag_lets_a_slow_method_finish_sometimes() {
-    let finished = Arc::new(AtomicU32::new(0));
-    let mut s = Session::with_methods(vec![Arc::new(Slow(finished.clone()))]);
+    let method = Stub::slow(1200);
+    let finished = || method.answers.load(SeqCst);
+    let mut s = Session::with_methods(vec![Arc::new(method.clone())]);
     let at = s.handle("point 1: move");
-    s.app.hover_at(at);
-    s.app.step();
-    s.app.drag_at(at);
-    s.app.step();
-    let (before, began) = (finished.load(Ordering::SeqCst), Instant::now());
-    while finished.load(Ordering::SeqCst) < before + 2 {
+    s.hold(at);
+    let (before, began) = (finished(), Instant::now());
+    while finished() < before + 2 {
         assert!(began.elapsed() < Duration::from_secs(20), "the output froze");
         s.app.hover_at(at + vec2((began.elapsed().as_secs_f32() * 5.0) % 40.0, 10.0));
         s.app.step();
@@ -254,7 +187,7 @@ const CLUSTER: usize = 12_000;
 #[test]
 fn an_edit_does_not_wait_for_a_heavy_scene_to_come_to_rest() {
     let mut s = Session::start();
-    let path = s.folder.path().join("heavy.toml");
+    let path = s.path("heavy.toml");
     let radar = "[radar]\nelements = 128\nsamples = 64\nbandwidth_hz = 2.5e8\n";
     let place = "x_metres = 0.0\ny_metres = 10.0\nx_std_metres = 2.0\ny_std_metres = 2.0\n";
     let cluster = format!("[[object]]\nkind = \"gaussian\"\n{place}count = {CLUSTER}\nseed = 1\n");
@@ -283,17 +216,6 @@ fn an_edit_does_not_wait_for_a_heavy_scene_to_come_to_rest() {
 }
 
 #[test]
-fn exported_maps_hold_the_output() {
-    let mut s = Session::start();
-    let path = s.folder.path().join("maps.npz");
-    s.ask(ExportCommand::MapsTo(path.clone()));
-    step_until(&mut s, "it is written", |_| path.exists());
-    let bytes = std::fs::read(&path).unwrap();
-    let named = |key: &[u8]| bytes.windows(key.len()).any(|w| w == key);
-    assert!(named(b"output.npy") && named(b"polar_full.npy"));
-}
-
-#[test]
 fn the_window_exports_what_apertura_maps_writes() {
     exports_agree(Session::start(), &["--method", "baseline"]);
 }
@@ -308,11 +230,11 @@ fn an_export_of_a_layout_is_what_apertura_maps_writes() {
 
 /// Asserts that the window and `apertura maps` with `arguments` write the same archive; returns its keys.
 fn exports_agree(mut s: Session, arguments: &[&str]) -> BTreeSet<String> {
-    let [by_window, by_command] = ["window.npz", "command.npz"].map(|name| s.folder.path().join(name));
+    let [by_window, by_command] = ["window.npz", "command.npz"].map(|name| s.path(name));
     s.ask(ExportCommand::MapsTo(by_window.clone()));
     step_until(&mut s, "it is written", |_| by_window.exists());
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_apertura"));
-    command.arg("maps").arg(s.folder.path().join("scene.toml")).arg("-o").arg(&by_command);
+    command.arg("maps").arg(s.path("scene.toml")).arg("-o").arg(&by_command);
     assert!(command.args(arguments).status().unwrap().success());
     let [mut window, mut command] = [by_window, by_command].map(|path| Npz::open(&path).unwrap());
     let keys = |archive: &Npz| archive.keys().iter().cloned().collect::<BTreeSet<_>>();
@@ -334,10 +256,8 @@ fn exports_agree(mut s: Session, arguments: &[&str]) -> BTreeSet<String> {
 fn open_shows_the_windows_own_dialog_where_the_system_has_none() {
     let mut s = Session::start();
     s.ask(Purpose::Open);
-    assert!(s.app.query_all_by_label_contains("Open a scene").next().is_some());
-    s.app.get_by_label("scene.toml").click();
-    s.settle();
-    s.app.get_by_label("Open").click();
-    s.settle();
+    assert!(s.shows("Open a scene"));
+    s.click("scene.toml");
+    s.click("Open");
     assert!(s.app.query_all_by_label_contains("Open a scene").next().is_none());
 }

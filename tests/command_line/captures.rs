@@ -1,13 +1,7 @@
 //! Raw captures on the command line: described, imported, and opened as they are.
 
-use super::cli::{apertura, folder};
-use apertura::files::npz::Npz;
-use ndarray::{Ix1, Ix2};
-use num_complex::Complex64;
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
+use crate::cli::*;
 use std::f64::consts::TAU;
-use tempfile::TempDir;
 
 const C: f64 = 299_792_458.0;
 const SAMPLES: usize = 128;
@@ -59,9 +53,8 @@ fn an_import_says_what_it_found_with_why() {
         .and(contains("xWR1843"))
         .and(contains("wrote room.toml"));
     command.args(["import", "room.bin", "-o", "room.toml"]).assert().success().stdout(told);
-    apertura(&folder).args(["maps", "room.toml", "-o", "m.npz"]).assert().success();
-    let output =
-        apertura(&folder).args(["import", "room.bin", "--json"]).assert().success().get_output().stdout.clone();
+    call(&folder, "maps room.toml -o m.npz").assert().success();
+    let output = call(&folder, "import room.bin --json").assert().success().get_output().stdout.clone();
     let found: serde_json::Value = serde_json::from_slice(&output).unwrap();
     assert_eq!((&found["certainty"], &found["layouts"][0]["parts"]), (&"sure".into(), &"two-lanes".into()));
     assert!(found["toml"].as_str().unwrap().contains("format = 3"));
@@ -70,23 +63,24 @@ fn an_import_says_what_it_found_with_why() {
 #[test]
 fn a_raw_capture_gives_the_place_of_its_echo() {
     let folder = with_capture();
-    apertura(&folder).args(["reconstruct", "room.bin", "--method", "iaa", "-o", "out.npz"]).assert().success();
+    call(&folder, "reconstruct room.bin --method iaa -o out.npz").assert().success();
     let mut out = Npz::open(&folder.path().join("out.npz")).unwrap();
     let [range, cosine] =
         ["found_range_metres", "found_cos_theta"].map(|key| out.reals::<Ix1>(key).unwrap().first().copied().unwrap());
     let true_range = 1.1f64.hypot(2.3);
     assert!((range - true_range).abs() < 0.08 && (cosine - 1.1 / true_range).abs() < 0.03, "{range} m, {cosine}");
-    apertura(&folder).args(["maps", "room.cfg", "-o", "m.png"]).assert().success();
+    call(&folder, "maps room.cfg -o m.png").assert().success();
     std::fs::rename(folder.path().join("room.cfg"), folder.path().join("other.txt")).unwrap();
-    apertura(&folder).args(["maps", "room.bin", "--config", "other.txt", "-o", "n.npz"]).assert().success();
+    call(&folder, "maps room.bin --config other.txt -o n.npz").assert().success();
 }
 
 #[test]
 fn a_raw_capture_has_a_range_doppler_map() {
     let folder = with_capture();
-    let mut command = apertura(&folder);
-    command.args(["range-doppler", "room.bin", "--static-clutter-out", "-o", "d.npz"]);
-    command.assert().success().stdout(contains("of 8 velocities"));
+    call(&folder, "range-doppler room.bin --static-clutter-out -o d.npz")
+        .assert()
+        .success()
+        .stdout(contains("of 8 velocities"));
     let mut map = Npz::open(&folder.path().join("d.npz")).unwrap();
     let power = map.reals::<Ix2>("power").unwrap();
     let velocity = map.reals::<Ix1>("velocity_metres_per_second").unwrap();

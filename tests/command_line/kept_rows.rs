@@ -1,12 +1,9 @@
 //! `apertura evaluate --rows` where the file is there already: a run goes on, and a file of other content stays.
 
 use super::merge::older;
-use super::rows::{apertura, figures, folder, rows, without_times};
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use tempfile::TempDir;
+use super::rows::{figures, rows, without_times};
+use crate::cli::*;
 
-/// The program, running.
 fn begin(folder: &TempDir, arguments: &str) -> std::process::Child {
     std::process::Command::new(env!("CARGO_BIN_EXE_apertura"))
         .current_dir(folder)
@@ -38,14 +35,14 @@ fn a_killed_run_goes_on_where_its_rows_end() {
     let path = folder.path().join("killed.csv");
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(&path, format!("{text}3,7,2,base")).unwrap();
-    let on = apertura(&folder, &format!("{evaluate} killed.csv")).assert().success();
+    let on = call(&folder, &format!("{evaluate} killed.csv")).assert().success();
     let printed = without_times(&on.stderr(contains("of 24 rows of this run already")).get_output().stdout);
-    let whole = apertura(&folder, &format!("{evaluate} whole.csv")).assert().success();
+    let whole = call(&folder, &format!("{evaluate} whole.csv")).assert().success();
     assert_eq!(printed, without_times(&whole.get_output().stdout));
     let all = rows(&folder, "killed.csv");
     assert_eq!(figures(all.clone()), figures(rows(&folder, "whole.csv")));
     assert!(kept.iter().all(|row| all.contains(row)), "the rows that were there are not found again");
-    let again = apertura(&folder, &format!("{evaluate} killed.csv")).assert().success();
+    let again = call(&folder, &format!("{evaluate} killed.csv")).assert().success();
     again.stderr(contains("holds all 24 rows of this run"));
     assert_eq!(rows(&folder, "killed.csv"), all);
 }
@@ -53,7 +50,7 @@ fn a_killed_run_goes_on_where_its_rows_end() {
 #[test]
 fn rows_of_something_else_are_not_written_over() {
     let folder = folder();
-    apertura(&folder, "evaluate --set 1 --count 1 --rows rows.csv").assert().success();
+    call(&folder, "evaluate --set 1 --count 1 --rows rows.csv").assert().success();
     older(&folder, "rows.csv", "old.csv");
     let text = std::fs::read_to_string(folder.path().join("rows.csv")).unwrap();
     std::fs::write(folder.path().join("format-1.csv"), text.replace(",2,0.2.0,thesis,", ",1,0.1.0,thesis,")).unwrap();
@@ -75,13 +72,13 @@ fn rows_of_something_else_are_not_written_over() {
     ] {
         let name = arguments.split_whitespace().last().unwrap();
         let before = std::fs::read(folder.path().join(name)).unwrap();
-        let refused = apertura(&folder, &format!("evaluate {arguments}")).assert().failure().stdout("");
+        let refused = call(&folder, &format!("evaluate {arguments}")).assert().failure().stdout("");
         refused.stderr(contains(part).and(contains("--overwrite")));
         assert_eq!(std::fs::read(folder.path().join(name)).unwrap(), before);
     }
-    apertura(&folder, "evaluate --set 1 --count 1 --rows notes.csv --overwrite").assert().success();
+    call(&folder, "evaluate --set 1 --count 1 --rows notes.csv --overwrite").assert().success();
     assert_eq!(rows(&folder, "notes.csv").len(), 1);
-    apertura(&folder, "evaluate --set 2 --count 1 --rows two.csv").assert().success();
-    let merged = apertura(&folder, "evaluate --merge rows.csv --rows two.csv").assert().failure();
+    call(&folder, "evaluate --set 2 --count 1 --rows two.csv").assert().success();
+    let merged = call(&folder, "evaluate --merge rows.csv --rows two.csv").assert().failure();
     merged.stderr(contains("two.csv: it holds other rows"));
 }

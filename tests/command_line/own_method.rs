@@ -1,14 +1,8 @@
 //! `--method-command`: a program of one's own as a method.
 
-use apertura::evaluate::rows::read_rows;
-use assert_cmd::Command;
-use ndarray::{Array2, Array3};
-use ndarray_npy::{NpzReader, ReadNpyExt, WriteNpyExt};
-use num_complex::Complex64;
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use std::fs::{self, File};
-use std::path::Path;
+use crate::cli::*;
+use ndarray_npy::{ReadNpyExt, WriteNpyExt};
+use std::fs;
 
 fn apertura(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
@@ -16,7 +10,6 @@ fn apertura(folder: &Path) -> Command {
     command
 }
 
-/// The script's answer: a map that rises with range.
 fn answer() -> Array2<f32> {
     Array2::from_shape_fn((512, 1024), |(bin, _)| bin as f32 / 512.0)
 }
@@ -31,7 +24,6 @@ const READ: &str = r#"while IFS= read -r line; do
   head -c "$bytes" > question.npy
 "#;
 
-/// Answers the map in map.npy.
 const ANSWER: &str =
     r#"echo '{"apertura":1,"id":'"$id"',"arrays":[{"name":"lambda","bytes":'"$(wc -c < map.npy)"'}]}'; cat map.npy"#;
 
@@ -55,6 +47,8 @@ fn rows_name_the_method_that_the_command_says() {
     let rows = read_rows(File::open(folder.path().join("rows.csv")).unwrap()).unwrap();
     let own: Vec<_> = rows.iter().filter(|row| row.method == "mine").map(|row| (row.eta, &*row.weights)).collect();
     assert_eq!(own, [(0.125, "0f"); 2]);
+    let question = fs::read(folder.path().join("question.npy")).unwrap();
+    assert_eq!(Array3::<Complex64>::read_npy(&question[..]).unwrap().dim(), (2, 12, 512), "the samples of both ends");
 }
 
 #[test]
@@ -70,16 +64,6 @@ fn a_map_is_written_by_the_command() {
     let mut npz = NpzReader::new(File::open(folder.path().join("out.npz")).unwrap()).unwrap();
     let map: Array2<f32> = npz.by_name("net_output").unwrap();
     assert_eq!(map, answer());
-}
-
-#[test]
-fn the_command_is_told_the_samples() {
-    let folder = tempfile::tempdir().unwrap();
-    script(folder.path(), ANSWER);
-    apertura(folder.path()).args(["evaluate", "--set", "1", "--count", "1"]).args(COMMAND).assert().success();
-    let question = fs::read(folder.path().join("question.npy")).unwrap();
-    let samples = Array3::<Complex64>::read_npy(&question[..]).unwrap();
-    assert_eq!(samples.dim(), (2, 12, 512));
 }
 
 #[test]

@@ -1,12 +1,7 @@
 //! `apertura reconstruct` and `apertura train` as a user runs them.
 
-use super::cli::program;
-use ndarray::{Array1, Array2, Array3, Ix0};
-use ndarray_npy::{NpzReader, NpzWriter};
-use num_complex::Complex64;
-use predicates::str::contains;
-use std::fs::File;
-use std::path::Path;
+use crate::cli::*;
+use ndarray::Ix0;
 
 /// Samples of one far reflector at broadside, as NumPy would store them.
 fn write_samples(path: &Path, gain: f64) {

@@ -1,34 +1,19 @@
 //! `apertura evaluate --rows` and `--scenes`: the rows, the tables printed of them, and a row's scene by hand.
 
-use super::cli;
-pub use super::cli::folder;
-use apertura::evaluate::rows::{Column, Row, read_rows};
+use crate::cli::*;
+use apertura::evaluate::rows::{Column, Row};
 use apertura::evaluate::{Estimate, squared_error};
-use apertura::files::npz::Npz;
-use apertura::maps::{LogMap, Normalisation, RangeAngleMap};
-use assert_cmd::Command;
-use ndarray::{Axis, Ix2, Ix3};
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use serde_json::Value;
-use std::path::Path;
-use tempfile::TempDir;
+use apertura::maps::RangeAngleMap;
 
 /// The method whose figures are reproduced by hand.
 const METHOD: &str = if cfg!(feature = "network") { "live" } else { "matched-filter-incoherent" };
-
-pub fn apertura(folder: &TempDir, arguments: &str) -> Command {
-    let mut command = cli::apertura(folder);
-    command.args(arguments.split_whitespace());
-    command
-}
 
 pub fn rows(folder: &TempDir, name: &str) -> Vec<Row> {
     read_rows(std::fs::File::open(folder.path().join(name)).unwrap()).unwrap()
 }
 
 pub fn json(folder: &TempDir, arguments: &str) -> Value {
-    let output = apertura(folder, arguments).output().unwrap();
+    let output = call(folder, arguments).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
@@ -74,11 +59,11 @@ fn the_printed_means_are_those_of_the_rows() {
         }
     }
     for part in ["0", "1"] {
-        apertura(&folder, &format!("{evaluate} --shard {part}/2 --rows {part}.csv")).assert().success();
+        call(&folder, &format!("{evaluate} --shard {part}/2 --rows {part}.csv")).assert().success();
     }
     assert_eq!((rows(&folder, "0.csv").len(), rows(&folder, "1.csv").len()), (12, 8));
     let printed = |arguments: &str| {
-        let output = apertura(&folder, arguments).assert().success();
+        let output = call(&folder, arguments).assert().success();
         without_times(&output.get_output().stdout)
     };
     let merged = printed("evaluate --merge 1.csv 0.csv --rows merged.csv");
@@ -103,7 +88,7 @@ fn echoes_of_bodies_stand_in_rows_tables_and_json() {
     assert!(sum.there.iter().skip(1).sum::<usize>() > 0, "weak echoes count: {sum:?}");
     assert!(same(&of(1)["detection"], sum.part().unwrap()));
     let weakest = format!("{} of {}", sum.found[5], sum.there[5]);
-    apertura(&folder, "evaluate --merge rows.csv")
+    call(&folder, "evaluate --merge rows.csv")
         .assert()
         .success()
         .stdout(contains("echoes found").and(contains(weakest)));
@@ -140,7 +125,7 @@ fn doubt_finds_failures_as_often_as_the_rows_say() {
     let doubt = |set: usize| &limited["sets"][set]["methods"][0]["doubt"];
     assert_eq!((&doubt(0)["failures"], &doubt(0)["standard_error"]), (&Value::from(1), &Value::Null));
     assert!(same(&doubt(0)["area"], 1.0) && doubt(1)["area"].is_null(), "every row of set 2 fails");
-    apertura(&folder, "evaluate --merge rows.csv").assert().success().stdout(
+    call(&folder, "evaluate --merge rows.csv").assert().success().stdout(
         contains("doubt of live against failures: area under the ROC curve 0.764 \u{b1} 0.")
             .and(contains(
                 "doubt of live: the error of 90.00 \u{b1} 0.574 % of the cells is at most their doubt; 90 % is the aim",
@@ -163,20 +148,20 @@ pub fn error_by_hand(folder: &Path) -> f64 {
 fn a_row_can_be_reproduced_by_hand_to_the_last_digit() {
     let folder = folder();
     let evaluate = format!("evaluate --method {METHOD} --set 2,walls --count 2 --shard 1/2 --seed 9 --rows rows.csv");
-    apertura(&folder, &evaluate).assert().success();
+    call(&folder, &evaluate).assert().success();
     assert_eq!(rows(&folder, "rows.csv").len(), 2);
     for row in &rows(&folder, "rows.csv") {
         let Row { set, seed, index, .. } = row;
-        apertura(&folder, &format!("scenes --set {set} --seed {seed} --index {index} -o s.toml")).assert().success();
-        apertura(&folder, "maps s.toml -o maps.npz").assert().success();
-        apertura(&folder, &format!("reconstruct maps.npz --method {METHOD} -o out.npz")).assert().success();
+        call(&folder, &format!("scenes --set {set} --seed {seed} --index {index} -o s.toml")).assert().success();
+        call(&folder, "maps s.toml -o maps.npz").assert().success();
+        call(&folder, &format!("reconstruct maps.npz --method {METHOD} -o out.npz")).assert().success();
         assert_eq!(error_by_hand(folder.path()), row.squared_error, "scene {index} of {set}");
         assert_eq!(row.doubt.is_some(), METHOD == "live", "scene {index} of {set}");
     }
     // The last one alone in a folder is a test set with the same figures.
     std::fs::create_dir(folder.path().join("own")).unwrap();
     std::fs::rename(folder.path().join("s.toml"), folder.path().join("own/s.toml")).unwrap();
-    apertura(&folder, &format!("evaluate --method {METHOD} --scenes own --rows own.csv")).assert().success();
+    call(&folder, &format!("evaluate --method {METHOD} --scenes own --rows own.csv")).assert().success();
     let (own, all) = (rows(&folder, "own.csv"), rows(&folder, "rows.csv"));
     let last = all.last().unwrap();
     assert_eq!((own.len(), &*own[0].set, own[0].index, own[0].seed), (1, "own", 0, 0));
@@ -191,7 +176,7 @@ fn what_is_wrong_with_rows_is_named() {
     let folder = folder();
     std::fs::write(folder.path().join("bad.csv"), "set,index\n1,2\n").unwrap();
     std::fs::create_dir(folder.path().join("empty")).unwrap();
-    apertura(&folder, "evaluate --count 1 --set 1 --rows good.csv").assert().success();
+    call(&folder, "evaluate --count 1 --set 1 --rows good.csv").assert().success();
     let good = std::fs::read_to_string(folder.path().join("good.csv")).unwrap();
     std::fs::write(folder.path().join("word.csv"), good.replace("\n1,0,", "\n1,zero,")).unwrap();
     for (arguments, part) in [
@@ -209,25 +194,25 @@ fn what_is_wrong_with_rows_is_named() {
         ("worsen missing.toml --method baseline -o w.toml", "missing.toml"),
         ("worsen good.csv --method baseline -o w.toml", "good.csv"),
     ] {
-        apertura(&folder, arguments).assert().failure().stdout("").stderr(contains(part));
+        call(&folder, arguments).assert().failure().stdout("").stderr(contains(part));
     }
 }
 
 #[test]
 fn the_scenes_of_a_folder_must_stay_the_same() {
     let folder = folder();
-    apertura(&folder, "scenes --set 1 --count 2 -o own").assert().success();
-    apertura(&folder, "evaluate --scenes own --rows rows.csv").assert().success();
+    call(&folder, "scenes --set 1 --count 2 -o own").assert().success();
+    call(&folder, "evaluate --scenes own --rows rows.csv").assert().success();
     std::fs::write(folder.path().join("own/z.toml"), "[[object]]\nkind = \"point\"\nx_metres = 1\ny_metres = 9\n")
         .unwrap();
-    let changed = apertura(&folder, "evaluate --scenes own --rows rows.csv").assert().failure();
+    let changed = call(&folder, "evaluate --scenes own --rows rows.csv").assert().failure();
     changed.stderr(contains("scenes is"));
 }
 
 #[test]
 fn without_a_terminal_lines_tell_the_progress() {
     let folder = folder();
-    let told = apertura(&folder, "evaluate --set 1 --count 3 --progress 0").assert().success();
+    let told = call(&folder, "evaluate --set 1 --count 3 --progress 0").assert().success();
     told.stderr(contains("1 of 3 maps, now set 1;").and(contains("2 of 3 maps")).and(contains("left")));
 }
 
@@ -242,11 +227,11 @@ fn a_networks_rows_say_which_weights_it_had() {
     assert_eq!((methods[0]["weights"].as_str(), of_row.len()), (Some(&*of_row), 12));
     let text = std::fs::read_to_string(folder.path().join("rows.csv")).unwrap();
     std::fs::write(folder.path().join("other.csv"), text.replace(&*of_row, "0123456789ab")).unwrap();
-    apertura(&folder, "evaluate --merge rows.csv other.csv")
+    call(&folder, "evaluate --merge rows.csv other.csv")
         .assert()
         .failure()
         .stderr(contains("weights is").and(contains("0123456789ab in other.csv")));
-    let table = apertura(&folder, "evaluate --merge rows.csv").assert().success();
+    let table = call(&folder, "evaluate --merge rows.csv").assert().success();
     table.stdout(contains("live (AdamW; eta 0.").and(contains("at each scene's own")).and(contains("  median")));
 }
 
@@ -254,19 +239,19 @@ fn a_networks_rows_say_which_weights_it_had() {
 fn a_detector_gets_columns_of_its_own() {
     let folder = folder();
     let run = "evaluate --method baseline --set 1 --count 2 --rows";
-    apertura(&folder, &format!("{run} without.csv")).assert().success();
+    call(&folder, &format!("{run} without.csv")).assert().success();
     let with = format!("{run} with.csv --cfar os:guard=2x2:training=4x8:rate=1e-3");
-    let table = apertura(&folder, &with).assert().success();
+    let table = call(&folder, &with).assert().success();
     table.stdout(contains("by os:guard=2x2:training=4x8:rate=0.001"));
-    apertura(&folder, &with).assert().success().stderr(contains("holds all 2 rows of this run already"));
+    call(&folder, &with).assert().success().stderr(contains("holds all 2 rows of this run already"));
     let has_rate = |file: &str| rows(&folder, file).iter().all(|row| row.cfar_false_alarm.is_some());
     assert_eq!(["with.csv", "without.csv"].map(has_rate), [true, false]);
-    let other = apertura(&folder, &format!("{run} with.csv")).assert().failure();
+    let other = call(&folder, &format!("{run} with.csv")).assert().failure();
     other.stderr(contains("cfar is os:guard=2x2:training=4x8:rate=0.001 there and nothing here"));
-    let merged = apertura(&folder, "evaluate --merge with.csv without.csv").assert().failure();
+    let merged = call(&folder, "evaluate --merge with.csv without.csv").assert().failure();
     merged.stderr(contains("cfar"));
-    apertura(&folder, "evaluate --merge with.csv --json").assert().success().stdout(contains("\"detector\": \"os:"));
-    let wrong = apertura(&folder, "evaluate --cfar ca:training=0x0").assert().failure();
+    call(&folder, "evaluate --merge with.csv --json").assert().success().stdout(contains("\"detector\": \"os:"));
+    let wrong = call(&folder, "evaluate --cfar ca:training=0x0").assert().failure();
     wrong.stderr(contains("there are no training cells"));
 }
 
@@ -274,8 +259,8 @@ fn a_detector_gets_columns_of_its_own() {
 fn rows_name_the_radar_of_a_file() {
     let folder = folder();
     std::fs::write(folder.path().join("wide.toml"), "[radar]\nbandwidth_hz = 1e9\n").unwrap();
-    apertura(&folder, "evaluate --set 1 --count 1 --radar wide.toml --rows rows.csv").assert().success();
+    call(&folder, "evaluate --set 1 --count 1 --radar wide.toml --rows rows.csv").assert().success();
     assert_eq!(&*rows(&folder, "rows.csv")[0].radar, "bandwidth_hz=1000000000.0");
-    let both = apertura(&folder, "evaluate --set 1 --count 1 --radar wide.toml --carrier two-way").output().unwrap();
+    let both = call(&folder, "evaluate --set 1 --count 1 --radar wide.toml --carrier two-way").output().unwrap();
     assert!(String::from_utf8_lossy(&both.stderr).contains("cannot be used with"), "{both:?}");
 }

@@ -1,18 +1,11 @@
 //! One scene, one seed, the same settings: the same bits in the engine behind the app, in a campaign, and from the command line.
 
+use crate::cli::*;
 use apertura::engine::{Engine, MapRequest};
 use apertura::evaluate::Metrics;
-use apertura::evaluate::campaign::Campaign;
-use apertura::evaluate::sets::SceneSet;
-use apertura::files::npz::Npz;
-use apertura::maps::{LogMap, Normalisation};
-use apertura::radar::{End, Radar};
-use apertura::reconstruct::{Baseline, Reconstructor, Request};
-use apertura::scene::Scene;
-use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
-use apertura::signal::Floor;
-use assert_cmd::Command;
-use ndarray::{Ix2, Ix3};
+use apertura::radar::End;
+use apertura::reconstruct::Reconstructor;
+use apertura::scene::generate::{Generator, Purpose, Reading};
 
 /// An engine after other scenes, other floors and drags.
 fn with_a_past(scene: &Scene) -> Engine {

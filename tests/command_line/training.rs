@@ -1,9 +1,6 @@
 //! `apertura train`, and the training programs beside it, as far as they run without PyTorch.
 
-use super::cli::{apertura, folder};
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use std::path::Path;
+use crate::cli::*;
 use std::process::{Command, Output};
 
 const RECIPE: &str = "

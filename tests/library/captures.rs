@@ -1,11 +1,7 @@
 //! Raw captures, written by the physics of a stretch receiver: each is opened as it is, and its echo stands at the true place.
 
-use apertura::reconstruct::found::reconstruct_and_find;
-use apertura::reconstruct::{NoisePrior, Request};
-use apertura::recording::{FrameLoops, Recording, raw};
-use num_complex::Complex64;
-use std::f64::consts::TAU;
-use std::fs;
+use crate::prelude::*;
+use apertura::recording::{FrameLoops, raw};
 
 const C: f64 = 299_792_458.0;
 
@@ -71,7 +67,6 @@ fn samples(chirps: &Chirps, echo: Echo, transmitters: usize, loops: usize) -> Ve
         .collect()
 }
 
-/// The bytes of I I Q Q blocks.
 fn two_lanes(chirps: impl IntoIterator<Item = Vec<Vec<Complex64>>>) -> Vec<u8> {
     let rows: Vec<Complex64> = chirps.into_iter().flatten().flatten().collect();
     let part = |v: f64| (v.round() as i16).to_le_bytes();
@@ -104,7 +99,6 @@ fn opened(bytes: &[u8], cfg: &str) -> Recording {
     raw::open(&folder(bytes, cfg).path().join("c.bin"), None).unwrap()
 }
 
-/// The strongest echo that `iaa` finds stands within a range bin and 0.03 in cosine of where it was put.
 fn assert_found(recording: &Recording, chirps: &Chirps, echo: Echo) {
     let method = apertura::methods::by_name("iaa").unwrap();
     let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };

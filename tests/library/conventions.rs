@@ -1,11 +1,8 @@
 //! Signs and sides: the place of a reflector in the maps, mirrored and folded directions, and maps of strange scenes.
 
+use crate::prelude::*;
 use apertura::evaluate::Metrics;
-use apertura::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap};
-use apertura::radar::{Carrier, Decibels, End, Radar};
-use apertura::reconstruct::{Baseline, Reconstructor, Request};
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
+use apertura::scene::{Disturbances, Interferer};
 use proptest::prelude::*;
 
 fn maps_of(radar: &Radar, scene: &Scene) -> LogMaps {
@@ -18,7 +15,6 @@ fn peak(map: &LogMap) -> [usize; 2] {
     [index.0, index.1]
 }
 
-/// Distance of two columns around the circle of columns.
 fn columns_apart(radar: &Radar, a: f64, b: f64) -> f64 {
     let n = radar.elements as f64;
     let d = (a - b).rem_euclid(n);
@@ -161,4 +157,23 @@ fn a_reflector_a_million_kilometres_away_is_faint_but_there() {
     // Amplitude 100 / R^2, times the windows' means and the orthonormal scale: 1e-16 * 512 * 1024 / 4 / sqrt(512 * 1024).
     let expected = (1e-16 * (512.0f64 * 1024.0).sqrt() / 4.0).log10();
     assert!((maps.full.max() - expected).abs() < 0.1, "{} for {expected}", maps.full.max());
+}
+
+#[test]
+fn an_interferer_is_heard_where_its_settings_say() {
+    let radar = Radar { elements: 128, samples: 256, ..Radar::default() };
+    let interferer = Interferer { x_metres: 30.0, y_metres: 40.0, crossing: 0.5, duration: 0.25, strength: 0.1 };
+    let disturbances = Disturbances { interferer: Some(interferer), ..Disturbances::default() };
+    let scene = Scene { disturbances, ..Scene::default() };
+    let signal = simulate(&radar, &scene, Floor::Exact, 0).unwrap();
+    let heard = |k: usize| signal.samples[[64, k]].norm() / (100.0 * 0.1 / 50.0);
+    assert!((heard(128) - 1.0).abs() < 0.01 && (heard(110) - 1.0).abs() < 0.01);
+    assert!(heard(70) < 0.01 && heard(190) < 0.01, "{} {}", heard(70), heard(190));
+    let map = LogMaps::of_signal(&radar, &signal).full;
+    // The interferer stands at every range alike, in one direction: cos(theta) = 0.6.
+    for bin in [20, 60, 110] {
+        let row = map.decades().row(bin);
+        let strongest = row.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
+        assert!((radar.cos_of_column(strongest as f64) - 0.6).abs() < 0.03, "bin {bin}: column {strongest}");
+    }
 }

@@ -1,11 +1,7 @@
 //! Lists of echoes on small arrays: the first echo that any method lists is the true one.
 
-use apertura::methods;
-use apertura::radar::{Convention, Decibels, Radar};
-use apertura::reconstruct::found::reconstruct_and_find;
-use apertura::reconstruct::{NoisePrior, Request};
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
+use crate::prelude::*;
+use apertura::signal::TwoEnds;
 
 /// A physical radar of 77 GHz whose two ends are all of its elements, or of 86 the outer ones.
 fn radar(elements: usize) -> Radar {
@@ -22,9 +18,7 @@ fn every_list_of_echoes_begins_with_the_true_one() {
         // Half of a beam of the array in cos(theta), at least 0.03.
         let within = (1.0 / elements as f64).max(0.03);
         for cosine in [0.1, -0.43] {
-            let range = 4.0f64;
-            let scene = Scene::of_points([(range * cosine, range * (1.0 - cosine * cosine).sqrt())]);
-            let ends = simulate(&radar, &scene, Floor::Snr(Decibels(30.0)), 3).unwrap().two_ends(&radar);
+            let ends = heard(&radar, cosine);
             let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
             for method in methods::all().iter().filter(|m| m.check_array(&radar).is_ok()) {
                 let Ok((_, found)) = reconstruct_and_find(method.as_ref(), &radar, &ends, &request) else { continue };
@@ -32,19 +26,22 @@ fn every_list_of_echoes_begins_with_the_true_one() {
                 listed += 1;
                 // A lobe of the Hann window is four range bins wide.
                 let is_there = (first.cos_theta - cosine).abs() < within
-                    && (first.range_metres - range).abs() < 1.5 * radar.range_resolution_metres();
+                    && (first.range_metres - RANGE_METRES).abs() < 1.5 * radar.range_resolution_metres();
                 if !is_there {
-                    wrong.push(format!(
-                        "{} on {elements}: {:.3} for {cosine} at {:.2} m",
-                        method.name(),
-                        first.cos_theta,
-                        first.range_metres
-                    ));
+                    wrong.push(format!("{} on {elements}: {first:?} for {cosine}", method.name()));
                 }
             }
         }
     }
     assert!(wrong.is_empty() && listed > 40, "{listed} lists, of which\n{}", wrong.join("\n"));
+}
+
+const RANGE_METRES: f64 = 4.0;
+
+/// What both ends hear of a point at a cosine.
+fn heard(radar: &Radar, cosine: f64) -> TwoEnds {
+    let scene = Scene::of_points([(RANGE_METRES * cosine, RANGE_METRES * (1.0 - cosine * cosine).sqrt())]);
+    simulate(radar, &scene, Floor::Snr(Decibels(30.0)), 3).unwrap().two_ends(radar)
 }
 
 #[test]
@@ -84,19 +81,14 @@ fn one_echo_before_two_or_three_elements_has_its_place() {
     for elements in [2, 3, 4] {
         let radar = few(elements);
         for cosine in [0.3, -0.6, 0.05] {
-            let range = 4.0f64;
-            let scene = Scene::of_points([(range * cosine, range * (1.0 - cosine * cosine).sqrt())]);
-            let ends = simulate(&radar, &scene, Floor::Snr(Decibels(30.0)), 3).unwrap().two_ends(&radar);
+            let ends = heard(&radar, cosine);
             let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
             let method = methods::by_name("iaa").unwrap();
             let (_, found) = reconstruct_and_find(method.as_ref(), &radar, &ends, &request).unwrap();
             let first = found.first().expect("an echo");
             assert!((first.cos_theta - cosine).abs() < 0.03, "{elements}: {} for {cosine}", first.cos_theta);
-            assert!(
-                (first.range_metres - range).abs() < radar.range_resolution_metres(),
-                "{elements}: {}",
-                first.range_metres
-            );
+            let off = (first.range_metres - RANGE_METRES).abs();
+            assert!(off < radar.range_resolution_metres(), "{elements}: {off} m");
         }
     }
 }

@@ -1,28 +1,21 @@
 //! Shipped scenes on which a method fails do so in the way that their notes explain.
 #![cfg(feature = "network")]
 
+use crate::prelude::*;
+use Fault::{Ghost, Merged, Missed, WrongTooth};
 use apertura::evaluate::failure::Fate;
-use apertura::evaluate::trial::Trial;
-use apertura::maps::Normalisation;
-use apertura::methods;
-use apertura::radar::Radar;
-use apertura::reconstruct::Request;
-use apertura::scene::presets::{self, Preset};
-use apertura::signal::Floor;
-use std::collections::BTreeSet;
+use apertura::scene::presets::Preset;
 
-/// A kind of failure of a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+enum Fault {
     Missed,
     Merged,
     WrongTooth,
     Ghost,
 }
-use Kind::{Ghost, Merged, Missed, WrongTooth};
 
 /// Scene, method, and the kinds of failure that the notes explain. None is more frequent than the first.
-const EXPLAINED: [(&str, &str, &[Kind]); 9] = [
+const EXPLAINED: [(&str, &str, &[Fault]); 9] = [
     ("failure-live-missed", "live", &[Missed]),
     ("failure-live-merged", "live", &[Merged]),
     ("failure-live-ghost", "live", &[Ghost]),
@@ -57,7 +50,7 @@ fn methods_fail_on_shipped_scenes_as_their_notes_say() {
         let wrong_tooth = failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }));
         let counts =
             [(Missed, failures.missed()), (Merged, merged), (WrongTooth, wrong_tooth), (Ghost, failures.ghosts.len())];
-        let shown: BTreeSet<Kind> = counts.into_iter().filter(|(_, count)| *count > 0).map(|(kind, _)| kind).collect();
+        let shown: BTreeSet<Fault> = counts.into_iter().filter(|(_, count)| *count > 0).map(|(kind, _)| kind).collect();
         assert_eq!(shown, expected.iter().copied().collect(), "{id}, {name}: {counts:?}");
         let most = counts.iter().map(|(_, count)| *count).max();
         assert_eq!(

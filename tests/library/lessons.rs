@@ -1,13 +1,9 @@
 //! The numbers that lessons teach, computed again: each must stand in its lesson's text as it comes out here.
 
+use crate::prelude::*;
 use crate::taught::{lesson, physical, taught};
-use apertura::lesson::question::Answer;
-use apertura::lesson::shipped;
-use apertura::maps::{Aperture, LogMap, LogMaps};
-use apertura::radar::{Decibels, End, Polar, Radar, SPEED_OF_LIGHT, WindowFunction};
-use apertura::scene::{Object, Point, Reflector, Scene};
-use apertura::signal::{BeatSignal, Floor, simulate};
-use apertura::theory::{Consequences, Response, WindowPattern, comb_teeth};
+use apertura::radar::Polar;
+use apertura::theory::{Response, WindowPattern, comb_teeth};
 
 fn maps(radar: &Radar, scene: &Scene) -> LogMaps {
     LogMaps::of_signal(radar, &simulate(radar, scene, Floor::Exact, 0).unwrap())
@@ -19,12 +15,10 @@ fn maps_of_step(id: &str, step: usize) -> LogMaps {
     maps(&lesson.steps[step - 1].radar, &lesson.steps[step - 1].scene())
 }
 
-/// Decibels of a cell below the map's peak.
 fn below_peak(map: &LogMap, bin: usize, column: usize) -> f64 {
     20.0 * (map.decades()[[bin, column]] - map.max())
 }
 
-/// The largest of some cells, in decibels below the map's peak.
 fn highest(map: &LogMap, bins: std::ops::Range<usize>, columns: std::ops::Range<usize>) -> f64 {
     let cells = bins.flat_map(|bin| columns.clone().map(move |column| (bin, column)));
     cells.map(|(bin, column)| below_peak(map, bin, column)).fold(f64::NEG_INFINITY, f64::max)
@@ -42,12 +36,10 @@ fn peak(map: &LogMap) -> (usize, usize) {
     map.decades().indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0
 }
 
-/// Mean power of a map's cells.
 fn mean_power(map: &LogMap) -> f64 {
     map.decades().iter().map(|d| 10f64.powf(2.0 * d)).sum::<f64>() / map.decades().len() as f64
 }
 
-/// Decibels of a ratio of powers.
 fn db(ratio: f64) -> f64 {
     10.0 * ratio.log10()
 }

@@ -1,15 +1,10 @@
 //! The numbers that the lessons on bodies teach, computed again: each must stand in its lesson's text as it comes out here.
 
+use crate::prelude::*;
 use crate::taught::{lesson, physical, taught};
-use apertura::maps::{LogMap, LogMaps};
-use apertura::radar::{End, Radar};
 use apertura::scattering::roughness::coherent;
 use apertura::scattering::{EchoKind, Wave, heard_in_the_middle};
-use apertura::scene::{Object, Point, Post, Scene, Wall};
-use apertura::signal::{Floor, simulate};
-use num_complex::Complex64;
 
-/// The scene of a lesson's step, counted from 1.
 fn scene(id: &str, step: usize) -> Scene {
     lesson(id).steps[step - 1].scene()
 }
@@ -18,7 +13,6 @@ fn maps(scene: &Scene) -> LogMaps {
     LogMaps::of_signal(&physical(), &simulate(&physical(), scene, Floor::Exact, 0).unwrap())
 }
 
-/// Decibels of a map's brightest cell.
 fn brightest(map: &LogMap) -> f64 {
     20.0 * map.max()
 }
@@ -39,22 +33,6 @@ fn a_wall_that_looks_away_is_as_weak_as_its_lesson_says() {
     let facing = Scene { objects: vec![Object::Wall(Wall::new(0.0, 15.0, 8.0, 0.0))], ..Scene::default() };
     let weaker = brightest(&maps(&facing).full) - brightest(&maps(&scene(id, 3)).full);
     taught(id, &format!("{weaker:.0} dB weaker than the glint"));
-}
-
-#[test]
-fn a_glint_falls_with_the_range_as_its_lesson_says() {
-    let glint = |y: f64| {
-        let wall = Scene { objects: vec![Object::Wall(Wall::new(0.0, y, 8.0, 0.0))], ..Scene::default() };
-        let heard = heard_in_the_middle(&physical(), &wall);
-        heard.into_iter().find(|(_, e)| e.kind == EchoKind::Glint).unwrap().1.amplitude.norm()
-    };
-    let fall = 20.0 * (glint(10.0) / glint(20.0)).log10();
-    taught("where-a-wall-shines", &format!("1 / R^1.5: {fall:.0} dB"));
-    // The fall of a strip of the height that the lesson asks for.
-    let rail = fall_of_a_glint(0.05);
-    assert!((fall - rail).abs() < 0.02, "{fall}, {rail}");
-    let zone = (physical().wavelength_metres() * 10.0 / 2.0).sqrt();
-    taught("where-a-wall-shines", &format!("the Fresnel zone there, {:.0} cm", 100.0 * zone));
 }
 
 /// Amplitude of the glint of a flat vertical strip that is `height` metres high and `range` metres ahead, by Kirchhoff's integral over its
@@ -85,6 +63,12 @@ fn a_high_wall_loses_6_db_and_a_low_strip_9() {
         assert!((fall - expected).abs() < tolerance, "{height} m: {fall}");
     }
     taught("where-a-wall-shines", "1 / R, 6 dB");
+    // The glint falls as that of a strip of the height that the lesson asks for.
+    let (fall, rail) = (glint(10.0, 0.0) - glint(20.0, 0.0), fall_of_a_glint(0.05));
+    taught("where-a-wall-shines", &format!("1 / R^1.5: {fall:.0} dB"));
+    assert!((fall - rail).abs() < 0.02, "{fall}, {rail}");
+    let zone = (physical().wavelength_metres() * 10.0 / 2.0).sqrt();
+    taught("where-a-wall-shines", &format!("the Fresnel zone there, {:.0} cm", 100.0 * zone));
 }
 
 /// Decibels that a post takes from a point 20 m ahead: in the map of all elements, and in the one of an end from which it takes less.
@@ -140,43 +124,32 @@ fn things_md_says_what_roughness_takes_at_77_ghz() {
 }
 
 #[test]
-fn the_right_end_misses_a_glint_by_as_much_as_its_lesson_says() {
-    let id = "what-one-end-sees";
-    let seen = maps(&scene(id, 2));
-    taught(id, &format!("{:.0} dB weaker", brightest(&seen.first) - brightest(&seen.last)));
-}
-
-#[test]
-fn the_right_end_sees_the_lessons_hidden_point_weakly() {
-    let id = "what-one-end-sees";
-    let (radar, seen) = (physical(), maps(&scene(id, 3)));
-    let [first, last] = [(&seen.first, End::First), (&seen.last, End::Last)]
+fn the_right_end_sees_less_by_as_much_as_its_lesson_says() {
+    let (id, radar) = ("what-one-end-sees", physical());
+    let glint = maps(&scene(id, 2));
+    taught(id, &format!("{:.0} dB weaker", brightest(&glint.first) - brightest(&glint.last)));
+    let hidden = maps(&scene(id, 3));
+    let [first, last] = [(&hidden.first, End::First), (&hidden.last, End::Last)]
         .map(|(map, end)| near(&radar, map, radar.end_centre_metres(end), [4.6, 28.0], [6, 30]));
     taught(id, &format!("{:.0} dB weaker", first - last));
 }
 
-const ON_ROUGHNESS: &str = "smooth-and-rough";
-
-#[test]
-fn roughness_weakens_a_glint_by_as_much_as_its_lesson_says() {
-    let glint = |roughness_millimetres| {
-        let wall = Wall { roughness_millimetres, ..Wall::new(0.0, 15.0, 8.0, 0.0) };
-        let scene = Scene { objects: vec![Object::Wall(wall)], ..Scene::default() };
-        let heard = heard_in_the_middle(&physical(), &scene);
-        20.0 * heard.into_iter().find(|(_, e)| e.kind == EchoKind::Glint).unwrap().1.amplitude.norm().log10()
-    };
-    let lost = |roughness| glint(0.0) - glint(roughness);
-    let said = format!("{:.1} dB. 0.25 mm take {:.1} dB, 1 mm takes {:.0} dB", lost(0.5), lost(0.25), lost(1.0));
-    taught(ON_ROUGHNESS, &said);
+/// Decibels of the glint of a wall ahead.
+fn glint(y_metres: f64, roughness_millimetres: f64) -> f64 {
+    let wall = Wall { roughness_millimetres, ..Wall::new(0.0, y_metres, 8.0, 0.0) };
+    let heard = heard_in_the_middle(&physical(), &Scene { objects: vec![Object::Wall(wall)], ..Scene::default() });
+    20.0 * heard.into_iter().find(|(_, e)| e.kind == EchoKind::Glint).unwrap().1.amplitude.norm().log10()
 }
 
 #[test]
-fn roughness_brightens_a_wall_that_looks_away() {
-    let mut turned = scene(ON_ROUGHNESS, 3);
+fn roughness_takes_and_gives_as_much_as_its_lesson_says() {
+    let (id, lost) = ("smooth-and-rough", |roughness| glint(15.0, 0.0) - glint(15.0, roughness));
+    taught(id, &format!("{:.1} dB. 0.25 mm take {:.1} dB, 1 mm takes {:.0} dB", lost(0.5), lost(0.25), lost(1.0)));
+    let mut turned = scene(id, 3);
     let smooth = brightest(&maps(&turned).full);
     let Object::Wall(wall) = &mut turned.objects[0] else { panic!() };
     wall.roughness_millimetres = 0.5;
-    taught(ON_ROUGHNESS, &format!("{:.0} dB brighter", brightest(&maps(&turned).full) - smooth));
+    taught(id, &format!("{:.0} dB brighter", brightest(&maps(&turned).full) - smooth));
 }
 
 #[test]

@@ -1,16 +1,15 @@
 //! The claims of the lesson on detectors, computed again.
 
+use crate::prelude::*;
 use crate::taught::{lesson, taught};
+use apertura::maps::Mask;
 use apertura::maps::cfar::Cfar;
-use apertura::maps::{LogMaps, Mask, RangeAngleMap};
-use apertura::signal::simulate;
 
 /// Cells that a detector finds in the target of a step, counted from 1, and the target's Lambda.
 fn detected(step: usize, cfar: Option<&str>) -> (Mask, RangeAngleMap) {
     detected_in_noise(step, cfar, 0)
 }
 
-/// [`detected`] in the noise of another seed.
 fn detected_in_noise(step: usize, cfar: Option<&str>, seed: u64) -> (Mask, RangeAngleMap) {
     let step = &lesson("a-threshold-that-follows-the-noise").steps[step - 1];
     let cfar = cfar.map_or_else(|| step.view.cfar.unwrap(), |text| text.parse().unwrap());
@@ -20,7 +19,6 @@ fn detected_in_noise(step: usize, cfar: Option<&str>, seed: u64) -> (Mask, Range
     (cfar.detect_lambda(&lambda, full.scale(step.view.normalisation)).unwrap(), lambda)
 }
 
-/// Range bin and column of a point in a step's map.
 fn cell_of(step: usize, point: usize) -> (usize, usize) {
     let step = &lesson("a-threshold-that-follows-the-noise").steps[step - 1];
     let [x, y] = step.scene().objects[point].centre_metres();
@@ -29,7 +27,6 @@ fn cell_of(step: usize, point: usize) -> (usize, usize) {
     (bin, step.radar.column_of_cos(blob.cos_theta).round() as usize)
 }
 
-/// Whether one of the cells next to a point's is detected.
 fn finds(mask: &Mask, (bin, column): (usize, usize)) -> bool {
     mask.cells.slice(ndarray::s![bin - 1..bin + 2, column - 1..column + 2]).iter().any(|cell| *cell)
 }

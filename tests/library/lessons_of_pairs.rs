@@ -1,12 +1,8 @@
 //! The numbers that the lesson on pairs of antennas teaches, computed again: each must stand in its text as it comes out here.
 
+use crate::prelude::*;
 use crate::taught::{lesson, taught};
 use apertura::lesson::Step;
-use apertura::lesson::question::Answer;
-use apertura::maps::{LogMap, LogMaps};
-use apertura::radar::Radar;
-use apertura::signal::{Floor, simulate};
-use ndarray::Array1;
 
 const PAIRS: &str = "pairs-of-antennas";
 
@@ -14,14 +10,12 @@ fn target(radar: &Radar, step: &Step) -> LogMap {
     LogMaps::of_signal(radar, &simulate(radar, &step.scene(), Floor::Exact, 0).unwrap()).full
 }
 
-/// The row of the brightest cell, decibels below it.
 fn brightest_row(map: &LogMap) -> Array1<f64> {
     let peak = map.decades().iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
     let row = map.decades().outer_iter().find(|row| row.iter().any(|v| *v == peak)).unwrap();
     row.mapv(|v| 20.0 * (v - peak))
 }
 
-/// Columns of the brightest row within 10 dB of its peak.
 fn width_columns(map: &LogMap) -> usize {
     brightest_row(map).iter().filter(|v| **v > -10.0).count()
 }
@@ -38,23 +32,9 @@ fn the_antennas_are_as_many_as_the_lesson_says() {
     let lesson = lesson(PAIRS);
     let radar = lesson.steps[0].radar.clone();
     let antennas = radar.antennas.as_ref().unwrap();
-    let extent_centimetres = |x: &[f64]| 100.0 * (x[x.len() - 1] - x[0]);
-    taught(
-        PAIRS,
-        &format!(
-            "{} transmitters on {:.0} cm",
-            antennas.transmitter_x_metres().len(),
-            extent_centimetres(antennas.transmitter_x_metres())
-        ),
-    );
-    taught(
-        PAIRS,
-        &format!(
-            "{} receivers on {:.0} cm",
-            antennas.receiver_x_metres().len(),
-            extent_centimetres(antennas.receiver_x_metres())
-        ),
-    );
+    for (what, x) in [("transmitters", antennas.transmitter_x_metres()), ("receivers", antennas.receiver_x_metres())] {
+        taught(PAIRS, &format!("{} {what} on {:.0} cm", x.len(), 100.0 * (x[x.len() - 1] - x[0])));
+    }
     taught(PAIRS, &format!("fill a line of {:.0} cm", 100.0 * radar.aperture_metres()));
     assert_eq!(right_option(&lesson.steps[0]), radar.elements.to_string());
 }

@@ -1,20 +1,8 @@
 //! The shipped live network on fresh scenes.
 
-use apertura::evaluate::campaign::Campaign;
-use apertura::evaluate::sets::SceneSet;
-use apertura::evaluate::tables::Tally;
-use apertura::methods;
-use apertura::radar::presets::RadarPreset;
-use apertura::radar::{Carrier, Convention, Decibels, Radar, WindowFunction};
-use apertura::reconstruct::{Baseline, Request};
-use apertura::scene::Scene;
-use apertura::scene::generate::{Kind, Purpose};
-use apertura::signal::{Floor, simulate};
-use apertura::task::Task;
+use crate::prelude::*;
 use rayon::prelude::*;
-use std::time::Duration;
 
-/// SE on a radar that is not table 3.1's.
 const OTHER_RADARS_ERROR: f64 = 900.0;
 
 fn tally(kind: Kind, count: u32) -> Tally {
@@ -39,7 +27,6 @@ fn is_as_good_on_every_set_as_when_it_was_trained() {
     }
 }
 
-/// Radars of as many elements and samples that are not that of table 3.1.
 fn other_radars() -> [(&'static str, Radar); 3] {
     let radar = Radar::default;
     [

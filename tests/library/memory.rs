@@ -2,15 +2,9 @@
 //!
 //! Each measurement has a process of its own: this test program again, asked for the test called `child`.
 
-use apertura::engine::{Engine, MapRequest};
+use crate::prelude::*;
 use apertura::files::memory::{peak_resident_bytes, reset_peak_resident, resident_bytes};
-use apertura::maps::archive::write_maps;
-use apertura::methods;
-use apertura::radar::Radar;
-use apertura::reconstruct::{Fista, Reconstructor, Request};
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
-use std::process::Command;
+use apertura::reconstruct::Fista;
 
 /// Variable with the child's work: `WORK ELEMENTS SAMPLES END`.
 const CHILD_VARIABLE: &str = "APERTURA_TEST_MEMORY";
@@ -62,7 +56,6 @@ fn child() {
     }
 }
 
-/// Most bytes that `work` for `radar` held; `None` where the system reports no peaks.
 fn held(work: &str, radar: &Radar) -> Option<u64> {
     let mut child = Command::new(std::env::current_exe().unwrap());
     child.args(["--exact", "memory::child", "--ignored", "--nocapture"]);
@@ -73,7 +66,6 @@ fn held(work: &str, radar: &Radar) -> Option<u64> {
     said.lines().find_map(|l| l.strip_prefix("held ")?.parse().ok())
 }
 
-/// Compares the memory of `work` with its bound, and with `least` bytes: a measurement that sees no memory proves nothing.
 fn check(work: &str, radar: &Radar, least: u64) {
     let Some(held) = held(work, radar) else {
         assert_ne!(std::env::consts::OS, "linux", "{work}: the peak was not told");

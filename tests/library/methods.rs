@@ -1,16 +1,10 @@
 //! Properties of every reconstruction method, of any kind: shape, range, determinism, independence of gain, an answer to degenerate samples, and an
 //! end when asked to stop. New methods are held to them by being in the list.
 
+use crate::prelude::*;
 use apertura::evaluate::detection_rates;
-use apertura::maps::{LogMaps, Normalisation};
-use apertura::methods;
-use apertura::radar::{Decibels, Radar};
-use apertura::reconstruct::{ReconstructError, Reconstruction, Reconstructor, Request};
-use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
-use apertura::scene::{GaussianCluster, Object, Scene};
-use apertura::signal::{BeatSignal, Floor, TwoEnds, simulate};
-use num_complex::Complex64;
-use std::time::{Duration, Instant};
+use apertura::reconstruct::Reconstruction;
+use apertura::signal::TwoEnds;
 
 /// Longest any method may take for one map, even on a busy machine in an unoptimised build.
 const MAX_RUN_TIME: Duration = Duration::from_secs(120);
@@ -34,7 +28,6 @@ fn times(ends: &TwoEnds, gain: f64) -> TwoEnds {
     TwoEnds { first: ends.first.mapv(|v| v * gain), last: ends.last.mapv(|v| v * gain) }
 }
 
-/// Runs `method` and holds its answer to shape, finiteness, range and time.
 fn run(method: &dyn Reconstructor, ends: &TwoEnds, what: &str) -> Reconstruction {
     let start = Instant::now();
     let name = method.name();

@@ -1,16 +1,8 @@
 //! Answers of methods to samples that hold noise alone, or an echo at the edge of the radar's map.
 
+use crate::prelude::*;
 use apertura::evaluate::sets::NOISE_LEVEL;
-use apertura::evaluate::trial::Trial;
-use apertura::maps::{Normalisation, RangeAngleMap};
-use apertura::methods;
-use apertura::radar::{Decibels, Radar};
-use apertura::reconstruct::Request;
-use apertura::scene::Scene;
-use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
-use apertura::signal::Floor;
 
-/// A trial of `scene`, and the request for a method.
 fn trial(scene: &Scene, floor: Floor, normalisation: Normalisation) -> (Trial, Request) {
     let request = Request { noise: floor.into(), normalisation, ..Request::default() };
     (Trial::new(&Radar::default(), scene, floor, normalisation).unwrap(), request)
@@ -35,7 +27,6 @@ fn no_method_alarms_on_noise_alone() {
     }
 }
 
-/// The squared error of the constant map that is nearest to a target.
 fn of_the_best_constant(target: &RangeAngleMap) -> f64 {
     let cells = target.lambda.len() as f64;
     let mean = target.lambda.iter().map(|v| f64::from(*v)).sum::<f64>() / cells;

@@ -1,22 +1,11 @@
 //! Transmitters and receivers on a bent bumper: samples compared with sums of their own, focused maps, methods, and mirrored captures.
 
 use super::pairs::with_gaps;
-use apertura::engine::{Engine, MapRequest};
+use crate::prelude::*;
 use apertura::evaluate::squared_error;
-use apertura::files::npz::write_npz;
-use apertura::maps::{LogMaps, Normalisation, RangeAngleMap};
-use apertura::methods;
-use apertura::radar::{Antennas, BuiltArray, Decibels, Radar};
-use apertura::reconstruct::found::reconstruct_and_find;
-use apertura::reconstruct::{NoisePrior, Request};
-use apertura::recording::file;
+use apertura::radar::BuiltArray;
 use apertura::scattering::Echoing;
-use apertura::scene::{Block, Object, Point, Scene, Wall};
-use apertura::signal::chirps::{chirp_elements, simulate_chirps};
-use apertura::signal::{BeatSignal, Floor, judge, simulate};
-use ndarray::{Array3, Axis, s};
-use num_complex::Complex64;
-use std::f64::consts::TAU;
+use ndarray::{Axis, s};
 
 const C: f64 = 299_792_458.0;
 
@@ -35,7 +24,6 @@ fn bent(radar: &Radar, back_metres: f64) -> Radar {
     radar.clone().with_antennas(antennas.off_line(&transmitters, &receivers).unwrap())
 }
 
-/// Places of both antennas of an element.
 fn places(antennas: &Antennas, n: usize) -> [[f64; 2]; 2] {
     let [t, r] = antennas.pairs()[n].unwrap();
     [
@@ -54,7 +42,6 @@ pub fn sample(radar: &Radar, [transmitter, receiver]: [[f64; 2]; 2], points: &[(
     points.iter().map(echo).sum()
 }
 
-/// The largest difference of a sample, relative to the largest sample of `a`.
 pub fn largest_difference(a: &BeatSignal, b: &BeatSignal) -> f64 {
     let off = a.samples.iter().zip(&b.samples).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     off / a.peak()
@@ -115,18 +102,6 @@ fn points_with_bodies_are_what_double_double_arithmetic_gives() {
     }
 }
 
-#[test]
-fn an_array_moved_back_hears_its_scene_farther_away() {
-    let radar = straight(4, 6);
-    let antennas = radar.antennas.clone().unwrap().off_line(&[-0.25; 4], &[-0.25; 6]).unwrap();
-    let moved = radar.clone().with_antennas(antennas);
-    let own = simulate(&moved, &Scene::of_points([(0.5, 3.0), (-1.0, 6.0)]), Floor::Exact, 0).unwrap();
-    let far = simulate(&radar, &Scene::of_points([(0.5, 3.25), (-1.0, 6.25)]), Floor::Exact, 0).unwrap();
-    let off = largest_difference(&own, &far);
-    assert!(off < 1e-10, "{off:e}");
-}
-
-/// Points from 8 to 20 m, in all directions.
 fn far_points() -> Scene {
     Scene::of_points([(0.0, 12.0), (3.0, 9.0), (-6.0, 8.0), (10.0, 13.0), (-12.0, 15.0)])
 }
@@ -204,23 +179,19 @@ fn methods_that_know_pairs_place_a_point_before_a_bent_array() {
     }
 }
 
-/// The recording of a capture of pairs, whose text has `more` after its places.
-fn imported(
-    cube: &Array3<Complex64>,
-    radar: &Radar,
-    [t, r]: [&[f64]; 2],
-    more: &str,
-) -> apertura::recording::Recording {
+/// The recording of a capture of pairs whose antennas stand there, and whose text has `more` at its end.
+pub fn imported(cube: &Array3<Complex64>, radar: &Radar, [t, r]: [&[f64]; 2], more: &str) -> Recording {
     let folder = tempfile::tempdir().unwrap();
     write_npz(&folder.path().join("c.npz"), |out| out.add("cube", cube)).unwrap();
+    let Radar { carrier_hz, bandwidth_hz, end_elements, samples, transmit_power_watts, .. } = radar;
     let text = format!(
-        "format = 2\n[radar]\nconvention = \"physical\"\ncarrier_hz = {:?}\nbandwidth_hz = {:?}\nend_elements = {}\nsamples = {}\n\
+        "format = 2\n[radar]\nconvention = \"physical\"\ncarrier_hz = {carrier_hz:?}\nbandwidth_hz = {bandwidth_hz:?}\n\
+         end_elements = {end_elements}\nsamples = {samples}\ntransmit_power_watts = {transmit_power_watts:?}\n\
          transmitter_x_metres = {t:?}\nreceiver_x_metres = {r:?}\n[recording]\nfile = \"c.npz\"\narray = \"cube\"\n\
          axes = [\"transmitter\", \"receiver\", \"sample\"]\ncarrier_at = \"first-sample\"\nbeat_sign = \"+\"\n{more}",
-        radar.carrier_hz, radar.bandwidth_hz, radar.end_elements, radar.samples,
     );
-    std::fs::write(folder.path().join("c.toml"), text).unwrap();
-    file::load(&folder.path().join("c.toml")).unwrap_or_else(|e| panic!("{e}"))
+    fs::write(folder.path().join("c.toml"), text).unwrap();
+    recording::file::load(&folder.path().join("c.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]
@@ -237,10 +208,10 @@ fn a_capture_whose_axis_runs_the_other_way_is_turned_round() {
     let [left_t, left_r] = [&t, &r].map(|places| places.iter().map(|x| -x).collect::<Vec<_>>());
     let wrong = imported(&cube, &radar, [&left_t, &left_r], "");
     let turned = imported(&cube, &radar, [&left_t, &left_r], "reverse_elements = true\n");
-    let samples = |recording: &apertura::recording::Recording| recording.signal().unwrap().samples.clone();
+    let samples = |recording: &Recording| recording.signal().unwrap().samples.clone();
     assert_eq!((samples(&turned), &turned.radar), (samples(&right), &right.radar));
     assert_eq!(samples(&wrong).slice(s![..;-1, ..]), samples(&right), "the phases stay as they are");
-    let strongest = |recording: &apertura::recording::Recording| {
+    let strongest = |recording: &Recording| {
         let full = LogMaps::of_signal(&recording.radar, recording.signal().unwrap()).full;
         let columns = full.decades().map_axis(Axis(0), |column| column.iter().fold(f64::MIN, |m: f64, v| m.max(*v)));
         let best = columns.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;

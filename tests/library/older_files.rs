@@ -1,22 +1,13 @@
 //! Files of version 0.1.0 are read, with all their contents. They stand in `tests/data/program-0.1.0` and must never be rewritten. The program wrote
 //! them, but for `recording.*`, which is a user's, and `shared-view.txt`, `settings.ron` and `autosave.toml`, which have the layout of its own files.
 
-use apertura::evaluate::campaign::Campaign;
+use crate::prelude::*;
 use apertura::evaluate::echoes::EchoCounts;
-use apertura::evaluate::rows::{Row, lacks, merge, read_rows};
-use apertura::evaluate::sets::SceneSet;
-use apertura::lesson::Lesson;
-use apertura::maps::Normalisation;
-use apertura::radar::{Carrier, Convention, Decibels, WindowFunction};
-use apertura::reconstruct::{BARTLETT, Baseline};
-use apertura::recording;
-use apertura::scene::file::{self, SceneFile};
-use apertura::scene::generate::{Kind, Purpose, Reading};
-use apertura::scene::{Block, GaussianCluster, Line, Object, Point, Polygon, Post, Wall};
+use apertura::evaluate::rows::{lacks, merge};
+use apertura::reconstruct::BARTLETT;
+use apertura::scene::{Polygon, file};
 use apertura::share::SharedScene;
-use apertura::signal::Floor;
-use std::fs::{self, File};
-use std::path::PathBuf;
+use std::fs::File;
 
 fn path(name: &str) -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/program-0.1.0")).join(name)
@@ -167,10 +158,8 @@ fn rows_of_format_1_are_read_with_all_that_they_say() {
     assert_eq!(keys, scenes.concat());
     for row in &rows {
         assert_eq!((row.version, &*row.program, row.seed), (Some(1), "0.1.0", 4));
-        assert_eq!(
-            (row.purpose, row.reading, row.carrier),
-            (Some(Purpose::Test), Some(Reading::Program), Some(Carrier::OneWay))
-        );
+        let expected = (Some(Purpose::Test), Some(Reading::Program), Some(Carrier::OneWay));
+        assert_eq!((row.purpose, row.reading, row.carrier), expected);
         assert_eq!((row.normalisation, &*row.radar, &*row.scenes), (Some(Normalisation::MinMax), "", ""));
         assert_eq!(row.floor == Some(Floor::Thesis), row.set != "noise");
         assert_eq!(row.echoes.is_some(), row.set == "bodies");

@@ -1,15 +1,8 @@
 //! Every method on every valid radar: a map with its echoes in their places, or at once a refusal with its reason.
 
-use apertura::maps::{LogMaps, Normalisation};
-use apertura::methods;
-use apertura::radar::{Carrier, Decibels, Radar, SPEED_OF_LIGHT};
-use apertura::reconstruct::{Detection, ReconstructError, Request};
-use apertura::scene::Scene;
-use apertura::signal::{Floor, simulate};
+use crate::prelude::*;
 use proptest::prelude::*;
-use std::time::{Duration, Instant};
 
-/// Methods that are trained for one radar.
 const NETWORKS: [&str; 4] = ["live", "thesis", "thesis-1", "unet"];
 
 /// Longest that any method may take for one of these maps, even on a busy machine in an unoptimised build.
@@ -20,7 +13,6 @@ fn array(elements: usize, end_elements: usize, carrier_hz: f64, wavelengths: f64
     Radar { elements, end_elements, carrier_hz, element_spacing_metres, samples: 128, ..Radar::default() }
 }
 
-/// Radars that are not table 3.1's.
 fn radars() -> Vec<(&'static str, Radar)> {
     let half = 0.5;
     vec![
@@ -34,7 +26,6 @@ fn radars() -> Vec<(&'static str, Radar)> {
     ]
 }
 
-/// One reflector in the middle of what the radar sees.
 fn one_reflector(radar: &Radar) -> Scene {
     let range = if radar.samples == 1 { 100.0 * radar.far_field_metres() } else { radar.max_range_metres() * 0.4 };
     Scene::of_points([(range * 0.28, range * 0.96)])
@@ -202,15 +193,6 @@ fn ends_that_nothing_is_far_away_from_are_refused_at_once() {
         let reason = found(name, &radar, &[(20.0, 0.2)]).unwrap_err().to_string();
         assert!(reason.contains("far field"), "{name}: {reason}");
     }
-}
-
-#[test]
-fn two_samples_have_maps() {
-    let radar = Radar { samples: 2, ..array(16, 4, 77e9, 0.5) };
-    let scene = Scene::of_points([(0.01, 0.05)]);
-    let signal = simulate(&radar, &scene, Floor::Snr(Decibels(40.0)), 1).unwrap();
-    let full = LogMaps::of_signal(&radar, &signal).full.normalise(Normalisation::DynamicRange(Decibels(30.0)));
-    assert!(full.lambda.iter().any(|v| *v < 0.5) && full.lambda.iter().any(|v| *v > 0.9));
 }
 
 #[test]

@@ -1,10 +1,6 @@
 //! The thesis' question answered on hardware: do twelve elements at either end of 86 see what all 86 see?
 
-use apertura::methods;
-use apertura::radar::Radar;
-use apertura::reconstruct::found::reconstruct_and_find;
-use apertura::reconstruct::{NoisePrior, Request};
-use apertura::recording::Recording;
+use crate::prelude::*;
 use apertura::recording::presets::Preset;
 
 /// Directions in degrees that come within 8 dB of the strongest, rising, as `method` sees them with `end_elements` at either end.

@@ -1,7 +1,7 @@
 //! Tables in the documents are as new as the weights and the floor that they were made with.
 
-use std::path::Path;
-use std::process::{Command, Output};
+use crate::prelude::*;
+use std::process::Output;
 
 fn check(root: &Path) -> Output {
     Command::new("python3").arg(root.join("scripts/tables")).arg("--check").output().expect("python3 runs")
@@ -17,7 +17,6 @@ fn no_table_is_older_than_its_weights_and_floor() {
     assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
 }
 
-/// A tree with a table of `hybrid`, one of `baseline`, and one under thermal noise.
 fn tree(root: &Path) {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     for folder in ["scripts", "src/signal", "assets/weights", "docs"] {
@@ -57,10 +56,8 @@ fn other_weights_or_another_floor_make_tables_stale() {
     *changed.last_mut().unwrap() ^= 1;
     std::fs::write(&weights, changed).unwrap();
     let said = complaints(root);
-    assert!(
-        !check(root).status.success() && said.contains("table both was") && said.contains("table weights was"),
-        "{said}"
-    );
+    let holds = !check(root).status.success() && said.contains("table both was") && said.contains("table weights was");
+    assert!(holds, "{said}");
     assert!(!said.contains("table floor"), "{said}");
 
     std::fs::write(&weights, shipped).unwrap();

@@ -1,24 +1,19 @@
 //! Lessons, and the numbers that their texts must have.
 
-use apertura::lesson::{Lesson, shipped};
-use apertura::radar::{Convention, Radar};
+use crate::prelude::*;
 
-/// A lesson's file.
 pub fn text(id: &str) -> &'static str {
     shipped::ALL.iter().find(|s| s.id == id).unwrap_or_else(|| panic!("no lesson {id}")).toml
 }
 
-/// A lesson.
 pub fn lesson(id: &str) -> Lesson {
     Lesson::from_toml(text(id)).unwrap()
 }
 
-/// Holds a lesson to a number as its text has it.
 pub fn taught(id: &str, number: &str) {
     assert!(text(id).contains(number), "{id} does not say \"{number}\"");
 }
 
-/// The radar of most lessons: table 3.1 in the physical convention.
 pub fn physical() -> Radar {
     Radar::default().in_convention(Convention::Physical)
 }

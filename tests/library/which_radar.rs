@@ -1,12 +1,6 @@
 //! The thesis' radar is a physical one: it sends and hears with every element, begins at 38.5 GHz and falls by 2 GHz.
 
-use apertura::radar::presets::RadarPreset;
-use apertura::radar::{Radar, SPEED_OF_LIGHT};
-use apertura::scene::Reflector;
-use apertura::signal::judge;
-use apertura::theory::Consequences;
-use num_complex::Complex64;
-use std::f64::consts::TAU;
+use crate::prelude::*;
 use twofloat::TwoFloat;
 
 /// A radar each of whose elements sends and hears, with the frequencies that it sends.

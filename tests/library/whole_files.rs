@@ -2,25 +2,15 @@
 //!
 //! The process that is killed is this test program again, asked for one of the tests that are called `child`.
 
-use apertura::files::npz::Npz;
+use crate::prelude::*;
 use apertura::files::{write_atomically, write_bytes};
 use apertura::interact::{Autosave, Document, Editor, Restored};
-use apertura::maps::archive::write_maps;
-use apertura::radar::Radar;
-use apertura::scene::file::{self, SceneFile};
-use apertura::scene::{Object, Point, Scene};
-use apertura::signal::{Floor, simulate};
-use ndarray::Ix1;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use std::io::{self, Read, Write};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use apertura::scene::file;
+use std::io;
+use std::io::{Read, Write};
+use std::process::Stdio;
 
-/// Variable with the child's folder.
 const FOLDER: &str = "APERTURA_TEST_FOLDER";
-/// Number of times that each child is killed.
 const KILLS: u64 = 12;
 
 /// A scene whose name is its number of points, so that a part of it is found out.
@@ -29,7 +19,6 @@ fn numbered(number: usize) -> SceneFile {
     SceneFile { scene: Scene { name: number.to_string(), ..scene }, ..SceneFile::default() }
 }
 
-/// The number of a scene that is whole.
 fn number_of(scene: &Scene) -> usize {
     let number = scene.name.parse().expect("a number");
     assert_eq!(scene.objects.len(), number, "the scene is not whole");
@@ -46,13 +35,11 @@ fn folder_of_child() -> Option<PathBuf> {
     std::env::var_os(FOLDER).map(PathBuf::from)
 }
 
-/// Tells the parent process that everything up to `number` is safe.
 fn safe(number: usize) {
     let mut out = io::stdout();
     let _nobody_listens = writeln!(out, "safe {number}").and_then(|()| out.flush());
 }
 
-/// Starts the child, kills it at a random moment once it has begun, and returns the last number it called safe.
 fn kill(name: &str, folder: &Path, rng: &mut ChaCha8Rng) -> usize {
     let mut process = child(name, folder).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("a child");
     let begun = folder.join("begun");
@@ -102,7 +89,6 @@ fn a_kill_while_saving_leaves_the_old_file_or_the_new_one() {
     assert!(number_of(&file::load(&path).unwrap().scene) > 0);
 }
 
-/// Edits one document for ever, and leaves an unsaved one behind now and then.
 #[test]
 #[ignore = "the child of the test below"]
 fn child_autosaves() {
@@ -123,7 +109,6 @@ fn child_autosaves() {
     }
 }
 
-/// The largest number of all that came back; all must be whole.
 fn latest(restored: &Restored) -> Option<usize> {
     assert!(restored.problems.is_empty(), "{:?}", restored.problems);
     restored.left.iter().chain(&restored.on_screen).map(|d| number_of(d.scene())).max()
@@ -177,7 +162,6 @@ fn a_kill_while_exporting_leaves_a_whole_archive() {
     }
 }
 
-/// Saves a scene that does not fit, and prints the outcome.
 #[test]
 #[ignore = "the child of the test below"]
 fn child_saves_too_much() {

@@ -50,10 +50,8 @@ mod tests {
         let tolerances = Tolerances { gain: Decibels(0.5), phase_degrees: 5.0, position_millimetres: 0.0 };
         let drawn = Elements::Drawn(tolerances);
         assert_ne!(drawn.of(&radar, 1, 0), drawn.of(&radar, 1, 1));
-        assert_eq!(
-            (drawn.of(&radar, 1, 1), drawn.text()),
-            (drawn.of(&radar, 2, 0), "drawn 0.5 dB 5 degrees 0 mm".to_owned())
-        );
+        let expected = (drawn.of(&radar, 2, 0), "drawn 0.5 dB 5 degrees 0 mm".to_owned());
+        assert_eq!((drawn.of(&radar, 1, 1), drawn.text()), expected);
         assert_eq!((Elements::OfScenes.of(&radar, 1, 0), Elements::OfScenes.text()), (None, String::new()));
     }
 }

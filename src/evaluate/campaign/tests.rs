@@ -3,45 +3,8 @@ use crate::reconstruct::{About, BARTLETT, Baseline, ReconstructError, Reconstruc
 use crate::scene::generate::Kind;
 use crate::signal::TwoEnds;
 
-/// Rows without their times.
 fn figures(rows: &[Row]) -> Vec<Row> {
     rows.iter().map(|r| Row { milliseconds: 0.0, ..r.clone() }).collect()
-}
-
-#[test]
-fn the_shards_of_a_campaign_add_up_to_it() {
-    let sets = [SceneSet::Generated(Kind::Set1), SceneSet::Generated(Kind::Set2)];
-    let run = |shard: &str| {
-        let campaign = Campaign { count: 3, seed: 3, shard: shard.parse().unwrap(), ..Campaign::default() };
-        let mut seen = 0;
-        let rows = campaign.run(&sets, &[&Baseline, &BARTLETT], &Task::default(), |_| seen += 1).unwrap();
-        assert_eq!(rows.len(), seen);
-        figures(&rows)
-    };
-    let whole = run("0/1");
-    assert_eq!(
-        whole.iter().map(|r| (&*r.set, r.index)).collect::<Vec<_>>()[2..6],
-        [("1", 1), ("1", 1), ("1", 2), ("1", 2)]
-    );
-    assert_eq!(whole.len(), 12);
-    assert_ne!(whole[0].squared_error, whole[2].squared_error);
-    let shards = vec![("a".into(), run("1/2")), ("b".into(), run("0/2"))];
-    let merged = super::super::rows::merge(shards).unwrap();
-    let figures = |rows: &[Row]| rows.iter().map(|r| Row { shard: None, ..r.clone() }).collect::<Vec<_>>();
-    assert_eq!(figures(&merged), figures(&whole));
-    assert_eq!(super::super::rows::lacks(&merged), []);
-}
-
-#[test]
-fn the_rest_of_a_campaign_is_what_lacked() {
-    let sets = [SceneSet::Generated(Kind::Set1)];
-    let methods: [&dyn Reconstructor; 2] = [&Baseline, &BARTLETT];
-    let campaign = Campaign { count: 3, ..Campaign::default() };
-    let whole = campaign.run(&sets, &methods, &Task::default(), |_| ()).unwrap();
-    let is_done = |_: &str, index: u32, method: &str| index == 0 || (index, method) == (1, "baseline");
-    let empty = campaign.empty_rows(&sets, &methods).unwrap();
-    let rest = campaign.run_rest(&sets, &methods, &empty, &is_done, &Task::default(), |_, _, _| ()).unwrap();
-    assert_eq!(figures(&rest), figures(&whole[3..]));
 }
 
 #[test]
@@ -80,7 +43,6 @@ fn scenes_of_noise_alone_have_no_detection_rate() {
     }
 }
 
-/// Refuses every radar.
 struct Refuses;
 
 impl Reconstructor for Refuses {

@@ -170,7 +170,6 @@ mod tests {
         read_rows(text.as_bytes()).unwrap_err().to_string()
     }
 
-    /// The table with its columns in another order, or without some of them.
     fn with_columns(table: &str, names: &[&str]) -> String {
         let mut reader = csv::Reader::from_reader(table.as_bytes());
         let header = reader.headers().unwrap().clone();
@@ -267,10 +266,8 @@ mod tests {
         }
         let made = text(&[made("1", 0, "live")]);
         let without: Vec<&str> = names().into_iter().filter(|name| *name != "floor").collect();
-        assert_eq!(
-            error(&with_columns(&made, &without)),
-            "line 2, column floor: \"\"; expected a floor as --floor takes it"
-        );
+        let expected = "line 2, column floor: \"\"; expected a floor as --floor takes it";
+        assert_eq!(error(&with_columns(&made, &without)), expected);
         assert!(error("").contains("no column \"set\""));
     }
 
@@ -319,10 +316,8 @@ mod tests {
             assert!(told.starts_with(&format!("line 2, column {}: \"{cell}\"; expected ", column.name())), "{told}");
         }
         assert!(error(&table(Column::Floor, "rock")).contains("expected thesis, exact"));
-        assert_eq!(
-            error(&table(Column::Version, "3")),
-            "line 2: the row is of format 3; this program reads up to format 2"
-        );
+        let wanted = "line 2: the row is of format 3; this program reads up to format 2";
+        assert_eq!(error(&table(Column::Version, "3")), wanted);
         let files = table(Column::Carrier, "file").replace(",test,program,file,", ",file,file,file,");
         let files = read_rows(files.as_bytes()).unwrap();
         assert_eq!((files[0].carrier, files[0].is_generated(), good.carrier), (None, false, Some(Carrier::OneWay)));
@@ -331,10 +326,8 @@ mod tests {
     #[test]
     fn faults_name_their_place() {
         let good = text(&[row("1", 0, "live"), row("1", 1, "live")]);
-        assert_eq!(
-            error(&good.replace("34.333333333333336", "inf")),
-            "line 3, column squared_error: \"inf\"; expected a finite number"
-        );
+        let wanted = "line 3, column squared_error: \"inf\"; expected a finite number";
+        assert_eq!(error(&good.replace("34.333333333333336", "inf")), wanted);
         assert!(error(&good.replacen(",7,", ",-7,", 1)).starts_with("line 2, column seed: \"-7\"; expected a whole"));
         assert!(error(&format!("{good}1,2,3\n")).starts_with("line 4: has 3 cells; expected 45"));
         assert!(error(&good.replacen("1 0 0 1 0 0", "1 0 0 3 0 0", 1)).starts_with("line 2, column echoes_found: "));

@@ -274,7 +274,6 @@ pub(super) mod tests {
         }
     }
 
-    /// The row of [`row`] with the origin of a usual run of four scenes.
     pub(in crate::evaluate) fn made(set: &str, index: u32, method: &str) -> Row {
         Row {
             version: Some(FORMAT),

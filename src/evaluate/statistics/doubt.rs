@@ -86,7 +86,6 @@ mod tests {
     use super::*;
     use crate::evaluate::rows::tests::row;
 
-    /// Rows of these pairs of doubt and squared error.
     fn rows(pairs: &[(f64, f64)]) -> Vec<Row> {
         let of = |(i, (doubt, squared_error)): (usize, &(f64, f64))| Row {
             doubt: Some(*doubt),
@@ -98,11 +97,6 @@ mod tests {
 
     /// Failures 3, 2; others 2, 1, 0: of six pairs five are in order and one is a tie.
     const SCORES: [(f64, bool); 5] = [(3.0, true), (2.0, true), (2.0, false), (1.0, false), (0.0, false)];
-
-    #[test]
-    fn a_tie_counts_half() {
-        assert_eq!(RocArea::of(&[(1.0, true), (1.0, false)]).map(|a| (a.area, a.standard_error)), Some((0.5, None)));
-    }
 
     #[test]
     fn the_standard_error_is_that_computed_by_hand() {
@@ -128,19 +122,6 @@ mod tests {
             }
         }
         assert!((RocArea::of(&scores).unwrap().area - ordered / pairs).abs() < 1e-12);
-    }
-
-    #[test]
-    fn failures_are_the_worst_tenth_or_what_exceeds_a_limit() {
-        // Twenty rows; the two worst have the largest and the median doubt.
-        let pairs: Vec<(f64, f64)> = (0..20).map(|i| (f64::from(if i == 18 { 9 } else { i }), f64::from(i))).collect();
-        let found = DoubtArea::of(&rows(&pairs), None).unwrap();
-        assert_eq!((found.rows, found.failures, found.least_squared_error), (20, 2, 18.0));
-        // 19 lies above all 18 others; 9 above 0 to 8, and equals one of them.
-        assert!((found.area.unwrap().area - (18.0 + 9.5) / 36.0).abs() < 1e-15);
-        let above = DoubtArea::of(&rows(&pairs), Some(19.0)).unwrap();
-        assert_eq!((above.failures, above.area.unwrap().area), (1, 1.0));
-        assert_eq!(DoubtArea::of(&rows(&pairs), Some(50.0)).map(|a| (a.failures, a.area)), Some((0, None)));
     }
 
     #[test]

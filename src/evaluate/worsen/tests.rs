@@ -1,9 +1,7 @@
 use super::*;
-use crate::maps::Normalisation;
-use crate::maps::RangeAngleMap;
+use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
-use crate::reconstruct::ReconstructError;
-use crate::reconstruct::{About, Reconstruction};
+use crate::reconstruct::{About, ReconstructError, Reconstruction};
 use crate::signal::TwoEnds;
 
 fn radar() -> Radar {
@@ -109,8 +107,6 @@ fn a_wall_is_turned_until_it_shines() {
     assert!((-45.0..-10.0).contains(&turned), "it faces the array: {turned}");
     let repair = WorseningSearch { aim: Aim::Repair, ..search };
     let path = repair.run(&worst.scene, &Dazzled, &Task::default(), |_, _| true).unwrap().path;
-    assert!(
-        path.iter().all(|f| f.scene.objects[0].turned_degrees(&worst.scene.objects[0]) == 0.0),
-        "repairs only move"
-    );
+    let holds = path.iter().all(|f| f.scene.objects[0].turned_degrees(&worst.scene.objects[0]) == 0.0);
+    assert!(holds, "repairs only move");
 }

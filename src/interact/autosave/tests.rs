@@ -3,7 +3,6 @@ use crate::interact::Document;
 use crate::scene::file::{self, SceneFile};
 use crate::scene::{Object, Point, Scene, presets};
 
-/// An editor whose document is `name`, with one point more than its file.
 fn edited(document: Document) -> Editor {
     let mut editor = Editor::of(document);
     editor.add(Object::Point(Point::new(1.0, 2.0)));

@@ -2,7 +2,6 @@ use super::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Noise of exponentially distributed power of mean 1.
 fn noise(bins: usize, columns: usize, seed: u64) -> Array2<f64> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     Array2::from_shape_simple_fn((bins, columns), || -(1.0 - random.random::<f64>()).ln())

@@ -275,7 +275,6 @@ mod tests {
         (0..n).map(next).collect()
     }
 
-    /// The convolution by its definition.
     #[allow(clippy::too_many_arguments)]
     fn defined(
         w: &[f32],

@@ -57,10 +57,8 @@ mod tests {
                 let expected = cos(column, elements);
                 // Beyond the network's last column the directions wrap around.
                 let is_inside = expected <= wide[COLUMNS - 1];
-                assert!(
-                    !is_inside || (found - expected).abs() < 1e-6,
-                    "{column} of {elements}: {found} for {expected}"
-                );
+                let holds = !is_inside || (found - expected).abs() < 1e-6;
+                assert!(holds, "{column} of {elements}: {found} for {expected}");
             }
         }
         assert!(ColumnTaps::new(COLUMNS).is_none());

@@ -172,7 +172,6 @@ mod tests {
     use crate::scene::Reflector;
     use crate::signal::exact;
 
-    /// Row of the strongest cell of a coarse picture.
     fn row(input: &LiveInput, channel: usize) -> f64 {
         let rows = input.rows.len() / ROW_CHANNELS;
         let plane = &input.coarse[channel * rows * COARSE_COLUMNS..][..rows * COARSE_COLUMNS];
@@ -218,10 +217,8 @@ mod tests {
             let reflectors = [Reflector { x_metres: 0.5 * range, y_metres: 0.75f64.sqrt() * range, reflectivity: 1.0 }];
             let ends = exact::beat_signal(&radar, &reflectors).two_ends(&radar);
             let input = FeatureExtractor::new(&radar).unwrap().extract(&ends).unwrap();
-            assert_eq!(
-                (input.fine.len(), input.coarse.len()),
-                (4 * samples * FINE_COLUMNS, 10 * samples * COARSE_COLUMNS)
-            );
+            let expected = (4 * samples * FINE_COLUMNS, 10 * samples * COARSE_COLUMNS);
+            assert_eq!((input.fine.len(), input.coarse.len()), expected);
             assert!(input.fine.iter().chain(&input.coarse).chain(&input.rows).all(|v| v.is_finite()));
             for channel in [2, 3] {
                 let found = row(&input, channel);

@@ -75,10 +75,8 @@ mod tests {
         let (straight, antennas) = (radar(), bent().unwrap());
         let radar = straight.clone().with_antennas(antennas);
         radar.validate().unwrap();
-        assert_eq!(
-            (radar.elements, radar.element_spacing_metres),
-            (straight.elements, straight.element_spacing_metres)
-        );
+        let wanted = (straight.elements, straight.element_spacing_metres);
+        assert_eq!((radar.elements, radar.element_spacing_metres), wanted);
         assert_eq!(radar.antenna_depth_metres(), [-0.02, 0.003]);
         assert!(straight.is_on_line() && !radar.is_on_line());
         let pair = radar.pair(5);

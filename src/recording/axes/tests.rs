@@ -94,10 +94,8 @@ fn wrong_axes_are_told() {
 fn transmitters_in_turn_have_an_axis_of_their_own() {
     let mut kinds = vec![AxisKind::Chirp, Element, Sample];
     let numbers = in_turn(numbered(&[4, 1, 1]), &mut kinds, Some(2)).unwrap();
-    assert_eq!(
-        (numbers.shape(), kinds.as_slice()),
-        ([2, 2, 1, 1].as_slice(), [AxisKind::Chirp, Transmitter, Receiver, Sample].as_slice())
-    );
+    let told = ([2, 2, 1, 1].as_slice(), [AxisKind::Chirp, Transmitter, Receiver, Sample].as_slice());
+    assert_eq!((numbers.shape(), kinds.as_slice()), told);
     let joined = loops(numbers.clone(), &kinds).unwrap();
     assert_eq!((joined.dim(), joined[[1, 0, 0, 0]].re), ((2, 2, 1, 1), 2.0));
     assert_eq!(reals(arrange(numbers, &kinds, Some(Chirp::Joined(Join::Mean))).unwrap()), array![[1.0], [2.0]]);

@@ -15,18 +15,21 @@ fn profile(more: &str) -> RadarProfile {
     RadarProfile::parse(&format!("{CFG}{more}")).unwrap()
 }
 
-/// Eight chirps of three receivers that see two echoes, over a little noise.
+/// Numbers up to half of `size` either way, the same ones for the same seed.
+fn noise(mut seed: u32, size: f64) -> impl FnMut() -> f64 {
+    move || {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        size * (f64::from(seed >> 16) / 65536.0 - 0.5)
+    }
+}
+
 fn chirps() -> Vec<Vec<Complex64>> {
     seen(300.0)
 }
 
 /// Eight chirps of three receivers, with this amplitude of the second echo.
 fn seen(second: f64) -> Vec<Vec<Complex64>> {
-    let mut state = 7u32;
-    let mut noise = move || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        f64::from(state >> 16) / 65536.0 - 0.5
-    };
+    let mut noise = noise(7, 1.0);
     let mut sample = move |receiver: usize, n: usize| {
         let turns = |bin: f64, phase: f64| {
             Complex64::from_polar(1.0, TAU * (bin * n as f64 / SAMPLES as f64 + phase * receiver as f64))
@@ -36,7 +39,6 @@ fn seen(second: f64) -> Vec<Vec<Complex64>> {
     (0..8).map(|_| (0..3 * SAMPLES).map(|n| sample(n / SAMPLES, n % SAMPLES)).collect()).collect()
 }
 
-/// The chirps as bytes of `layout`.
 fn written(layout: &Layout, chirps: &[Vec<Complex64>]) -> Vec<u8> {
     let mut out = Vec::new();
     let word = |v: f64| match layout.words {
@@ -93,11 +95,8 @@ fn complex_and_real_samples_are_judged_by_the_same_bytes() {
     let quiet = chirps();
     let mut all = [quiet.clone(), quiet.clone(), quiet.clone(), quiet].concat();
     // Where the second half is louder, real samples, which are half as long, must not be judged by the first half alone.
-    let mut state = 1u32;
-    for sample in all[8..].iter_mut().flatten() {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        *sample += Complex64::from_polar(120.0, TAU * f64::from(state >> 16) / 65536.0);
-    }
+    let mut turns = noise(1, 1.0);
+    all[8..].iter_mut().flatten().for_each(|sample| *sample += Complex64::from_polar(120.0, TAU * turns()));
     let found = found(written(&right, &all), Some(&profile("")));
     assert_eq!(found.best().layout, right, "{:#?}", found.sentences());
 }
@@ -134,15 +133,6 @@ fn headers_before_chirps_are_found() {
     assert!(found.notes.iter().any(|n| n.contains("header of 64 bytes: 8 were found")), "{:?}", found.notes);
 }
 
-#[test]
-fn real_samples_are_told_from_complex_ones() {
-    let right = layout(Words::Int16, Parts::Real, false, ReceiverOrder::OneAfterAnother);
-    let bytes = written(&right, &chirps());
-    let found = found(bytes, Some(&profile("adcCfg 2 0\n")));
-    assert_eq!(found.best().layout, right, "{:#?}", found.sentences());
-}
-
-/// The bytes in packets, without those of `lost`.
 fn packets(bytes: &[u8], lost: &[usize]) -> Vec<u8> {
     let mut out = Vec::new();
     for (n, data) in bytes.chunks(1456).enumerate().filter(|(n, _)| !lost.contains(n)) {
@@ -179,12 +169,8 @@ fn samples_with_receivers_are_found_without_a_cfg() {
         let right = layout(Words::Int16, Parts::TwoLanes, false, receivers);
         let found = found(written(&right, &three), None);
         let Candidate { layout, counts, .. } = found.best();
-        assert_eq!(
-            (layout, counts.samples, counts.receivers, counts.chirps),
-            (&right, SAMPLES, 3, 1),
-            "{:#?}",
-            found.sentences()
-        );
+        let read = (layout, counts.samples, counts.receivers, counts.chirps);
+        assert_eq!(read, (&right, SAMPLES, 3, 1), "{:#?}", found.sentences());
         if receivers == ReceiverOrder::OneAfterAnother {
             let of_three_transmitters = |c: &&Candidate| (c.counts.receivers, c.counts.chirps) == (1, 3);
             assert!(found.rivals().iter().any(of_three_transmitters), "{:#?}", found.sentences());
@@ -208,11 +194,7 @@ fn a_cfg_of_another_capture_is_doubted() {
 
 #[test]
 fn two_echoes_at_mirrored_places_are_no_image() {
-    let mut state = 3u32;
-    let mut noise = move || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        8.0 * (f64::from(state >> 16) / 65536.0 - 0.5)
-    };
+    let mut noise = noise(3, 8.0);
     let mut sample = |n: usize| {
         let (receiver, n) = ((n / SAMPLES) as f64, (n % SAMPLES) as f64 / SAMPLES as f64);
         let far = Complex64::from_polar(900.0, TAU * (66.0 * n + 0.13 * receiver));
@@ -239,11 +221,7 @@ fn a_constant_part_or_saturation_leaves_the_words() {
 
 #[test]
 fn an_echo_that_hardly_breaks_between_rows_is_cut() {
-    let mut state = 7u32;
-    let mut noise = move || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        8.0 * (f64::from(state >> 16) / 65536.0 - 0.5)
-    };
+    let mut noise = noise(7, 8.0);
     // Two transmitters and four receivers: from row to row of a loop the phase goes on but for a hundredth of a turn.
     let mut sample = |n: usize| {
         let turns = 13.3 * (n % 125) as f64 / 125.0 + 0.29 * (n / 125 % 8) as f64;
@@ -259,11 +237,7 @@ fn an_echo_that_hardly_breaks_between_rows_is_cut() {
 #[test]
 fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
     for (parts, chirps) in [(Parts::Pairs, 2), (Parts::Pairs, 3), (Parts::Real, 2)] {
-        let mut state = 7u32;
-        let mut noise = move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            40.0 * (f64::from(state >> 16) / 65536.0 - 0.5)
-        };
+        let mut noise = noise(7, 40.0);
         // Receivers half a wavelength apart, transmitters in turn, and a fifth of a turn from chirp to chirp.
         let mut sample = |n: usize| {
             let row = n / 120;
@@ -279,11 +253,7 @@ fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
 
 #[test]
 fn rows_that_are_all_alike_leave_the_receivers_open() {
-    let mut state = 7u32;
-    let mut noise = move || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        8.0 * (f64::from(state >> 16) / 65536.0 - 0.5)
-    };
+    let mut noise = noise(7, 8.0);
     let echoes =
         |n: usize| [(900.0, 13.3), (300.0, 29.7)].map(|(size, bin)| (size, TAU * bin * n as f64 / SAMPLES as f64));
     let mut sample = |n: usize| {
@@ -310,10 +280,8 @@ fn what_makes_no_echo_is_refused() {
     assert!(refused(&random, None).contains("spectrum is flat"));
     assert!(refused(&random, Some(&profile(""))).contains("spectrum is flat"));
     assert!(refused(&[0; 100_000], Some(&profile(""))).contains("nothing but zeros"));
-    assert!(
-        refused(&random[..100], Some(&profile("")))
-            .contains("has 100 bytes; expected at least one chirp, 1152 bytes as the .cfg says")
-    );
+    let short = "has 100 bytes; expected at least one chirp, 1152 bytes as the .cfg says";
+    assert!(refused(&random[..100], Some(&profile(""))).contains(short));
     assert!(refused(&[], None).contains("has 0 bytes"));
 }
 

@@ -5,18 +5,12 @@ use super::*;
 use crate::scene::{Block, Point, Polygon, Post, Wall};
 
 fn all_kinds() -> Vec<Object> {
+    let ell = [[4.0, 14.0], [5.0, 14.0], [5.0, 15.5], [7.0, 15.5], [7.0, 16.5], [4.0, 16.5]];
     vec![
         Object::Wall(Wall { roughness_millimetres: 0.5, ..Wall::new(-4.0, 18.0, 6.0, 20.0) }),
         Object::Box(Block::new([2.0, 9.0], [4.5, 1.8], 70.0)),
         Object::Post(Post::new(-1.5, 7.0, 0.3)),
-        Object::Polygon(Polygon::new(vec![
-            [4.0, 14.0],
-            [5.0, 14.0],
-            [5.0, 15.5],
-            [7.0, 15.5],
-            [7.0, 16.5],
-            [4.0, 16.5],
-        ])),
+        Object::Polygon(Polygon::new(ell.to_vec())),
         Object::Point(Point::new(3.0, 20.0)),
     ]
 }
@@ -52,20 +46,14 @@ fn a_post_of_one_metre_is_a_point_from_afar() {
 fn nothing_jumps_where_the_foot_runs_off_a_face() {
     let radar = Radar::default();
     let kappa = Wave::of(&radar).radians_per_metre;
-    let wall = Object::Wall(Wall::new(-1.0, 20.0, 2.0, 0.0));
-    let step = largest_step(
-        |x| at_range(&heard(&radar, std::slice::from_ref(&wall), &AntennaPlaces::at([x, 0.0])), kappa, 20.0),
-        -0.05,
-        1000,
-    );
-    assert!(step < 0.002, "{step}");
-    let car = Object::Box(Block::new([-2.0, 8.0], [4.0, 2.0], 0.0));
-    let step = largest_step(
-        |x| at_range(&heard(&radar, std::slice::from_ref(&car), &AntennaPlaces::at([x, 0.0])), kappa, 7.0),
-        -0.05,
-        1000,
-    );
-    assert!(step < 0.002, "{step}");
+    for (object, range) in [
+        (Object::Wall(Wall::new(-1.0, 20.0, 2.0, 0.0)), 20.0),
+        (Object::Box(Block::new([-2.0, 8.0], [4.0, 2.0], 0.0)), 7.0),
+    ] {
+        let at = |x| heard(&radar, std::slice::from_ref(&object), &AntennaPlaces::at([x, 0.0]));
+        let step = largest_step(|x| at_range(&at(x), kappa, range), -0.05, 1000);
+        assert!(step < 0.002, "{object:?}: {step}");
+    }
 }
 
 #[test]

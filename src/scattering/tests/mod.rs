@@ -19,13 +19,11 @@ fn samples(radar: &Radar, echoes: &[PathEcho]) -> Vec<Complex64> {
     SAMPLES.iter().map(sample).collect()
 }
 
-/// Largest difference over the largest reference.
 fn worst(found: &[Complex64], expected: &[Complex64]) -> f64 {
     let peak = expected.iter().map(|v| v.norm()).fold(0.0, f64::max);
     found.iter().zip(expected).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / peak
 }
 
-/// Echoes at a pair of antennas of objects that hide each other.
 fn heard(radar: &Radar, objects: &[Object], antennas: &AntennaPlaces) -> Vec<PathEcho> {
     let scene = Scene { objects: objects.to_vec(), ..Scene::default() };
     let mut out = Vec::new();

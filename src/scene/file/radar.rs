@@ -26,21 +26,3 @@ pub fn radar_of(text: &str) -> Result<(Radar, Option<f64>), String> {
     radar.validate().map_err(|error| error.to_string())?;
     Ok((radar, head.recording.range_metres))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_text_without_a_usable_radar_is_told() {
-        assert_eq!(radar_of("name = \"x\"\n[radar]\nelements = 64\n").unwrap().0.elements, 64);
-        for (text, told) in [
-            ("name = \"x\"", "has no table [radar]"),
-            ("[radar]\nelements = \"many\"", "line 2: "),
-            ("[radar]\nelements = 0", "elements"),
-        ] {
-            let error = radar_of(text).unwrap_err();
-            assert!(error.contains(told), "{error}");
-        }
-    }
-}

@@ -114,20 +114,17 @@ mod tests {
     }
 
     #[test]
-    fn the_physical_convention_is_written_by_its_name() {
-        let radar = Radar { elements: 64, ..Radar::default() }.in_convention(Convention::Physical);
-        let file = SceneFile { radar, ..scene() };
-        let text = to_toml(&file).unwrap();
-        assert!(text.contains("convention = \"physical\"") && !text.contains("spacing_metres = 0.000"), "{text}");
-        assert_eq!(from_toml(&text).unwrap(), file);
-    }
-
-    #[test]
-    fn antennas_are_written_in_place_of_the_elements_they_make() {
-        let file = SceneFile { radar: Radar::default().of_pairs(3, 4).unwrap(), ..scene() };
-        let text = to_toml(&file).unwrap();
-        assert!(text.contains("receiver_x_metres") && !text.contains("elements = 12"), "{text}");
-        assert_eq!(from_toml(&text).unwrap(), file);
+    fn a_convention_and_antennas_stand_for_what_follows_from_them() {
+        let physical = Radar { elements: 64, ..Radar::default() }.in_convention(Convention::Physical);
+        for (radar, said, follows) in [
+            (physical, "convention = \"physical\"", "spacing_metres = 0.000"),
+            (Radar::default().of_pairs(3, 4).unwrap(), "receiver_x_metres", "elements = 12"),
+        ] {
+            let file = SceneFile { radar, ..scene() };
+            let text = to_toml(&file).unwrap();
+            assert!(text.contains(said) && !text.contains(follows), "{text}");
+            assert_eq!(from_toml(&text).unwrap(), file, "{said}");
+        }
     }
 
     #[test]

@@ -90,11 +90,8 @@ mod tests {
         let mixture: Mixture = "1=1,walls=3".parse().unwrap();
         let walls = (0..4000).filter(|index| mixture.kind(5, *index) == Kind::Walls).count();
         assert!((2900..3100).contains(&walls), "{walls} of 4000");
-        assert_ne!(
-            (0..64).map(|i| mixture.kind(5, i)).collect::<Vec<_>>(),
-            (0..64).map(|i| mixture.kind(6, i)).collect::<Vec<_>>(),
-            "another seed draws other kinds"
-        );
+        let expected = (0..64).map(|i| mixture.kind(6, i)).collect::<Vec<_>>();
+        assert_ne!((0..64).map(|i| mixture.kind(5, i)).collect::<Vec<_>>(), expected, "another seed draws other kinds");
     }
 
     #[test]

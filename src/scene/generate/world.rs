@@ -266,7 +266,6 @@ mod tests {
         }
     }
 
-    /// The part of all scenes that a condition holds for.
     fn part(scenes: &[Scene], is: impl Fn(&Scene) -> bool) -> f64 {
         scenes.iter().filter(|scene| is(scene)).count() as f64 / scenes.len() as f64
     }

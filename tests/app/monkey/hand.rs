@@ -1,20 +1,12 @@
 //! Random actions of a hand on the window.
 
 use super::{FILES, Monkey};
-use apertura::app::{
-    Command, DocumentCommand, EditCommand, LessonCommand, MapKind, NewObject, Panel, RadarCommand, ViewCommand,
-    WindowCommand,
-};
-use apertura::maps::Normalisation;
-use apertura::radar::{Carrier, DecibelMilliwatts, Decibels, WindowFunction};
-use apertura::signal::Floor;
-use eframe::egui::{
-    Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, pos2, vec2,
-};
-use rand::RngExt;
+use crate::session::*;
+use eframe::egui::{MouseWheelSource, MouseWheelUnit, TouchPhase, Vec2};
 use rand::seq::IndexedRandom;
 
 const POINT: &str = "[[object]]\nkind = \"point\"\nx_metres = 1.0\ny_metres = 9.0\n";
+const NO_POINT: &str = "[[object]]\nkind = \"point\"\nx_metres = nan\ny_metres = 1.0\n";
 
 impl Monkey {
     fn pick<T: Copy>(&mut self, of: &[T]) -> T {
@@ -29,7 +21,6 @@ impl Monkey {
         vec2(self.rng.random_range(-120.0..120.0), self.rng.random_range(-120.0..120.0))
     }
 
-    /// One random action.
     pub fn act(&mut self) {
         match self.rng.random_range(0..14) {
             0 | 1 => self.drag(),
@@ -39,20 +30,8 @@ impl Monkey {
             }
             3 | 4 => self.click(),
             5 => {
-                let keys = [
-                    Key::ArrowUp,
-                    Key::ArrowLeft,
-                    Key::Delete,
-                    Key::Tab,
-                    Key::Enter,
-                    Key::Escape,
-                    Key::Backspace,
-                    Key::Space,
-                    Key::R,
-                    Key::V,
-                    Key::F1,
-                    Key::F7,
-                ];
+                use Key::{ArrowLeft, ArrowUp, Backspace, Delete, Enter, Escape, F1, F7, R, Space, Tab, V};
+                let keys = [ArrowUp, ArrowLeft, Delete, Tab, Enter, Escape, Backspace, Space, R, V, F1, F7];
                 let key = self.pick(&keys);
                 self.s.app.key_press(key);
             }
@@ -65,12 +44,7 @@ impl Monkey {
                 self.s.app.event(Event::Text(text.to_owned()));
             }
             8 => {
-                let text = self.pick(&[
-                    POINT,
-                    "not a scene",
-                    "",
-                    "[[object]]\nkind = \"point\"\nx_metres = nan\ny_metres = 1.0\n",
-                ]);
+                let text = self.pick(&[POINT, "not a scene", "", NO_POINT]);
                 self.s.app.event(Event::Paste(text.to_owned()));
             }
             9 => self.scroll(),
@@ -120,51 +94,33 @@ impl Monkey {
     }
 
     fn command(&mut self) -> Command {
-        let document = self.s.state().editor().document();
-        let named = document.path().is_some();
-        let left: Vec<u64> = self.s.state().editor().left().iter().map(|d| d.id()).collect();
+        let named = self.s.editor().document().path().is_some();
+        let left: Vec<u64> = self.s.editor().left().iter().map(|d| d.id()).collect();
         let files = ["bad.toml", "missing.toml"].into_iter().chain(FILES).collect::<Vec<_>>();
+        let (any, own) = (self.pick(&files), self.pick(&FILES));
+        let floors = [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(20.0)), Floor::Level(DecibelMilliwatts(-20.0))];
+        let normalisations = [Normalisation::MinMax, Normalisation::DynamicRange(Decibels(60.0))];
+        let large = [Panel::Scene, Panel::Map(MapKind::Target), Panel::Cuts, Panel::Guide];
         match self.rng.random_range(0..22) {
-            0 => Command::Document(DocumentCommand::New),
-            1..=3 => {
-                let name = self.pick(&files);
-                Command::Document(DocumentCommand::OpenPath(self.s.folder.path().join(name)))
-            }
-            4..=6 if named => Command::Document(DocumentCommand::Save),
-            7 => {
-                let name = self.pick(&FILES);
-                Command::Document(DocumentCommand::SaveTo(self.s.folder.path().join(name)))
-            }
-            8 => Command::Edit(EditCommand::Undo),
-            9 => Command::Edit(EditCommand::Redo),
-            10 => Command::Edit(EditCommand::SelectAll),
-            11 => Command::Edit(EditCommand::Duplicate),
-            12 => Command::Radar(RadarCommand::SetCarrier(self.pick(&[Carrier::OneWay, Carrier::TwoWay]))),
-            13 => Command::Radar(RadarCommand::SetWindow(self.pick(&[WindowFunction::Hann, WindowFunction::Hamming]))),
-            14 => Command::Edit(EditCommand::SetNoiseSeed(self.rng.random_range(0..9))),
-            15 => Command::View(ViewCommand::SetFloor(self.pick(&[
-                Floor::Thesis,
-                Floor::Exact,
-                Floor::Snr(Decibels(20.0)),
-                Floor::Level(DecibelMilliwatts(-20.0)),
-            ]))),
-            16 => Command::View(ViewCommand::Normalise(
-                self.pick(&[Normalisation::MinMax, Normalisation::DynamicRange(Decibels(60.0))]),
-            )),
-            17 => {
-                let panels = Panel::all();
-                Command::Window(WindowCommand::TogglePanel(self.pick(&panels)))
-            }
-            18 => Command::Window(WindowCommand::Maximise(self.pick(&[
-                Panel::Scene,
-                Panel::Map(MapKind::Target),
-                Panel::Cuts,
-                Panel::Guide,
-            ]))),
-            19 => Command::Document(DocumentCommand::Recover(if left.is_empty() { 0 } else { self.pick(&left) })),
-            20 if self.rng.random_bool(0.5) => Command::Lesson(LessonCommand::Begin(0)),
-            20 => Command::Lesson(LessonCommand::Leave),
-            _ => Command::Edit(EditCommand::Add(self.pick(&NewObject::ALL), None)),
+            0 => DocumentCommand::New.into(),
+            1..=3 => DocumentCommand::OpenPath(self.s.path(any)).into(),
+            4..=6 if named => DocumentCommand::Save.into(),
+            7 => DocumentCommand::SaveTo(self.s.path(own)).into(),
+            8 => EditCommand::Undo.into(),
+            9 => EditCommand::Redo.into(),
+            10 => EditCommand::SelectAll.into(),
+            11 => EditCommand::Duplicate.into(),
+            12 => RadarCommand::SetCarrier(self.pick(&[Carrier::OneWay, Carrier::TwoWay])).into(),
+            13 => RadarCommand::SetWindow(self.pick(&[WindowFunction::Hann, WindowFunction::Hamming])).into(),
+            14 => EditCommand::SetNoiseSeed(self.rng.random_range(0..9)).into(),
+            15 => ViewCommand::SetFloor(self.pick(&floors)).into(),
+            16 => ViewCommand::Normalise(self.pick(&normalisations)).into(),
+            17 => WindowCommand::TogglePanel(self.pick(&Panel::all())).into(),
+            18 => WindowCommand::Maximise(self.pick(&large)).into(),
+            19 => DocumentCommand::Recover(if left.is_empty() { 0 } else { self.pick(&left) }).into(),
+            20 if self.rng.random_bool(0.5) => LessonCommand::Begin(0).into(),
+            20 => LessonCommand::Leave.into(),
+            _ => EditCommand::Add(self.pick(&NewObject::ALL), None).into(),
         }
     }
 }

@@ -6,16 +6,10 @@
 mod hand;
 mod witness;
 
-use crate::session::{Session, harness};
-use apertura::app::{Command, DocumentCommand, Panel, WindowCommand};
+use crate::session::*;
 use apertura::files::memory::resident_bytes;
-use apertura::reconstruct::{Baseline, CAPON, Reconstructor};
-use egui_kittest::kittest::Queryable;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use std::path::Path;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
 use witness::Witness;
 
 /// Most memory that the process may hold beyond what it held after the start: maps and history of a full-size radar, twice.
@@ -93,7 +87,6 @@ impl Monkey {
         }
     }
 
-    /// Checks that take too long for every step: memory, failure messages, whole files.
     fn inspect(&mut self, memory_at_first: u64) {
         let held = resident_bytes().unwrap_or(0);
         assert!(held < memory_at_first + MOST_MORE_BYTES, "{held} bytes are held after {} steps", self.steps);
@@ -104,7 +97,6 @@ impl Monkey {
         witness::files_are_whole(self.s.folder.path(), self.s.state());
     }
 
-    /// Kills the window and starts another, which finds the files on disk at this moment alone.
     fn kill(&mut self) {
         self.kills += 1;
         if self.rng.random_bool(0.5) {
@@ -117,10 +109,10 @@ impl Monkey {
                 std::thread::sleep(Duration::from_millis(10));
             }
         }
-        let after = tempfile::tempdir().unwrap();
+        let after = tempdir().unwrap();
         copy_at_one_moment(self.s.folder.path(), after.path());
         let asked = self.rng.random_bool(0.3).then_some("b.toml");
-        let app = harness(after.path(), asked, methods());
+        let app = harness(after.path(), asked, methods(), USUAL_SIZE);
         self.s = Session { app, folder: after };
         self.s.app.step();
         if let Err(lost) = self.witness.compare(self.s.state()) {
@@ -130,7 +122,6 @@ impl Monkey {
     }
 }
 
-/// Names, sizes and times of every file below `folder`.
 fn listing(folder: &Path) -> Vec<(std::path::PathBuf, u64, Option<std::time::SystemTime>)> {
     let mut list = Vec::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -144,7 +135,6 @@ fn listing(folder: &Path) -> Vec<(std::path::PathBuf, u64, Option<std::time::Sys
     list
 }
 
-/// Copies a folder in which a thread may be writing, as it was at one moment.
 fn copy_at_one_moment(from: &Path, to: &Path) {
     loop {
         let before = listing(from);

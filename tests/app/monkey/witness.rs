@@ -1,13 +1,8 @@
 //! The unsaved documents, and those that must still be there after a kill.
 
 use super::FILES;
-use apertura::app::App;
-use apertura::interact::Document;
-use apertura::scene::Scene;
-use std::path::Path;
-use std::sync::Arc;
+use crate::session::*;
 
-/// An unsaved document.
 #[derive(Clone)]
 struct Kept {
     scene: Arc<Scene>,
@@ -28,7 +23,6 @@ impl Kept {
     }
 }
 
-/// The unsaved documents of a window at one moment.
 type Moment = Vec<Kept>;
 
 /// The moments since everything was last known to be on disk, that one first.
@@ -44,7 +38,6 @@ fn unsaved(app: &App) -> Moment {
 }
 
 impl Witness {
-    /// Records the window's unsaved documents after a step.
     pub fn look(&mut self, app: &App) {
         let now = unsaved(app);
         if app.is_kept() {
@@ -70,7 +63,6 @@ impl Witness {
     }
 }
 
-/// Asserts that every file is a whole scene, and that a saved document's file holds the scene on screen.
 pub fn files_are_whole(folder: &Path, app: &App) {
     for name in FILES {
         Document::read(&folder.join(name)).unwrap_or_else(|error| panic!("{error}"));

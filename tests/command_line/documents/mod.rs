@@ -6,15 +6,10 @@ mod links;
 mod pages;
 mod shell;
 
-use super::cli::{apertura, folder};
+use crate::cli::*;
 use apertura::methods;
 use clap::error::ErrorKind;
 use pages::{Page, all, root};
-use predicates::prelude::PredicateBooleanExt;
-use predicates::str::contains;
-use std::collections::BTreeSet;
-use std::path::Path;
-use tempfile::TempDir;
 
 /// Options that other programs of the project and cargo have are looked for in these folders.
 const OTHER_PROGRAMS: [&str; 6] =
@@ -73,7 +68,6 @@ fn every_command_of_the_pages_is_one_of_the_programs() {
     assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
 }
 
-/// Every long option of the program.
 fn options() -> BTreeSet<String> {
     let command = apertura::commands::command();
     let all = command.get_subcommands().chain([&command]).flat_map(|c| c.get_arguments());

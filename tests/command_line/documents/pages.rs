@@ -1,21 +1,18 @@
 //! The project's pages, taken apart: blocks of code, spans of code, and text.
 
-use std::path::{Path, PathBuf};
+use crate::cli::*;
 
-/// A page.
 pub struct Page {
     /// Path of its file, from the project's folder on.
     pub name: String,
     /// Blocks of code: the language, and the lines.
     pub blocks: Vec<(String, String)>,
-    /// Spans of code.
     pub spans: Vec<String>,
     /// All else, a line of a table or list or a paragraph each.
     pub text: Vec<String>,
 }
 
 impl Page {
-    /// The page of this name.
     pub fn read(name: &str) -> Page {
         let whole = std::fs::read_to_string(root().join(name)).unwrap();
         let (mut blocks, mut prose) = (Vec::<(String, String)>::new(), String::new());
@@ -58,24 +55,16 @@ fn units(plain: &str) -> Vec<String> {
     parts.filter(|part| !part.is_empty()).map(str::to_owned).collect()
 }
 
-/// The project's folder.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every page.
 pub fn all() -> Vec<Page> {
     let mut names: Vec<PathBuf> = std::fs::read_dir(root().join("docs")).unwrap().map(|e| e.unwrap().path()).collect();
     names.retain(|path| path.extension().is_some_and(|e| e == "md"));
     names.sort();
     let docs = names.iter().map(|path| path.strip_prefix(root()).unwrap().to_str().unwrap().to_owned());
-    let others = [
-        "README.md",
-        "CONTRIBUTING.md",
-        "ARCHITECTURE.md",
-        "assets/guide.md",
-        "python/README.md",
-        "training/README.md",
-    ];
-    others.map(str::to_owned).into_iter().chain(docs).map(|name| Page::read(&name)).collect()
+    let others =
+        "README.md CONTRIBUTING.md ARCHITECTURE.md assets/guide.md python/README.md training/README.md".split(' ');
+    others.map(str::to_owned).chain(docs).map(|name| Page::read(&name)).collect()
 }

@@ -1,38 +1,15 @@
 //! Damages valid files at random, the same way for the same seed.
 
-use rand::{RngExt, SeedableRng, seq::IndexedRandom};
-use rand_chacha::ChaCha8Rng;
+use crate::prelude::*;
+use rand::seq::{IndexedRandom, IteratorRandom};
 
-/// Text that readers are likely to stumble over, written over its content.
-const TOKENS: [&[u8]; 22] = [
-    b"-1",
-    b"0",
-    b"1e308",
-    b"-0.0",
-    b"nan",
-    b"inf",
-    b"4294967296",
-    b"9223372036854775807",
-    b"18446744073709551616",
-    b"99999999999999999999999",
-    b"[[",
-    b"]]",
-    b"{",
-    b"}",
-    b"(((((((",
-    b"\"",
-    b"'",
-    b"\n",
-    b"=",
-    b",",
-    b"\0",
-    b"\xff\xff\xff\xff",
-];
+/// Text that readers are likely to stumble over, written over its content: a token between any two blanks.
+const TOKENS: &[u8] =
+    b"-1 0 1e308 -0.0 nan inf 4294967296 9223372036854775807 18446744073709551616 99999999999999999999999 \
+                        [[ ]] { } ((((((( \" ' \n = , \0 \xff\xff\xff\xff";
 
-/// Most bytes of a damaged file: growth is not tested.
 const MAX_LENGTH: usize = 1 << 17;
 
-/// Input `number` made of `files`: one of them, damaged in 1 to 8 places.
 pub fn damaged(files: &[Vec<u8>], number: u64) -> Vec<u8> {
     let mut rng = ChaCha8Rng::seed_from_u64(number);
     let mut bytes = files.choose(&mut rng).cloned().unwrap_or_default();
@@ -64,7 +41,7 @@ fn damage(bytes: &mut Vec<u8>, files: &[Vec<u8>], rng: &mut ChaCha8Rng) {
         }
         4 => bytes.truncate(at),
         5 => {
-            let token = TOKENS.choose(rng).copied().unwrap_or_default();
+            let token = TOKENS.split(|byte| *byte == b' ').choose(rng).unwrap_or_default();
             let over = (at + token.len()).min(length);
             bytes.splice(at..over, token.iter().copied());
         }

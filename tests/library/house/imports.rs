@@ -1,8 +1,7 @@
 //! Imports of files and of rooms.
 
 use super::source::Source;
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use crate::prelude::*;
 
 /// A module's path, without `crate`; empty for the root.
 type Module = Vec<String>;
@@ -10,7 +9,6 @@ type Module = Vec<String>;
 /// Most names that a path is followed through; `use a::a` would lead round for ever.
 const MAX_IMPORT_DEPTH: usize = 8;
 
-/// One file of `src`.
 struct File {
     module: Module,
     source: Source,
@@ -18,15 +16,12 @@ struct File {
     test: bool,
 }
 
-/// Every file of `src`.
 pub struct House {
     files: BTreeMap<PathBuf, File>,
     modules: BTreeMap<Module, PathBuf>,
 }
 
 impl House {
-    /// Reads `src`.
-    ///
     /// Imports of tests count where `with_tests`. A file that passes on what its children define (`pub use`) doesn't import it:
     /// its importers import the child.
     pub fn read(src: &Path, with_tests: bool) -> House {
@@ -46,7 +41,6 @@ impl House {
         House { files, modules }
     }
 
-    /// Imports of every file: file to files.
     pub fn imports(&self) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
         let of = |file: &File| {
             let own = file.source.uses.iter().filter(|u| !u.public).map(|u| u.path.clone());
@@ -112,7 +106,6 @@ impl House {
         self.modules.get(&at).cloned()
     }
 
-    /// Start of a path: its module, and the rest of the path.
     fn start<'a>(&self, module: &[String], path: &'a [String], depth: usize) -> Option<(Module, &'a [String])> {
         let (first, mut rest) = path.split_first().filter(|_| depth <= MAX_IMPORT_DEPTH)?;
         let mut at = module.to_vec();
@@ -161,7 +154,6 @@ pub fn circles<T: Ord + Clone>(imports: &BTreeMap<T, BTreeSet<T>>) -> Vec<BTreeS
     groups.into_iter().collect()
 }
 
-/// All `.rs` files below a folder.
 pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {

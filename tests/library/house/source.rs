@@ -9,21 +9,16 @@ use syn::{Attribute, Expr, ImplItem, Item, Signature, Token, UseTree, Visibility
 /// A path as written, `crate`, `self` and `super` included, seen from the file's own module.
 pub type Path = Vec<String>;
 
-/// An imported name.
 #[derive(Debug, PartialEq)]
 pub struct Use {
-    /// Path of the name's origin.
     pub path: Path,
     /// The name in this file; "*" for a glob.
     pub name: String,
-    /// Whether other files may import it from here.
     pub public: bool,
 }
 
-/// One parsed file.
 #[derive(Debug, Default)]
 pub struct Source {
-    /// Every import.
     pub uses: Vec<Use>,
     /// Every path of two or more segments outside of imports.
     pub paths: Vec<Path>,
@@ -53,7 +48,6 @@ impl Source {
         self.functions.push((signature.ident.to_string(), lines));
     }
 
-    /// Adds the imports of a `use` tree.
     fn add_uses(&mut self, tree: &UseTree, before: &[String], public: bool) {
         let joined = |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect::<Path>();
         let whole = |name: &syn::Ident| if name == "self" { before.to_vec() } else { joined(name) };
@@ -175,20 +169,4 @@ fn functions_are_measured() {
     let found = Source::parse(text, true).unwrap().functions;
     let expected = [("one", 3), ("three", 6), ("four", 2), ("six", 1)];
     assert_eq!(found, expected.map(|(name, lines)| (name.to_owned(), lines)));
-}
-
-#[test]
-fn items_for_tests_are_left_out_on_request() {
-    let text = "use a;\n#[cfg(test)]\nmod tests {\n    use b;\n}\n#[cfg(test)]\nmod c;\nuse d as e;\n";
-    let names =
-        |with_tests| Source::parse(text, with_tests).unwrap().uses.into_iter().map(|u| u.name).collect::<Vec<_>>();
-    assert_eq!(names(false), ["a", "e"]);
-    assert_eq!(names(true), ["a", "b", "e"]);
-}
-
-#[test]
-fn paths_in_macros_are_found() {
-    let text = "fn f() {\n    // crate::comment\n    assert_eq!(crate::a::B, \"crate::c\", \"{}\", super::d());\n}\n";
-    let paths: Vec<String> = Source::parse(text, true).unwrap().paths.iter().map(|p| p.join("::")).collect();
-    assert_eq!(paths, ["crate::a::B", "super::d"]);
 }
