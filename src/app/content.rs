@@ -2,7 +2,7 @@
 
 use super::jobs::{Derived, Failure, Jobs, Polled, Query, Wants};
 use super::state::{Command, MapKind, Panel, State};
-use super::widgets::method_menu::Offered;
+use super::widgets::Offered;
 use crate::task::Task;
 use eframe::egui::Ui;
 

@@ -1,7 +1,7 @@
 //! Keys and clipboard events, turned into commands.
 
 use super::state::{Command, EditCommand, WindowCommand, shortcuts};
-use super::widgets::nudge::nudge;
+use super::widgets::nudge;
 use eframe::egui::{Context, Event, Key, Modifiers, Popup, RawInput};
 
 /// Events of one frame that wait for the next.

@@ -3,8 +3,7 @@
 use crate::app::jobs::Question;
 use crate::app::state::Purpose;
 use crate::platform::fs;
-use eframe::egui;
-use eframe::egui::{Button, Context, Id, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui};
+use eframe::egui::{self, Button, Context, Id, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 
 /// Most entries of a folder that are listed.

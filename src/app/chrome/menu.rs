@@ -7,18 +7,15 @@ use crate::app::state::{
     Command, DocumentCommand, EditCommand, HelpPage, MapKind, NewObject, Panel, Projection, Task, ViewCommand,
     WindowCommand,
 };
-use crate::app::widgets::entry::{button, entry, entry_called, ticked, tooltip};
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::{NumberField, button, entry, entry_called, labelled, ticked, tooltip};
 use crate::interact::Document;
 use crate::picture::ColourMap;
 use crate::platform;
 use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
-use eframe::egui;
 use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
-use eframe::egui::{PopupCloseBehavior, Ui};
+use eframe::egui::{self, PopupCloseBehavior, Ui};
 use std::path::PathBuf;
 
 /// Content of the bar.

@@ -7,8 +7,7 @@ use crate::lesson::shipped;
 use crate::reconstruct::Reconstructor;
 use crate::recording;
 use crate::scene::presets;
-use eframe::egui;
-use eframe::egui::{Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
+use eframe::egui::{self, Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
 use std::sync::{Arc, OnceLock};
 
 /// The methods that the palette lists besides the commands.
@@ -254,8 +253,7 @@ fn list(ui: &mut Ui, found: &[Found], chosen: usize, moved: bool) -> Option<usiz
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::state::EditCommand;
-    use crate::app::state::NewObject;
+    use crate::app::state::{EditCommand, NewObject};
     use crate::reconstruct::Baseline;
     use egui_kittest::Harness;
 

@@ -1,10 +1,9 @@
 //! One line at the bottom: the pointer's place, the number of objects, the time of the last update.
 
 use crate::app::state::Cursor;
-use crate::app::widgets::direction::angle_degrees;
+use crate::app::widgets::angle_degrees;
 use crate::radar::counted;
-use eframe::egui;
-use eframe::egui::{Align, Color32, Layout, TextStyle, Ui};
+use eframe::egui::{self, Align, Color32, Layout, TextStyle, Ui};
 use std::time::Duration;
 
 /// Content of the status bar.

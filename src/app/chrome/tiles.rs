@@ -3,9 +3,8 @@
 use super::column;
 use crate::app::content::OLD;
 use crate::app::state::{Arrangement, Command, Panel, WindowCommand};
-use crate::app::widgets::icons::{Icon, icon};
-use eframe::egui;
-use eframe::egui::{TextStyle, Ui, WidgetText, vec2};
+use crate::app::widgets::{Icon, icon};
+use eframe::egui::{self, TextStyle, Ui, WidgetText, vec2};
 use egui_tiles::{SimplificationOptions, TileId, Tiles, UiResponse};
 use std::collections::{BTreeMap, BTreeSet};
 

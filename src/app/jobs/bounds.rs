@@ -2,7 +2,7 @@
 
 use super::derived::{Failure, Query};
 use crate::app::state::{BoundsSettings, Elements, State};
-use crate::app::widgets::textures::colour_table;
+use crate::app::widgets::colour_table;
 use crate::bounds::{
     Ambiguity, BoundsError, Gains, PositionBound, ambiguity, cramer_rao, cramer_rao_of, noise_variance,
 };

@@ -3,7 +3,7 @@
 use super::background::Background;
 use crate::app::shared::Shared;
 use crate::app::state::{LessonCommand, LessonRun, State};
-use crate::app::widgets::textures::picture;
+use crate::app::widgets::picture;
 use crate::lesson::{Guess, Judgement, Lesson, MapName, Measured, Stage, Step};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;

@@ -3,8 +3,7 @@
 use super::sentence::sentence;
 use super::subject::{Paint, Subject};
 use crate::app::state::{MapKind, Projection};
-use crate::app::widgets::textures::colour_table;
-use crate::app::widgets::theme;
+use crate::app::widgets::{colour_table, theme};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::{RangeAngleMap, cartesian};
 use crate::picture::{CellVerdict, ColourMap, finer, in_place, told_apart};

@@ -5,21 +5,14 @@ mod ellipse;
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{BoundsRequest, BoundsResult, Jobs};
 use crate::app::state::{BoundsSettings, Command, Elements, State, ViewCommand};
-use crate::app::widgets::axes::{self, Axis};
-use crate::app::widgets::chart::Chart;
-use crate::app::widgets::colour_bar::Bar;
-use crate::app::widgets::direction::direction;
-use crate::app::widgets::labelled::{choice, labelled};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::numbers::significant;
-use crate::app::widgets::padded::{computed, padded};
-use crate::app::widgets::textures::{Texture, colour_table};
-use crate::app::widgets::theme;
+use crate::app::widgets::{
+    Axis, Bar, Chart, NumberField, Texture, axes, choice, colour_table, computed, direction, labelled, padded,
+    significant, theme,
+};
 use crate::bounds::PositionBound;
 use crate::picture::ColourMap;
 use crate::radar::{Layout, Radar};
-use eframe::egui;
-use eframe::egui::{Grid, Sense, Stroke, TextureOptions, Ui, vec2};
+use eframe::egui::{self, Grid, Sense, Stroke, TextureOptions, Ui, vec2};
 use ellipse::ellipse;
 
 /// The chosen settings and the computed bounds.

@@ -3,14 +3,10 @@
 mod choices;
 
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::ChirpResult;
-use crate::app::jobs::{ChirpQuery, Jobs};
+use crate::app::jobs::{ChirpQuery, ChirpResult, Jobs};
 use crate::app::state::{ChirpSettings, Command, State};
-use crate::app::widgets::axes::{self, Axis};
-use crate::app::widgets::chart::{Chart, Drawn};
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::padded::padded;
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::{Axis, Chart, Drawn, Inks, axes, padded};
 use crate::radar::{Carrier, Radar};
 use crate::scene::Scene;
 use crate::theory::chirp::{BeatTone, ChirpShape, delay_seconds, heard};

@@ -4,12 +4,9 @@ use super::map::{self, MapMemory, caption_of as caption, is_updating, map_input,
 use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::{Jobs, Wants};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView, MethodSlot, State, ViewCommand, WorkCommand};
-use crate::app::widgets::entry::button;
-use crate::app::widgets::labelled::{choice_told, labelled};
-use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
-use crate::app::widgets::numbers::percent;
-use crate::app::widgets::padded::padded;
-use crate::app::widgets::progress::progress;
+use crate::app::widgets::{
+    LIST_HEIGHT, Offered, button, choice_told, labelled, method_list, padded, percent, progress,
+};
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 
 /// A map and its title.

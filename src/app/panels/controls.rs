@@ -12,19 +12,14 @@ pub use false_alarms::{FalseAlarmsMemory, Search};
 use crate::app::jobs::{Refusal, Scores};
 use crate::app::panels::map;
 use crate::app::state::{Command, MethodSlot, Settings, Units, ViewCommand, WorkCommand};
-use crate::app::widgets::levels::{level, with_unit};
-use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::numbers::percent;
-use crate::app::widgets::padded::scrolled;
-use crate::app::widgets::progress::progress;
-use crate::app::widgets::setting_row::{group, row};
+use crate::app::widgets::{
+    LIST_HEIGHT, NumberField, Offered, group, level, method_list, percent, progress, row, scrolled, with_unit,
+};
 use crate::evaluate::eta_text;
 use crate::lesson::Uses;
 use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
-use eframe::egui;
-use eframe::egui::{ComboBox, Grid, Slider, SliderClamping, Ui};
+use eframe::egui::{self, ComboBox, Grid, Slider, SliderClamping, Ui};
 use std::time::Duration;
 
 /// Gap between two figures, points.

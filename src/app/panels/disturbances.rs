@@ -2,8 +2,7 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
-use crate::app::widgets::labelled::{Quantity, labelled};
-use crate::app::widgets::padded::scrolled;
+use crate::app::widgets::{Quantity, labelled, scrolled};
 use crate::radar::Radar;
 use crate::scene::{Disturbances, Interferer, Mirror};
 use eframe::egui::{Grid, Ui};

@@ -2,18 +2,12 @@
 
 use super::recording::frame_slider;
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::DopplerResult;
-use crate::app::jobs::{DopplerQuery, Jobs};
+use crate::app::jobs::{DopplerQuery, DopplerResult, Jobs};
 use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
-use crate::app::widgets::axes::{self, Axis};
-use crate::app::widgets::chart::{Chart, Drawn};
-use crate::app::widgets::colour_bar::Bar;
-use crate::app::widgets::entry::{press, tick};
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::{computed, padded, warning};
-use crate::app::widgets::textures::{Texture, colour_table};
-use crate::app::widgets::theme;
+use crate::app::widgets::{
+    Axis, Bar, Chart, Drawn, NumberField, Texture, axes, colour_table, computed, labelled, padded, press, theme, tick,
+    warning,
+};
 use crate::maps::Normalisation;
 use crate::picture::ColourMap;
 use crate::radar::{MAX_CHIRPS, Radar};

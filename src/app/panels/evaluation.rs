@@ -3,8 +3,7 @@
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Memo;
 use crate::app::state::{Command, FailureChoice, RowsCommand};
-use crate::app::widgets::padded::{scrolled_both, warning};
-use crate::app::widgets::progress::{bar, start_or_cancel};
+use crate::app::widgets::{bar, scrolled_both, start_or_cancel, warning};
 use crate::evaluate::eta_text;
 use crate::evaluate::rows::{Column, Row, Text};
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};

@@ -5,11 +5,8 @@ mod attempts;
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
 use crate::app::state::{Command, MapKind, MethodSlot};
-use crate::app::widgets::direction::{CONVENTION, angle_degrees};
-use crate::app::widgets::numbers::{plain, signed};
-use crate::app::widgets::padded::padded;
-use crate::reconstruct::Attempt;
-use crate::reconstruct::Detection;
+use crate::app::widgets::{CONVENTION, angle_degrees, padded, plain, signed};
+use crate::reconstruct::{Attempt, Detection};
 use crate::scene::Object;
 use eframe::egui::{Align, Grid, Layout, ScrollArea, Ui};
 

@@ -4,14 +4,12 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{
     Command, DocumentCommand, MapKind, Panel, Projection, RadarCommand, ViewCommand, WindowCommand,
 };
-use crate::app::widgets::inline::inline;
-use crate::app::widgets::padded::padded;
+use crate::app::widgets::{inline, padded};
 use crate::maps::Normalisation;
 use crate::radar::{Carrier, Decibels, WindowFunction};
 use crate::scene::presets;
 use crate::signal::Floor;
-use eframe::egui;
-use eframe::egui::{ScrollArea, Ui};
+use eframe::egui::{self, ScrollArea, Ui};
 
 /// The text: chapters that begin with a heading, in the order of [`CHAPTERS`].
 const TEXT: &str = include_str!("../../../assets/guide.md");

@@ -6,15 +6,11 @@ mod slider;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand, NewObject};
-use crate::app::widgets::direction::angle_of_place_degrees;
-use crate::app::widgets::entry::{button, press};
-use crate::app::widgets::numbers::signed;
-use crate::app::widgets::padded::scrolled;
+use crate::app::widgets::{angle_of_place_degrees, button, press, scrolled, signed};
 use crate::interact::{Coordinates, Editor};
 use crate::radar::{Radar, counted};
 use crate::scene::{MAX_NAME_CHARACTERS, Object, Scene};
-use eframe::egui;
-use eframe::egui::{Grid, TextEdit, Ui};
+use eframe::egui::{self, Grid, TextEdit, Ui};
 use number::number;
 
 /// The selected objects, and how their numbers are shown.

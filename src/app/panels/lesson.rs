@@ -8,13 +8,11 @@ mod memory;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, LessonCommand, LessonRun};
-use crate::app::widgets::entry::{button, press};
-use crate::app::widgets::inline::inline;
+use crate::app::widgets::{button, inline, press};
 use crate::lesson::Progress;
 use answer::{answer, answered, judgement};
 use challenge::requirements;
-use eframe::egui;
-use eframe::egui::{ScrollArea, TextureId, TextureOptions, Ui};
+use eframe::egui::{self, ScrollArea, TextureId, TextureOptions, Ui};
 use large::{LARGE_TEXT_RATIO, large};
 use list::list;
 pub use memory::LessonMemory;

@@ -2,13 +2,11 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand};
-use crate::app::widgets::axes;
-use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind, focus_after_click};
+use crate::app::widgets::{Window, axes, bring_in_sight, colour_behind, focus_after_click};
 use crate::interact::{Coordinates, Field, Selection, SelectionMode};
 use crate::scene::{Object, Scene};
-use eframe::egui;
 use eframe::egui::{
-    Align2, EventFilter, FontId, Key, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
+    self, Align2, EventFilter, FontId, Key, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
 };
 
 /// The scene, its selection, and the coordinates of places.

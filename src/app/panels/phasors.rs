@@ -1,17 +1,10 @@
 //! The phasors panel: the contribution of every element to the cell under the cursor, added head to tail in the complex plane.
 
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::PhasorsResult;
-use crate::app::jobs::{Jobs, PhasorsQuery};
+use crate::app::jobs::{Jobs, PhasorsQuery, PhasorsResult};
 use crate::app::state::{Command, PhasorMap, PhasorSettings, State, ViewCommand};
-use crate::app::widgets::axes::Axis;
-use crate::app::widgets::chart::{Chart, Drawn};
-use crate::app::widgets::direction::direction;
-use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::numbers::plain;
-use crate::app::widgets::padded::{computed, padded};
-use crate::app::widgets::theme::{self, Inks};
+use crate::app::widgets::{Axis, Chart, Drawn, Inks, computed, direction, labelled, padded, plain, theme};
 use crate::radar::{End, Radar};
 use crate::theory::Phasors;
 use eframe::egui::{self, Color32, Sense, Slider, Stroke, Ui, emath::Rot2};

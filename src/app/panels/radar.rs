@@ -8,8 +8,7 @@ mod table;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand};
-use crate::app::widgets::labelled::{Quantity, labelled};
-use crate::app::widgets::padded::scrolled_both;
+use crate::app::widgets::{Quantity, labelled, scrolled_both};
 use crate::lesson::Step;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::theory::Consequences;

@@ -2,11 +2,7 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{CardPlan, Command, DocumentCommand, Purpose, Way, WorkCommand};
-use crate::app::widgets::entry::button;
-use crate::app::widgets::labelled::{choice_told, labelled};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::scrolled;
-use crate::app::widgets::theme;
+use crate::app::widgets::{NumberField, button, choice_told, labelled, scrolled, theme};
 use crate::platform;
 use crate::recording::card::{CardSummary, USUAL_PORT};
 use crate::recording::raw::boards;

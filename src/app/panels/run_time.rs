@@ -2,17 +2,12 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, WorkCommand};
-use crate::app::widgets::axes::{Axis, Tick};
-use crate::app::widgets::chart::Chart;
-use crate::app::widgets::labelled::choice;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::padded::{padded, warning};
-use crate::app::widgets::progress::{bar, start_or_cancel};
+use crate::app::widgets::{Axis, Chart, Tick, bar, choice, padded, start_or_cancel, warning};
 use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
 use crate::radar::Radar;
 use crate::signal::{Algorithm, Precision};
-use eframe::egui;
-use eframe::egui::{Color32, Sense, Ui};
+use eframe::egui::{self, Color32, Sense, Ui};
 use egui_plot::{HLine, LineStyle, MarkerShape, Points};
 use std::collections::BTreeSet;
 

@@ -3,15 +3,11 @@
 use crate::app::content::{Content, Cx, Nothing, offered};
 use crate::app::jobs::Small;
 use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, Variant, ViewCommand};
-use crate::app::widgets::kind_boxes::member_box;
-use crate::app::widgets::labelled::{choice, choice_told, labelled};
-use crate::app::widgets::method_menu::{Offered, method_lines};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::padded;
-use crate::app::widgets::textures::Texture;
+use crate::app::widgets::{
+    NumberField, Offered, Texture, choice, choice_told, labelled, member_box, method_lines, padded,
+};
 use crate::radar::Radar;
-use eframe::egui;
-use eframe::egui::{Align2, Color32, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
 
 /// The maps, and the choice of what differs between them.
 pub struct Input<'a> {

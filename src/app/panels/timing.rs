@@ -2,7 +2,7 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::Command;
-use crate::app::widgets::padded::scrolled;
+use crate::app::widgets::scrolled;
 use crate::engine::{EngineReport, StageOutcome};
 use eframe::egui::{Grid, Label, RichText, Ui};
 use std::time::Duration;

@@ -3,12 +3,8 @@
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, LOG_INTERVAL, Log, LogQuery, Watched};
 use crate::app::state::{Command, Purpose, State};
-use crate::app::widgets::axes::Axis;
-use crate::app::widgets::chart::Chart;
-use crate::app::widgets::entry::button;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::padded::{padded, warning};
-use crate::app::widgets::theme;
+use crate::app::widgets::{Axis, Chart, button, padded, theme, warning};
 use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
 use std::path::Path;

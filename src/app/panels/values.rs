@@ -1,12 +1,10 @@
 //! The values panel: the value of every map under the pointer, in one small table.
 
-use super::map::Cells;
-use super::map::{cells, is_updating};
+use super::map::{Cells, cells, is_updating};
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
 use crate::app::state::{Command, Cursor, MapKind, MethodSlot, Panel};
-use crate::app::widgets::direction::{CONVENTION, direction};
-use crate::app::widgets::padded::padded;
+use crate::app::widgets::{CONVENTION, direction, padded};
 use crate::radar::Radar;
 use eframe::egui::{Align, Grid, Layout, RichText, ScrollArea, Ui};
 

@@ -1,7 +1,6 @@
 //! Axes of maps, charts and the scene, with ticks at round numbers and labels that neither collide nor leave the panel.
 
-use eframe::egui;
-use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
 /// Space for tick labels and an axis title, points.
 pub const LEFT: f32 = 46.0;

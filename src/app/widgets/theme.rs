@@ -1,9 +1,8 @@
 //! Colours and spacing of the interface.
 
 use crate::app::state::Brightness;
-use eframe::egui;
 use eframe::egui::style::{ScrollFadeStyle, ScrollStyle};
-use eframe::egui::{Color32, Context, CornerRadius, Visuals};
+use eframe::egui::{self, Color32, Context, CornerRadius, Visuals};
 
 /// Colours of the scene and of marks over maps.
 #[derive(Debug, Clone, Copy)]

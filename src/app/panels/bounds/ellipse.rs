@@ -1,8 +1,6 @@
 //! The Cramer-Rao bound of a place as an ellipse.
 
-use crate::app::widgets::axes::Axis;
-use crate::app::widgets::chart::Chart;
-use crate::app::widgets::theme;
+use crate::app::widgets::{Axis, Chart, theme};
 use crate::bounds::PositionBound;
 use eframe::egui::{Sense, Stroke, Ui};
 use egui_plot::LineStyle;

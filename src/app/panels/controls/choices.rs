@@ -1,7 +1,7 @@
 //! A row of choices, of which one is chosen.
 
 use crate::app::state::Command;
-use crate::app::widgets::entry::tipped;
+use crate::app::widgets::tipped;
 use eframe::egui::Ui;
 
 /// Draws a label for each choice. `of` yields the choice, its name and its tooltip. A click on another choice sends its `command`.

@@ -1,8 +1,7 @@
 //! Thresholds for the whole map or a detector with a constant false-alarm rate, and the detector's cells.
 
 use crate::app::state::{Command, Settings, ViewCommand};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::setting_row::{row, row_of};
+use crate::app::widgets::{NumberField, row, row_of};
 use crate::maps::cfar::{Cfar, MOST_CELLS, Statistic};
 use eframe::egui::{Response, Ui};
 

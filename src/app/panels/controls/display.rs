@@ -2,8 +2,7 @@
 
 use super::choices::choices;
 use crate::app::state::{Command, Directions, EditCommand, Settings, Units, ViewCommand};
-use crate::app::widgets::entry::tick;
-use crate::app::widgets::setting_row::row_of;
+use crate::app::widgets::{row_of, tick};
 use crate::interact::Snap;
 use crate::picture::ColourMap;
 use eframe::egui::Ui;

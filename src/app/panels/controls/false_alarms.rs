@@ -1,11 +1,9 @@
 //! Choice of the output's threshold by its rate of false alarms.
 
 use crate::app::state::{Command, ThresholdChoice, WorkCommand};
-use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::progress::{bar, start_or_cancel};
-use crate::app::widgets::setting_row::{rarely, row, row_of};
+use crate::app::widgets::{
+    NumberField, bar, kind_boxes, kind_names, labelled, rarely, row, row_of, start_or_cancel, ticking_menu,
+};
 use crate::evaluate::threshold::ThresholdSearch;
 use crate::radar::counted;
 use crate::scene::generate::Kind;

@@ -2,8 +2,7 @@
 
 use super::choices::choices;
 use crate::app::state::{Command, EditCommand, RadarCommand, Settings, ViewCommand};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::setting_row::{rarely, row, row_of};
+use crate::app::widgets::{NumberField, rarely, row, row_of};
 use crate::maps::Normalisation;
 use crate::radar::{DecibelMilliwatts, Decibels, Radar, WindowFunction};
 use crate::signal::{self, Floor};

@@ -7,17 +7,11 @@ mod trace;
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
 use crate::app::state::{Command, Cursor, CutMap, MapKind, PinnedCut, Units, ViewCommand};
-use crate::app::widgets::axes::{self, Axis};
-use crate::app::widgets::chart::{Chart, Span};
-use crate::app::widgets::direction::direction;
-use crate::app::widgets::entry::{button, press};
-use crate::app::widgets::labelled::{choice, labelled};
-use crate::app::widgets::levels::lowest_db;
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::{
+    Axis, Chart, Inks, NumberField, Span, axes, button, choice, direction, labelled, lowest_db, press,
+};
 use crate::radar::Radar;
-use eframe::egui;
-use eframe::egui::{Color32, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
+use eframe::egui::{self, Color32, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
 use egui_plot::LineStyle;
 use markers::{Markers, NAMES};
 use std::collections::{BTreeMap, BTreeSet};

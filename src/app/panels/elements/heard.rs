@@ -2,7 +2,7 @@
 
 use super::input::Input;
 use crate::app::state::{Command, ViewCommand};
-use crate::app::widgets::labelled::choice_told;
+use crate::app::widgets::choice_told;
 use crate::radar::{LayoutKind, Radar};
 use eframe::egui::{TextEdit, Ui};
 

@@ -1,9 +1,7 @@
 //! Elements from a pasted list, and elements on a bent line.
 
 use crate::app::state::{Command, RadarCommand};
-use crate::app::widgets::entry::press;
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::{NumberField, labelled, press};
 use crate::radar::{BuiltArray, Radar};
 use eframe::egui::{CollapsingHeader, TextEdit, Ui};
 use std::sync::Arc;

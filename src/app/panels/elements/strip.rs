@@ -1,12 +1,11 @@
 //! The strip of elements side by side, for clicks and drags.
 
 use super::input::Input;
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::Inks;
 use crate::radar::{BuiltArray, ElementError, End, Radar};
-use eframe::egui;
 use eframe::egui::{
-    Color32, EventFilter, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, pos2,
-    vec2,
+    self, Color32, EventFilter, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2,
+    pos2, vec2,
 };
 
 /// Least phase that is drawn as a dot; rounding leaves less after a calibration.

@@ -6,8 +6,7 @@ use crate::app::state::ViewCommand;
 use crate::radar::{BuiltArray, LayoutKind, Radar};
 use crate::scene::Reflector;
 use crate::signal::{Floor, calibrate, simulate_built};
-use eframe::egui;
-use eframe::egui::{Key, pos2, vec2};
+use eframe::egui::{self, Key, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 

@@ -2,17 +2,13 @@
 
 use super::input::Input;
 use crate::app::state::{Command, FailureChoice, Purpose, RowsCommand};
-use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::method_menu::method_menu;
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::warning;
-use crate::app::widgets::progress::{bar, start_or_cancel};
+use crate::app::widgets::{
+    NumberField, bar, kind_boxes, kind_names, labelled, method_menu, start_or_cancel, ticking_menu, warning,
+};
 use crate::evaluate::campaign::Unfit;
 use crate::radar::counted;
 use crate::scene::generate::Kind;
-use eframe::egui;
-use eframe::egui::Ui;
+use eframe::egui::{self, Ui};
 use std::collections::BTreeSet;
 
 /// The chosen methods and scenes.

@@ -1,11 +1,10 @@
 //! The filter: an expression with completion, and a mark where it is wrong.
 
 use crate::evaluate::filter::{Filter, FilterError, complete};
-use eframe::egui;
 use eframe::egui::text::{CCursor, CharIndex};
 use eframe::egui::text_edit::TextEditOutput;
 use eframe::egui::{
-    CompletionPopup, CompletionQuery, Label, RectAlign, RichText, Stroke, Suggestion, TextEdit, Ui, vec2,
+    self, CompletionPopup, CompletionQuery, Label, RectAlign, RichText, Stroke, Suggestion, TextEdit, Ui, vec2,
 };
 use std::collections::BTreeSet;
 

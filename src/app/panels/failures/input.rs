@@ -1,7 +1,7 @@
 //! Input of the failures panel.
 
 use crate::app::jobs::{Album, RowTable};
-use crate::app::widgets::method_menu::Offered;
+use crate::app::widgets::Offered;
 use crate::evaluate::Metrics;
 use crate::evaluate::campaign::Unfit;
 use crate::evaluate::rows::Row;

@@ -19,8 +19,7 @@ pub use input::{Input, Live, Now, Searched};
 use crate::app::state::{Command, MethodSlot, RowsCommand, State};
 use crate::radar::counted;
 use charts::View;
-use eframe::egui;
-use eframe::egui::{Frame, Margin, Ui, Vec2};
+use eframe::egui::{self, Frame, Margin, Ui, Vec2};
 use order::{Boxed, Order, Sort, Wanted};
 use std::collections::BTreeSet;
 

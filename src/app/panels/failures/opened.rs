@@ -2,12 +2,7 @@
 
 use super::input::{Input, Live, Now, Searched};
 use crate::app::state::{Command, Purpose, RowsCommand, SearchChoice};
-use crate::app::widgets::entry::press;
-use crate::app::widgets::labelled::{choice, labelled};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::numbers::percent;
-use crate::app::widgets::padded::warning;
-use crate::app::widgets::progress::progress;
+use crate::app::widgets::{NumberField, choice, labelled, percent, press, progress, warning};
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
 use crate::evaluate::worsen::{Aim, WorseningMeasure, WorseningSearch};

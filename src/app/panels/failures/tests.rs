@@ -1,8 +1,7 @@
 use super::*;
 use crate::app::jobs::{Album, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, some_row};
 use crate::app::state::{Conditions, FailureChoice, Purpose, SearchChoice};
-use crate::app::widgets::method_menu::Offered;
-use crate::app::widgets::seen;
+use crate::app::widgets::{Offered, seen};
 use crate::evaluate::rows::{Column, Row};
 use crate::evaluate::worsen::{Aim, WorseningMeasure};
 use crate::picture::ColourMap;

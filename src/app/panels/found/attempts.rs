@@ -1,7 +1,7 @@
 //! Attempts of the search, one line each. A click selects the object at the place of an attempt.
 
 use crate::app::state::{Command, EditCommand};
-use crate::app::widgets::numbers::{plain, signed};
+use crate::app::widgets::{plain, signed};
 use crate::interact::SelectionMode;
 use crate::reconstruct::Attempt;
 use crate::reconstruct::search::{LADDER, MOST_ATTEMPTS};
@@ -76,8 +76,7 @@ mod tests {
     use super::*;
     use crate::radar::Radar;
     use crate::reconstruct::search::Nomp;
-    use crate::reconstruct::{Reconstructor, Request};
-    use crate::reconstruct::{Refusal, Tried, Verdict};
+    use crate::reconstruct::{Reconstructor, Refusal, Request, Tried, Verdict};
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
     use egui_kittest::Harness;

@@ -3,14 +3,10 @@
 use super::large::{LARGE_TEXT_RATIO, large};
 use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand, LessonRun};
-use crate::app::widgets::entry::press;
-use crate::app::widgets::inline::inline;
-use crate::app::widgets::number_field::{NumberField, Wanted};
-use crate::app::widgets::theme;
+use crate::app::widgets::{NumberField, Wanted, inline, press, theme};
 use crate::lesson::question::{Answer, number_text};
 use crate::lesson::{Guess, Judgement, Question, Truth};
-use eframe::egui;
-use eframe::egui::{Color32, Id, Sense, Slider, Stroke, TextEdit, Ui, Vec2, pos2, vec2};
+use eframe::egui::{self, Color32, Id, Sense, Slider, Stroke, TextEdit, Ui, Vec2, pos2, vec2};
 
 /// Draws the field or the buttons of an open question, or the request for a click.
 pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked: &mut Vec<Command>) {

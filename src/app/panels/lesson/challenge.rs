@@ -3,11 +3,9 @@
 use super::answer::Symbol;
 use super::large::large;
 use crate::app::state::{Command, LessonCommand, LessonRun};
-use crate::app::widgets::entry::press;
-use crate::app::widgets::theme;
+use crate::app::widgets::{press, theme};
 use crate::lesson::{Challenge, Measured};
-use eframe::egui;
-use eframe::egui::{Sense, Stroke, TextureId, Ui, Vec2};
+use eframe::egui::{self, Sense, Stroke, TextureId, Ui, Vec2};
 
 /// Draws the challenge, its criteria and its buttons.
 pub fn requirements(

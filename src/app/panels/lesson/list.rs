@@ -5,8 +5,7 @@ use crate::app::state::{Command, LessonCommand, Purpose};
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Lesson, Progress};
 use crate::radar::counted;
-use eframe::egui;
-use eframe::egui::{Color32, ProgressBar, RichText, TextEdit, Ui};
+use eframe::egui::{self, Color32, ProgressBar, RichText, TextEdit, Ui};
 use std::sync::OnceLock;
 
 /// Width of a bar of progress, points.

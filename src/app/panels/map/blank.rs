@@ -1,7 +1,7 @@
 //! Texts in the place of a map's picture, where there is none or where it is hidden.
 
 use crate::app::state::{Command, ViewCommand};
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::Inks;
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{self, Align, Painter, Rect, Ui, vec2};
 

@@ -1,8 +1,7 @@
 //! Text in the title bar of a map's panel.
 
 use crate::app::state::{MapKind, Units};
-use crate::app::widgets::levels::{level, with_unit};
-use crate::app::widgets::numbers::percent;
+use crate::app::widgets::{level, percent, with_unit};
 use crate::evaluate::{Metrics, eta_text};
 use crate::maps::cfar::Cfar;
 

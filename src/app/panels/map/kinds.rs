@@ -2,8 +2,7 @@
 
 use super::frame::Frame;
 use crate::app::jobs::{Fates, Verdict};
-use crate::app::widgets::axes;
-use crate::app::widgets::theme::MARK_EDGE;
+use crate::app::widgets::{MARK_EDGE, axes};
 use crate::evaluate::eta_text;
 use crate::evaluate::failure::Fate;
 use crate::maps::Aperture;

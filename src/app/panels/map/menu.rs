@@ -2,7 +2,7 @@
 
 use super::input::Input;
 use crate::app::state::{Command, ExportCommand, Panel, Projection, Units, ViewCommand, WindowCommand};
-use crate::app::widgets::entry::{entry, ticked};
+use crate::app::widgets::{entry, ticked};
 use eframe::egui::Ui;
 
 /// Draws the menu.

@@ -34,14 +34,11 @@ pub use told::{
 };
 
 use crate::app::state::{Command, LessonCommand, MapKind, MapView, Projection, ViewCommand};
-use crate::app::widgets::axes;
-use crate::app::widgets::nudge::nudge;
-use crate::app::widgets::theme::{CAPTION, CAPTION_INK, Inks};
+use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, nudge};
 use crate::maps::{Aperture, RangeAngleMap, beam_columns};
 use crate::radar::{End, FEW_COLUMNS, Radar};
 use crate::scene::Object;
-use eframe::egui;
-use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
 use legend::{Fill, Legend};
 use menu::menu;

@@ -3,10 +3,7 @@
 use super::frame::{Cells, Frame, Marked};
 use super::outline::{hull, outline};
 use crate::app::state::{Cursor, Projection, Units};
-use crate::app::widgets::axes;
-use crate::app::widgets::direction::direction;
-use crate::app::widgets::levels::with_unit;
-use crate::app::widgets::theme::{MARK, MARK_EDGE, MARK_SELECTED};
+use crate::app::widgets::{MARK, MARK_EDGE, MARK_SELECTED, axes, direction, with_unit};
 use crate::interact::Selection;
 use crate::maps::RangeAngleMap;
 use crate::picture::finer;

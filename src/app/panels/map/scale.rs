@@ -2,9 +2,7 @@
 
 use super::input::Input;
 use crate::app::state::{MapKind, Units};
-use crate::app::widgets::colour_bar::Bar;
-use crate::app::widgets::levels::lowest_db;
-use crate::app::widgets::textures::colour_table;
+use crate::app::widgets::{Bar, colour_table, lowest_db};
 use crate::picture::ColourMap;
 
 /// The colour bar of a map.

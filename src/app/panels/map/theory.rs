@@ -2,9 +2,7 @@
 
 use super::clear::clear_patch;
 use super::frame::Frame;
-use crate::app::widgets::direction::angle_degrees;
-use crate::app::widgets::numbers::signed;
-use crate::app::widgets::theme::MARK_EDGE;
+use crate::app::widgets::{MARK_EDGE, angle_degrees, signed};
 use crate::radar::Decibels;
 use crate::scene::Reflector;
 use crate::theory::overlay::STREAK;

@@ -8,7 +8,7 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, Scores, TheoryResult, fates_of};
 use crate::app::panels::captions;
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
-use crate::app::widgets::textures::Texture;
+use crate::app::widgets::Texture;
 use crate::engine::ReadyMap;
 use crate::evaluate::{TARGET_ETA, median_offset_metres};
 use crate::reconstruct::untrained_noise;

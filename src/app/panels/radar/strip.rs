@@ -2,7 +2,7 @@
 //!
 //! The mouse drags an antenna along the line and off it. The arrow keys choose one, and Shift with an arrow moves it.
 
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::Inks;
 use crate::radar::{Antennas, Radar};
 use eframe::egui::{
     self, Align2, Color32, CursorIcon, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect, Response, Sense,
