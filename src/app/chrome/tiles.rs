@@ -224,7 +224,7 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
 mod tests {
     use super::*;
     use crate::app::state::Task;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -257,8 +257,7 @@ mod tests {
             assert!(whole(&window, title), "{title}");
         }
         seen::assert_readable(window.output());
-        window.get_by_label("ROC").click();
-        window.run_steps(3);
+        window.clicks(&["ROC"]);
         assert!(window.state().shown().contains(&Panel::Roc));
     }
 

@@ -44,13 +44,13 @@ pub use command::{
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
 pub use compare::{Compare, Layout};
-pub use cuts::{CutMap, PinnedCut, Pins};
+pub use cuts::{CutMap, PinnedCut, pin_cut};
 pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice};
 pub use guided::{Guided, Setup};
 pub use help::HelpPage;
 pub use lesson_run::{Before, LessonRun};
 pub use menus::menu_path;
-pub use method_times::{MethodTimes, Times};
+pub use method_times::MethodTimes;
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
@@ -66,9 +66,9 @@ pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 use crate::interact::{Document, Editor};
 use crate::lesson::{Progress, Uses};
 use crate::platform::fs;
-use crate::radar::Radar;
+use crate::radar::{BuiltArray, Radar};
 use crate::reconstruct::Reconstructor;
-use crate::scene::Scene;
+use crate::scene::{Scene, presets};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -96,8 +96,8 @@ pub struct State {
     pub map_views: MapViews,
     /// The pointer's place.
     pub pointer: Pointer,
-    /// Pinned cuts.
-    pub pins: Pins,
+    /// Pinned cuts, the oldest first.
+    pub pins: Vec<PinnedCut>,
     /// Changes made by the guide.
     pub guided: Guided,
     /// The question before a scene is written to a file that can't hold all of it or was changed.
@@ -125,6 +125,53 @@ pub struct State {
 }
 
 impl State {
+    /// The state of a first start with these methods.
+    pub fn new(methods: Vec<Arc<dyn Reconstructor>>) -> State {
+        State {
+            editor: Editor::of(Document::shipped(presets::default_scene())),
+            settings: Settings::default(),
+            methods: Methods::new(methods),
+            method_times: MethodTimes::default(),
+            arrangement: Arrangement::default(),
+            notices: Notices::default(),
+            scene_view: SceneView::default(),
+            map_views: MapViews::default(),
+            pointer: Pointer::default(),
+            pins: Vec::new(),
+            guided: Guided::default(),
+            save_question: None,
+            failures: Failures::default(),
+            lesson: None,
+            before_presenting: None,
+            progress: Progress::default(),
+            recent: Vec::new(),
+            captions: true,
+            tells_first_drag: false,
+            timeline: Timeline::default(),
+            help: None,
+            dark: false,
+        }
+    }
+
+    /// The state with this radar and scene, without methods.
+    #[cfg(test)]
+    pub fn of(radar: Radar, scene: Scene) -> State {
+        let document = Document::shipped(crate::scene::file::SceneFile { radar, scene });
+        State { editor: Editor::of(document), ..State::new(Vec::new()) }
+    }
+
+    /// The state with this recording on screen, without methods.
+    #[cfg(test)]
+    pub fn recorded(recording: crate::recording::Recording) -> State {
+        let document = Document::of_frame(recording, Path::new("capture.cfg"));
+        State { editor: Editor::of(document), ..State::new(Vec::new()) }
+    }
+
+    /// Whether a recording takes the place of the scene's echoes.
+    pub fn is_recorded(&self) -> bool {
+        self.editor.document().recording().is_some()
+    }
+
     /// Opens another document; undo brings the last one back with its file.
     pub fn set_document(&mut self, label: &str, document: Document) {
         self.editor.open(label, document);
@@ -233,6 +280,11 @@ impl State {
         self.editor.radar()
     }
 
+    /// The radar's elements as they are built.
+    pub fn elements(&self) -> &BuiltArray {
+        &self.editor.scene().disturbances.elements
+    }
+
     /// The document's scene at the timeline's time.
     pub fn scene(&self) -> &Arc<Scene> {
         self.timeline.scene(self.editor.scene())
@@ -259,6 +311,11 @@ impl State {
         // Undo does not leave a lesson's step.
         let is_left = self.lesson.as_ref().is_none_or(|run| self.editor.history().depth() > run.depth);
         is_left && (self.editor.history().undo_label().is_some() || self.guided.can_undo(&self.setup()))
+    }
+
+    /// Whether an undone change can be done again.
+    pub fn can_redo(&self) -> bool {
+        self.editor.history().redo_label().is_some()
     }
 
     /// Undoes the last change of the scene, or all changes of a button of the guide.
@@ -329,8 +386,7 @@ impl State {
 
     /// Whether reflectors found by the method are drawn: over a recording always.
     pub fn draws_found(&self) -> bool {
-        let is_recorded = self.editor.document().recording().is_some();
-        !self.is_predicting() && (is_recorded || (self.settings.show_found && self.finds_reflectors()))
+        !self.is_predicting() && (self.is_recorded() || (self.settings.show_found && self.finds_reflectors()))
     }
 
     /// Whether a panel in sight marks results of the method's output, which must then be made.

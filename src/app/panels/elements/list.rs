@@ -41,13 +41,9 @@ pub(super) fn show(
         match BuiltArray::from_list(&memory.text, radar.elements) {
             _ if memory.text.trim().is_empty() => {}
             Ok(elements) => {
-                press(
-                    ui,
-                    "Use the list",
-                    "Replace all elements; undo brings them back",
-                    || RadarCommand::SetElements(Arc::new(elements)),
-                    asked,
-                );
+                let (tip, command) =
+                    ("Replace all elements; undo brings them back", RadarCommand::SetElements(Arc::new(elements)));
+                press(ui, "Use the list", tip, command, asked);
             }
             Err(error) => _ = ui.colored_label(ui.visuals().error_fg_color, error.to_string()),
         }

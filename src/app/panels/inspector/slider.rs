@@ -28,6 +28,7 @@ pub fn show(ui: &mut Ui, shared: &SharedField) -> Option<FieldChange> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::User;
     use eframe::egui::{Key, Role};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -45,8 +46,7 @@ mod tests {
             let mut slider = of(field, first);
             slider.get_by_role_and_label(Role::Slider, name).focus();
             slider.step();
-            slider.key_press(Key::ArrowRight);
-            slider.step();
+            slider.presses(&[Key::ArrowRight]);
             let Some(FieldChange::To(asked)) = *slider.state() else { panic!("{name}: {:?}", slider.state()) };
             assert!(asked > first && asked < 2.0 * first, "{name}: {asked}");
         }

@@ -46,7 +46,7 @@ pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked
         }
         Answer::Choice { options, .. } => {
             for (index, option) in options.iter().enumerate() {
-                press(ui, option, "", || LessonCommand::Predict(Guess::Choice(index + 1)), asked);
+                press(ui, option, "", LessonCommand::Predict(Guess::Choice(index + 1)), asked);
             }
         }
         Answer::Threshold { .. } => {
@@ -55,7 +55,7 @@ pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked
                 let field = NumberField::new(&mut memory.eta).range(0.0..=1.0).speed(0.005).max_decimals(2);
                 let field = ui.add(field);
                 ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("threshold in numbers"));
-                press(ui, "Answer", "", || LessonCommand::Predict(Guess::Eta(memory.eta)), asked);
+                press(ui, "Answer", "", LessonCommand::Predict(Guess::Eta(memory.eta)), asked);
             });
         }
     }

@@ -34,14 +34,14 @@ pub fn requirements(
             ui,
             "Start this step again",
             "Puts the step's scene and radar back",
-            || LessonCommand::Step(run.step),
+            LessonCommand::Step(run.step),
             asked,
         );
     } else if run.is_met() {
         ui.label(large(ui, "Solved. Keep experimenting or continue.").strong());
     } else {
         let tip = "Puts a scene and a radar on screen that meet it; the challenge then counts as unsolved";
-        press(ui, "Show a solution", tip, || LessonCommand::ShowSolution, asked);
+        press(ui, "Show a solution", tip, LessonCommand::ShowSolution, asked);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand, Purpose};
+use crate::app::widgets::press;
 use crate::lesson::shipped::Shipped;
 use crate::lesson::{Lesson, Progress};
 use crate::radar::counted;
@@ -45,10 +46,8 @@ pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: 
         }
     }
     ui.add_space(6.0);
-    if ui.button("Open a lesson file…").on_hover_text("A TOML file; docs/lessons.md says how to write one").clicked()
-    {
-        asked.push(Purpose::OpenLesson.into());
-    }
+    let tip = "A TOML file; docs/lessons.md says how to write one";
+    press(ui, "Open a lesson file…", tip, Purpose::OpenLesson, asked);
 }
 
 /// Draws the menu that deletes the learner's answers after a confirmation.
