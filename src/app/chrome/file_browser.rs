@@ -275,11 +275,6 @@ mod tests {
         assert!(dialog.state().1.is_empty(), "chosen, not opened");
         dialog.clicks(&["Open"]);
         assert_eq!(dialog.state().1, [Answer::Chosen(folder.path().join("walls/a.toml"))]);
-    }
-
-    #[test]
-    fn escape_cancels() {
-        let (mut dialog, _folder) = in_walls();
         dialog.presses(&[Key::Escape]);
         assert_eq!(dialog.state().1.last(), Some(&Answer::Cancelled));
     }

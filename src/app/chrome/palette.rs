@@ -8,7 +8,7 @@ use crate::reconstruct::Reconstructor;
 use crate::recording;
 use crate::scene::presets;
 use eframe::egui::{self, Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// State of the palette.
 #[derive(Default)]
@@ -69,25 +69,6 @@ fn matches(name: &str, text: &str) -> bool {
     text.to_lowercase().split_whitespace().all(|word| name.contains(word))
 }
 
-/// A lesson that comes with the program.
-struct Taught {
-    index: usize,
-    title: String,
-    about: String,
-}
-
-/// Every lesson that comes with the program, read once.
-fn taught() -> &'static [Taught] {
-    static TAUGHT: OnceLock<Vec<Taught>> = OnceLock::new();
-    TAUGHT.get_or_init(|| {
-        let read = |(index, file): (usize, &shipped::Shipped)| {
-            let lesson = file.load().ok()?;
-            Some(Taught { index, title: lesson.title, about: lesson.about })
-        };
-        shipped::ALL.iter().enumerate().filter_map(read).collect()
-    })
-}
-
 /// Further search words of a command: name and text of the file that it opens.
 fn words(command: &Command) -> [&'static str; 2] {
     let file = match command {
@@ -118,8 +99,8 @@ fn find(ctx: &Context, methods: &[Arc<dyn Reconstructor>], text: &str, recent: &
         key: String::new(),
         path: Panel::Controls.title().to_owned(),
     });
-    let lessons = taught().iter().map(|lesson| Found {
-        command: LessonCommand::Begin(lesson.index).into(),
+    let lessons = shipped::all_read().iter().map(|(index, lesson)| Found {
+        command: LessonCommand::Begin(*index).into(),
         name: format!("Lesson: {}", lesson.title),
         tooltip: &lesson.about,
         key: String::new(),

@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn the_latest_scene_is_first_and_each_is_brought_back_or_given_up() {
+    fn the_latest_scene_is_first_and_each_can_be_brought_back() {
         let left = left();
         let ids = [left[0].id(), left[1].id()];
         let mut menu = menu(left);

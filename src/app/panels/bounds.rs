@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn likeness_and_bounds_are_there_in_a_wide_panel_or_a_narrow_one() {
+    fn likeness_and_bounds_are_there_in_wide_and_narrow_panels() {
         for (size, wanted) in [
             ([460.0, 640.0], &["likeness", "1.0", "one gain", "a gain an end", "amplitude"][..]),
             ([410.0, 200.0], &["likeness", "cos θ off, columns"]),

@@ -139,9 +139,12 @@ mod tests {
 
     #[test]
     fn what_is_switched_on_has_its_usual_numbers() {
-        let panel = panel_of_both();
+        assert!(panel(State::recorded(some_recording())).query_by_label("Mirror").is_none(), "not over a recording");
+        let mut panel = panel_of_both();
         let usual = (Some(Interferer::default()), Some(Mirror::default()));
         assert_eq!(disturbances(&panel), usual, "as they stand before the radar of table 3.1");
+        panel.clicks(&["Interferer"]);
+        assert_eq!(disturbances(&panel), (None, usual.1), "either is switched off by itself");
     }
 
     #[test]
@@ -150,18 +153,5 @@ mod tests {
         panel.enters("crossing time (% of chirp)", "25");
         let edited = disturbances(&panel).0.unwrap();
         assert_eq!(edited, Interferer { crossing: 0.25, ..Interferer::default() });
-    }
-
-    #[test]
-    fn either_is_switched_off_by_itself() {
-        let mut panel = panel_of_both();
-        panel.clicks(&["Interferer"]);
-        assert_eq!(disturbances(&panel), (None, Some(Mirror::default())));
-    }
-
-    #[test]
-    fn nothing_is_added_to_a_recording() {
-        let panel = panel(State::recorded(some_recording()));
-        assert!(panel.query_by_label("Mirror").is_none());
     }
 }

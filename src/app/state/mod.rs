@@ -27,6 +27,7 @@ mod room;
 mod save_question;
 mod settings;
 mod several;
+mod start;
 mod synonyms;
 mod task_layouts;
 mod timeline;
@@ -68,7 +69,7 @@ use crate::lesson::{Progress, Uses};
 use crate::platform::fs;
 use crate::radar::{BuiltArray, Radar};
 use crate::reconstruct::Reconstructor;
-use crate::scene::{Scene, presets};
+use crate::scene::Scene;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -125,48 +126,6 @@ pub struct State {
 }
 
 impl State {
-    /// The state of a first start with these methods.
-    pub fn new(methods: Vec<Arc<dyn Reconstructor>>) -> State {
-        State {
-            editor: Editor::of(Document::shipped(presets::default_scene())),
-            settings: Settings::default(),
-            methods: Methods::new(methods),
-            method_times: MethodTimes::default(),
-            arrangement: Arrangement::default(),
-            notices: Notices::default(),
-            scene_view: SceneView::default(),
-            map_views: MapViews::default(),
-            pointer: Pointer::default(),
-            pins: Vec::new(),
-            guided: Guided::default(),
-            save_question: None,
-            failures: Failures::default(),
-            lesson: None,
-            before_presenting: None,
-            progress: Progress::default(),
-            recent: Vec::new(),
-            captions: true,
-            tells_first_drag: false,
-            timeline: Timeline::default(),
-            help: None,
-            dark: false,
-        }
-    }
-
-    /// The state with this radar and scene, without methods.
-    #[cfg(test)]
-    pub fn of(radar: Radar, scene: Scene) -> State {
-        let document = Document::shipped(crate::scene::file::SceneFile { radar, scene });
-        State { editor: Editor::of(document), ..State::new(Vec::new()) }
-    }
-
-    /// The state with this recording on screen, without methods.
-    #[cfg(test)]
-    pub fn recorded(recording: crate::recording::Recording) -> State {
-        let document = Document::of_frame(recording, Path::new("capture.cfg"));
-        State { editor: Editor::of(document), ..State::new(Vec::new()) }
-    }
-
     /// Whether a recording takes the place of the scene's echoes.
     pub fn is_recorded(&self) -> bool {
         self.editor.document().recording().is_some()

@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_radar_without_a_network_is_told_how_to_train_one_or_why_not() {
+    fn a_radar_without_a_network_is_told_how_to_get_one_or_why_not() {
         let of = |samples| menu(Radar { elements: 86, end_elements: 8, samples, ..Radar::default() });
         let some = of(256);
         for text in ["none", "50000 maps in about", "--radar radar.toml --out own --minutes "] {

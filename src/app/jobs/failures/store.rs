@@ -189,14 +189,8 @@ mod tests {
         std::fs::write(beside(&path), "[radar]\nelements = 0\n").unwrap();
         let wrong = read(&path).unwrap_err();
         assert!(wrong.contains("conditions.toml") && wrong.contains("elements"), "{wrong}");
-    }
-
-    #[test]
-    fn rows_of_two_formats_are_not_one_table() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("rows.csv");
-        write(&path, &[some_row(0, "live"), Row { version: None, ..some_row(1, "live") }], &Conditions::default())
-            .unwrap();
+        let two_formats = [some_row(0, "live"), Row { version: None, ..some_row(1, "live") }];
+        write(&path, &two_formats, &Conditions::default()).unwrap();
         let refused = read(&path).unwrap_err();
         assert!(refused.contains("several formats; the floor \"thesis\" is 1.8 dB quieter"), "{refused}");
     }

@@ -77,21 +77,16 @@ fn maps_of_another_radar_are_left_out() {
     }
 }
 
-#[test]
-fn the_target_is_read_without_a_choice() {
-    let cuts = panel([640.0, 300.0]);
-    assert!(cuts.state().asked.is_empty());
-    assert_eq!(cuts.state().memory.read.map(|line| line.kind), Some(MapKind::Target));
-}
-
 /// Place at a part of the width of a chart.
 fn at(part: f32, rect: Rect) -> Pos2 {
     pos2(rect.left() + part * rect.width(), rect.center().y)
 }
 
 #[test]
-fn clicks_place_markers() {
+fn clicks_place_markers_on_the_target() {
     let mut cuts = panel([700.0, 600.0]);
+    assert!(cuts.state().asked.is_empty());
+    assert_eq!(cuts.state().memory.read.map(|line| line.kind), Some(MapKind::Target), "without a choice");
     let chart = cuts.get_by_label("Range profile").rect();
     click(&mut cuts, at(0.25, chart));
     let chart = cuts.get_by_label("Range profile").rect();

@@ -15,13 +15,6 @@ pub(super) struct ElementListMemory {
     back_millimetres: f64,
 }
 
-#[cfg(test)]
-impl ElementListMemory {
-    pub(super) fn back_by(back_millimetres: f64) -> Self {
-        ElementListMemory { back_millimetres, ..ElementListMemory::default() }
-    }
-}
-
 /// Hint in the field of the list: its columns and their units.
 const EXAMPLE: &str = "place mm, forward mm, gain dB, phase °";
 

@@ -90,8 +90,7 @@ fn an_element_is_moved_by_the_mouse() {
 #[test]
 fn a_bent_line_can_be_drawn() {
     let mut panel = panel(BuiltArray::default(), None);
-    panel.state_mut().memory.list = list::ElementListMemory::back_by(5.0);
-    panel.run();
+    panel.enters("ends back by", "5");
     panel.clicks(&["Bend"]);
     assert_eq!(*panel.state().state.elements(), BuiltArray::default().bent(&radar(), 5.0));
     assert!(panel.query_by_label_contains("up to 5.00 mm off the line").is_some());

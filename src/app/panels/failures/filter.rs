@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn an_expression_is_read_as_it_is_typed_and_a_mistake_pointed_at() {
+    fn an_expression_is_read_when_typed_and_a_mistake_pointed_at() {
         let mut field = field();
         write(&mut field, "nomp.objects > 3");
         assert!(field.state().error.is_none());

@@ -125,16 +125,11 @@ fn ten_thousand_rows_are_put_in_order_once() {
 }
 
 #[test]
-fn rows_out_of_sight_are_not_drawn() {
-    let panel = with_pictures(1000);
+fn only_rows_in_sight_are_drawn_and_their_pictures_held() {
+    let mut panel = with_pictures(1000);
     let in_sight = panel.state().memory.in_sight().len();
     assert!((5..30).contains(&in_sight), "{in_sight} rows in sight");
     assert!(seen::texts(panel.output()).len() < 700);
-}
-
-#[test]
-fn pictures_are_held_only_of_rows_in_sight() {
-    let mut panel = with_pictures(1000);
     panel.get_by_label("Rows").focus();
     panel.step();
     panel.presses(&[Key::End]);

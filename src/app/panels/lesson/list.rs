@@ -3,23 +3,15 @@
 use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand, Purpose};
 use crate::app::widgets::press;
-use crate::lesson::shipped::Shipped;
-use crate::lesson::{Lesson, Progress};
+use crate::lesson::{Lesson, Progress, shipped};
 use crate::radar::counted;
 use eframe::egui::{self, Color32, ProgressBar, RichText, TextEdit, Ui};
-use std::sync::OnceLock;
 
 /// Width of a bar of progress, points.
 const BAR: f32 = 120.0;
 
 /// Room for "0 of 5 steps", points.
 const MIN_BAR: f32 = 84.0;
-
-/// The shipped lessons, read once.
-fn shipped() -> &'static [(&'static Shipped, Lesson)] {
-    static READ: OnceLock<Vec<(&'static Shipped, Lesson)>> = OnceLock::new();
-    READ.get_or_init(|| crate::lesson::shipped::ALL.iter().filter_map(|s| Some((s, s.load().ok()?))).collect())
-}
 
 /// Draws the list.
 pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
@@ -40,9 +32,9 @@ pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: 
         }
     });
     ui.add_space(6.0);
-    for (index, (file, lesson)) in shipped().iter().enumerate() {
-        if listed(ui, lesson, done(progress, file.id, lesson)) {
-            asked.push(LessonCommand::Begin(index).into());
+    for (index, lesson) in shipped::all_read() {
+        if listed(ui, lesson, done(progress, shipped::ALL[*index].id, lesson)) {
+            asked.push(LessonCommand::Begin(*index).into());
         }
     }
     ui.add_space(6.0);

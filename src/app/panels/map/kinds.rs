@@ -261,11 +261,7 @@ pub mod tests {
         assert!(told.contains("3 columns to the right"), "lower columns are drawn farther right: {told}");
         assert_eq!(said[4], "point 5: hidden\nthe target itself does not show it");
         assert_eq!(said[5], "ghost: 12 cells above η = 0.80\nwhere the scene has nothing");
-    }
-
-    #[test]
-    fn every_kind_is_counted() {
-        assert_eq!(Kinds { fates: &fates(), current: true }.counts().len(), Sign::ALL.len());
+        assert_eq!(kinds.counts().len(), Sign::ALL.len(), "every kind is counted");
     }
 
     #[test]

@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn what_wraps_around_has_two_outlines_and_what_is_apart_has_rings() {
+    fn what_wraps_has_two_outlines_and_what_is_apart_has_rings() {
         let mut wrapped = five(4.0);
         wrapped[3..].iter_mut().for_each(|at| at.y -= 90.0);
         let counts = [(true, five(4.0)), (true, wrapped), (true, five(14.0)), (false, five(4.0))];

@@ -192,15 +192,11 @@ fn judged(size: [f32; 2]) -> Harness<'static> {
 }
 
 #[test]
-fn fates_of_objects_are_counted_above_the_map() {
+fn fates_are_counted_above_the_map_and_told_under_the_pointer() {
     let legend = "Legend: hit, rim, false alarm, miss, 1 found, 1 missed, 1 merged, 1 wrong tooth, 1 ghost, 1 hidden";
-    assert!(judged([900.0, 500.0]).query_by_label(legend).is_some());
     assert!(judged([260.0, 140.0]).query_by_label_contains("Legend").is_none(), "not in a small panel");
-}
-
-#[test]
-fn the_fate_of_an_object_is_told_under_the_pointer() {
     let mut map = judged([900.0, 500.0]);
+    assert!(map.query_by_label(legend).is_some());
     let rect = map.get_by_label("Output > η map").rect();
     let blob = crate::theory::blob_cell(&Radar::default(), -4.0, 16.0, crate::maps::Aperture::Full);
     let at = pos2(

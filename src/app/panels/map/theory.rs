@@ -308,10 +308,6 @@ mod tests {
         ] {
             assert!(all.contains(part), "{part} in:\n{all}");
         }
-    }
-
-    #[test]
-    fn grating_lobes_are_told_in_degrees_from_straight_ahead() {
         let radar = Radar { carrier: crate::radar::Carrier::TwoWay, ..Radar::default() };
         let (reflector, overlay) = of(&radar, 10.0, 17.32);
         let told = theory(&overlay, reflector).aliases(frame(&radar));

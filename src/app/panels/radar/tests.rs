@@ -101,30 +101,21 @@ fn the_constant_that_a_challenge_needs_is_brought_into_sight() {
 }
 
 #[test]
-fn a_bandwidth_changes_its_consequence() {
+fn a_typed_constant_changes_its_consequence() {
     let mut panel = panel(Radar::default());
     let _told = panel.get_by_label("range bin 7.49 cm");
     panel.enters("bandwidth", "150");
     let _told = (panel.get_by_label("range bin 99.93 cm"), panel.get_by_label("maximum range 511.65 m"));
     assert!((panel.state().0.radar().bandwidth_hz - 150e6).abs() < 1.0);
     assert_eq!(panel.state().1.len(), 1, "one edit is one command");
-}
-
-#[test]
-fn fewer_elements_take_their_ends_along() {
-    let mut panel = panel(Radar::default());
     panel.enters("elements", "16");
-    assert_eq!((panel.state().0.radar().elements, panel.state().0.radar().end_elements), (16, 8));
-}
-
-#[test]
-fn the_spacing_is_typed_in_wavelengths() {
-    let mut panel = panel(Radar { elements: 16, end_elements: 8, ..Radar::default() });
+    let radar = panel.state().0.radar();
+    assert_eq!((radar.elements, radar.end_elements), (16, 8), "fewer elements take their ends along");
     panel.enters("spacing / λ", "1");
-    let spacing = panel.state().0.radar().element_spacing_metres;
-    assert!((spacing - panel.state().0.radar().wavelength_metres()).abs() < 1e-12);
+    let radar = panel.state().0.radar();
+    assert!((radar.element_spacing_metres - radar.wavelength_metres()).abs() < 1e-12);
     let _told = panel.get_by_label_contains("some directions are indistinguishable");
-    panel.state().0.radar().validate().unwrap();
+    radar.validate().unwrap();
 }
 
 #[test]

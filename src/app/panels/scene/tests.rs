@@ -79,7 +79,7 @@ fn ghosts_stand_where_the_radar_hears_them() {
 }
 
 #[test]
-fn labels_stand_around_the_half_disc() {
+fn labels_stand_around_the_half_disc_from_straight_ahead() {
     // The last case also shows a point far behind the array, so that the half disc is small.
     for (size, y_metres) in
         [([280.0, 170.0], 20.0), ([480.0, 300.0], 20.0), ([1400.0, 800.0], 20.0), ([490.0, 170.0], -30.0)]
@@ -92,11 +92,15 @@ fn labels_stand_around_the_half_disc() {
         state.0.add(Object::Point(Point::new(-12.0, y_metres)));
         let scene = Harness::builder().with_size(size).build_ui_state(draw, state);
         seen::assert_readable(scene.output());
+        let texts = seen::texts(scene.output());
+        let middle = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.center().x);
+        let spokes = ["−60°", "−30°", "0°", "30°", "60°"].map(middle);
+        assert!(spokes[0].is_some() && spokes.is_sorted(), "from straight ahead: {texts:?}");
         let (rect, view) = (scene.get_by_label("Scene").rect(), scene.state().1);
         let radius = Radar::default().max_range_metres() / view.metres_per_point;
         let origin = view.to_screen(rect, Place::new(0.0, 0.0));
         assert!(f64::from(origin.x - rect.left()) > radius + 10.0, "the disc doesn't touch the panel at {size:?}");
-        for text in seen::texts(scene.output()).iter().filter(|t| t.text.ends_with('°')) {
+        for text in texts.iter().filter(|t| t.text.ends_with('°')) {
             let outside = text.rect.distance_to_pos(origin) >= radius as f32;
             assert!(outside, "{} is on the arc at {size:?}", text.text);
         }
@@ -172,15 +176,6 @@ fn the_handle_of_a_line_turns_it_in_one_step_of_undo() {
     let [x, y] = turned.place_metres(10.0);
     assert!((x - middle[0]).hypot(y - middle[1]) < 1e-9, "the middle stays: {x}, {y}");
     assert!(scene.state_mut().editor.undo() && line(&scene) == before && !scene.state_mut().editor.undo());
-}
-
-#[test]
-fn the_spokes_are_labelled_from_straight_ahead() {
-    let scene = panel(Scene::default());
-    let texts = seen::texts(scene.output());
-    let middle = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.center().x);
-    let labels = ["−60°", "−30°", "0°", "30°", "60°"].map(middle);
-    assert!(labels[0].is_some() && labels.is_sorted(), "{texts:?}");
 }
 
 #[test]
@@ -279,7 +274,7 @@ fn arrow_keys_pan_the_scene_while_nothing_is_selected() {
 }
 
 #[test]
-fn a_corner_of_a_box_resizes_it_in_one_step_of_undo() {
+fn a_corner_resizes_a_box_and_the_round_handle_turns_a_wall() {
     let object = Object::Box(Block::new([4.0, 12.0], [4.0, 2.0], 0.0));
     let mut scene = selected(object.clone());
     let metres = drag(&mut scene, "box 1: move corner 3", vec2(40.0, -30.0));
@@ -289,10 +284,6 @@ fn a_corner_of_a_box_resizes_it_in_one_step_of_undo() {
     let [x, y] = after.corners_metres()[0];
     assert!((x - 2.0).hypot(y - 11.0) < 1e-9, "the opposite corner stays: {x}, {y}");
     assert!(scene.state_mut().editor.undo() && scene.state().editor.scene().objects[0] == object);
-}
-
-#[test]
-fn the_round_handle_turns_a_wall_about_its_middle() {
     let mut scene = selected(Object::Wall(Wall::new(0.0, 15.0, 6.0, 0.0)));
     drag(&mut scene, "wall 1: turn it about its middle", vec2(0.0, -40.0));
     let Object::Wall(after) = scene.state().editor.scene().objects[0].clone() else { panic!() };
