@@ -187,7 +187,8 @@ mod tests {
     #[test]
     fn what_is_not_listed_is_told() {
         let many = (0..250).map(|i| detection(0.0, f64::from(i), -1.0)).collect();
-        let cases: [(_, fn(Input<'_>) -> Input<'_>, &str); 4] = [
+        type Case = (Option<Vec<Detection>>, fn(Input<'_>) -> Input<'_>, &'static str);
+        let cases: [Case; 4] = [
             (Some(two()), |input| Input { draws_only: Some("live"), ..input }, "live draws a map"),
             (Some(Vec::new()), |input| input, "iaa found nothing."),
             (Some(many), |input| input, "and 50 weaker ones"),

@@ -171,7 +171,8 @@ mod tests {
 
     #[test]
     fn a_search_tells_why_it_does_not_begin_or_succeed() {
-        let cases: [(u32, fn(&mut Drawn), &str); 3] = [
+        type Case = (u32, fn(&mut Drawn), &'static str);
+        let cases: [Case; 3] = [
             (20, |_| (), "60 scenes can't keep a rate of 1 %; take 99 scenes or more"),
             (33, |drawn| drawn.search.note = Some("no threshold keeps 1 %"), "no threshold keeps 1 %"),
             (33, |drawn| drawn.memory.kinds.clear(), "Choose scenes first."),

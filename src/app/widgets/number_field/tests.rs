@@ -120,7 +120,8 @@ fn a_wrong_entry_stays_in_the_field_with_the_focus() {
 
 #[test]
 fn a_wrong_entry_ends_by_a_right_one_escape_or_from_elsewhere() {
-    let ways: [(fn(&mut Harness<'_, Shown>), f64, usize); 3] = [
+    type Way = (fn(&mut Harness<'_, Shown>), f64, usize);
+    let ways: [Way; 3] = [
         (|panel| enter(panel, "x", "-3,5"), -3.5, 1),
         (|panel| panel.presses(&[Key::Escape]), 1.0 / 3.0, 0),
         (|panel| panel.state_mut().x_metres = 8.0, 8.0, 0),
